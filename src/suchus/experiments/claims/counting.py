@@ -1,4 +1,4 @@
-"""How many of the verdicts are evidence: what could not have come out otherwise is counted as what it is."""
+"""Number of verdicts that are evidence; verdicts that could not have come out otherwise are counted apart."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,7 +21,7 @@ STANDINGS: tuple[Standing, ...] = get_args(Standing)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvidenceCount:
-    """How many claims of the article there are of each standing, and what became of them."""
+    """Number of the article's claims by standing, and their verdicts."""
 
     claims: int
     """Number of claims with a verdict [-]."""
@@ -68,7 +68,7 @@ class EvidenceCount:
 def counted(
     verdicts: Mapping[str, str], fragile: Iterable[str] = (), rules: Mapping[str, Rule] = RULES
 ) -> EvidenceCount:
-    """Return how many verdicts on the article are evidence, what became of them and of the others, and elsewhere.
+    """Return the number of verdicts on the article by standing and word, and those on other publications by word.
 
     Args:
         verdicts: the word of each claim.
@@ -108,7 +108,7 @@ _AGREES: Mapping[Standing, Sequence[str]] = {
 
 
 def standings(verdicts: Mapping[str, str], rules: Mapping[str, Rule] = RULES) -> dict[str, Standing]:
-    """Return what the verdict on each claim is worth.
+    """Return the standing of the verdict on each claim.
 
     Args:
         verdicts: the word of each claim.
@@ -130,7 +130,7 @@ def standings(verdicts: Mapping[str, str], rules: Mapping[str, Rule] = RULES) ->
 
 
 def _repeats_earlier_rule(rule: Rule, rules: Mapping[str, Rule]) -> bool:
-    """Return whether the same comparisons of the same measure decide a claim whose rule stands before."""
+    """Return whether an earlier rule makes the same comparisons of the same measure."""
     for earlier_rule in rules.values():
         if earlier_rule is rule:
             return False

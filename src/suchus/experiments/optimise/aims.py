@@ -1,4 +1,4 @@
-"""What can be aimed at, and what can be limited: a number for each run of a batch."""
+"""Quantities that a search can optimise or limit: a number for each run of a batch."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from suchus.sim.land import Run
 
 Measured = Callable[[Sequence[Run], xr.Dataset], np.ndarray]
 """From runs and their record to one number for each run."""
-_CLEARANCE_INTERVAL = 0.04  # [s]; between looks at the parts' clearance: a hundredth of the article's cycle
+_CLEARANCE_INTERVAL = 0.04  # interval between samples of the clearance [s]: a hundredth of the article's cycle
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +28,11 @@ class Kind:
     unit: str
     """SI unit, ``-`` for none."""
     good: Literal["more", "less"]
-    """What is better; a limit is the least value where more is better, the greatest where less is."""
+    """Better direction. A limit is the least value where more is better, otherwise the greatest."""
     tells: str
     """Description of the quantity."""
     scale: float = 1.0
-    """What counts as one unit of excess where the limit itself is zero, in the unit."""
+    """Unit of excess for a limit of zero, in the unit of the quantity."""
 
 
 def _forward(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
@@ -88,7 +88,7 @@ def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 
 def _foot_lift(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
-    """Return how far the foot is lifted that is lifted least."""
+    """Return the least lift among the feet [m]."""
     del runs
     return np.asarray(metrics.foot_clearance(record).min("leg").values, dtype=float)
 
@@ -104,7 +104,7 @@ def _min_duty(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 
 def _standing(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
-    """Return the least height reached while it is meant to stand; zero for a run that does not stand up."""
+    """Return the least height reached while it should stand [m]; zero for a run without standing."""
     seconds = np.zeros(len(runs))
     for i, run in enumerate(runs):
         if isinstance(run.control, Standing):

@@ -1,4 +1,4 @@
-"""How far the parts of a body stay clear of each other: the physics knows contacts with the ground only."""
+"""Distance between the parts of a body; the physics has contacts with the ground only."""
 
 from functools import lru_cache
 from itertools import combinations, product
@@ -21,15 +21,15 @@ class _Capsule(NamedTuple):
 def clearance(robot: Robot, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
     """Return the least distance between parts of the body that could touch each other, negative where they overlap [m].
 
-    The parts are capsules: the links of each limb and the shapes of the axis. Each limb is held against the other limbs
-    and against the trunk, but its first link not against the shape that carries it or one that it overlaps on the
-    straight body. Hind limbs are held against the tail beyond its first segment, which lies between the hips.
-    Parts of the axis are not held against each other.
+    The parts are capsules: the links of each limb and the shapes of the axis. Distances are measured from each limb to
+    the other limbs and to the trunk. The first link is not compared with the shape that carries it, nor with one that
+    it overlaps on the straight body. Hind limbs are also compared with the tail beyond its first segment, which lies
+    between the hips. Parts of the axis are not compared with each other.
 
     Args:
-        robot: whose record it is.
+        robot: of the record.
         record: of one run or of several runs of robots with these lengths.
-        every: look at one sample of so many.
+        every: number of samples of which one is evaluated.
     """
     angles = record.joint_angle.isel(time=slice(None, None, every)).transpose(..., "time", "joint")
     min_distance = between_parts(robot, angles.values.astype(float)).min(axis=-1)

@@ -1,6 +1,6 @@
-"""Conducting a search: generation after generation, each kept, the best so far always on disk.
+"""Conducting a search: each generation is stored, and the best so far is always on disk.
 
-At its end comes whether an optimum is one: with a finer time step, on other ground, begun otherwise; and what lies
+At the end the best is checked with a finer time step, on other ground and from other starts, and each field is varied
 around it.
 """
 
@@ -29,39 +29,39 @@ from suchus.sim.land import Run, Tolerances, simulate
 from suchus.sim.land.extent import processor_seconds
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
-"""Packages whose versions decide which candidates are tried."""
+"""Packages whose versions affect which candidates are evaluated."""
 ROOMS = (*MADE_BY, *(f"experiments/optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
-"""Whose code decides what a candidate reaches."""
+"""Source files whose code affects the result of a candidate."""
 _DECIDING = partial(deciding, ROOMS, LIBRARIES)
 _CHECK_NUMBER, _NEIGHBOURHOOD_NUMBER = (
     900_000,
     950_000,
-)  # first numbers of the last parts; the budget's generations are added
+)  # first store numbers of the checks; the number of generations is added
 
 
 def optimise(
     spec: Optimisation, folder: str | Path, *, progress: Progress = silent, client: Any = None
 ) -> tuple[SearchResult, ...]:
-    """Search each condition, check what was found, and return it.
+    """Search each condition, check the best candidates, and return the results.
 
-    Generations are stored as they are finished: whatever stops the program, at most the running one is lost. Started
-    again it goes on, and ends with the same bytes as if nothing had happened. The best gait so far is always a file,
+    Each finished generation is stored, so that an interruption loses at most the running one. A restarted search
+    resumes and ends with the same bytes as an uninterrupted one. The best gait so far is always a file,
     ``ARM.toml``; a robot that changes too is ``ARM_robot.toml``.
 
     Args:
         spec: the search; with more evaluations than before, an earlier one is continued.
         folder: for its results and, below it, the store of each condition.
-        progress: told which condition is searched, how many candidates were tried, and how good the best is.
+        progress: called with the condition, the number of evaluated candidates, and the best value.
         client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
             bytes are the same.
 
     Raises:
         Unwritable: the folder cannot be written to.
-        IncompatibleRecord: a store below it is another search's or another version's.
+        IncompatibleRecord: a store below it belongs to another search or version.
         NoOptimiser: a library is missing.
-        NotConverged: nothing that was tried keeps all limits.
+        NotConverged: no evaluated candidate keeps all limits.
         NoCluster: the cluster was lost.
-        InvalidDesign: it is larger than anybody asked for, see ``suchus.core.large``.
+        InvalidDesign: the work exceeds the allowed size, see ``suchus.core.large``.
     """
     folder = Path(folder)
     place, count = place_for("a search", client=client), len(spec.arms)
@@ -101,19 +101,19 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> 
 
 @contextmanager
 def opened(spec: Optimisation, folder: Path) -> Iterator[Store]:
-    """Hold the store of one condition; the budget does not distinguish searches."""
+    """Open the store of one condition; searches that differ in their budget only share it."""
     with Store(folder, replace(spec, evaluations=1), kind="optimisation", versions=_DECIDING).opened() as store:
         yield store
 
 
 def tried(place: Place, spec: Optimisation, shares: np.ndarray, progress: Progress = silent) -> xr.Dataset:
-    """Try candidates, an equal share of them in each piece; a candidate reaches the same in company as alone.
+    """Evaluate candidates in equal parts; the result of a candidate does not depend on the other candidates.
 
     Args:
-        place: where they are tried.
+        place: where they are evaluated.
         spec: the search, of one condition.
         shares: as of ``evaluate``.
-        progress: told how many are tried.
+        progress: called with the number of evaluated candidates.
 
     Returns:
         As of ``evaluate``, to the same bytes.
@@ -199,7 +199,7 @@ def _generation(
 
 
 def _stored_part(store: Store, number: int, make: Callable[[], xr.Dataset]) -> xr.Dataset:
-    """Return a part, made and stored if it is not there yet."""
+    """Return a part of the store, made and stored if it is missing."""
     if not store.has(number):
         store.put(number, make())
     return store.get(number)
@@ -213,7 +213,7 @@ def write_runs(spec: Optimisation, runs: Sequence[Run], folder: Path) -> None:
 
 
 def run_files(spec: Optimisation, label: str) -> list[str]:
-    """Return which files ``write_runs`` writes for a run: of its gait, and of its robot if that varies."""
+    """Return the files that ``write_runs`` writes for a run: its gait, and its robot if the robot varies."""
     varies = any(vary.field.startswith("robot.") for vary in spec.vary)
     return [f"{label}.toml", *[f"{label}_robot.toml"] * varies]
 
@@ -292,8 +292,8 @@ def around(spec: Optimisation, best: np.ndarray, evaluate_candidates: Evaluate =
 
     Args:
         spec: the search.
-        best: the shares of the ranges at which the best lies.
-        evaluate_candidates: what tries candidates.
+        best: fractions of the ranges at the best, shape (field,).
+        evaluate_candidates: function that evaluates candidates.
 
     Returns:
         ``share``, ``aim_...``, ``limit_...``, ``status`` over ``moved`` (which field) and ``step``.

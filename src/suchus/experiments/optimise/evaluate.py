@@ -1,4 +1,4 @@
-"""One generation: its candidates in one batch, what each reaches and breaks, and what is made small."""
+"""One generation: its candidates in one batch, their aims and limits, and their losses."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -23,12 +23,12 @@ _SAMPLE_INTERVAL = 2  # control periods; 50 looks a second
 def evaluate(
     spec: Optimisation, shares: np.ndarray, progress: Progress = silent, *, timestep: float | None = None
 ) -> xr.Dataset:
-    """Try candidates, all that can be built in one batch.
+    """Evaluate candidates; all that can be built are simulated in one batch.
 
     Args:
         spec: the search, of one condition.
-        shares: where each candidate's fields lie in their ranges, shape (candidate, field), 0 to 1.
-        progress: told the share that is done.
+        shares: fractions of the ranges, from 0 to 1, shape (candidate, field).
+        progress: called with the fraction that is done.
         timestep: of the physics [s]; that of the search if None.
 
     Returns:
@@ -44,7 +44,7 @@ def evaluate(
             limit_excess[i] = excess(run.robot, run.gait)
             if limit_excess[i] == 0.0:
                 check_limits(run.robot, run.gait)
-                # refuses what it cannot steer
+                # raises if the control cannot steer this gait
                 run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))
                 runs[i] = run
         except SuchusError:
@@ -114,7 +114,7 @@ def _walk_candidates(
 
 
 def measure(spec: Optimisation, runs: Sequence[Run], record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return every aim and limit of some runs by column."""
+    """Return every aim and limit of some runs by column, each of shape (run,)."""
     values: dict[Any, np.ndarray] = {}
     for kind in columns(spec).values():
         if kind.measure not in values:
@@ -135,14 +135,14 @@ def _joined(name: str, values: np.ndarray) -> float:
     return float(reduce())
 
 
-_PENALTY = 5.0  # per limit exceeded by its own size, in parts of what the start has
+_PENALTY = 5.0  # loss for each limit that is exceeded by its own size, in units of the start's aim
 _REFUSED_LOSS, _DIVERGED_LOSS, _IMPOSSIBLE_LOSS = (
     1e3,
     2e3,
     4e3,
-)  # ranks below all that walk, the nearer to walking the better
+)  # losses above those of all walks, less for candidates that nearly walk
 ACTIVE = 0.03
-"""A limit that is kept by less than this part of it counts as active [-]."""
+"""Greatest relative margin at which a limit counts as active [-]."""
 
 
 def excesses(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
@@ -169,13 +169,13 @@ def over(limit: Limit, values: np.ndarray) -> np.ndarray:
 
 
 def allowed(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
-    """Tell which candidates walked and kept every limit."""
+    """Return which candidates walked and kept every limit, shape (candidate,)."""
     has_walked = table.status.values == WALKED
     return np.asarray(has_walked & (excesses(spec, table) <= 0.0).all(axis=1))
 
 
 def units(spec: Optimisation, start: xr.Dataset) -> np.ndarray:
-    """Return what one part of each aim is: the start's own value, or 1 where it has none."""
+    """Return the unit of each aim: the size of the start's value, or 1 if the start has none, shape (aim,)."""
     values = np.array([abs(float(start[f"aim_{aim.name}"][0])) for aim in spec.aims])
     return np.where(np.isfinite(values) & (values > 1e-9), values, 1.0)
 

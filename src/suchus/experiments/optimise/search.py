@@ -17,7 +17,7 @@ from suchus.experiments.optimise.spec import Optimisation
 from suchus.robot.design import value_at, with_values
 from suchus.sim.land import Run
 
-_EDGE = 0.02  # how far inside its range a start is moved, where the search could not look to both sides
+_EDGE = 0.02  # least distance of the start from the ends of its range [-], so that both sides can be searched
 
 
 class NoOptimiser(SuchusError, ImportError):
@@ -25,13 +25,13 @@ class NoOptimiser(SuchusError, ImportError):
 
 
 class Strategy(Protocol):
-    """Asks for candidates and receives their losses."""
+    """Proposes candidates and receives their losses."""
 
     def ask(self) -> np.ndarray:
         """Return the next generation, shape (candidate, field), each from 0 to 1."""
 
     def tell(self, losses: np.ndarray) -> None:
-        """Tell the losses of what was asked for: one number each, or two for a front."""
+        """Receive the losses of the last generation: one number for each candidate, or two for a front."""
 
 
 def search(spec: Optimisation) -> Strategy:
@@ -44,7 +44,7 @@ def search(spec: Optimisation) -> Strategy:
 
 
 class Single:
-    """CMA-ES; when it has converged it starts again from where it began, with twice as many candidates."""
+    """CMA-ES; after convergence it restarts from the same start with twice the population."""
 
     def __init__(self, spec: Optimisation) -> None:
         """Start CMA-ES at the start of the search.
@@ -75,7 +75,7 @@ class Single:
         return np.clip(np.array(self._candidates), 0.0, 1.0)
 
     def tell(self, losses: np.ndarray) -> None:
-        """Tell one loss for each."""
+        """Receive the losses of the last generation, shape (candidate,)."""
         self._es.tell(self._candidates, losses.tolist())
 
 
@@ -87,7 +87,7 @@ class Front:
     """
 
     WORST = (0.0, 2.0)
-    """What no front reaches: nothing of an aim where more is better, twice the start's where less is [-]."""
+    """Reference losses of the hypervolume [-]: 0 where more is better, twice the start's value where less is."""
 
     def __init__(self, spec: Optimisation) -> None:
         """Start one CMA-ES for each point of the front, spread around the start of the search.
@@ -111,12 +111,12 @@ class Front:
         return np.clip(np.array(self._candidates), 0.0, 1.0)
 
     def tell(self, losses: np.ndarray) -> None:
-        """Tell two losses for each."""
+        """Receive the losses of the last generation, shape (candidate, 2)."""
         self._search.tell(self._candidates, losses.tolist())
 
 
 def reference_of(spec: Optimisation) -> list[float]:
-    """Return the losses that a front is measured from."""
+    """Return the reference point of the hypervolume, a loss for each aim."""
     return [Front.WORST[0] if AIMS[aim.name].good == "more" else Front.WORST[1] for aim in spec.aims]
 
 
@@ -204,12 +204,12 @@ class SearchResult:
 
     @property
     def shares(self) -> list[np.ndarray]:
-        """Where the fields of the chosen lie in their ranges, each of shape (field,) [-]."""
+        """Fractions of the ranges at the chosen candidates, each of shape (field,) [-]."""
         return [self.history.share.values[i] for i in self.chosen]
 
     @property
     def names(self) -> list[str]:
-        """What the chosen are called: the arm, numbered where there are several."""
+        """Names of the chosen candidates: the arm, numbered if there are several."""
         several = len(self.chosen) > 1
         return [f"{self.arm}_{i + 1}" if several else self.arm for i in range(len(self.chosen))]
 
@@ -227,12 +227,12 @@ class SearchResult:
         return [v.field for v in self.spec.vary]
 
     def values(self, index: int) -> dict[str, tuple[float, float]]:
-        """Return by field what the start has and what a chosen one has."""
+        """Return by field the value of the start and that of a chosen candidate."""
         run = self.runs[index]
         return {f: (float(value_at(self.spec.run, f)), float(value_at(run, f))) for f in self.fields}
 
     def active(self, index: int) -> dict[str, tuple[float, float, bool]]:
-        """Return by limit its value, what a chosen one has, and whether the limit is what stops it."""
+        """Return by limit its value, the value of a chosen candidate, and whether the limit is active."""
         limits = {}
         for limit in self.spec.limits:
             has = float(self.history[f"limit_{limit.name}"][self.chosen[index]])

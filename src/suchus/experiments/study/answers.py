@@ -1,4 +1,4 @@
-"""From the runs of many designs to what becomes of each claim of the article."""
+"""From the runs of many designs to the truth of each claim of the article."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -25,11 +25,11 @@ class Index(NamedTuple):
 
 
 def answers(record: xr.Dataset, min_displacement: float) -> xr.Dataset:
-    """Return number and truth of each claim in every sample, and what decides.
+    """Return number and truth of each claim in every sample, and the parameters that decide them.
 
     Args:
         record: see ``claim_measures.measures_of``, and ``value`` over ``sample`` and ``parameter``.
-        min_displacement: an intact robot with spine and tail that gets no farther has nothing to lose [m].
+        min_displacement: least displacement of an intact robot with spine and tail for which a loss is measured [m].
 
     Raises:
         IncompatibleRecord: a rule needs a measure that the record lacks.
@@ -39,7 +39,7 @@ def answers(record: xr.Dataset, min_displacement: float) -> xr.Dataset:
 
 
 def answered(results: Mapping[str, tuple[np.ndarray, np.ndarray]], parameters: np.ndarray) -> xr.Dataset:
-    """Return number and truth of each claim in every sample, and what decides.
+    """Return number and truth of each claim in every sample, and the parameters that decide them.
 
     Args:
         results: by claim its number in every sample, NaN where it cannot be judged, and whether its statement holds.

@@ -1,4 +1,4 @@
-"""What the rules of the verdicts read of one design: its runs, and their numbers by the names that the rules use."""
+"""Measures that the rules of the verdicts read of one design, by the names that the rules use."""
 
 from collections.abc import Mapping
 
@@ -79,7 +79,7 @@ def measures_of(record: xr.Dataset, min_displacement: float) -> Mapping[str, np.
 
     Args:
         record: the columns of ``METRICS`` over ``sample`` and ``run``, see ``RUNS``.
-        min_displacement: an intact robot with spine and tail that gets no farther has nothing to lose [m].
+        min_displacement: least displacement of an intact robot with spine and tail for which a loss is measured [m].
     """
 
     def column_of(column: str, run: str) -> np.ndarray:
@@ -109,7 +109,7 @@ def measures_of(record: xr.Dataset, min_displacement: float) -> Mapping[str, np.
 
 
 def _faults(forward: Mapping[str, np.ndarray], baseline: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what each failed joint costs, and how much less of its own displacement is lost with spine and tail."""
+    """Return the relative loss of displacement by failed joint, and the advantage of the robot with spine and tail."""
     measures: dict[str, np.ndarray] = {}
     for joint in FAILED_JOINTS:
         retained_fractions = []
@@ -122,14 +122,14 @@ def _faults(forward: Mapping[str, np.ndarray], baseline: np.ndarray) -> dict[str
 
 
 def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return what a rule needs; a sample is run once, so that its value stands for the ends of an interval.
+    """Return the measures that a rule needs; a sample runs once, so that its value is also both ends of the interval.
 
     Args:
         rule: the claim's.
         measures: of all samples, see ``measures_of``.
 
     Raises:
-        IncompatibleRecord: a measure is not there.
+        IncompatibleRecord: a measure is missing.
     """
     rule_measures = {}
     for name in sorted(rule.needs):
@@ -176,7 +176,7 @@ def words(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[Word]:
 
 
 def _rows(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[dict[str, float]]:
-    """Return what a rule needs of each sample."""
+    """Return the measures that a rule needs, for each sample."""
     rule_measures = once(rule, measures)
     return [
         dict(zip(rule_measures, row, strict=True))

@@ -1,4 +1,4 @@
-"""What the study of the claims leaves: a table, numbers, the shares that the verdicts quote, a page."""
+"""Files of the study of the claims: table, numbers, fractions that the verdicts quote, page."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -101,7 +101,7 @@ def outcome(
 
 
 def agreements(record: xr.Dataset) -> list[dict[str, Any]]:
-    """Return how each time step that was tried agreed with 2 ms, see ``answers.Agreement``."""
+    """Return the agreement of each compared time step with 2 ms, see ``answers.Agreement``."""
     agreement_rows: list[dict[str, Any]] = json.loads(record.attrs["agreed"])
     return agreement_rows
 

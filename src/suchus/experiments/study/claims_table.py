@@ -1,4 +1,4 @@
-"""What became of each claim, as rows: for the page, for a table, and for the table of shares that ships."""
+"""Results of each claim as rows: for the page, for a table, and for the shipped table of fractions."""
 
 import csv
 import io
@@ -17,8 +17,8 @@ from suchus.experiments.study.answers import Index, first_order, share_interval
 from suchus.experiments.study.varied import LEAST
 from suchus.visual.figures.sensitivity import spoken
 
-_MAX_DECIDERS = 3  # parameters that a row names
-_MAX_SHARED_VARIANCE = 0.1  # of the variance of one parameter; another that explains more could pass for it [-]
+_MAX_DECIDERS = 3  # most parameters that a row names
+_MAX_SHARED_VARIANCE = 0.1  # largest fraction of a parameter's variance that a stronger one may explain [-]
 _ANSWER_MODULES = (
     "article",
     "experiments/claims",
@@ -31,7 +31,7 @@ _ANSWER_MODULES = (
 
 
 def claim_row(record: xr.Dataset, claim: str) -> dict[str, Any]:
-    """Return what became of one claim: share, deciders with their intervals, border.
+    """Return the result of one claim: fraction of designs, deciding parameters with intervals, border.
 
     Args:
         record: of ``claims.conduct_claims``.
@@ -209,7 +209,7 @@ def renewed(shipped_text: str, rows: Sequence[Mapping[str, Any]], sweep_records:
 
 
 def _sweep_sources(sweep_records: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    """Return by experiment how many designs became what, which source asked them, and which made the rows."""
+    """Return by experiment the number of designs by status, and the hashes of the source code."""
     return {
         name: {
             "became": became(claim_record),

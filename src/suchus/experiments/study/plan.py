@@ -86,7 +86,7 @@ class Plan(Sequence[Point]):
         return -(-len(self) // self.study.chunk)
 
     def chunk(self, number: int) -> range:
-        """Return which runs a batch holds; batches of a study differ by one run at most."""
+        """Return the indices of the runs in a batch; batches of a study differ by one run at most."""
         base_size, larger_count = divmod(len(self), self.chunks)
         start = number * base_size + min(number, larger_count)
         return range(start, start + base_size + (number < larger_count))
@@ -132,11 +132,11 @@ def levels(vary: Vary, *, is_whole: bool = False) -> tuple[Any, ...]:
 
 
 def value_of(vary: Vary, share: float, *, whole: bool = False) -> Any:
-    """Return the value below which a share of a field's values lies.
+    """Return the quantile of a field's values.
 
     Args:
         vary: the field.
-        share: 0 to 1.
+        share: fraction of the values below the quantile, 0 to 1.
         whole: whether the field takes whole numbers only; those of an even range are then equally frequent.
     """
     if vary.values is not None:

@@ -1,4 +1,4 @@
-"""An experiment asked again with other plausible designs and settings: what its walks of the claims cannot answer."""
+"""An experiment repeated with other plausible designs and settings, for claims that the study of walks cannot judge."""
 
 import json
 from collections.abc import Collection, Mapping
@@ -26,14 +26,14 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 
 LEAST = 8
-"""Fewer points than these make no share: its interval would be half of the whole [-]."""
+"""Fewest points for a fraction of designs [-]; with fewer its interval would span half of the range."""
 
 
 class Question(Protocol):
-    """What is asked: an experiment, a frozen dataclass."""
+    """An experiment, which is a frozen dataclass."""
 
     def name(self) -> str:
-        """Return its name on the shelf."""
+        """Return its name in the catalog."""
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Any]:
         """Return the numbers that are wanted at least, each with its ``value``."""
@@ -41,7 +41,7 @@ class Question(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VariedStudy:
-    """An experiment that is asked once for each of some points: another design, other settings."""
+    """An experiment that runs once at each point of a plan of designs and settings."""
 
     name: str
     """Name of the experiment."""
@@ -87,7 +87,7 @@ def varied_study(question: Question, samples: int | None = None) -> VariedStudy 
     """Return the study of an experiment's designs and settings, or None where it declares none.
 
     Args:
-        question: the experiment, as on the shelf.
+        question: the experiment, as in the catalog.
         samples: number of points; as many as the experiment asks for if None [-].
     """
     sweep = varied_of(question.name())
@@ -116,10 +116,10 @@ def varied_study(question: Question, samples: int | None = None) -> VariedStudy 
 def conduct_varied(
     study: VariedStudy, folder: Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
 ) -> xr.Dataset:
-    """Ask the experiment at every point that is not in the store yet, and answer.
+    """Run the experiment at every point that is missing in the store, and judge the claims.
 
     Args:
-        study: what is asked.
+        study: the experiment and its points.
         folder: of the stores, one below it for each experiment; each point is kept as it is finished.
         progress: told how many points are done.
         client: a ``distributed.Client``, whose workers then ask; this machine if None.
@@ -151,7 +151,7 @@ def varied_finished(study: VariedStudy, folder: Path) -> xr.Dataset | None:
     """Return the answer from the points that are stored, whatever version stored them; None where there are too few.
 
     Args:
-        study: what is asked.
+        study: the experiment and its points.
         folder: of the stores.
 
     Raises:
@@ -178,7 +178,7 @@ def _with_provenance(record: xr.Dataset, folder: Path) -> xr.Dataset:
 
 
 def ask(study: VariedStudy, sample: int, progress: Progress = silent) -> xr.Dataset:
-    """Return what the experiment measures at one point: what its rules read, or why there is nothing, in ``error``."""
+    """Return the measures that the rules need at one point, or the reason why there are none in ``error``."""
     measure_names = sorted(set().union(*(rule.needs for rule in study.rules)))
     numbers, error = dict.fromkeys(measure_names, np.nan), ""
     try:
@@ -191,7 +191,7 @@ def ask(study: VariedStudy, sample: int, progress: Progress = silent) -> xr.Data
 
 
 def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
-    """Return what became of each claim from what was measured at the points.
+    """Return number, truth and word of each claim from the measures at the points.
 
     Args:
         study: what was asked.

@@ -182,8 +182,8 @@ class PlaneSwims(Experiment):
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; if they are the ladder's, only the ladder swims.
 
-        Swims that no verdict needs are left out too: once two rungs disagree on a claim, slower rungs do not swim for it,
-        and their measures are NaN.
+        Swims that no verdict needs are left out too: once two rungs disagree on a claim, slower rungs do not swim for
+        it, and their measures are NaN.
         """
         if not all(name.endswith(_OF_RUNGS) for name in wanted):
             return super(PlaneSwims, self).measured(wanted, progress)

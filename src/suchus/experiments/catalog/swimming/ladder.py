@@ -213,7 +213,8 @@ _SHAPES: Mapping[str, tuple[tuple[str, ...], str]] = {
     "ladder_course": (("ladder_tick", "ladder_place"), "m"),
     **{f"ladder_{name}": (("ladder_cycle", "ladder_quarter"), "1") for name in _QUARTERS},
 }
-"""Dimensions after ``rung``, and unit, of the results of a rung. Quarters are in the rung's own unit of pressure or force."""
+"""Dimensions after ``rung``, and unit, of the results of a rung. Quarters have the rung's own unit of pressure or
+force."""
 
 
 def _stacked(key: str, results: Iterable[Mapping[str, Any]], cycles: int) -> Any:
