@@ -45,123 +45,125 @@ class Measure:
 
 
 class Measures(dict[str, Measure]):
-    """Numbers by name, each name once: a second number of a name is refused, and never overwrites the first.
+    """Numbers by name. A second number with the same name is refused and never overwrites the first.
 
-    ``Measures(one, other)``, ``one | other``, ``one |= other`` and ``one[name] = number`` all hold to that.
+    This holds for ``Measures(one, other)``, ``one | other``, ``one |= other`` and ``one[name] = number``.
     """
 
     def __init__(self, *parts: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> None:
         super().__init__()
-        for part in parts:
-            self |= part
+        for group in parts:
+            self |= group
 
     def __setitem__(self, name: str, measure: Measure) -> None:
         """Add a number.
 
         Raises:
-            AmbiguousName: there is one of that name.
+            AmbiguousName: a number has this name already.
         """
         if name in self:
-            there, new = (f"{one.value:g} {one.unit}" for one in (self[name], measure))
-            raise AmbiguousName("measure", name, there, new)
+            existing_text, new_text = (f"{number.value:g} {number.unit}" for number in (self[name], measure))
+            raise AmbiguousName("measure", name, existing_text, new_text)
         super().__setitem__(name, measure)
 
-    def __ior__(self, other: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> Self:  # type: ignore[override]
-        for name, measure in other.items() if isinstance(other, Mapping) else other:
+    def __ior__(self, numbers: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> Self:  # type: ignore[override]
+        for name, measure in numbers.items() if isinstance(numbers, Mapping) else numbers:
             self[name] = measure
         return self
 
-    def __or__(self, other: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
-        return Measures(self, other)
+    def __or__(self, numbers: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
+        return Measures(self, numbers)
 
-    def __ror__(self, other: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
-        return Measures(other, self)
+    def __ror__(self, numbers: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
+        return Measures(numbers, self)
 
-    def update(self, *parts: Any, **named: Measure) -> None:
+    def update(self, *parts: Any, **measures: Measure) -> None:
         """Add numbers, as ``|=``."""
-        self |= Measures(*parts, named)
+        self |= Measures(*parts, measures)
 
 
 _RESAMPLES = 2000
-"""Number of times an ensemble is drawn anew for an interval [-]."""
-_COVERED = 0.95
-"""Share of the resamples whose middle lies in the interval [-]."""
+"""Number of bootstrap resamples of an ensemble [-]."""
+_CONFIDENCE = 0.95
+"""Fraction of the resamples whose center lies in the interval [-]."""
 
 
 def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] = np.median) -> Measures:
-    """Return the middle of an ensemble as ``NAME``, and its 95 % interval as ``NAME_low`` and ``NAME_high``.
+    """Return the center of an ensemble as ``NAME``, and its 95 % interval as ``NAME_low`` and ``NAME_high``.
 
-    The interval is that of the bootstrap (Efron 1979): the middle of ensembles that are drawn from this one with
-    replacement, by the same draws for every ensemble of this size. It tells how well the repeats know the middle, and
-    becomes narrower with their number.
+    The interval is that of the bootstrap (Efron 1979): the center of ensembles that are drawn from this one with
+    replacement, with the same draws for every ensemble of this size. It is the uncertainty of the center, and becomes
+    narrower with the number of repeats.
 
     Args:
         name: of the measure.
-        repeats: a number of every repeat; none that is not finite makes a middle.
+        repeats: number of every repeat; if one is not finite, the interval is the center alone.
         unit: of the numbers.
-        middle: median or mean, along an axis.
+        middle: function for the center, median or mean, along an axis.
     """
     values = np.asarray(repeats, float).ravel()
-    found = float(middle(values, axis=-1))
+    center = float(middle(values, axis=-1))
     if np.isfinite(values).all():
-        low, high = np.quantile(middle(values[_drawn(values.size)], axis=-1), [(1 - _COVERED) / 2, (1 + _COVERED) / 2])
+        lower_bound, upper_bound = np.quantile(
+            middle(values[_resample_indices(values.size)], axis=-1), [(1 - _CONFIDENCE) / 2, (1 + _CONFIDENCE) / 2]
+        )
     else:
-        low = high = found
+        lower_bound = upper_bound = center
     return Measures(
         {
-            name: Measure(found, unit),
-            f"{name}_low": Measure(float(min(low, found)), unit),
-            f"{name}_high": Measure(float(max(high, found)), unit),
+            name: Measure(center, unit),
+            f"{name}_low": Measure(float(min(lower_bound, center)), unit),
+            f"{name}_high": Measure(float(max(upper_bound, center)), unit),
         }
     )
 
 
 @cache
-def _drawn(count: int) -> np.ndarray:
-    """Return which repeats each resample holds."""
+def _resample_indices(count: int) -> np.ndarray:
+    """Return the indices of the repeats in each resample, shape (resample, count)."""
     return np.random.default_rng(count).integers(count, size=(_RESAMPLES, count))
 
 
 def ranged(name: str, value: Any, repeats: Any, unit: str) -> Measures:
-    """Return a number as ``NAME``, and the least and the greatest of its repeats as ``NAME_low`` and ``NAME_high``."""
+    """Return a number as ``NAME``, and the range of its repeats as ``NAME_low`` and ``NAME_high``."""
     return Measures({name: Measure(float(value), unit)}, ends(name, repeats, unit))
 
 
 def ends(name: str, values: Any, unit: str) -> Measures:
     """Return the least and the greatest of some values as ``NAME_low`` and ``NAME_high``."""
-    low, high = (Measure(float(end(values)), unit) for end in (np.min, np.max))
-    return Measures({f"{name}_low": low, f"{name}_high": high})
+    minimum, maximum = (Measure(float(end(values)), unit) for end in (np.min, np.max))
+    return Measures({f"{name}_low": minimum, f"{name}_high": maximum})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Replay:
-    """A run to look at: a page of its own that plays in a browser."""
+    """A page that plays a run in a browser."""
 
     caption: str
     """Caption: what the replay shows."""
     make: Callable[[], str]
-    """Makes the page, when it is wanted. See ``suchus.visual.replay``."""
+    """Makes the page on first use. See ``suchus.visual.replay``."""
 
     @property
     def html(self) -> str:
-        """The page; it needs nothing else."""
+        """The page, without references to other files."""
         return self.make()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Simulated:
-    """What an experiment did, before anything is measured."""
+    """Record and files of a simulated experiment, before anything is measured."""
 
     record: xr.Dataset
-    """What happened; measures are read and figures are drawn from this alone."""
+    """Record of the simulation; measures and figures come from the record alone."""
     tables: Mapping[str, str] = field(default_factory=dict)
-    """Further text files to stand beside the figures, by file name."""
+    """Further text files, by file name."""
     films: Mapping[str, bytes] = field(default_factory=dict)
-    """Moving pictures to stand beside the figures: a GIF by file name; see ``figures.film``."""
+    """Animated GIFs, by file name; see ``figures.film``."""
     replays: Mapping[str, Replay] = field(default_factory=dict)
-    """Runs to look at, to stand beside the figures, by file name ending in .html."""
+    """Replays of runs, by file name ending in .html."""
     kept: tuple[Path, ...] = ()
-    """Files from which the run would have gone on; who has saved its outcome removes them."""
+    """Checkpoint files; the caller removes them after saving the outcome."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -169,7 +171,7 @@ class Outcome(Simulated):
     """The result: numbers, verdicts, and the record they were read from."""
 
     experiment: str
-    """Name on the shelf."""
+    """Name in the catalog."""
     measures: Mapping[str, Measure]
     """Every number, by name."""
     verdicts: tuple[Verdict, ...]
@@ -177,7 +179,7 @@ class Outcome(Simulated):
     settings: Mapping[str, Any]
     """The experiment's own fields, as plain values."""
     decides: str = ""
-    """What decided the outcome: one paragraph for the report, made from the measures."""
+    """Reason for the outcome: one paragraph for the report, made from the measures."""
     unjudged: str = ""
     """Why there are no verdicts, in a sentence; empty where the claims were judged."""
     seconds: float = 0.0
@@ -185,8 +187,8 @@ class Outcome(Simulated):
 
 
 CONDUCT = ("keep", "jobs", "scheduler")
-"""Names of fields that say where and by how many processes an experiment is conducted: they decide nothing of what
-comes out, and stand in no result."""
+"""Names of fields that say where and by how many processes an experiment runs. They do not affect the result and are
+not stored in it."""
 
 
 class Experiment(ABC):
@@ -224,7 +226,7 @@ class Experiment(ABC):
 
     @classmethod
     def rules(cls) -> tuple[Rule, ...]:
-        """Return what decides each verdict."""
+        """Return the rules of the verdicts."""
         return rules_of(cls.name())
 
     def run(self, progress: Progress = silent) -> Outcome:
@@ -232,15 +234,15 @@ class Experiment(ABC):
 
         Raises:
             UnsuitedRobot: the robot lacks what the experiment needs.
-            OutsideLimits: the gait is one for other limbs, or asks its joints for more than they can.
-            InvalidDesign: a field holds two things of one name, so that their numbers would have one name too.
+            OutsideLimits: the gait is for other limbs, or exceeds the limits of the joints.
+            InvalidDesign: a field holds two entries of the same name.
         """
         self._check_names()
         if hasattr(self, "robot"):
             check_needs(self.robot, self.needs, self.name())
             gaits = (*_gaits(getattr(self, "gait", None)), *_gaits(getattr(self, "gaits", None)))
             for gait in gaits if self.follows_gait else ():
-                check_limits(self.robot, gait)  # by the name that the user knows, before what is derived from it
+                check_limits(self.robot, gait)  # first, so that an error names the user's gait and not a derived one
         with stopwatch() as seconds:
             simulated = self.simulate(progress)
             measures = self.measure(simulated.record)
@@ -249,7 +251,7 @@ class Experiment(ABC):
             return Outcome(
                 experiment=self.name(),
                 measures=measures,
-                verdicts=() if unjudged else self._judged(numbers, simulated.record),
+                verdicts=() if unjudged else self._judge_claims(numbers, simulated.record),
                 record=simulated.record,
                 settings=self.settings(),
                 tables=simulated.tables,
@@ -262,60 +264,63 @@ class Experiment(ABC):
             )
 
     def _check_names(self) -> None:
-        for one in fields(self):  # type: ignore[arg-type]
-            value = getattr(self, one.name)
-            held = value if isinstance(value, tuple) else ()
-            names = [part if isinstance(part, str) else part.name for part in held if isinstance(part, (str, Gait))]
-            twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
-            if twice:
+        """Refuse a parameter that holds two entries of the same name, since their measures would have the same name."""
+        for parameter in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, parameter.name)
+            entries = value if isinstance(value, tuple) else ()
+            names = [
+                entry if isinstance(entry, str) else entry.name for entry in entries if isinstance(entry, (str, Gait))
+            ]
+            duplicates = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+            if duplicates:
                 raise InvalidDesign(
-                    f"{self.name()}.{one.name} has {' and '.join(map(repr, twice))} more than once; leave one out, or "
-                    f"give it another name."
+                    f"{self.name()}.{parameter.name} has {' and '.join(map(repr, duplicates))} more than once; leave "
+                    f"one out, or give it another name."
                 )
 
     @abstractmethod
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Do what is to be measured, and return the record of it."""
+        """Simulate the experiment and return its record."""
 
-    def _judged(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
+    def _judge_claims(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
         unable = self.unable(record)
         return tuple(judge(rule, numbers, unable=unable) for rule in self.rules())
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
-        """Return why models could not be run, in a sentence, by the names of rungs; none by default."""
+        """Return the reasons why models could not run, by the names of rungs; none by default."""
         del record
         return {}
 
     @abstractmethod
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return every number, read from the record alone; ``Measures`` keep two from having one name."""
+        """Return every number, computed from the record alone; ``Measures`` refuse two numbers with the same name."""
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least, as a run gives them.
+        """Return at least the wanted measures, with the values of a full run.
 
-        By default all are simulated for; whoever has runs that some measures do not take leaves those runs out here.
+        By default all runs are simulated; subclasses leave out runs that the wanted measures do not need.
 
         Args:
             wanted: names of measures.
-            progress: told the share that is done.
+            progress: called with the fraction that is done.
         """
         del wanted
         return Measures(self.measure(self.simulate(progress).record))
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Return what decided the outcome, in a paragraph whose every statement follows from the measures.
+        """Return the reason for the outcome, in a paragraph whose statements all follow from the measures.
 
         It is the template ``explanation.md`` beside the experiment, see ``templates``, in which ``m`` holds the
         measures by name, and ``question`` is the experiment.
 
         Raises:
             InvalidDesign: there is no such file.
-            BrokenFile: it cannot be filled in: it names a measure that there is not, or cannot be read.
+            BrokenFile: it cannot be filled in: a measure that it names is missing, or it cannot be read.
         """
         return self.told(measures)
 
     def told(self, measures: Mapping[str, float], **further: Any) -> str:
-        """Return the template ``explanation.md``, filled in with measures and what else it names; see ``explain``."""
+        """Return the template ``explanation.md``, filled in with measures and other values; see ``explain``."""
         folder = Path(getattr(sys.modules[type(self).__module__], "__file__", None) or ".").parent
         try:
             text = templates(folder).get_template(EXPLANATION).render(m=measures, question=self, **further)
@@ -349,61 +354,73 @@ class Experiment(ABC):
         changes. If not, they become its own gait, and lengths, times, forces and masses change with its size.
 
         Raises:
-            UnsuitedRobot: the robot lacks what the experiment needs, or no gait on the shelf suits it.
+            UnsuitedRobot: the robot lacks what the experiment needs, or no gait in the catalog suits it.
         """
         check_needs(robot, self.needs, self.name())
-        names = [one.name for one in fields(self)]  # type: ignore[arg-type]
+        names = [parameter.name for parameter in fields(self)]  # type: ignore[arg-type]
         if "robot" not in names:
             return self
         values = {name: getattr(self, name) for name in names}
-        here: Robot = values["robot"]
+        current_robot: Robot = values["robot"]
         gaits = [gait for value in values.values() for gait in _gaits(value)]
-        alike = control_period(robot) == control_period(here) and (not gaits or own_gait(robot) == own_gait(here))
-        if alike and all(suits(robot, gait) for gait in gaits):
+        is_similar = control_period(robot) == control_period(current_robot) and (
+            not gaits or own_gait(robot) == own_gait(current_robot)
+        )
+        if is_similar and all(suits(robot, gait) for gait in gaits):
             return replace(self, robot=robot)  # type: ignore[type-var]
         plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
-        sized = scaled_fields(self, plain, length_factor=robot.length / here.length, mass_factor=robot.mass / here.mass)
-        finer = coarse_step(robot) / coarse_step(here)  # time steps divide the control period
+        sized = scaled_fields(
+            self, plain, length_factor=robot.length / current_robot.length, mass_factor=robot.mass / current_robot.mass
+        )
+        step_ratio = coarse_step(robot) / coarse_step(current_robot)  # time steps divide the control period
         for name in names:
             if "timestep" in name:
                 value = values[name]
-                sized[name] = tuple(finer * one for one in value) if isinstance(value, tuple) else finer * value
+                sized[name] = (
+                    tuple(step_ratio * step for step in value) if isinstance(value, tuple) else step_ratio * value
+                )
         return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
 
     def gaits_on(self, robot: Robot) -> dict[str, Any]:
-        """Return the fields that hold gaits, for a robot that cannot follow those of now or is of another size.
+        """Return the fields that hold gaits, for a robot of another size or one that cannot follow the present gaits.
 
-        They are those of now in its size where it can follow them all and would walk so by itself, else its own gait.
+        They are the present gaits in the robot's size if it can follow them all and its own gait is the same one.
+        Otherwise they are its own gait.
 
         Raises:
-            UnsuitedRobot: no gait on the shelf suits it.
+            UnsuitedRobot: no gait in the catalog suits it.
         """
-        here: Robot = self.robot  # type: ignore[attr-defined]
-        own, names = own_gait(robot), [one.name for one in fields(self)]  # type: ignore[arg-type]
-        held = {name: getattr(self, name) for name in names if _gaits(getattr(self, name))}
-        if own.name == own_gait(here).name:
-            sized = {name: tuple(in_size(gait, robot, here) for gait in _gaits(value)) for name, value in held.items()}
+        current_robot: Robot = self.robot  # type: ignore[attr-defined]
+        default_gait, names = own_gait(robot), [parameter.name for parameter in fields(self)]  # type: ignore[arg-type]
+        gait_settings = {name: getattr(self, name) for name in names if _gaits(getattr(self, name))}
+        if default_gait.name == own_gait(current_robot).name:
+            sized = {
+                name: tuple(in_size(gait, robot, current_robot) for gait in _gaits(value))
+                for name, value in gait_settings.items()
+            }
             if all(suits(robot, gait) for gaits in sized.values() for gait in gaits):
-                return {name: gaits if isinstance(held[name], tuple) else gaits[0] for name, gaits in sized.items()}
-        found = {"gait": own, "gaits": (own,)}
-        return {name: value for name, value in found.items() if name in names}
+                return {
+                    name: gaits if isinstance(gait_settings[name], tuple) else gaits[0] for name, gaits in sized.items()
+                }
+        gait_fields = {"gait": default_gait, "gaits": (default_gait,)}
+        return {name: value for name, value in gait_fields.items() if name in names}
 
     def unjudged(self) -> str:
-        """Return why a run with these settings gets no verdicts, in a sentence; empty if it does."""
+        """Return the reason why a run with these settings gets no verdicts; empty if it does."""
         if not self.rules():
             return ""
-        shelf = type(self)()
+        default = type(self)()
         for name in self.judged_with:
-            if hasattr(self, name) and getattr(self, name) != getattr(shelf, name):
-                here, there = (_called(getattr(one, name)) for one in (self, shelf))
-                here = f"another {here}" if here == there else here
-                return f"Not judged: {name} is {here}, and its claims are judged with {there}."
-        for name, least in self.judged_from.items():
+            if hasattr(self, name) and getattr(self, name) != getattr(default, name):
+                current_text, required_text = (_short_name(getattr(question, name)) for question in (self, default))
+                current_text = f"another {current_text}" if current_text == required_text else current_text
+                return f"Not judged: {name} is {current_text}, and its claims are judged with {required_text}."
+        for name, minimum in self.judged_from.items():
             value = getattr(self, name)
             count = len(value) if isinstance(value, tuple) else value
-            if count < least:
-                what = f"{name} has {count} values" if isinstance(value, tuple) else f"{name} is {count:g}"
-                return f"Not judged: {what}, and {least:g} at least are needed to meet what is judged."
+            if count < minimum:
+                size_text = f"{name} has {count} values" if isinstance(value, tuple) else f"{name} is {count:g}"
+                return f"Not judged: {size_text}, and {minimum:g} at least are needed to meet what is judged."
         return ""
 
     def settings(self) -> dict[str, Any]:
@@ -412,20 +429,20 @@ class Experiment(ABC):
 
     @classmethod
     def name(cls) -> str:
-        """Return the name on the shelf: of the module, or of the folder whose module ``experiment`` it is."""
+        """Return the name in the catalog: that of the module, or of the folder of a module ``experiment``."""
         return cls.__module__.removesuffix(".experiment").rpartition(".")[2]
 
 
 def _gaits(value: Any) -> tuple[Gait, ...]:
     """Return the gaits that a field holds."""
-    many = value if isinstance(value, tuple) else (value,)
-    return tuple(one for one in many if isinstance(one, Gait))
+    entries = value if isinstance(value, tuple) else (value,)
+    return tuple(entry for entry in entries if isinstance(entry, Gait))
 
 
-def _called(value: Any) -> str:
-    """Return a short name of a field's value: of a robot or gait its own, marked where it only shares it."""
+def _short_name(value: Any) -> str:
+    """Return a short name of a field's value: the name of a robot or gait, otherwise its text."""
     if isinstance(value, tuple):
-        return ", ".join(_called(one) for one in value)[:80]
+        return ", ".join(_short_name(entry) for entry in value)[:80]
     return str(getattr(value, "name", value))[:80]
 
 
@@ -465,31 +482,31 @@ def templates(folder: Path) -> Environment:
 
 
 def write(value: float, form: str) -> str:
-    """Return a number as written, zero without a minus."""
+    """Return a number as text, zero without a minus."""
     text = format(Reading(value), form)
     return text.removeprefix("-") if not re.search("[1-9a-z]", text) else text
 
 
 def either_sign(measures: Mapping[str, float], name: str) -> bool:
-    """Return whether the interval of a measure holds both signs, so that no sentence can say which it has."""
+    """Return whether the interval of a measure holds both signs."""
     return measures.get(f"{name}_low", 0.0) < 0.0 < measures.get(f"{name}_high", 0.0)
 
 
 def spanned(measures: Mapping[str, float], name: str, form: str) -> str:
-    """Return a measure as written, or between which numbers it lies where its interval holds both signs."""
+    """Return a measure as text, or its interval if the interval holds both signs."""
     if not either_sign(measures, name):
         return write(measures[name], form)
-    low, high = (write(measures[f"{name}{end}"], form) for end in ("_low", "_high"))
-    return f"between {low} and {high}"
+    lower_bound, upper_bound = (write(measures[f"{name}{end}"], form) for end in ("_low", "_high"))
+    return f"between {lower_bound} and {upper_bound}"
 
 
 def separator(loop: Any) -> str:
-    """Return what stands before an item of a list in a sentence: nothing, a comma, or ``and`` before the last."""
+    """Return the separator before an item of a list in a sentence: nothing, a comma, or ``and`` before the last."""
     return "" if loop.first else " and " if loop.last else ", "
 
 
 def sentence(parts: str) -> str:
-    """Return parts that stand one behind the other as a sentence; nothing of none."""
+    """Return consecutive parts as a sentence; empty without parts."""
     text = parts.strip(" \n,;")
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 

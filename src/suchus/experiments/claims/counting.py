@@ -1,4 +1,4 @@
-"""How many of the verdicts are evidence: what could not have come out otherwise is counted as what it is."""
+"""Number of verdicts that are evidence; verdicts that could not have come out otherwise are counted apart."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,7 +21,7 @@ STANDINGS: tuple[Standing, ...] = get_args(Standing)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvidenceCount:
-    """How many claims of the article there are of each standing, and what became of them."""
+    """Number of the article's claims by standing, and their verdicts."""
 
     claims: int
     """Number of claims with a verdict [-]."""
@@ -38,37 +38,37 @@ class EvidenceCount:
 
     def __str__(self) -> str:
         """Return the count as one or two sentences, for the README and the report alike; of no claim none."""
-        of, agree, evidence = self.standing, self.agree, self.standing["evidence"]
+        standing_counts, agree, evidence = self.standing, self.agree, self.standing["evidence"]
         words = f": {', '.join(f'{count} {word}' for word, count in self.words.items())}" if self.words else ""
         frail = (
             f"; {self.fragile} of these {'is' if self.fragile == 1 else 'are'} fragile, since more than one in ten "
             "plausible designs say otherwise"
         )
-        many = f"{self.claims} claim{'s' * (self.claims != 1)}"
-        text = f"Of {many} of the article {evidence} could come out either way{words}{frail * bool(words)}."
+        number_text = f"{self.claims} claim{'s' * (self.claims != 1)}"
+        text = f"Of {number_text} of the article {evidence} could come out either way{words}{frail * bool(words)}."
         text *= self.claims > 0
-        wrong = of["by construction"] - agree["by construction"]
-        others = {
-            "by construction": f"read back or identities of formulas ({wrong} not so as printed)",
+        wrong_count = standing_counts["by construction"] - agree["by construction"]
+        labels = {
+            "by construction": f"read back or identities of formulas ({wrong_count} not so as printed)",
             "fitted": f"fitted ({agree['fitted']} came out)",
             "animals": f"said of animals (the robot does the same in {agree['animals']})",
             "said twice": "said twice",
             "not testable": "not testable",
         }
-        told = [f"{of[name]} {what}" for name, what in others.items() if of[name]]  # type: ignore[index]
-        text = f"{text} The others could not: {listed(told)}." if told else text
+        phrases = [f"{standing_counts[name]} {label}" for name, label in labels.items() if standing_counts[name]]  # type: ignore[index]
+        text = f"{text} The others could not: {listed(phrases)}." if phrases else text
         if not self.elsewhere:
             return text
         came = ", ".join(f"{count} {word}" for word, count in self.elsewhere.items())
         number = sum(self.elsewhere.values())
-        many = f"{number} statement{'s' * (number != 1)}"
-        return f"{text} Of {many} of other publications on salamanders: {came}.".strip()
+        number_text = f"{number} statement{'s' * (number != 1)}"
+        return f"{text} Of {number_text} of other publications on salamanders: {came}.".strip()
 
 
 def counted(
     verdicts: Mapping[str, str], fragile: Iterable[str] = (), rules: Mapping[str, Rule] = RULES
 ) -> EvidenceCount:
-    """Return how many verdicts on the article are evidence, what became of them and of the others, and elsewhere.
+    """Return the number of verdicts on the article by standing and word, and those on other publications by word.
 
     Args:
         verdicts: the word of each claim.
@@ -78,7 +78,7 @@ def counted(
     published = {claim: word for claim, word in verdicts.items() if claim in CLAIMS and CLAIMS[claim].of}
     verdicts = {claim: word for claim, word in verdicts.items() if claim not in published}
     standing = standings(verdicts, rules)
-    of, agree = (
+    standing_counts, agree = (
         Counter(standing.values()),
         Counter(standing[claim] for claim, word in verdicts.items() if word in _AGREES[standing[claim]]),
     )
@@ -86,7 +86,7 @@ def counted(
         claims=len(verdicts),
         words=_by_word(word for claim, word in verdicts.items() if standing[claim] == "evidence"),
         fragile=sum(standing.get(claim) == "evidence" for claim in fragile),
-        standing={name: of[name] for name in STANDINGS},
+        standing={name: standing_counts[name] for name in STANDINGS},
         agree={name: agree[name] for name in STANDINGS},
         elsewhere=_by_word(published.values()),
     )
@@ -108,37 +108,37 @@ _AGREES: Mapping[Standing, Sequence[str]] = {
 
 
 def standings(verdicts: Mapping[str, str], rules: Mapping[str, Rule] = RULES) -> dict[str, Standing]:
-    """Return what the verdict on each claim is worth.
+    """Return the standing of the verdict on each claim.
 
     Args:
         verdicts: the word of each claim.
         rules: by claim; a claim without one counts as measured.
     """
-    found: dict[str, Standing] = {}
+    standing_of_claim: dict[str, Standing] = {}
     for claim, word in verdicts.items():
         rule = rules.get(claim)
         kind = rule.kind if rule else "measured"
-        if rule and _said_before(rule, rules):
-            found[claim] = "said twice"
+        if rule and _repeats_earlier_rule(rule, rules):
+            standing_of_claim[claim] = "said twice"
         elif kind == "construction":
-            found[claim] = "by construction"
+            standing_of_claim[claim] = "by construction"
         elif kind == "measured":
-            found[claim] = "not testable" if word == "not testable" else "evidence"
+            standing_of_claim[claim] = "not testable" if word == "not testable" else "evidence"
         else:
-            found[claim] = kind
-    return found
+            standing_of_claim[claim] = kind
+    return standing_of_claim
 
 
-def _said_before(rule: Rule, rules: Mapping[str, Rule]) -> bool:
-    """Return whether the same comparisons of the same measure decide a claim whose rule stands before."""
-    for other in rules.values():
-        if other is rule:
+def _repeats_earlier_rule(rule: Rule, rules: Mapping[str, Rule]) -> bool:
+    """Return whether an earlier rule makes the same comparisons of the same measure."""
+    for earlier_rule in rules.values():
+        if earlier_rule is rule:
             return False
-        if other.holds and _compared(other) == _compared(rule):
+        if earlier_rule.holds and _comparison_key(earlier_rule) == _comparison_key(rule):
             return True
     return False
 
 
-def _compared(rule: Rule) -> tuple[object, ...]:
+def _comparison_key(rule: Rule) -> tuple[object, ...]:
     clauses = sorted((clause.measure, clause.relation, str(clause.bound)) for clause in rule.holds)
     return rule.experiment, rule.measure, clauses

@@ -1,4 +1,4 @@
-"""The rules by experiment, of the user's as of ours, and ours by claim: read from the shelf when they are asked for."""
+"""Rules by experiment, also of the user's experiments, and our rules by claim; they are read on first use."""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -11,13 +11,13 @@ from suchus.experiments.catalog import EXPERIMENTS
 
 
 def rules_of(experiment: str) -> tuple[Rule, ...]:
-    """Return the rules that read the measures of an experiment, in their order; none if it has none or is no shelf's.
+    """Return the rules that read the measures of an experiment, in their order; none if it is not in the catalog.
 
     They are the ``RULES`` of the module ``rules`` in the experiment's folder, which is read without the experiment, or
     of its one file.
 
     Raises:
-        InvalidDesign: what is declared are no rules of this experiment.
+        InvalidDesign: ``RULES`` holds something other than rules of this experiment.
     """
     rules = EXPERIMENTS.beside(experiment, "RULES", (), module="rules") if experiment in EXPERIMENTS else ()
     for rule in rules:
@@ -33,18 +33,18 @@ def examples_of(experiment: str) -> Examples:
 
 
 def varied_of(experiment: str) -> Varied | None:
-    """Return how an experiment is asked with other designs and settings, from the ``VARIED`` beside its rules."""
-    varied: Varied | None = EXPERIMENTS.beside(experiment, "VARIED", None, module="rules")
-    return varied
+    """Return the designs and settings over which an experiment is repeated, from the ``VARIED`` beside its rules."""
+    sweep: Varied | None = EXPERIMENTS.beside(experiment, "VARIED", None, module="rules")
+    return sweep
 
 
 class ClaimRules(Mapping[str, Rule]):
-    """The rules of all experiments of suchus, by claim; they are read when the first is asked for."""
+    """The rules of all experiments of suchus, by claim; they are read on first use."""
 
     @cached_property
     def _by_claim(self) -> dict[str, Rule]:
-        ours = [name for name, source in EXPERIMENTS.sources().items() if source.shipped]
-        return {rule.claim: rule for name in ours for rule in rules_of(name)}
+        shipped_names = [name for name, source in EXPERIMENTS.sources().items() if source.shipped]
+        return {rule.claim: rule for name in shipped_names for rule in rules_of(name)}
 
     def __getitem__(self, claim: str) -> Rule:
         return self._by_claim[claim]
@@ -57,20 +57,22 @@ class ClaimRules(Mapping[str, Rule]):
 
 
 RULES = ClaimRules()
-"""By claim."""
-_OF_ANIMALS = "A number of the animals' own body: no robot, of whatever size and toes, confirms or contradicts it."
-_LOOKED_AT = (
+"""Rules of all experiments of suchus, by claim."""
+_ANIMAL_REASON = "A number of the animals' own body: no robot, of whatever size and toes, confirms or contradicts it."
+_SNAPSHOT_REASON = (
     "When a picture was taken, which says nothing of what it shows: crawl_stability looks at its runs at this time."
 )
-_PUT_IN = (
+_INPUT_REASON = (
     "It is put in, not found: swimming commands the wave (20) with this number, in the one reading of its units that "
     "makes a swim, and whether the body follows that wave is the claim swim_body_wave."
 )
 UNRULED: Mapping[str, str] = MappingProxyType(
     {
-        **dict.fromkeys(("species_count", "largest_length", "smallest_length", "front_toes", "hind_toes"), _OF_ANIMALS),
-        **dict.fromkeys(("snapshot_time_1", "snapshot_time_2", "snapshot_time_3"), _LOOKED_AT),
-        **dict.fromkeys(("wave_c1", "wave_c2", "wave_k"), _PUT_IN),
+        **dict.fromkeys(
+            ("species_count", "largest_length", "smallest_length", "front_toes", "hind_toes"), _ANIMAL_REASON
+        ),
+        **dict.fromkeys(("snapshot_time_1", "snapshot_time_2", "snapshot_time_3"), _SNAPSHOT_REASON),
+        **dict.fromkeys(("wave_c1", "wave_c2", "wave_k"), _INPUT_REASON),
     }
 )
 """Statements of the article that no rule judges, and why not, by key."""

@@ -1,4 +1,4 @@
-"""What can be aimed at, and what can be limited: a number for each run of a batch."""
+"""Quantities that a search can optimise or limit: a number for each run of a batch."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from suchus.sim.land import Run
 
 Measured = Callable[[Sequence[Run], xr.Dataset], np.ndarray]
 """From runs and their record to one number for each run."""
-_LOOKS = 0.04  # [s]; between looks at the parts' clearance: a hundredth of the article's cycle
+_CLEARANCE_INTERVAL = 0.04  # interval between samples of the clearance [s]: a hundredth of the article's cycle
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +28,11 @@ class Kind:
     unit: str
     """SI unit, ``-`` for none."""
     good: Literal["more", "less"]
-    """What is better; a limit is the least value where more is better, the greatest where less is."""
+    """Better direction. A limit is the least value where more is better, otherwise the greatest."""
     tells: str
     """Description of the quantity."""
     scale: float = 1.0
-    """What counts as one unit of excess where the limit itself is zero, in the unit."""
+    """Unit of excess for a limit of zero, in the unit of the quantity."""
 
 
 def _forward(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
@@ -79,38 +79,39 @@ def _torque(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 
 def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    """Return the least distance between parts of the body over each run [m]."""
     step = float(record.time[1] - record.time[0])
-    every = max(1, round(_LOOKS / step))
-    part = metrics.between(record, START)
-    least = [float(clearance(run.robot, part.isel(run=i), every=every)) for i, run in enumerate(runs)]
-    return np.array(least)
+    sample_interval = max(1, round(_CLEARANCE_INTERVAL / step))
+    excerpt = metrics.between(record, START)
+    clearances = [float(clearance(run.robot, excerpt.isel(run=i), every=sample_interval)) for i, run in enumerate(runs)]
+    return np.array(clearances)
 
 
 def _foot_lift(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
-    """Return how far the foot is lifted that is lifted least."""
+    """Return the least lift among the feet [m]."""
     del runs
     return np.asarray(metrics.foot_clearance(record).min("leg").values, dtype=float)
 
 
-def _stands_most(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+def _max_duty(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     del runs
     return np.asarray(metrics.duty_factor(record).max("leg").values, dtype=float)
 
 
-def _stands_least(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+def _min_duty(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     del runs
     return np.asarray(metrics.duty_factor(record).min("leg").values, dtype=float)
 
 
 def _standing(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
-    """Return the least height reached while it is meant to stand; zero for a run that does not stand up."""
+    """Return the least height reached while it should stand [m]; zero for a run without standing."""
     seconds = np.zeros(len(runs))
     for i, run in enumerate(runs):
         if isinstance(run.control, Standing):
             height = metrics.reach(run.robot, record.isel(run=i))
-            up, down = run.control.upright_from(run.robot), run.control.upright_until(run.robot)
-            while_up = height.sel(time=slice(up, down))
-            seconds[i] = float(while_up.min()) if while_up.sizes["time"] else 0.0
+            start, end = run.control.upright_from(run.robot), run.control.upright_until(run.robot)
+            standing_height = height.sel(time=slice(start, end))
+            seconds[i] = float(standing_height.min()) if standing_height.sizes["time"] else 0.0
     return seconds
 
 
@@ -137,8 +138,8 @@ LIMITS: Mapping[str, Kind] = MappingProxyType(
         "cost_of_transport": Kind(_cost, "-", "less", "work of the servos over weight times displacement"),
         "displacement": Kind(_forward, "m", "more", "displacement along the first heading", 0.1),
         "foot_lift": Kind(_foot_lift, "m", "more", "lift of the foot that is lifted least", 0.01),
-        "duty_greatest": Kind(_stands_most, "-", "less", "share of the time in which the foot stands that stands most"),
-        "duty_least": Kind(_stands_least, "-", "more", "share of the time in which the foot stands that stands least"),
+        "duty_greatest": Kind(_max_duty, "-", "less", "share of the time in which the foot stands that stands most"),
+        "duty_least": Kind(_min_duty, "-", "more", "share of the time in which the foot stands that stands least"),
     }
 )
 """Quantities that a search can limit, by name."""

@@ -1,6 +1,6 @@
-"""Conducting a search: generation after generation, each kept, the best so far always on disk.
+"""Conducting a search: each generation is stored, and the best so far is always on disk.
 
-At its end comes whether an optimum is one: with a finer time step, on other ground, begun otherwise; and what lies
+At the end the best is checked with a finer time step, on other ground and from other starts, and each field is varied
 around it.
 """
 
@@ -29,36 +29,39 @@ from suchus.sim.land import Run, Tolerances, simulate
 from suchus.sim.land.extent import processor_seconds
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
-"""Packages whose versions decide which candidates are tried."""
+"""Packages whose versions affect which candidates are evaluated."""
 ROOMS = (*MADE_BY, *(f"experiments/optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
-"""Whose code decides what a candidate reaches."""
+"""Source files whose code affects the result of a candidate."""
 _DECIDING = partial(deciding, ROOMS, LIBRARIES)
-_CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
+_CHECK_NUMBER, _NEIGHBOURHOOD_NUMBER = (
+    900_000,
+    950_000,
+)  # first store numbers of the checks; the number of generations is added
 
 
 def optimise(
     spec: Optimisation, folder: str | Path, *, progress: Progress = silent, client: Any = None
 ) -> tuple[SearchResult, ...]:
-    """Search each condition, check what was found, and return it.
+    """Search each condition, check the best candidates, and return the results.
 
-    Generations are stored as they are finished: whatever stops the program, at most the running one is lost. Started
-    again it goes on, and ends with the same bytes as if nothing had happened. The best gait so far is always a file,
+    Each finished generation is stored, so that an interruption loses at most the running one. A restarted search
+    resumes and ends with the same bytes as an uninterrupted one. The best gait so far is always a file,
     ``ARM.toml``; a robot that changes too is ``ARM_robot.toml``.
 
     Args:
         spec: the search; with more evaluations than before, an earlier one is continued.
         folder: for its results and, below it, the store of each condition.
-        progress: told which condition is searched, how many candidates were tried, and how good the best is.
+        progress: called with the condition, the number of evaluated candidates, and the best value.
         client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
             bytes are the same.
 
     Raises:
         Unwritable: the folder cannot be written to.
-        IncompatibleRecord: a store below it is another search's or another version's.
+        IncompatibleRecord: a store below it belongs to another search or version.
         NoOptimiser: a library is missing.
-        NotConverged: nothing that was tried keeps all limits.
+        NotConverged: no evaluated candidate keeps all limits.
         NoCluster: the cluster was lost.
-        InvalidDesign: it is larger than anybody asked for, see ``suchus.core.large``.
+        InvalidDesign: the work exceeds the allowed size, see ``suchus.core.large``.
     """
     folder = Path(folder)
     place, count = place_for("a search", client=client), len(spec.arms)
@@ -71,7 +74,14 @@ def optimise(
 
 
 def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> SearchResult:
-    """Search one condition."""
+    """Search one condition, check its best candidates, and vary each field around the best.
+
+    Args:
+        spec: the search, of one condition.
+        folder: for its results and its store.
+        progress: called with the stage and the fraction that is done.
+        place: where candidates are evaluated.
+    """
     name = spec.arms[0].name
     with opened(spec, folder / name) as store:
         result = _searched(spec, store, folder, progress, place)
@@ -82,26 +92,28 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> 
             )
         write_runs(result.spec, result.runs, folder)
         generations = int(result.history.generation.max())
-        check = _kept(store, _CHECKED + generations, lambda: checked(spec, result.runs))
-        near = _kept(store, _AROUND + generations, lambda: around(spec, result.shares[0], partial(tried, place)))
-        return result.with_checks(check, near)
+        check = _stored_part(store, _CHECK_NUMBER + generations, lambda: checked(spec, result.runs))
+        neighbourhood = _stored_part(
+            store, _NEIGHBOURHOOD_NUMBER + generations, lambda: around(spec, result.shares[0], partial(tried, place))
+        )
+        return result.with_checks(check, neighbourhood)
 
 
 @contextmanager
 def opened(spec: Optimisation, folder: Path) -> Iterator[Store]:
-    """Hold the store of one condition; the budget does not distinguish searches."""
+    """Open the store of one condition; searches that differ in their budget only share it."""
     with Store(folder, replace(spec, evaluations=1), kind="optimisation", versions=_DECIDING).opened() as store:
         yield store
 
 
 def tried(place: Place, spec: Optimisation, shares: np.ndarray, progress: Progress = silent) -> xr.Dataset:
-    """Try candidates, an equal share of them in each piece; a candidate reaches the same in company as alone.
+    """Evaluate candidates in equal parts; the result of a candidate does not depend on the other candidates.
 
     Args:
-        place: where they are tried.
+        place: where they are evaluated.
         spec: the search, of one condition.
         shares: as of ``evaluate``.
-        progress: told how many are tried.
+        progress: called with the number of evaluated candidates.
 
     Returns:
         As of ``evaluate``, to the same bytes.
@@ -123,15 +135,23 @@ def tried(place: Place, spec: Optimisation, shares: np.ndarray, progress: Progre
 
 
 def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress, place: Place) -> SearchResult:
-    """Run what is not in the store yet; return all candidates."""
+    """Evaluate the generations that are not in the store, and return all candidates.
+
+    Args:
+        spec: the search, of one condition.
+        store: of the generations.
+        folder: for the best gait so far.
+        progress: called with the stage and the fraction that is done.
+        place: where candidates are evaluated.
+    """
     start = _generation(store, 0, np.array([spec.start]), lambda x: tried(place, spec, x))
     parts, driver = units(spec, start), search(spec)
     name, aim = spec.arms[0].name, spec.aims[0].name
     tally = Tally(spec.evaluations, "tried", lambda stage, share: progress(f"{name}: {stage}", share))
-    tables, best = [_numbered(start, 0)], np.inf
+    tables, best = [_with_generation(start, 0)], np.inf
     while tally.done < spec.evaluations:
         shares, number = driver.ask(), len(tables)
-        known = store.has(number)
+        is_stored = store.has(number)
 
         def tell(stage: str, share: float, number: int = number, count: int = len(shares)) -> None:
             del stage
@@ -139,27 +159,38 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
 
         table = _generation(store, number, shares, lambda x, tell=tell: tried(place, spec, x, tell))  # type: ignore[misc]
         driver.tell(losses(spec, table, parts) if spec.pareto else score(spec, table, parts))
-        tables.append(_numbered(table, number))
+        tables.append(_with_generation(table, number))
         values = np.where(allowed(spec, table), score(spec, table, parts), np.inf)
         if values.min() < best:
             i, best = int(values.argmin()), float(values.min())
             tally.note = f"best {float(table[f'aim_{aim}'][i]):.3g} {AIMS[aim].unit}"
-            if not spec.pareto and not known:
+            if not spec.pareto and not is_stored:
                 run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, shares[i], strict=True)})
                 write_runs(spec, [titled(spec, run, name)], folder)
-        tally.finished(number, len(shares), fresh=not known)
-    whole = xr.concat(tables, "candidate")
-    return SearchResult(spec=spec, start=start, history=whole.assign(score=("candidate", score(spec, whole, parts))))
+        tally.finished(number, len(shares), fresh=not is_stored)
+    history = xr.concat(tables, "candidate")
+    return SearchResult(
+        spec=spec, start=start, history=history.assign(score=("candidate", score(spec, history, parts)))
+    )
 
 
-def _numbered(table: xr.Dataset, number: int) -> xr.Dataset:
+def _with_generation(table: xr.Dataset, number: int) -> xr.Dataset:
     return table.assign(generation=("candidate", np.full(table.sizes["candidate"], number)))
 
 
-def _generation(store: Store, number: int, asked: np.ndarray, make: Callable[[np.ndarray], xr.Dataset]) -> xr.Dataset:
-    """Return one generation, from the store if it is there."""
-    table = _kept(store, number, lambda: make(asked))
-    if not np.array_equal(table.share.values, asked):
+def _generation(
+    store: Store, number: int, candidates: np.ndarray, make: Callable[[np.ndarray], xr.Dataset]
+) -> xr.Dataset:
+    """Return one generation, from the store if it is there.
+
+    Args:
+        store: of the generations.
+        number: of the generation.
+        candidates: fractions of the ranges, shape (candidate, field).
+        make: evaluates the candidates.
+    """
+    table = _stored_part(store, number, lambda: make(candidates))
+    if not np.array_equal(table.share.values, candidates):
         raise IncompatibleRecord(
             f"{store.part(number)} holds other candidates than the search asks for; this machine or its libraries "
             "round differently: choose another place."
@@ -167,8 +198,8 @@ def _generation(store: Store, number: int, asked: np.ndarray, make: Callable[[np
     return table
 
 
-def _kept(store: Store, number: int, make: Callable[[], xr.Dataset]) -> xr.Dataset:
-    """Return a part, made and stored if it is not there yet."""
+def _stored_part(store: Store, number: int, make: Callable[[], xr.Dataset]) -> xr.Dataset:
+    """Return a part of the store, made and stored if it is missing."""
     if not store.has(number):
         store.put(number, make())
     return store.get(number)
@@ -182,14 +213,14 @@ def write_runs(spec: Optimisation, runs: Sequence[Run], folder: Path) -> None:
 
 
 def run_files(spec: Optimisation, label: str) -> list[str]:
-    """Return which files ``write_runs`` writes for a run: of its gait, and of its robot if that varies."""
+    """Return the files that ``write_runs`` writes for a run: its gait, and its robot if the robot varies."""
     varies = any(vary.field.startswith("robot.") for vary in spec.vary)
     return [f"{label}.toml", *[f"{label}_robot.toml"] * varies]
 
 
 Evaluate = Callable[..., xr.Dataset]
 """Tries candidates; see ``evaluate.evaluate``."""
-_NEAR = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
+_RANGE_STEPS = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,53 +252,60 @@ rubber foot on floors from 0.5 to 1."""
 
 
 def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
-    """Run the chosen, and where the search started, under every condition with the robot's own time step.
+    """Simulate the best candidates and the start under every condition, with the robot's own time step.
+
+    Args:
+        spec: the search, of one condition.
+        runs: best candidates.
 
     Returns:
         ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it
         diverged.
     """
-    who = [*runs, replace(spec.run, label="start")]
-    batch = [_under(run, condition) for run in who for condition in CONDITIONS]
+    checked_runs = [*runs, replace(spec.run, label="start")]
+    batch = [_under(run, condition) for run in checked_runs for condition in CONDITIONS]
     record = simulate(batch, duration=spec.duration, timestep=physics_step(spec.run.robot), every=2)
-    shape = len(who), len(CONDITIONS)
+    shape = len(checked_runs), len(CONDITIONS)
     sound = record.cause.values == ""
     return xr.Dataset(
         {
             name: (("run", "condition"), np.where(sound, values, np.nan).reshape(shape))
             for name, values in measure(spec, batch, record).items()
         },
-        coords={"run": [run.label for run in who], "condition": [c.tells for c in CONDITIONS]},
+        coords={"run": [run.label for run in checked_runs], "condition": [c.tells for c in CONDITIONS]},
     )
 
 
 def _under(run: Run, condition: Condition) -> Run:
+    """Return a run under one condition of a check: other friction, later phase, or a robot built with errors."""
     phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
     gait = replace(run.gait, limb_phases=phases)
-    other = replace(run, gait=gait if condition.later else run.gait)
-    other = with_values(other, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale})
-    return other if condition.built is None else Tolerances().built(other, condition.built)
+    changed_run = replace(run, gait=gait if condition.later else run.gait)
+    changed_run = with_values(
+        changed_run, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale}
+    )
+    return changed_run if condition.built is None else Tolerances().built(changed_run, condition.built)
 
 
-def around(spec: Optimisation, best: np.ndarray, tried: Evaluate = evaluate) -> xr.Dataset:
+def around(spec: Optimisation, best: np.ndarray, evaluate_candidates: Evaluate = evaluate) -> xr.Dataset:
     """Move each field alone to both sides of the best, by a twentieth and a tenth of its range.
 
     Args:
         spec: the search.
-        best: the shares of the ranges at which the best lies.
-        tried: what tries candidates.
+        best: fractions of the ranges at the best, shape (field,).
+        evaluate_candidates: function that evaluates candidates.
 
     Returns:
         ``share``, ``aim_...``, ``limit_...``, ``status`` over ``moved`` (which field) and ``step``.
     """
     fields = [v.field for v in spec.vary]
-    points = np.array([best] * (len(fields) * len(_NEAR))).reshape(len(fields), len(_NEAR), -1)
+    points = np.array([best] * (len(fields) * len(_RANGE_STEPS))).reshape(len(fields), len(_RANGE_STEPS), -1)
     for i in range(len(fields)):
-        points[i, :, i] = np.clip(best[i] + np.array(_NEAR), 0.0, 1.0)
-    table = tried(spec, points.reshape(-1, len(fields)))
-    shape = len(fields), len(_NEAR)
+        points[i, :, i] = np.clip(best[i] + np.array(_RANGE_STEPS), 0.0, 1.0)
+    table = evaluate_candidates(spec, points.reshape(-1, len(fields)))
+    shape = len(fields), len(_RANGE_STEPS)
     return xr.Dataset(
         {name: (("moved", "step"), table[name].values.reshape(shape)) for name in ("status", *columns(spec))}
         | {"at": (("moved", "step"), np.array([points[i, :, i] for i in range(len(fields))]))},
-        coords={"moved": fields, "step": list(_NEAR)},
+        coords={"moved": fields, "step": list(_RANGE_STEPS)},
     )

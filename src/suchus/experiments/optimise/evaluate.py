@@ -1,4 +1,4 @@
-"""One generation: its candidates in one batch, what each reaches and breaks, and what is made small."""
+"""One generation: its candidates in one batch, their aims and limits, and their losses."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -17,18 +17,18 @@ from suchus.robot.motion import check_limits, excess
 from suchus.sim.land import Run, simulate
 
 WALKED, REFUSED, APART = "walked", "refused", "diverged"
-_EVERY = 2  # control periods; 50 looks a second
+_SAMPLE_INTERVAL = 2  # control periods; 50 looks a second
 
 
 def evaluate(
     spec: Optimisation, shares: np.ndarray, progress: Progress = silent, *, timestep: float | None = None
 ) -> xr.Dataset:
-    """Try candidates, all that can be built in one batch.
+    """Evaluate candidates; all that can be built are simulated in one batch.
 
     Args:
         spec: the search, of one condition.
-        shares: where each candidate's fields lie in their ranges, shape (candidate, field), 0 to 1.
-        progress: told the share that is done.
+        shares: fractions of the ranges, from 0 to 1, shape (candidate, field).
+        progress: called with the fraction that is done.
         timestep: of the physics [s]; that of the search if None.
 
     Returns:
@@ -36,30 +36,30 @@ def evaluate(
         ``status``; ``beyond``, see ``suchus.robot.motion.excess``, infinite for a candidate that cannot be at all.
     """
     count = len(shares)
-    status, beyond = np.full(count, REFUSED, dtype="U16"), np.zeros(count)
+    status, limit_excess = np.full(count, REFUSED, dtype="U16"), np.zeros(count)
     runs: dict[int, Run] = {}
     for i, point in enumerate(shares):
         try:
             run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, point, strict=True)})
-            beyond[i] = excess(run.robot, run.gait)
-            if beyond[i] == 0.0:
+            limit_excess[i] = excess(run.robot, run.gait)
+            if limit_excess[i] == 0.0:
                 check_limits(run.robot, run.gait)
-                # refuses what it cannot steer
+                # raises if the control cannot steer this gait
                 run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))
                 runs[i] = run
         except SuchusError:
-            beyond[i] = np.inf
+            limit_excess[i] = np.inf
     table = {name: np.full(count, np.nan) for name in columns(spec)}
-    walked = _walked(spec, runs, progress, timestep or spec.timestep)
-    beyond[[i for i in runs if i not in walked]] = np.inf
-    for i, numbers in walked.items():
+    results = _walk_candidates(spec, runs, progress, timestep or spec.timestep)
+    limit_excess[[i for i in runs if i not in results]] = np.inf
+    for i, numbers in results.items():
         status[i] = APART if numbers is None else WALKED
         for name, value in (numbers or {}).items():
             table[name][i] = value
     return xr.Dataset(
         {
             "share": (("candidate", "field"), np.asarray(shares, dtype=float)),
-            "beyond": ("candidate", beyond),
+            "beyond": ("candidate", limit_excess),
             "status": ("candidate", status),
             **{name: ("candidate", values) for name, values in table.items()},
         },
@@ -74,27 +74,35 @@ def columns(spec: Optimisation) -> dict[str, Kind]:
     }
 
 
-def _walked(
+def _walk_candidates(
     spec: Optimisation, runs: Mapping[int, Run], progress: Progress, timestep: float
 ) -> dict[int, dict[str, float] | None]:
-    """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts.
+    """Return the quantities of each candidate by column, None for one that diverged.
 
     A candidate that the simulation refuses, as for a foot point between those that were looked at, has no row; the
     batch is halved until it is found.
+
+    Args:
+        spec: the search, of one condition.
+        runs: by number of the candidate.
+        progress: called with the fraction that is done.
+        timestep: of the physics [s].
     """
     if not runs:
         return {}
     scales = spec.friction_scales
-    laid = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
+    ground_runs = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
     try:
-        record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
+        record = simulate(
+            ground_runs, duration=spec.duration, timestep=timestep, every=_SAMPLE_INTERVAL, progress=progress
+        )
     except SuchusError:
         if len(runs) == 1:
             return {}
         items = list(runs.items())
         halves = dict(items[: len(items) // 2]), dict(items[len(items) // 2 :])
-        return {i: row for half in halves for i, row in _walked(spec, half, progress, timestep).items()}
-    measured = measure(spec, laid, record)
+        return {i: row for half in halves for i, row in _walk_candidates(spec, half, progress, timestep).items()}
+    measured = measure(spec, ground_runs, record)
     broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
     measures_of: dict[int, dict[str, float] | None] = {}
     for row, i in enumerate(runs):
@@ -106,66 +114,94 @@ def _walked(
 
 
 def measure(spec: Optimisation, runs: Sequence[Run], record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return every aim and limit of some runs by column."""
-    known: dict[Any, np.ndarray] = {}
+    """Return every aim and limit of some runs by column, each of shape (run,)."""
+    values: dict[Any, np.ndarray] = {}
     for kind in columns(spec).values():
-        if kind.measure not in known:
-            known[kind.measure] = kind.measure(runs, record)
-    return {name: known[kind.measure] for name, kind in columns(spec).items()}
+        if kind.measure not in values:
+            values[kind.measure] = kind.measure(runs, record)
+    return {name: values[kind.measure] for name, kind in columns(spec).items()}
 
 
 def _joined(name: str, values: np.ndarray) -> float:
-    """Return what a candidate has over all grounds: the mean of an aim, the worst of a limit."""
+    """Return the value of a candidate over all grounds: the mean of an aim, the worst of a limit.
+
+    Args:
+        name: of the column.
+        values: on each ground.
+    """
     if name.startswith("aim_"):
         return float(values.mean())
-    worst = values.min if LIMITS[name.removeprefix("limit_")].good == "more" else values.max
-    return float(worst())
+    reduce = values.min if LIMITS[name.removeprefix("limit_")].good == "more" else values.max
+    return float(reduce())
 
 
-_PENALTY = 5.0  # per limit exceeded by its own size, in parts of what the start has
-_REFUSED, _APART, _NEVER = 1e3, 2e3, 4e3  # ranks below all that walk, the nearer to walking the better
+_PENALTY = 5.0  # loss for each limit that is exceeded by its own size, in units of the start's aim
+_REFUSED_LOSS, _DIVERGED_LOSS, _IMPOSSIBLE_LOSS = (
+    1e3,
+    2e3,
+    4e3,
+)  # losses above those of all walks, less for candidates that nearly walk
 ACTIVE = 0.03
-"""A limit that is kept by less than this part of it counts as active [-]."""
+"""Greatest relative margin at which a limit counts as active [-]."""
 
 
 def excesses(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
-    """Return by which part of itself each limit is exceeded, negative where it is kept, shape (candidate, limit)."""
+    """Return by which part of itself each limit is exceeded, negative where it is kept, shape (candidate, limit).
+
+    Args:
+        spec: the search.
+        table: of ``evaluate``.
+    """
     rows = [over(limit, table[f"limit_{limit.name}"].values) for limit in spec.limits]
     return np.array(rows).T if rows else np.zeros((table.sizes["candidate"], 0))
 
 
 def over(limit: Limit, values: np.ndarray) -> np.ndarray:
-    """Return by which part of itself a limit is exceeded."""
+    """Return by which fraction of itself a limit is exceeded; negative where it is kept [-].
+
+    Args:
+        limit: the limit.
+        values: of the limited quantity, in its unit.
+    """
     kind = LIMITS[limit.name]
     sign = 1.0 if kind.good == "less" else -1.0
     return np.asarray(sign * (values - limit.value) / max(abs(limit.value), 1e-9 if limit.value else kind.scale))
 
 
 def allowed(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
-    """Tell which candidates walked and kept every limit."""
-    walked = table.status.values == WALKED
-    return np.asarray(walked & (excesses(spec, table) <= 0.0).all(axis=1))
+    """Return which candidates walked and kept every limit, shape (candidate,)."""
+    has_walked = table.status.values == WALKED
+    return np.asarray(has_walked & (excesses(spec, table) <= 0.0).all(axis=1))
 
 
 def units(spec: Optimisation, start: xr.Dataset) -> np.ndarray:
-    """Return what one part of each aim is: the start's own value, or 1 where it has none."""
+    """Return the unit of each aim: the size of the start's value, or 1 if the start has none, shape (aim,)."""
     values = np.array([abs(float(start[f"aim_{aim.name}"][0])) for aim in spec.aims])
     return np.where(np.isfinite(values) & (values > 1e-9), values, 1.0)
 
 
 def losses(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarray:
-    """Return each aim as something to make small, in parts of the start's, shape (candidate, aim).
+    """Return each aim as a loss in units of the start's value, shape (candidate, aim).
 
     Limits that are exceeded make all aims worse; what cannot walk comes after everything that does.
+
+    Args:
+        spec: the search.
+        table: of ``evaluate``.
+        parts: unit of each aim, of ``units``.
     """
     signs = np.array([-1.0 if AIMS[aim.name].good == "more" else 1.0 for aim in spec.aims])
     values = np.column_stack([table[f"aim_{aim.name}"].values for aim in spec.aims])
     penalty = _PENALTY * np.maximum(excesses(spec, table), 0.0).sum(axis=1)
     weighted = signs * values / parts + penalty[:, None]
-    status, beyond = table.status.values, table.beyond.values
-    worst = np.where(status == APART, _APART, np.where(np.isfinite(beyond), _REFUSED + np.minimum(beyond, 1e3), _NEVER))
+    status, limit_excess = table.status.values, table.beyond.values
+    failed_loss = np.where(
+        status == APART,
+        _DIVERGED_LOSS,
+        np.where(np.isfinite(limit_excess), _REFUSED_LOSS + np.minimum(limit_excess, 1e3), _IMPOSSIBLE_LOSS),
+    )
     bad = (status != WALKED) | ~np.isfinite(weighted).all(axis=1)
-    return np.where(bad[:, None], worst[:, None], weighted)
+    return np.where(bad[:, None], failed_loss[:, None], weighted)
 
 
 def score(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarray:

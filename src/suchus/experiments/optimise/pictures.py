@@ -20,7 +20,7 @@ from suchus.visual.figures import COLOURS, LINES, captioned, panels, styled
 from suchus.visual.figures.posture import draw_posture, draw_strip
 
 _ROLES = ("coordinated", "limbs_only", "tail_drag", "spine_only", "tail", "water")
-_APART, _GAP = 0.6, 0.06  # [m]; between two robots that stand, between two that walk
+_STANDING_SPACING, _GAP = 0.6, 0.06  # [m]; between two robots that stand, between two that walk
 _MM = {"m": (1000.0, "mm"), "rad": (180 / np.pi, "deg")}
 
 
@@ -45,8 +45,8 @@ def draw_convergence(searches: Sequence[SearchResult]) -> Figure:
         ax = axes[0, 0]
         for i, search in enumerate(searches):
             colour, values = COLOURS[role(i)], search.history[f"aim_{search.spec.aims[0].name}"].values
-            kept = allowed(search.spec, search.history)
-            ax.plot(np.flatnonzero(kept), values[kept], ".", color=colour, markersize=3, alpha=0.35)
+            is_allowed = allowed(search.spec, search.history)
+            ax.plot(np.flatnonzero(is_allowed), values[is_allowed], ".", color=colour, markersize=3, alpha=0.35)
             ax.plot(search.best_so_far(), color=colour, drawstyle="steps-post", label=label(search.arm))
             ax.plot(
                 0, float(search.start[f"aim_{search.spec.aims[0].name}"][0]), "D", color=colour, markeredgecolor="black"
@@ -64,31 +64,44 @@ def draw_convergence(searches: Sequence[SearchResult]) -> Figure:
 
 def _limit_axis(ax: Axes, searches: Sequence[SearchResult]) -> None:
     """Leave wild candidates out of the picture."""
-    shown = np.concatenate([search.best_so_far() for search in searches])
-    shown = shown[np.isfinite(shown)]
-    if shown.size:
-        low, high = float(shown.min()), float(shown.max())
-        pad = max(0.15 * (high - low), 0.02 * abs(high), 1e-6)
-        ax.set_ylim(low - pad, high + pad)
+    values = np.concatenate([search.best_so_far() for search in searches])
+    values = values[np.isfinite(values)]
+    if values.size:
+        y_min, y_max = float(values.min()), float(values.max())
+        pad = max(0.15 * (y_max - y_min), 0.02 * abs(y_max), 1e-6)
+        ax.set_ylim(y_min - pad, y_max + pad)
 
 
 def draw_front(search: SearchResult) -> Figure:
     """Draw the two aims of every candidate that keeps all limits, and the front."""
-    first, second = (f"aim_{aim.name}" for aim in search.spec.aims)
+    first_column, second_column = (f"aim_{aim.name}" for aim in search.spec.aims)
     kinds = [AIMS[aim.name] for aim in search.spec.aims]
-    kept, table, front, chosen = allowed(search.spec, search.history), search.history, search.front, search.chosen
+    is_allowed, table, front, chosen_indices = (
+        allowed(search.spec, search.history),
+        search.history,
+        search.front,
+        search.chosen,
+    )
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.2, width_ratios=[1.4, 1])
         ax = axes[0, 0]
-        x, y = table[first].values, table[second].values
-        ax.plot(x[kept], y[kept], ".", color=COLOURS["neutral"], markersize=4, alpha=0.4, label="keeps all limits")
+        x, y = table[first_column].values, table[second_column].values
+        ax.plot(
+            x[is_allowed],
+            y[is_allowed],
+            ".",
+            color=COLOURS["neutral"],
+            markersize=4,
+            alpha=0.4,
+            label="keeps all limits",
+        )
         ax.plot(x[front], y[front], "o-", color=COLOURS["ours"], markersize=4, linewidth=1.2, label="front")
-        ax.plot(x[chosen], y[chosen], "o", color=COLOURS["alarm"], markersize=9, label="gait files")
+        ax.plot(x[chosen_indices], y[chosen_indices], "o", color=COLOURS["alarm"], markersize=9, label="gait files")
         ax.plot(x[0], y[0], "D", color="white", markeredgecolor="black", markersize=8, label="start")
         if front:
             spread = np.ptp(y[front]) + 0.1 * abs(y[front]).max()
             ax.set_ylim(y[front].min() - 0.3 * spread, max(y[front].max() + spread, y[0] + 0.2 * spread))
-        for i, name in zip(chosen, search.names, strict=True):
+        for i, name in zip(chosen_indices, search.names, strict=True):
             ax.annotate(name.rpartition("_")[2], (x[i], y[i]), (7, 5), textcoords="offset points")
         for axis, aim, kind in zip((ax.set_xlabel, ax.set_ylabel), search.spec.aims, kinds, strict=True):
             axis(f"{label(aim.name)} [{kind.unit}], {kind.good} is better")
@@ -116,19 +129,19 @@ def draw_gaits(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) ->
         return _draw_standing(runs, record, texts)
     end = float(record.time[-1])
     times = [START, (START + end) / 2, end]
-    aside, depth = _lanes(runs, record, times)
+    offsets, depth = _lanes(runs, record, times)
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=10.5, height=1.0 + 3.8 * depth)
         ax = axes[0, 0]
         for i, run in enumerate(runs):
             walk, hue = record.isel(run=i), _shade(run.label, i)
-            draw_strip(ax, run.robot, walk, times, role=hue, aside=aside[i])
-            beside = float(walk.centre_of_mass.sel(xyz="y").sel(time=end, method="nearest")) + aside[i]
-            right = float(_seen(walk, times)[:, 0].max())
+            draw_strip(ax, run.robot, walk, times, role=hue, aside=offsets[i])
+            text_y = float(walk.centre_of_mass.sel(xyz="y").sel(time=end, method="nearest")) + offsets[i]
+            text_x = float(_extreme_points(walk, times)[:, 0].max())
             ax.text(
-                right + _GAP, beside, f"{label(run.label)}\n{texts[i]}", color=COLOURS[hue], va="center", fontsize=13
+                text_x + _GAP, text_y, f"{label(run.label)}\n{texts[i]}", color=COLOURS[hue], va="center", fontsize=13
             )
-        ax.set_xlim(right=float(_seen(record, times)[:, 0].max()) + 0.45)
+        ax.set_xlim(right=float(_extreme_points(record, times)[:, 0].max()) + 0.45)
         ax.set_axis_off()
     return captioned(
         figure,
@@ -137,24 +150,30 @@ def draw_gaits(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) ->
     )
 
 
-def _seen(record: xr.Dataset, times: Sequence[float]) -> np.ndarray:
+def _extreme_points(record: xr.Dataset, times: Sequence[float]) -> np.ndarray:
     """Return where feet, snout and tail tip are at some times, shape (point, 3) [m]."""
-    near = record.sel(time=list(times), method="nearest")
-    return np.concatenate([near[name].values.reshape(-1, 3) for name in ("foot_position", "snout", "tail_tip")])
+    samples = record.sel(time=list(times), method="nearest")
+    return np.concatenate([samples[name].values.reshape(-1, 3) for name in ("foot_position", "snout", "tail_tip")])
 
 
 def _lanes(runs: Sequence[Run], record: xr.Dataset, times: Sequence[float]) -> tuple[list[float], float]:
     """Return how far to the left each run is drawn so that none lies on another, and how deep all are together [m]."""
-    aside, top = [], 0.0
+    offsets, top = [], 0.0
     for i in range(len(runs)):
-        y = _seen(record.isel(run=i), times)[:, 1]
-        aside.append(top - float(y.max()))
+        y = _extreme_points(record.isel(run=i), times)[:, 1]
+        offsets.append(top - float(y.max()))
         top += float(y.min() - y.max()) - 1.5 * _GAP  # hands reach beyond the feet' middles
-    return aside, -top
+    return offsets, -top
 
 
 def _draw_standing(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) -> Figure:
-    """Draw every run from its right side, half of the time that it is meant to stand."""
+    """Draw every run from its right side, in the middle of the time in which it should stand.
+
+    Args:
+        runs: with a control that stands up.
+        record: of the runs.
+        texts: written under each.
+    """
     with styled():
         figure, axes = panels(1, 1, width=3.0 + 2.6 * len(runs), height=5.6)
         ax = axes[0, 0]
@@ -163,11 +182,14 @@ def _draw_standing(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]
             walk = record.isel(run=i)
             time = (run.control.upright_from(run.robot) + run.control.upright_until(run.robot)) / 2
             hips = float(walk.position.sel(xyz="x").sel(time=time, method="nearest"))
-            moved = walk.assign(
-                {name: walk[name] + _beside(walk, _APART * i - hips) for name in ("position", "centre_of_mass")}
+            shifted_walk = walk.assign(
+                {
+                    name: walk[name] + _forward_shift(walk, _STANDING_SPACING * i - hips)
+                    for name in ("position", "centre_of_mass")
+                }
             )
-            draw_posture(ax, run.robot, moved, time, view="side", support=False)
-            ax.text(_APART * i, -0.05, f"{label(run.label)}\n{texts[i]}", ha="center", va="top", fontsize=12,
+            draw_posture(ax, run.robot, shifted_walk, time, view="side", support=False)
+            ax.text(_STANDING_SPACING * i, -0.05, f"{label(run.label)}\n{texts[i]}", ha="center", va="top", fontsize=12,
                     color=COLOURS[_shade(run.label, i)])  # fmt: skip
         ax.set_ylim(bottom=-0.17)
         ax.set_xticks([])
@@ -176,8 +198,8 @@ def _draw_standing(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]
     return captioned(figure, "From the right side, half of the time that it is meant to stand.")
 
 
-def _beside(record: xr.Dataset, ahead: float) -> xr.DataArray:
-    return xr.DataArray([ahead, 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
+def _forward_shift(record: xr.Dataset, distance: float) -> xr.DataArray:
+    return xr.DataArray([distance, 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
 
 
 def _shade(name: str, number: int) -> str:
@@ -186,25 +208,32 @@ def _shade(name: str, number: int) -> str:
 
 def draw_around(search: SearchResult) -> Figure:
     """Draw the first aim as each field alone moves to both sides of the best; crosses break a limit."""
-    near = search.near
-    assert near is not None
+    neighbourhood = search.near
+    assert neighbourhood is not None
     aim = search.spec.aims[0].name
     kind: Kind = AIMS[aim]
     fields, columns = search.fields, 4
     rows = ceil(len(fields) / columns)
-    values, best = near[f"aim_{aim}"].values, float(near[f"aim_{aim}"].sel(step=0.0)[0])
+    values, best = neighbourhood[f"aim_{aim}"].values, float(neighbourhood[f"aim_{aim}"].sel(step=0.0)[0])
     with styled(axes__labelsize=10, xtick__labelsize=9, ytick__labelsize=9):
         figure, axes = panels(rows, columns, width=10.5, height=0.7 + 1.9 * rows, sharey=True)
         for i, vary in enumerate(search.spec.vary):
             ax = axes.flat[i]
-            scale, shown = scaled(search.spec.run, vary.field)
-            at = np.array([at_share(vary, float(share)) for share in near["at"].values[i]]) * scale
-            kept = _kept(search, near, i)
-            ax.plot(at, values[i], color=COLOURS["ours"], linewidth=1.2)
-            ax.plot(at[kept], values[i][kept], "o", color=COLOURS["ours"], markersize=5)
-            ax.plot(at[~kept], values[i][~kept], "x", color=COLOURS["alarm"], markersize=6, markeredgewidth=1.6)
+            scale, unit = scaled(search.spec.run, vary.field)
+            positions = np.array([at_share(vary, float(share)) for share in neighbourhood["at"].values[i]]) * scale
+            is_allowed = _allowed_steps(search, neighbourhood, i)
+            ax.plot(positions, values[i], color=COLOURS["ours"], linewidth=1.2)
+            ax.plot(positions[is_allowed], values[i][is_allowed], "o", color=COLOURS["ours"], markersize=5)
+            ax.plot(
+                positions[~is_allowed],
+                values[i][~is_allowed],
+                "x",
+                color=COLOURS["alarm"],
+                markersize=6,
+                markeredgewidth=1.6,
+            )
             ax.axhline(best, color=COLOURS["neutral"], linewidth=0.8, linestyle=(0, (2, 2)))
-            ax.set_xlabel(f"{label(vary.field)}{f' [{shown}]' if shown else ''}")
+            ax.set_xlabel(f"{label(vary.field)}{f' [{unit}]' if unit else ''}")
         for ax in axes.flat[len(fields) :]:
             ax.set_axis_off()
         for ax in axes[:, 0]:
@@ -216,13 +245,13 @@ def draw_around(search: SearchResult) -> Figure:
     )
 
 
-def _kept(search: SearchResult, near: xr.Dataset, row: int) -> np.ndarray:
+def _allowed_steps(search: SearchResult, neighbourhood: xr.Dataset, row: int) -> np.ndarray:
     """Tell which of the points beside the best keep all limits."""
-    part = near.isel(moved=row).rename(step="candidate")
-    return allowed(search.spec, part)
+    field_record = neighbourhood.isel(moved=row).rename(step="candidate")
+    return allowed(search.spec, field_record)
 
 
 def scaled(run: Run, field: str) -> tuple[float, str]:
     """Return the factor and the unit in which people read a field: millimetres, degrees."""
-    held = unit_at(run, field)
-    return _MM.get(held, (1.0, "" if held == "-" else held))
+    unit = unit_at(run, field)
+    return _MM.get(unit, (1.0, "" if unit == "-" else unit))

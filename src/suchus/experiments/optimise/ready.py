@@ -35,7 +35,7 @@ _LIMITS = (
     Limit(name="clearance", value=0.005),
     Limit(name="sideways", value=0.25),
 )
-_WHY = (
+_CRAWL_REASONS = (
     "The cycle stays at the article's four seconds, so that two cycles compare with its 0.73 m; feet stand at least "
     "half of it, so that it is a walk. Legs and trunk may go as far as joints and reach let them.",
     "Torque and slip may be a little more than in the article's crawl on this robot (0.60 and 0.46); parts of the "
@@ -46,7 +46,9 @@ _WHY = (
 
 
 def _vary(rows: tuple[tuple[str, float, float], ...]) -> tuple[Vary, ...]:
-    return tuple(Vary(field=f"gait.{name}", low=low, high=high) for name, low, high in rows)
+    return tuple(
+        Vary(field=f"gait.{name}", low=lower_bound, high=upper_bound) for name, lower_bound, upper_bound in rows
+    )
 
 
 def _limbs_only() -> Arm:
@@ -65,7 +67,7 @@ def crawl() -> Optimisation:
         arms=(Arm(name="coordinated"), _limbs_only()),
         evaluations=960,
         seed=1,
-        reasons=_WHY,
+        reasons=_CRAWL_REASONS,
     )
 
 
@@ -81,7 +83,7 @@ def thrift() -> Optimisation:
         evaluations=1200,
         population=10,
         seed=1,
-        reasons=_WHY[:2],
+        reasons=_CRAWL_REASONS[:2],
     )
 
 
@@ -128,16 +130,24 @@ def stand() -> Optimisation:
 def lifted() -> Optimisation:
     """A plausible design on which limbs alone, the tail held in the air, walk: the control group of the article."""
     robot, gait = ROBOTS["caiman"], GAITS["limbs_only"]
-    fixed = ("_range[", ".ki", ".integral_limit")  # limits only forbid; robots of a batch have equal integral action
+    excluded = ("_range[", ".ki", ".integral_limit")  # limits only forbid; robots of a batch have equal integral action
     numbers = ROBOTS.beside(robot.name, "chosen", ())
-    rows = [(f"robot.{one.field}", one) for one in numbers if not any(part in one.field for part in fixed)]
-    still = {name for name, _, _ in _BODY}
-    rows += [(f"gait.{one.field}", one) for one in GAITS.beside(gait.name, "chosen", ()) if one.field not in still]
+    rows = [
+        (f"robot.{choice.field}", choice)
+        for choice in numbers
+        if not any(pattern in choice.field for pattern in excluded)
+    ]
+    fixed_fields = {name for name, _, _ in _BODY}
+    rows += [
+        (f"gait.{choice.field}", choice)
+        for choice in GAITS.beside(gait.name, "chosen", ())
+        if choice.field not in fixed_fields
+    ]
     control = conditions_of(robot, GAITS["belly_crawl"], gait)["limbs_tail_lifted"]
     return Optimisation(
         name="lifted",
         run=Run(robot=robot, gait=control),
-        vary=tuple(Vary(field=path, low=one.low, high=one.high) for path, one in rows),
+        vary=tuple(Vary(field=path, low=choice.low, high=choice.high) for path, choice in rows),
         aims=(Aim(name="foot_lift"),),
         limits=(
             Limit(name="duty_greatest", value=0.85),
@@ -157,6 +167,6 @@ def lifted() -> Optimisation:
 
 
 READY: Mapping[str, Callable[[], Optimisation]] = MappingProxyType(
-    {made.__name__: made for made in (crawl, thrift, turn, stand, lifted)}
+    {maker.__name__: maker for maker in (crawl, thrift, turn, stand, lifted)}
 )
 """What makes each; its docstring says what it is."""

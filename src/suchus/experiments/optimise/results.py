@@ -22,7 +22,7 @@ from suchus.sim.land import Run, simulate
 from suchus.visual.replay import replay
 
 RESULT, OUTCOME, RECORD = "result", "outcome.json", "record.nc"
-_TOLD = 5  # fields that the sentence names
+_MAX_NAMED_FIELDS = 5  # fields that the sentence names
 _END = 0.02  # of its range; a field that is nearer to an end is at it
 
 
@@ -39,17 +39,17 @@ def write_results(spec: Optimisation, searches: Sequence[SearchResult], folder: 
     """
     folder = Path(folder)
     runs = [run for search in searches for run in search.runs]
-    shown = [_start(spec), *runs]
-    record = simulate(shown, duration=spec.duration, timestep=physics_step(spec.run.robot))
+    shown_runs = [_start(spec), *runs]
+    record = simulate(shown_runs, duration=spec.duration, timestep=physics_step(spec.run.robot))
     numbers = outcome(spec, searches)
     with records.new_folder(folder / RESULT, lasting=True) as draft:
         for search in searches:
             write_runs(search.spec, search.runs, draft)
         records.save(record, draft / RECORD)
-        for i, run in enumerate(shown):
+        for i, run in enumerate(shown_runs):
             if i:
-                _write_replay(shown, record, i, draft / f"{run.label}_replay.html")
-        pictures = _pictures(spec, searches, shown, record)
+                _write_replay(shown_runs, record, i, draft / f"{run.label}_replay.html")
+        pictures = _pictures(spec, searches, shown_runs, record)
         sections = _sections(spec, searches, numbers, pictures)
         write_tables(draft, f"Optimised: {spec.name}", _lead(searches), sections, pictures)
         text = json.dumps(numbers, indent=2, ensure_ascii=False, allow_nan=False)
@@ -61,12 +61,13 @@ def _start(spec: Optimisation) -> Run:
     return replace(spec.run, label="start")
 
 
-def _write_replay(shown: Sequence[Run], record: xr.Dataset, i: int, path: Path) -> None:
-    run, same = shown[i], shown[i].robot == shown[0].robot
+def _write_replay(shown_runs: Sequence[Run], record: xr.Dataset, i: int, path: Path) -> None:
+    """Write the replay of run ``i``; the start is half transparent in it where the robot is the same."""
+    run, same_robot = shown_runs[i], shown_runs[i].robot == shown_runs[0].robot
     page = replay(
         record.isel(run=i),
         run.robot,
-        ghost=record.isel(run=0) if same else None,
+        ghost=record.isel(run=0) if same_robot else None,
         labels=(label(run.label), "start"),
         title=f"{run.gait.name.replace('_', ' ')}, as found",
     )
@@ -89,6 +90,7 @@ def outcome(spec: Optimisation, searches: Sequence[SearchResult]) -> dict[str, A
 
 
 def _numbers_of(search: SearchResult) -> dict[str, Any]:
+    """Return counts, start, best candidates and front of one search as JSON holds them."""
     return {
         "tried": search.history.sizes["candidate"] - 1,
         "walked": int((search.history.status == "walked").sum()),
@@ -101,23 +103,24 @@ def _numbers_of(search: SearchResult) -> dict[str, Any]:
     }
 
 
-def _best(search: SearchResult, which: int) -> dict[str, Any]:
+def _best(search: SearchResult, index: int) -> dict[str, Any]:
+    """Return aims, fields, limits and checks of one chosen candidate as JSON holds them."""
     assert search.checks is not None
-    candidate, ranges = search.chosen[which], {v.field: (v.low, v.high) for v in search.spec.vary}
+    candidate, ranges = search.chosen[index], {v.field: (v.low, v.high) for v in search.spec.vary}
     return {
-        "sentence": sentence(search, which),
+        "sentence": sentence(search, index),
         "aims": {aim.name: _finite(search.history[f"aim_{aim.name}"][candidate]) for aim in search.spec.aims},
         "fields": {
             name: {"start": start, "best": best, "low": ranges[name][0], "high": ranges[name][1]}
-            for name, (start, best) in search.values(which).items()
+            for name, (start, best) in search.values(index).items()
         },
         "limits": {
             name: {"limit": limit, "has": has, "active": active, "unit": LIMITS[name].unit}
-            for name, (limit, has, active) in search.active(which).items()
+            for name, (limit, has, active) in search.active(index).items()
         },
         "checks": {
             str(condition): {
-                str(name): _finite(search.checks[name].sel(condition=condition).isel(run=which))
+                str(name): _finite(search.checks[name].sel(condition=condition).isel(run=index))
                 for name in search.checks.data_vars
             }
             for condition in search.checks.condition.values
@@ -130,32 +133,41 @@ def _finite(value: Any) -> float | None:
     return number if np.isfinite(number) else None
 
 
-def sentence(search: SearchResult, which: int) -> str:
-    """Say what a chosen gait does otherwise than the start: the fields that moved farthest in their ranges."""
+def sentence(search: SearchResult, index: int) -> str:
+    """Return which fields of a chosen gait differ most from the start, and which limits and ranges stop it.
+
+    Args:
+        search: of one condition.
+        index: of the chosen candidate.
+    """
     ranges = {
         v.field: (float(v.low), float(v.high)) for v in search.spec.vary if v.low is not None and v.high is not None
     }
 
-    def moved(item: tuple[str, tuple[float, float]]) -> float:
-        low, high = ranges[item[0]]
-        return abs(item[1][1] - item[1][0]) / (high - low)
+    def relative_change(item: tuple[str, tuple[float, float]]) -> float:
+        lower_bound, upper_bound = ranges[item[0]]
+        return abs(item[1][1] - item[1][0]) / (upper_bound - lower_bound)
 
-    changes = sorted((item for item in search.values(which).items() if moved(item) > 0.0), key=moved, reverse=True)
-    said = []
-    for field, (start, best) in changes[:_TOLD]:
+    changes = sorted(
+        (item for item in search.values(index).items() if relative_change(item) > 0.0),
+        key=relative_change,
+        reverse=True,
+    )
+    phrases = []
+    for field, (start, best) in changes[:_MAX_NAMED_FIELDS]:
         factor, unit = scaled(search.spec.run, field)
-        shown = f" {unit}" if unit else ""
-        said.append(f"{label(field)} {_round(best * factor)}{shown} instead of {_round(start * factor)}")
-    stops = [label(name) for name, (_, _, active) in search.active(which).items() if active]
-    stopped = f" Limits that stop it: {', '.join(stops)}." if stops else " No limit stops it."
-    ends = [label(name) for name, (_, best) in search.values(which).items() if _at_end(best, *ranges[name])]
-    ended = f" At the end of its range: {', '.join(ends)}." if ends else ""
-    takes = f"It takes {'; '.join(said)}" if said else "It is the start itself"
-    return f"{takes}.{stopped}{ended}"
+        unit_text = f" {unit}" if unit else ""
+        phrases.append(f"{label(field)} {_round(best * factor)}{unit_text} instead of {_round(start * factor)}")
+    stops = [label(name) for name, (_, _, active) in search.active(index).items() if active]
+    limit_text = f" Limits that stop it: {', '.join(stops)}." if stops else " No limit stops it."
+    ends = [label(name) for name, (_, best) in search.values(index).items() if _at_end(best, *ranges[name])]
+    range_text = f" At the end of its range: {', '.join(ends)}." if ends else ""
+    takes = f"It takes {'; '.join(phrases)}" if phrases else "It is the start itself"
+    return f"{takes}.{limit_text}{range_text}"
 
 
-def _at_end(best: float, low: float, high: float) -> bool:
-    return min(best - low, high - best) < _END * (high - low)
+def _at_end(best: float, lower_bound: float, upper_bound: float) -> bool:
+    return min(best - lower_bound, upper_bound - best) < _END * (upper_bound - lower_bound)
 
 
 def _round(value: float) -> str:
@@ -163,14 +175,15 @@ def _round(value: float) -> str:
 
 
 def _pictures(
-    spec: Optimisation, searches: Sequence[SearchResult], shown: Sequence[Run], record: xr.Dataset
+    spec: Optimisation, searches: Sequence[SearchResult], shown_runs: Sequence[Run], record: xr.Dataset
 ) -> dict[str, Figure]:
-    values = [(AIMS[aim.name], AIMS[aim.name].measure(shown, record)) for aim in spec.aims]
-    reached = [
+    """Return the figures of a search by name: gaits, convergence, fronts, neighbourhoods of the best."""
+    values = [(AIMS[aim.name], AIMS[aim.name].measure(shown_runs, record)) for aim in spec.aims]
+    aim_texts = [
         ", ".join(f"{value[i]:#.3g} {kind.unit}".removesuffix(" -") for kind, value in values)
-        for i in range(len(shown))
+        for i in range(len(shown_runs))
     ]
-    pictures = {"gaits": draw_gaits(shown, record, reached)}
+    pictures = {"gaits": draw_gaits(shown_runs, record, aim_texts)}
     if not spec.pareto:
         pictures["convergence"] = draw_convergence(searches)
     for search in searches:
@@ -181,23 +194,27 @@ def _pictures(
 
 
 def _lead(searches: Sequence[SearchResult]) -> str:
-    said = []
+    """Return the first sentence of the page: by condition the first aim at the start and at the best."""
+    phrases = []
     for search in searches:
         front = search.front if search.spec.pareto else []
         changes = []
         for aim in search.spec.aims if front else search.spec.aims[:1]:
             ends = (front[0], front[-1]) if front else (0, search.chosen[0])
-            first, last = (float(search.history[f"aim_{aim.name}"][i]) for i in ends)
-            changes.append(f"{label(aim.name)} {first:.3g} to {last:.3g} {AIMS[aim.name].unit}".removesuffix(" -"))
-        what = f"a front of {len(front)}, " if front else ""
-        said.append(f"{label(search.arm)}: {what}{', '.join(changes)}")
-    each = " each" if len(searches) > 1 else ""
-    return f"{'; '.join(said)}; {searches[0].history.sizes['candidate'] - 1} candidates{each}."
+            start_value, end_value = (float(search.history[f"aim_{aim.name}"][i]) for i in ends)
+            changes.append(
+                f"{label(aim.name)} {start_value:.3g} to {end_value:.3g} {AIMS[aim.name].unit}".removesuffix(" -")
+            )
+        front_text = f"a front of {len(front)}, " if front else ""
+        phrases.append(f"{label(search.arm)}: {front_text}{', '.join(changes)}")
+    suffix = " each" if len(searches) > 1 else ""
+    return f"{'; '.join(phrases)}; {searches[0].history.sizes['candidate'] - 1} candidates{suffix}."
 
 
 def _sections(
     spec: Optimisation, searches: Sequence[SearchResult], numbers: Mapping[str, Any], pictures: Mapping[str, Figure]
 ) -> list[Section]:
+    """Return the sections of the page: result, convergence, numbers, checks."""
     links = [
         (f"{name}_replay.html", f"Replay of {label(name)} beside the start")
         for search in searches
@@ -210,7 +227,8 @@ def _sections(
         ]
     best = [(search, i) for search in searches for i in range(len(search.chosen))]
     return [
-        Section(title="What it found", texts=[*_best_said(numbers), *_beyond(spec)], links=links, figures=("gaits",)),
+        Section(title="What it found", texts=[*_best_said(numbers), *_control_note(spec)], links=links,
+                figures=("gaits",)),
         Section(title="How it converged", texts=spec.reasons,
                 figures=[name for name in pictures if name == "convergence" or name.startswith("front_")]),
         Section(title="The numbers", tables=[_fields(search, i) for search, i in best]
@@ -228,7 +246,7 @@ def _sections(
     ]  # fmt: skip
 
 
-def _beyond(spec: Optimisation) -> list[str]:
+def _control_note(spec: Optimisation) -> list[str]:
     """Say what a gait file cannot hold."""
     if not any(vary.field.startswith("control.") for vary in spec.vary):
         return []
@@ -237,28 +255,30 @@ def _beyond(spec: Optimisation) -> list[str]:
 
 def _best_said(numbers: Mapping[str, Any]) -> list[str]:
     best = [item for arm in numbers["arms"].values() for item in arm["best"].items()]
-    return [f"{label(name).capitalize()}. {each['sentence']}" for name, each in best]
+    return [f"{label(name).capitalize()}. {result['sentence']}" for name, result in best]
 
 
-def _fields(search: SearchResult, which: int) -> ResultTable:
+def _fields(search: SearchResult, index: int) -> ResultTable:
+    """Return the table of the fields of one chosen candidate: start, best, range."""
     rows = []
     ends = {v.field: (v.low, v.high) for v in search.spec.vary}
-    for name, (start, best) in search.values(which).items():
+    for name, (start, best) in search.values(index).items():
         factor, unit = scaled(search.spec.run, name)
-        low, high = (float(e or 0.0) for e in ends[name])
-        at = "at its end" if _at_end(best, low, high) else ""
+        lower_bound, upper_bound = (float(e or 0.0) for e in ends[name])
+        end_note = "at its end" if _at_end(best, lower_bound, upper_bound) else ""
         words = (label(name), unit, *(_round(factor * x) for x in (start, best)),
-                 f"{_round(factor * low)} to {_round(factor * high)}", at)  # fmt: skip
+                 f"{_round(factor * lower_bound)} to {_round(factor * upper_bound)}", end_note)  # fmt: skip
         rows.append(words)
     return ResultTable(
-        caption=f"{label(search.names[which])}: what the search changed",
+        caption=f"{label(search.names[index])}: what the search changed",
         heads=("field", "unit", "start", "best", "range", ""),
         rows=rows,
         words=(0, 1, 5),
     )
 
 
-def _limits(search: SearchResult, which: int) -> ResultTable:
+def _limits(search: SearchResult, index: int) -> ResultTable:
+    """Return the table of the limits of one chosen candidate: allowed value, reached value, whether active."""
     rows = [
         (
             label(name),
@@ -268,10 +288,10 @@ def _limits(search: SearchResult, which: int) -> ResultTable:
             f"{has:.3g}",
             "active" if active else "",
         )
-        for name, (limit, has, active) in search.active(which).items()
+        for name, (limit, has, active) in search.active(index).items()
     ]
     return ResultTable(
-        caption=f"{label(search.names[which])}: limits; joint limits, reach and servo speeds hold besides",
+        caption=f"{label(search.names[index])}: limits; joint limits, reach and servo speeds hold besides",
         heads=("limit", "what it is", "unit", "allowed", "has", ""),
         rows=rows,
         words=(0, 1, 2, 5),
@@ -279,15 +299,16 @@ def _limits(search: SearchResult, which: int) -> ResultTable:
 
 
 def _checks(search: SearchResult) -> ResultTable:
+    """Return the table of aims and limits of start and best under every condition of the checks."""
     assert search.checks is not None
     checks, names = search.checks, [str(run) for run in search.checks.run.values]
     columns = [(f"aim_{aim.name}", AIMS[aim.name]) for aim in search.spec.aims]
     columns += [(f"limit_{limit.name}", LIMITS[limit.name]) for limit in search.spec.limits]
     rows = []
-    for i, who in enumerate(names):
+    for i, run_name in enumerate(names):
         for condition in checks.condition.values:
             cells = [checks[name].sel(condition=condition).isel(run=i) for name, _ in columns]
             numbers = [f"{float(cell):.3g}" if np.isfinite(cell) else "diverged" for cell in cells]
-            rows.append((f"{label(who)}, {condition}", *numbers))
+            rows.append((f"{label(run_name)}, {condition}", *numbers))
     heads = [f"{label(name.partition('_')[2])} [{kind.unit}]" for name, kind in columns]
     return ResultTable(caption=f"{label(search.arm)}: under other conditions", heads=("condition", *heads), rows=rows)

@@ -17,7 +17,7 @@ from suchus.experiments.optimise.spec import Optimisation
 from suchus.robot.design import value_at, with_values
 from suchus.sim.land import Run
 
-_EDGE = 0.02  # how far inside its range a start is moved, where the search could not look to both sides
+_EDGE = 0.02  # least distance of the start from the ends of its range [-], so that both sides can be searched
 
 
 class NoOptimiser(SuchusError, ImportError):
@@ -25,13 +25,13 @@ class NoOptimiser(SuchusError, ImportError):
 
 
 class Strategy(Protocol):
-    """Asks for candidates and receives their losses."""
+    """Proposes candidates and receives their losses."""
 
     def ask(self) -> np.ndarray:
         """Return the next generation, shape (candidate, field), each from 0 to 1."""
 
     def tell(self, losses: np.ndarray) -> None:
-        """Tell the losses of what was asked for: one number each, or two for a front."""
+        """Receive the losses of the last generation: one number for each candidate, or two for a front."""
 
 
 def search(spec: Optimisation) -> Strategy:
@@ -44,16 +44,22 @@ def search(spec: Optimisation) -> Strategy:
 
 
 class Single:
-    """CMA-ES; when it has converged it starts again from where it began, with twice as many candidates."""
+    """CMA-ES; after convergence it restarts from the same start with twice the population."""
 
     def __init__(self, spec: Optimisation) -> None:
+        """Start CMA-ES at the start of the search.
+
+        Raises:
+            NoOptimiser: the library is not installed.
+        """
         self._cma = library("cma")
         self._spec = spec
         self._randoms = np.random.default_rng(spec.seed)
         self._population = spec.population
-        self._es = self._begun()
+        self._es = self._new_strategy()
 
-    def _begun(self) -> Any:
+    def _new_strategy(self) -> Any:
+        """Return CMA-ES at the start of the search, with the present population."""
         return self._cma.CMAEvolutionStrategy(
             np.clip(self._spec.start, _EDGE, 1 - _EDGE),
             self._spec.sigma,
@@ -64,13 +70,13 @@ class Single:
         """Return the next generation."""
         if self._es.stop():
             self._population *= 2
-            self._es = self._begun()
-        self._asked = self._es.ask()
-        return np.clip(np.array(self._asked), 0.0, 1.0)
+            self._es = self._new_strategy()
+        self._candidates = self._es.ask()
+        return np.clip(np.array(self._candidates), 0.0, 1.0)
 
     def tell(self, losses: np.ndarray) -> None:
-        """Tell one loss for each."""
-        self._es.tell(self._asked, losses.tolist())
+        """Receive the losses of the last generation, shape (candidate,)."""
+        self._es.tell(self._candidates, losses.tolist())
 
 
 class Front:
@@ -81,31 +87,36 @@ class Front:
     """
 
     WORST = (0.0, 2.0)
-    """What no front reaches: nothing of an aim where more is better, twice the start's where less is [-]."""
+    """Reference losses of the hypervolume [-]: 0 where more is better, twice the start's value where less is."""
 
     def __init__(self, spec: Optimisation) -> None:
+        """Start one CMA-ES for each point of the front, spread around the start of the search.
+
+        Raises:
+            NoOptimiser: the library is not installed.
+        """
         como = library("comocma")
         randoms = np.random.default_rng(spec.seed)
-        first = np.clip(spec.start, _EDGE, 1 - _EDGE)
+        start = np.clip(spec.start, _EDGE, 1 - _EDGE)
         spread = np.clip(
-            first + 0.5 * spec.sigma * randoms.standard_normal((spec.points, len(first))), _EDGE, 1 - _EDGE
+            start + 0.5 * spec.sigma * randoms.standard_normal((spec.points, len(start))), _EDGE, 1 - _EDGE
         )
-        spread[0] = first
+        spread[0] = start
         kernels = como.get_cmas([list(x) for x in spread], spec.sigma, _options(spec, spec.population, randoms))
         self._search = como.Sofomore(kernels, reference_of(spec), {"update_order": _in_order, "archive": False})
 
     def ask(self) -> np.ndarray:
         """Return the next generation of all points."""
-        self._asked = self._search.ask("all")
-        return np.clip(np.array(self._asked), 0.0, 1.0)
+        self._candidates = self._search.ask("all")
+        return np.clip(np.array(self._candidates), 0.0, 1.0)
 
     def tell(self, losses: np.ndarray) -> None:
-        """Tell two losses for each."""
-        self._search.tell(self._asked, losses.tolist())
+        """Receive the losses of the last generation, shape (candidate, 2)."""
+        self._search.tell(self._candidates, losses.tolist())
 
 
 def reference_of(spec: Optimisation) -> list[float]:
-    """Return the losses that a front is measured from."""
+    """Return the reference point of the hypervolume, a loss for each aim."""
     return [Front.WORST[0] if AIMS[aim.name].good == "more" else Front.WORST[1] for aim in spec.aims]
 
 
@@ -114,9 +125,17 @@ def _in_order(kernel: int) -> int:
 
 
 def _options(spec: Optimisation, population: int, randoms: np.random.Generator) -> dict[str, Any]:
-    """Return settings of CMA-ES: within the cube, silent, and drawing from a generator of our own."""
-    alone = {"maxstd": np.inf} if len(spec.vary) == 1 else {}  # cma 4.5 cannot bound the spread of a single field
-    return alone | {
+    """Return the settings of CMA-ES: bounds, population, tolerances, and our own generator of random numbers.
+
+    Args:
+        spec: the search.
+        population: candidates of a generation [-].
+        randoms: generator of random numbers.
+    """
+    single_field = (
+        {"maxstd": np.inf} if len(spec.vary) == 1 else {}
+    )  # cma 4.5 cannot bound the spread of a single field
+    return single_field | {
         "bounds": [0.0, 1.0],
         "popsize": population,
         "randn": lambda *shape: randoms.standard_normal(shape),
@@ -141,7 +160,7 @@ def library(name: str) -> Any:
         raise NoOptimiser(f"the search needs {name}; install it with: pip install 'suchus[optimise]'.") from error
 
 
-_SHOWN = 3  # points of a front whose gaits are written and checked: both ends and the middle
+_FRONT_SELECTION = 3  # points of a front whose gaits are written and checked: both ends and the middle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,9 +174,9 @@ class SearchResult:
     history: xr.Dataset
     """All candidates in order, the start first, with ``generation`` and ``score``."""
     checks: xr.Dataset | None = None
-    """The best under other conditions; see ``checks.checked``."""
+    """Aims and limits of the best under other conditions; see ``conduct.checked``."""
     near: xr.Dataset | None = None
-    """Around the best; see ``checks.around``."""
+    """Candidates around the best; see ``conduct.around``."""
 
     @property
     def arm(self) -> str:
@@ -174,19 +193,23 @@ class SearchResult:
         """The best candidate; of a front both ends and the middle; empty if none keeps all limits."""
         if self.spec.pareto:
             front = self.front
-            picked = [round(i * (len(front) - 1) / (_SHOWN - 1)) for i in range(_SHOWN)] if front else []
+            picked = (
+                [round(i * (len(front) - 1) / (_FRONT_SELECTION - 1)) for i in range(_FRONT_SELECTION)] if front else []
+            )
             return [front[i] for i in dict.fromkeys(picked)]
-        kept = np.flatnonzero(allowed(self.spec, self.history))
-        return [int(kept[self.history.score.values[kept].argmin()])] if kept.size else []
+        allowed_indices = np.flatnonzero(allowed(self.spec, self.history))
+        return (
+            [int(allowed_indices[self.history.score.values[allowed_indices].argmin()])] if allowed_indices.size else []
+        )
 
     @property
     def shares(self) -> list[np.ndarray]:
-        """Where the fields of the chosen lie in their ranges, each of shape (field,) [-]."""
+        """Fractions of the ranges at the chosen candidates, each of shape (field,) [-]."""
         return [self.history.share.values[i] for i in self.chosen]
 
     @property
     def names(self) -> list[str]:
-        """What the chosen are called: the arm, numbered where there are several."""
+        """Names of the chosen candidates: the arm, numbered if there are several."""
         several = len(self.chosen) > 1
         return [f"{self.arm}_{i + 1}" if several else self.arm for i in range(len(self.chosen))]
 
@@ -203,58 +226,58 @@ class SearchResult:
         """Dotted paths of the fields that varied."""
         return [v.field for v in self.spec.vary]
 
-    def values(self, which: int) -> dict[str, tuple[float, float]]:
-        """Return by field what the start has and what a chosen one has."""
-        run = self.runs[which]
+    def values(self, index: int) -> dict[str, tuple[float, float]]:
+        """Return by field the value of the start and that of a chosen candidate."""
+        run = self.runs[index]
         return {f: (float(value_at(self.spec.run, f)), float(value_at(run, f))) for f in self.fields}
 
-    def active(self, which: int) -> dict[str, tuple[float, float, bool]]:
-        """Return by limit its value, what a chosen one has, and whether the limit is what stops it."""
+    def active(self, index: int) -> dict[str, tuple[float, float, bool]]:
+        """Return by limit its value, the value of a chosen candidate, and whether the limit is active."""
         limits = {}
         for limit in self.spec.limits:
-            has = float(self.history[f"limit_{limit.name}"][self.chosen[which]])
+            has = float(self.history[f"limit_{limit.name}"][self.chosen[index]])
             limits[limit.name] = (limit.value, has, bool(over(limit, np.array([has]))[0] > -ACTIVE))
         return limits
 
     def best_so_far(self) -> np.ndarray:
         """Return after each candidate the value of the first aim of the best so far, NaN before there is one."""
-        kept = allowed(self.spec, self.history)
-        score = np.where(kept, self.history.score.values, np.inf)
-        at = np.array([int(score[: i + 1].argmin()) for i in range(len(score))])
-        values = self.history[f"aim_{self.spec.aims[0].name}"].values[at]
-        return np.where(np.isfinite(score[at]), values, np.nan)
+        is_allowed = allowed(self.spec, self.history)
+        score = np.where(is_allowed, self.history.score.values, np.inf)
+        best_index = np.array([int(score[: i + 1].argmin()) for i in range(len(score))])
+        values = self.history[f"aim_{self.spec.aims[0].name}"].values[best_index]
+        return np.where(np.isfinite(score[best_index]), values, np.nan)
 
     def covered(self) -> np.ndarray:
         """Return after each generation the area that the front covers, in parts of the start's aims."""
         table, parts = self.history, units(self.spec, self.start)
-        loss, kept = losses(self.spec, table, parts), allowed(self.spec, table)
+        loss, is_allowed = losses(self.spec, table, parts), allowed(self.spec, table)
         archive, areas = library("moarchiving").get_mo_archive([], reference_point=reference_of(self.spec), n_obj=2), []
         for number in range(int(table.generation.max()) + 1):
-            for i in np.flatnonzero((table.generation.values == number) & kept):
+            for i in np.flatnonzero((table.generation.values == number) & is_allowed):
                 archive.add(loss[i].tolist())
             areas.append(float(archive.hypervolume))
         return np.array(areas)
 
-    def with_checks(self, checks: xr.Dataset, near: xr.Dataset) -> "SearchResult":
+    def with_checks(self, checks: xr.Dataset, neighbourhood: xr.Dataset) -> "SearchResult":
         """Return the same with what was checked."""
-        return replace(self, checks=checks, near=near)
+        return replace(self, checks=checks, near=neighbourhood)
 
 
 def titled(spec: Optimisation, run: Run, name: str) -> Run:
     """Return a run whose gait, and robot if it varies, is called after search and condition."""
-    called = f"{spec.name}_{name}"
-    varied = any(v.field.startswith("robot.") for v in spec.vary)
-    robot = with_values(run.robot, {"name": called}) if varied else run.robot
-    return replace(run, gait=replace(run.gait, name=called), robot=robot, label=name)
+    full_name = f"{spec.name}_{name}"
+    varies_robot = any(v.field.startswith("robot.") for v in spec.vary)
+    robot = with_values(run.robot, {"name": full_name}) if varies_robot else run.robot
+    return replace(run, gait=replace(run.gait, name=full_name), robot=robot, label=name)
 
 
 def front_of(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> list[int]:
     """Return the allowed candidates that no other betters in both aims, by the first aim; all aims of a sum as one."""
-    kept = [int(i) for i in np.flatnonzero(allowed(spec, table))]
-    if not kept or len(spec.aims) != 2:
+    allowed_indices = [int(i) for i in np.flatnonzero(allowed(spec, table))]
+    if not allowed_indices or len(spec.aims) != 2:
         return []
-    points = losses(spec, table, parts)[kept]
+    points = losses(spec, table, parts)[allowed_indices]
     archive = library("moarchiving").get_mo_archive(
-        points.tolist(), reference_point=reference_of(spec), infos=kept, n_obj=2
+        points.tolist(), reference_point=reference_of(spec), infos=allowed_indices, n_obj=2
     )
     return [int(i) for i in archive.infos]

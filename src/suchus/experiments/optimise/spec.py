@@ -99,6 +99,7 @@ class Optimisation(Search):
     """Run from which the search starts."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and fields and conditions that the run cannot take."""
         with Checks("optimisation", self) as check:
             check.whole("evaluations", 1, 10_000_000)
             check.whole("population", 4, 10_000)
@@ -130,20 +131,20 @@ class Optimisation(Search):
         """Refuse a field that does not exist, is no number, or whose range the robot or the start is not in."""
         if [v.field for v in self.vary].count(vary.field) > 1:
             raise InvalidDesign(f"optimisation {self.name!r} varies {vary.field} twice; once is allowed.")
-        there = value_at(self.run, vary.field)
+        start_value = value_at(self.run, vary.field)
         if vary.low is None or vary.high is None or vary.mean is not None or vary.steps is not None:
             raise InvalidDesign(f"optimisation {self.name!r} needs low and high for {vary.field}, and nothing else.")
-        if isinstance(there, bool) or not isinstance(there, (int, float)):
+        if isinstance(start_value, bool) or not isinstance(start_value, (int, float)):
             raise InvalidDesign(f"optimisation {self.name!r} varies {vary.field}, which is no number.")
-        if isinstance(there, int):
+        if isinstance(start_value, int):
             raise InvalidDesign(
                 f"optimisation {self.name!r} varies {vary.field}, which takes whole numbers; a search moves in real "
                 "ones: make a condition of each."
             )
-        if not vary.low <= there <= vary.high:
+        if not vary.low <= start_value <= vary.high:
             raise InvalidDesign(
-                f"optimisation {self.name!r} starts with {vary.field} at {there:g}, outside its range of {vary.low:g} "
-                f"to {vary.high:g}; widen the range or start elsewhere."
+                f"optimisation {self.name!r} starts with {vary.field} at {start_value:g}, outside its range of "
+                f"{vary.low:g} to {vary.high:g}; widen the range or start elsewhere."
             )
         for end in (vary.low, vary.high):
             try:
@@ -163,11 +164,11 @@ class Optimisation(Search):
         """
         if self.arms == (arm,) and not arm.values:
             return self
-        left = tuple(v for v in self.vary if v.field not in arm.values)
-        if not left:
+        remaining = tuple(v for v in self.vary if v.field not in arm.values)
+        if not remaining:
             raise InvalidDesign(f"arm {arm.name!r} of optimisation {self.name!r} sets every field that varies.")
         run = replace(with_values(self.run, arm.values), label=arm.name)
-        return replace(self, run=run, vary=left, arms=(Arm(name=arm.name),))
+        return replace(self, run=run, vary=remaining, arms=(Arm(name=arm.name),))
 
     def candidate(self, shares: Mapping[str, float]) -> Run:
         """Return the run whose fields lie at these shares of their ranges.

@@ -1,4 +1,4 @@
-"""From the runs of many designs to what becomes of each claim of the article."""
+"""From the runs of many designs to the truth of each claim of the article."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from scipy import stats
 from suchus.experiments.study.claim_measures import asked_rules, held, measures_of
 from suchus.sim.metrics.decisive import border, rank_correlation
 
-_BINS, _RESAMPLED, _SURE = 8, 400, 0.95
+_BINS, _RESAMPLED, _CONFIDENCE = 8, 400, 0.95
 
 
 class Index(NamedTuple):
@@ -24,44 +24,44 @@ class Index(NamedTuple):
     """Upper end [-]."""
 
 
-def answers(record: xr.Dataset, least: float) -> xr.Dataset:
-    """Return number and truth of each claim in every sample, and what decides.
+def answers(record: xr.Dataset, min_displacement: float) -> xr.Dataset:
+    """Return number and truth of each claim in every sample, and the parameters that decide them.
 
     Args:
         record: see ``claim_measures.measures_of``, and ``value`` over ``sample`` and ``parameter``.
-        least: an intact robot with spine and tail that gets no farther has nothing to lose [m].
+        min_displacement: least displacement of an intact robot with spine and tail for which a loss is measured [m].
 
     Raises:
         IncompatibleRecord: a rule needs a measure that the record lacks.
     """
-    measures = measures_of(record, least)
+    measures = measures_of(record, min_displacement)
     return answered({rule.claim: held(rule, measures) for rule in asked_rules()}, record.value.values)
 
 
-def answered(found: Mapping[str, tuple[np.ndarray, np.ndarray]], parameters: np.ndarray) -> xr.Dataset:
-    """Return number and truth of each claim in every sample, and what decides.
+def answered(results: Mapping[str, tuple[np.ndarray, np.ndarray]], parameters: np.ndarray) -> xr.Dataset:
+    """Return number and truth of each claim in every sample, and the parameters that decide them.
 
     Args:
-        found: by claim its number in every sample, NaN where it cannot be judged, and whether its statement holds.
+        results: by claim its number in every sample, NaN where it cannot be judged, and whether its statement holds.
         parameters: values of what varies, shape (sample, parameter).
     """
-    numbers, holds = (np.array(values) for values in zip(*found.values(), strict=True))
-    there = np.isfinite(numbers)
-    follows = [rank_correlation(parameters, each) for each in numbers]
-    borders = [border(parameters[there[i]], holds[i][there[i]]) for i in range(len(found))]
-    one = {"units": "1"}
+    numbers, holds = (np.array(values) for values in zip(*results.values(), strict=True))
+    is_judged = np.isfinite(numbers)
+    follows = [rank_correlation(parameters, number) for number in numbers]
+    borders = [border(parameters[is_judged[i]], holds[i][is_judged[i]]) for i in range(len(results))]
+    unit_attrs = {"units": "1"}
     return xr.Dataset(
         {
-            "number": (("claim", "sample"), numbers, one | {"long_name": "number of the claim"}),
-            "holds": (("claim", "sample"), holds, one | {"long_name": "whether its statement holds"}),
-            "correlation": (("claim", "parameter"), np.array([rho for rho, _ in follows]), one),
-            "chance": (("claim", "parameter"), np.array([p for _, p in follows]), one),
-            "border_of": ("claim", np.array([b.parameter if b else -1 for b in borders]), one),
-            "border_at": ("claim", np.array([b.at if b else np.nan for b in borders]), one),
-            "border_above": ("claim", np.array([bool(b and b.above) for b in borders]), one),
-            "border_separation": ("claim", np.array([b.separation if b else np.nan for b in borders]), one),
+            "number": (("claim", "sample"), numbers, unit_attrs | {"long_name": "number of the claim"}),
+            "holds": (("claim", "sample"), holds, unit_attrs | {"long_name": "whether its statement holds"}),
+            "correlation": (("claim", "parameter"), np.array([rho for rho, _ in follows]), unit_attrs),
+            "chance": (("claim", "parameter"), np.array([p for _, p in follows]), unit_attrs),
+            "border_of": ("claim", np.array([b.parameter if b else -1 for b in borders]), unit_attrs),
+            "border_at": ("claim", np.array([b.at if b else np.nan for b in borders]), unit_attrs),
+            "border_above": ("claim", np.array([bool(b and b.above) for b in borders]), unit_attrs),
+            "border_separation": ("claim", np.array([b.separation if b else np.nan for b in borders]), unit_attrs),
         },
-        coords={"claim": list(found)},
+        coords={"claim": list(results)},
     )
 
 
@@ -80,33 +80,45 @@ def first_order(parameters: np.ndarray, quantity: np.ndarray, *, seed: int = 0) 
     Source: A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, for the index; the correction for chance is
     that of the adjusted coefficient of determination.
     """
-    there = np.isfinite(quantity)
-    count = int(there.sum())
-    nothing = np.zeros(parameters.shape[1])
-    if count < 4 * _BINS or np.ptp(quantity[there]) == 0.0:
-        return Index(nothing, nothing, nothing)
-    ranks = stats.rankdata(quantity[there])
-    drawn = np.random.default_rng(seed).multinomial(count, np.full(count, 1 / count), size=_RESAMPLED)
-    weights = np.vstack([np.ones(count), drawn.astype(float)])
-    found = np.array([_between(column, ranks, weights) for column in parameters[there].T])  # (parameter, resampled)
-    spread = np.quantile(found[:, 1:], ((1 - _SURE) / 2, (1 + _SURE) / 2), axis=1)
+    is_finite = np.isfinite(quantity)
+    count = int(is_finite.sum())
+    zeros = np.zeros(parameters.shape[1])
+    if count < 4 * _BINS or np.ptp(quantity[is_finite]) == 0.0:
+        return Index(zeros, zeros, zeros)
+    ranks = stats.rankdata(quantity[is_finite])
+    resampled_counts = np.random.default_rng(seed).multinomial(count, np.full(count, 1 / count), size=_RESAMPLED)
+    weights = np.vstack([np.ones(count), resampled_counts.astype(float)])
+    indices = np.array(
+        [_between_bins_fraction(column, ranks, weights) for column in parameters[is_finite].T]
+    )  # (parameter, resampled)
+    spread = np.quantile(indices[:, 1:], ((1 - _CONFIDENCE) / 2, (1 + _CONFIDENCE) / 2), axis=1)
     # a resampled sample holds some points twice, which looks like more variance between bins: take that bias away
-    shift = found[:, 1:].mean(axis=1) - found[:, 0]
-    return Index(found[:, 0], spread[0] - shift, spread[1] - shift)
+    shift = indices[:, 1:].mean(axis=1) - indices[:, 0]
+    return Index(indices[:, 0], spread[0] - shift, spread[1] - shift)
 
 
-def _between(column: np.ndarray, values: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return the adjusted share of the variance between bins, for every row of weights."""
+def _between_bins_fraction(column: np.ndarray, values: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Return the fraction of the variance between bins of a parameter, adjusted for chance, for every resample.
+
+    Args:
+        column: values of the parameter, shape (sample,).
+        values: ranks of the quantity, shape (sample,).
+        weights: of the samples, shape (resample, sample).
+    """
     count = len(values)
     bins = (stats.rankdata(column, method="ordinal") - 1).astype(int) * _BINS // count
     member = np.eye(_BINS)[bins]
-    filled = weights @ member
+    bin_weights = weights @ member
     sums = weights @ (member * values[:, None])
     total = weights.sum(axis=1)
     mean = weights @ values / total
-    whole = weights @ values**2 / total - mean**2
-    between = (np.where(filled > 0, sums**2 / np.maximum(filled, 1e-12), 0.0)).sum(axis=1) / total - mean**2
-    share = np.divide(between, whole, out=np.zeros_like(whole), where=whole > 0)  # a resampled quantity may be constant
+    total_variance = weights @ values**2 / total - mean**2
+    between_variance = (np.where(bin_weights > 0, sums**2 / np.maximum(bin_weights, 1e-12), 0.0)).sum(
+        axis=1
+    ) / total - mean**2
+    share = np.divide(
+        between_variance, total_variance, out=np.zeros_like(total_variance), where=total_variance > 0
+    )  # a resampled quantity may be constant
     return np.asarray(1.0 - (1.0 - share) * (count - 1) / (count - _BINS))
 
 
@@ -114,7 +126,7 @@ def share_interval(true: int, count: int) -> tuple[float, float]:
     """Return the 95 % interval of a share, after Wilson [-]."""
     if count == 0:
         return float("nan"), float("nan")
-    interval = stats.binomtest(true, count).proportion_ci(_SURE, method="wilson")
+    interval = stats.binomtest(true, count).proportion_ci(_CONFIDENCE, method="wilson")
     return float(interval.low), float(interval.high)
 
 
@@ -135,29 +147,33 @@ class Agreement(NamedTuple):
     """How likely chance alone turns one of the claims so much more often one way than the other [-]."""
 
 
-def agreement(one: xr.Dataset, other: xr.Dataset) -> Agreement:
+def agreement(record: xr.Dataset, reference: xr.Dataset) -> Agreement:
     """Return how two answers about the same samples agree.
 
     That a claim's share moves is judged by the exact sign test on the samples whose truth turns, the least chance
     among the claims times their number (Bonferroni).
 
     Args:
-        one: of ``answers``, merged with its record.
-        other: the same, made otherwise.
+        record: of ``answers``, merged with its record.
+        reference: the same, made otherwise.
     """
-    both = np.isfinite(one.number.values) & np.isfinite(other.number.values)
-    here, there = one.holds.values.astype(bool), other.holds.values.astype(bool)
-    off = abs(one.displacement_x.values - other.displacement_x.values)
-    gained, lost = (here & ~there & both).sum(axis=1), (there & ~here & both).sum(axis=1)
-    apart = abs(gained - lost) / np.maximum(both.sum(axis=1), 1)
+    is_comparable = np.isfinite(record.number.values) & np.isfinite(reference.number.values)
+    record_holds, reference_holds = record.holds.values.astype(bool), reference.holds.values.astype(bool)
+    distance_change = abs(record.displacement_x.values - reference.displacement_x.values)
+    gained_count, lost_count = (
+        (record_holds & ~reference_holds & is_comparable).sum(axis=1),
+        (reference_holds & ~record_holds & is_comparable).sum(axis=1),
+    )
+    share_change = abs(gained_count - lost_count) / np.maximum(is_comparable.sum(axis=1), 1)
     chances = [
-        float(stats.binomtest(int(g), int(g + n)).pvalue) if g + n else 1.0 for g, n in zip(gained, lost, strict=True)
+        float(stats.binomtest(int(g), int(g + n)).pvalue) if g + n else 1.0
+        for g, n in zip(gained_count, lost_count, strict=True)
     ]
     return Agreement(
-        same=float((here == there)[both].mean()) if both.any() else float("nan"),
-        forward=float(np.nanmedian(off)) if np.isfinite(off).any() else float("nan"),
-        wide=float(np.nanquantile(off, 0.95)) if np.isfinite(off).any() else float("nan"),
-        shares=float(apart.max()),
-        claim=str(one.claim.values[apart.argmax()]),
+        same=float((record_holds == reference_holds)[is_comparable].mean()) if is_comparable.any() else float("nan"),
+        forward=float(np.nanmedian(distance_change)) if np.isfinite(distance_change).any() else float("nan"),
+        wide=float(np.nanquantile(distance_change, 0.95)) if np.isfinite(distance_change).any() else float("nan"),
+        shares=float(share_change.max()),
+        claim=str(record.claim.values[share_change.argmax()]),
         chance=min(1.0, len(chances) * min(chances)),
     )

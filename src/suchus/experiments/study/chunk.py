@@ -49,7 +49,14 @@ def run_chunk(study: Study, number: int, progress: Progress = silent) -> xr.Data
 def _walk(
     study: Study, runs: Mapping[int, Run], rows: dict[int, dict[str, float]], errors: dict[int, str], progress: Progress
 ) -> None:
-    """Simulate runs together; if one of them spoils the batch, or it is too large, halve it until the one is found.
+    """Simulate runs in one batch, and halve the batch when it fails, until the failing run is alone.
+
+    Args:
+        study: the study.
+        runs: by sample.
+        rows: measured numbers by sample; filled in.
+        errors: why a sample has no numbers; filled in.
+        progress: called with the fraction that is done.
 
     Raises:
         MemoryError: there is no room even for a single run, which says nothing of the run.
@@ -79,8 +86,10 @@ def _walk(
     sound = np.flatnonzero(record.cause.values == "")
     for i, sample in enumerate(runs):
         if i not in sound:
-            one = record.isel(run=i)
-            errors[sample] = f"Diverged: the simulation diverged at {float(one.ended):.2f} s: {one.cause.item()}"
+            failed_run = record.isel(run=i)
+            errors[sample] = (
+                f"Diverged: the simulation diverged at {float(failed_run.ended):.2f} s: {failed_run.cause.item()}"
+            )
     if len(sound):
         _measure(study, record.isel(run=sound), [list(runs)[i] for i in sound], rows, errors)
 
@@ -106,6 +115,15 @@ def _table(
     rows: Mapping[int, Mapping[str, float]],
     errors: Mapping[int, str],
 ) -> xr.Dataset:
+    """Return the results of a batch as a table along ``sample``.
+
+    Args:
+        study: the study.
+        points: of ``Plan``, one for each sample.
+        samples: numbers of the samples.
+        rows: measured numbers by sample and column; a missing one becomes NaN.
+        errors: why a sample has no numbers, by sample.
+    """
     columns: dict[str, Any] = {}
     for vary in study.vary:
         column = _column([point.values[vary.field] for point in points], vary.ends)

@@ -1,4 +1,4 @@
-"""What the rules of the verdicts read of one design: its runs, and their numbers by the names that the rules use."""
+"""Measures that the rules of the verdicts read of one design, by the names that the rules use."""
 
 from collections.abc import Mapping
 
@@ -16,7 +16,7 @@ FAULTY = ("coordinated", "limbs_only")
 """Conditions in which joints fail, too: the article's two groups."""
 RUNS = (*CONDITIONS, *(f"{condition}_{joint}" for condition in FAULTY for joint in FAILED_JOINTS))
 """The runs of each sample: every condition intact, the two groups with each failed joint."""
-_IN_EACH = {
+_CONDITION_COLUMNS = {
     "forward": "displacement_x",
     "com_height_pp": "height_peak_to_peak",
     "com_height_std": "height_std",
@@ -26,7 +26,7 @@ _IN_EACH = {
     "tail_load_share": "tail_load_share",
 }
 """Measures of every condition, ``NAME_CONDITION``, and the column of the study that holds them."""
-_OF_CRAWL = {
+_CRAWL_COLUMNS = {
     "spine_sine_r2": "spine_sine_share",
     "diagonal_phase_error": "diagonal_phase_error",
     "spine_changes_per_cycle": "spine_swings",
@@ -64,71 +64,74 @@ _STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep 
 
 def asked_rules() -> tuple[Rule, ...]:
     """Return the rules of the claims that the walks of a study of designs answer."""
-    varied = claims_varied()
-    return tuple(rule for rule in RULES.values() if not rule.unswept and rule.claim not in varied)
+    swept_claims = claims_varied()
+    return tuple(rule for rule in RULES.values() if not rule.unswept and rule.claim not in swept_claims)
 
 
 def claims_varied() -> frozenset[str]:
     """Return the claims that are answered by asking their experiment again, see ``verdict.Varied``."""
-    declared = (varied_of(name) for name in {rule.experiment for rule in RULES.values()})
-    return frozenset(claim for varied in declared if varied is not None for claim in varied.claims)
+    sweeps = (varied_of(name) for name in {rule.experiment for rule in RULES.values()})
+    return frozenset(claim for sweep in sweeps if sweep is not None for claim in sweep.claims)
 
 
-def measures_of(record: xr.Dataset, least: float) -> Mapping[str, np.ndarray]:
+def measures_of(record: xr.Dataset, min_displacement: float) -> Mapping[str, np.ndarray]:
     """Return the measures that the rules read, each over all samples; NaN where there is nothing to measure.
 
     Args:
         record: the columns of ``METRICS`` over ``sample`` and ``run``, see ``RUNS``.
-        least: an intact robot with spine and tail that gets no farther has nothing to lose [m].
+        min_displacement: least displacement of an intact robot with spine and tail for which a loss is measured [m].
     """
 
-    def of(column: str, run: str) -> np.ndarray:
-        nothing = np.full(record.sizes["sample"], np.nan)
-        return record[column].sel(run=run).values if column in record else nothing
+    def column_of(column: str, run: str) -> np.ndarray:
+        missing = np.full(record.sizes["sample"], np.nan)
+        return record[column].sel(run=run).values if column in record else missing
 
-    found = {f"{name}_{c}": of(column, c) for name, column in _IN_EACH.items() for c in CONDITIONS}
-    found |= {name: of(column, "coordinated") for name, column in _OF_CRAWL.items()}
-    duty = [of(f"duty_factor_{leg}", "coordinated") for leg in LEGS]
-    found["duty_factor_greatest"] = np.max(duty, axis=0)
+    measures = {f"{name}_{c}": column_of(column, c) for name, column in _CONDITION_COLUMNS.items() for c in CONDITIONS}
+    measures |= {name: column_of(column, "coordinated") for name, column in _CRAWL_COLUMNS.items()}
+    duty = [column_of(f"duty_factor_{leg}", "coordinated") for leg in LEGS]
+    measures["duty_factor_greatest"] = np.max(duty, axis=0)
     for c in CONDITIONS:
-        found[f"hind_duty_{c}"] = np.maximum(*(of(f"duty_factor_{leg}", c) for leg in ("LH", "RH")))
-        found[f"hind_clearance_{c}"] = np.minimum(*(of(f"foot_clearance_{leg}", c) for leg in ("LH", "RH")))
-    found |= {name: found[f"forward_{one}"] - found[f"forward_{other}"] for name, (one, other) in _GAINS.items()}
-    found |= {
-        name: found[f"com_height_pp_{one}"] / found[f"com_height_pp_{other}"] - 1
-        for name, (one, other) in _CHANGES.items()
+        measures[f"hind_duty_{c}"] = np.maximum(*(column_of(f"duty_factor_{leg}", c) for leg in ("LH", "RH")))
+        measures[f"hind_clearance_{c}"] = np.minimum(*(column_of(f"foot_clearance_{leg}", c) for leg in ("LH", "RH")))
+    measures |= {
+        name: measures[f"forward_{first_condition}"] - measures[f"forward_{second_condition}"]
+        for name, (first_condition, second_condition) in _GAINS.items()
     }
-    ours = found["forward_coordinated"]
-    able = np.where(ours > least, ours, np.nan)
+    measures |= {
+        name: measures[f"com_height_pp_{first_condition}"] / measures[f"com_height_pp_{second_condition}"] - 1
+        for name, (first_condition, second_condition) in _CHANGES.items()
+    }
+    coordinated_distance = measures["forward_coordinated"]
+    baseline = np.where(coordinated_distance > min_displacement, coordinated_distance, np.nan)
     for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
-        found[name] = able / np.maximum(found[f"forward_{control}"], _LEAST_RATIO * able)
-    return found | _faults({run: of("displacement_x", run) for run in RUNS}, able)
+        measures[name] = baseline / np.maximum(measures[f"forward_{control}"], _LEAST_RATIO * baseline)
+    return measures | _faults({run: column_of("displacement_x", run) for run in RUNS}, baseline)
 
 
-def _faults(forward: Mapping[str, np.ndarray], able: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what each failed joint costs, and how much less of its own displacement is lost with spine and tail."""
-    found: dict[str, np.ndarray] = {}
+def _faults(forward: Mapping[str, np.ndarray], baseline: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the relative loss of displacement by failed joint, and the advantage of the robot with spine and tail."""
+    measures: dict[str, np.ndarray] = {}
     for joint in FAILED_JOINTS:
-        kept = []
+        retained_fractions = []
         for condition in FAULTY:
-            got, own = forward[f"{condition}_{joint}"], forward[condition]
-            found[f"loss_{joint}_limp_one_{condition}"] = got / able - 1.0
-            kept.append(np.maximum(got / np.where(own > _STANDS, own, np.nan), 0.0))
-        found[f"gain_{joint}_limp_one"] = kept[0] - kept[1]
-    return found
+            faulty, intact = forward[f"{condition}_{joint}"], forward[condition]
+            measures[f"loss_{joint}_limp_one_{condition}"] = faulty / baseline - 1.0
+            retained_fractions.append(np.maximum(faulty / np.where(intact > _STANDS, intact, np.nan), 0.0))
+        measures[f"gain_{joint}_limp_one"] = retained_fractions[0] - retained_fractions[1]
+    return measures
 
 
 def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return what a rule needs; a sample is run once, so that its value stands for the ends of an interval.
+    """Return the measures that a rule needs; a sample runs once, so that its value is also both ends of the interval.
 
     Args:
         rule: the claim's.
         measures: of all samples, see ``measures_of``.
 
     Raises:
-        IncompatibleRecord: a measure is not there.
+        IncompatibleRecord: a measure is missing.
     """
-    found = {}
+    rule_measures = {}
     for name in sorted(rule.needs):
         plain = name if name in measures else name.removesuffix("_low").removesuffix("_high")
         if plain not in measures:
@@ -136,8 +139,8 @@ def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray
                 f"the rule for {rule.claim} needs {name}, which the study of the claims does not measure; "
                 "measure it there, or say in the rule's `unswept` why no share of designs is known."
             )
-        found[name] = measures[plain]
-    return found
+        rule_measures[name] = measures[plain]
+    return rule_measures
 
 
 def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -150,13 +153,13 @@ def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np
         rule: the claim's.
         measures: of all samples, see ``measures_of``.
     """
-    needed, rows = once(rule, measures), _rows(rule, measures)
+    rule_measures, rows = once(rule, measures), _rows(rule, measures)
     if rule.rungs:
-        said = [ladder.voices(rule, row) for row in rows]
-        number = np.array([ladder.spread(voices)[0] for voices in said], dtype=float)
-        answers = [None if ladder.disagree(voices) else ladder.agreed(voices) for voices in said]
+        sample_voices = [ladder.voices(rule, row) for row in rows]
+        number = np.array([ladder.spread(voices)[0] for voices in sample_voices], dtype=float)
+        answers = [None if ladder.disagree(voices) else ladder.agreed(voices) for voices in sample_voices]
     else:
-        number = np.asarray(needed[rule.measure], dtype=float)
+        number = np.asarray(rule_measures[rule.measure], dtype=float)
         answers = [rule.held(row) if rule.testable(row) else None for row in rows]
     number = np.where([answer is None for answer in answers], np.nan, number)
     return number, np.array([answer is True for answer in answers], dtype=bool) & np.isfinite(number)
@@ -173,6 +176,9 @@ def words(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[Word]:
 
 
 def _rows(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[dict[str, float]]:
-    """Return what a rule needs of each sample."""
-    needed = once(rule, measures)
-    return [dict(zip(needed, row, strict=True)) for row in zip(*(one.tolist() for one in needed.values()), strict=True)]
+    """Return the measures that a rule needs, for each sample."""
+    rule_measures = once(rule, measures)
+    return [
+        dict(zip(rule_measures, row, strict=True))
+        for row in zip(*(column.tolist() for column in rule_measures.values()), strict=True)
+    ]

@@ -65,6 +65,7 @@ class Claims:
     """Seed of the Sobol sequence's scrambling [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
         with Checks("claims", self) as check:
             check.whole("samples", 1, 1_000_000)
             check.whole("together", 1, 1_000)
@@ -75,13 +76,20 @@ class Claims:
             check.number("biased", 0.0, 1.0, "")
 
     def study(self, samples: int, timestep: float) -> Study:
-        """Return the study of so many samples; the first ones stay the same, however many."""
-        rows = [(f"robot.{one.field}", one) for one in ROBOTS.beside("caiman", "chosen", ())]
-        rows += [(f"gait.{one.field}", one) for one in GAITS.beside("belly_crawl", "chosen", ())]
+        """Return the study of so many samples; a study of more samples begins with the same ones.
+
+        Args:
+            samples: number of designs [-].
+            timestep: of the physics [s].
+        """
+        rows = [(f"robot.{choice.field}", choice) for choice in ROBOTS.beside("caiman", "chosen", ())]
+        rows += [(f"gait.{choice.field}", choice) for choice in GAITS.beside("belly_crawl", "chosen", ())]
         return Study(
             name="claims",
             run=Run(robot=self.robot, gait=self.gait),
-            vary=tuple(Vary(field=path, low=one.low, high=one.high) for path, one in rows if not only_forbids(path)),
+            vary=tuple(
+                Vary(field=path, low=choice.low, high=choice.high) for path, choice in rows if not only_forbids(path)
+            ),
             measure=METRICS,
             design="sobol",
             samples=samples,
@@ -98,8 +106,14 @@ class Claims:
         crawl = GAITS["belly_crawl"]
         sets: dict[str, Mapping[str, Any]] = {}
         for name, gait in conditions_of(ROBOTS["caiman"], crawl, GAITS["limbs_only"]).items():
-            of = {one: (value_at(gait, one), value_at(crawl, one)) for one in _TRUNK}
-            sets[name] = {f"gait.{one}": there for one, (there, here) in of.items() if there != here}
+            trunk_fields = {
+                field_name: (value_at(gait, field_name), value_at(crawl, field_name)) for field_name in _TRUNK
+            }
+            sets[name] = {
+                f"gait.{field_name}": condition_value
+                for field_name, (condition_value, crawl_value) in trunk_fields.items()
+                if condition_value != crawl_value
+            }
         sets |= {
             f"{name}_{joint}": {**sets[name], "faults": joint_failure(self.robot, self.gait, joint, "limp")}
             for name in FAULTY
@@ -108,19 +122,24 @@ class Claims:
         return tuple(Arm(name=name, values=sets[name]) for name in RUNS)
 
     def record(self, study: Study, results: xr.Dataset) -> xr.Dataset:
-        """Return the results by sample and run, with what became of each claim."""
+        """Return the results by sample and run, with number and truth of each claim.
+
+        Args:
+            study: of ``Claims.study``.
+            results: of all runs, as ``run_chunk`` describes them.
+        """
         names = [v.field for v in study.vary]
         shape = results.sizes["sample"] // len(RUNS), len(RUNS)
         status = np.array([_status(row) for row in results.error.values.reshape(shape)])
-        walked = np.isin(status, ("walked", "came apart"))[:, None]
+        has_walked = np.isin(status, ("walked", "came apart"))[:, None]
         columns = [str(c) for c in results.data_vars if c not in (*names, "seed", "arm", "error")]
-        found = {
-            c: (("sample", "run"), np.where(walked, results[c].values.reshape(shape), np.nan), results[c].attrs)
+        run_columns = {
+            c: (("sample", "run"), np.where(has_walked, results[c].values.reshape(shape), np.nan), results[c].attrs)
             for c in columns
         }
         values = np.column_stack([results[name].values[:: len(RUNS)] for name in names])
         record = xr.Dataset(
-            found
+            run_columns
             | {
                 "status": ("sample", status, {"units": "1", "long_name": "what became of it"}),
                 "value": (("sample", "parameter"), values, {"units": "1", "long_name": "each in its own unit"}),
@@ -137,12 +156,12 @@ class Claims:
 
 
 def conduct_claims(
-    asked: Claims, folder: str | Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
+    claims_study: Claims, folder: str | Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
 ) -> xr.Dataset:
     """Find the time step that agrees with the full one, run what is not in the stores yet, and answer.
 
     Args:
-        asked: the study.
+        claims_study: the study.
         folder: for its stores, one below it for each time step that is compared and one for the runs.
         progress: told which study runs, and how many of its runs are done.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None.
@@ -158,35 +177,36 @@ def conduct_claims(
         NoCluster: the cluster was lost.
     """
     folder = Path(folder)
-    nothing = measures_of(xr.Dataset(coords={"sample": []}), asked.least)
+    empty_measures = measures_of(xr.Dataset(coords={"sample": []}), claims_study.least)
     for rule in asked_rules():  # an hour before it would be found out
-        held(rule, nothing)
+        held(rule, empty_measures)
 
     def run(samples: int, timestep: float, place: str) -> xr.Dataset:
-        study = replace(asked.study(samples, timestep), name=f"claims_{place}")
+        """Return the record of the study with so many samples and this time step [s], stored in ``place``."""
+        study = replace(claims_study.study(samples, timestep), name=f"claims_{place}")
 
         def tell(stage: str, share: float) -> None:
             progress(f"{place.replace('_', ' ')}: {stage}", share)
 
-        return asked.record(study, conduct(study, folder / place, progress=tell, client=client, jobs=jobs))
+        return claims_study.record(study, conduct(study, folder / place, progress=tell, client=client, jobs=jobs))
 
-    full = run(asked.compared, FINE, _compared(FINE))
-    taken, agreed = FINE, []
-    for timestep in asked.coarse:
-        found = agreement(run(asked.compared, timestep, _compared(timestep)), full)
-        agreed.append({"timestep": timestep, **found._asdict()})
-        if found.same >= asked.alike and found.chance >= asked.biased:
-            taken = timestep
+    full = run(claims_study.compared, FINE, _comparison_folder(FINE))
+    agreed_timestep, agreed = FINE, []
+    for timestep in claims_study.coarse:
+        comparison = agreement(run(claims_study.compared, timestep, _comparison_folder(timestep)), full)
+        agreed.append({"timestep": timestep, **comparison._asdict()})
+        if comparison.same >= claims_study.alike and comparison.chance >= claims_study.biased:
+            agreed_timestep = timestep
             break
-    record = run(asked.samples, taken, "runs")
+    record = run(claims_study.samples, agreed_timestep, "runs")
     return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
 
 
-def answer_finished(asked: Claims, folder: str | Path) -> xr.Dataset:
+def answer_finished(claims_study: Claims, folder: str | Path) -> xr.Dataset:
     """Answer from what ``conduct_claims`` has stored so far, whatever version stored it, and run nothing.
 
     Args:
-        asked: the study.
+        claims_study: the study.
         folder: of its stores.
 
     Returns:
@@ -197,28 +217,32 @@ def answer_finished(asked: Claims, folder: str | Path) -> xr.Dataset:
     """
     folder = Path(folder)
 
-    def read(place: str) -> tuple[Study, xr.Dataset]:
+    def read_store(place: str) -> tuple[Study, xr.Dataset]:
+        """Return a study and the results of its finished samples, as many as the largest power of two."""
         makers = made_by(folder / place, key="fields")
         samples, timestep = int(makers["samples"]), float(makers["timestep"])
-        study = asked.study(samples, timestep)
+        study = claims_study.study(samples, timestep)
         results = finished(study, folder / place)
         count = results.sizes["sample"] // len(RUNS)
-        whole = 1 << max(count.bit_length() - 1, 0)
+        sample_count = 1 << max(count.bit_length() - 1, 0)
         if count == 0 or list(results.arm.values[: len(RUNS)]) != list(RUNS):
             raise UnreadableFile(f"{folder / place} holds no finished runs of this study; start it, or let it go on.")
-        return study, results.isel(sample=slice(0, whole * len(RUNS)))
+        return study, results.isel(sample=slice(0, sample_count * len(RUNS)))
 
-    full = asked.record(*read(_compared(FINE)))
+    full = claims_study.record(*read_store(_comparison_folder(FINE)))
     agreed = [
-        {"timestep": timestep, **agreement(asked.record(*read(_compared(timestep))), full)._asdict()}
-        for timestep in asked.coarse
-        if (folder / _compared(timestep)).is_dir()
+        {
+            "timestep": timestep,
+            **agreement(claims_study.record(*read_store(_comparison_folder(timestep))), full)._asdict(),
+        }
+        for timestep in claims_study.coarse
+        if (folder / _comparison_folder(timestep)).is_dir()
     ]
-    record = asked.record(*read("runs"))
+    record = claims_study.record(*read_store("runs"))
     return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
 
 
-def _compared(timestep: float) -> str:
+def _comparison_folder(timestep: float) -> str:
     return f"compared_{1000 * timestep:g}ms"
 
 

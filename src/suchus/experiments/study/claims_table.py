@@ -1,4 +1,4 @@
-"""What became of each claim, as rows: for the page, for a table, and for the table of shares that ships."""
+"""Results of each claim as rows: for the page, for a table, and for the shipped table of fractions."""
 
 import csv
 import io
@@ -17,9 +17,9 @@ from suchus.experiments.study.answers import Index, first_order, share_interval
 from suchus.experiments.study.varied import LEAST
 from suchus.visual.figures.sensitivity import spoken
 
-_NAMED = 3  # parameters that a row names
-_TOGETHER = 0.1  # of the variance of one parameter; another that explains more could pass for it [-]
-_ANSWERED_BY = (
+_MAX_DECIDERS = 3  # most parameters that a row names
+_MAX_SHARED_VARIANCE = 0.1  # largest fraction of a parameter's variance that a stronger one may explain [-]
+_ANSWER_MODULES = (
     "article",
     "experiments/claims",
     "sim/metrics/decisive.py",
@@ -31,44 +31,46 @@ _ANSWERED_BY = (
 
 
 def claim_row(record: xr.Dataset, claim: str) -> dict[str, Any]:
-    """Return what became of one claim: share, deciders with their intervals, border.
+    """Return the result of one claim: fraction of designs, deciding parameters with intervals, border.
 
     Args:
         record: of ``claims.conduct_claims``.
         claim: its key.
     """
-    one = record.sel(claim=claim)
-    there = np.isfinite(one.number.values)
-    number, holds = one.number.values, one.holds.values.astype(bool)
-    count, true = int(there.sum()), int(holds[there].sum())
+    claim_record = record.sel(claim=claim)
+    is_judged = np.isfinite(claim_record.number.values)
+    number, holds = claim_record.number.values, claim_record.holds.values.astype(bool)
+    count, true = int(is_judged.sum()), int(holds[is_judged].sum())
     index = first_order(record.value.values, number)
-    at = int(one.border_of)
-    low, middle, high = np.quantile(number[there], (0.05, 0.5, 0.95)) if count else (np.nan,) * 3
+    border_index = int(claim_record.border_of)
+    quantile_5, median, quantile_95 = np.quantile(number[is_judged], (0.05, 0.5, 0.95)) if count else (np.nan,) * 3
     return {
         "claim": claim,
         "samples": count,
-        "words": dict(Counter(word for word in one.word.values.tolist() if word)) if "word" in one else {},
+        "words": dict(Counter(word for word in claim_record.word.values.tolist() if word))
+        if "word" in claim_record
+        else {},
         "true": true / count if count else float("nan"),
         "interval": share_interval(true, count),
-        "number": (float(low), float(middle), float(high)),
+        "number": (float(quantile_5), float(median), float(quantile_95)),
         "deciders": [
             {
                 "parameter": str(record.parameter.values[i]),
                 "decides": float(index.share[i]),
                 "low": float(index.low[i]),
                 "high": float(index.high[i]),
-                "correlation": float(one.correlation.values[i]),
+                "correlation": float(claim_record.correlation.values[i]),
             }
-            for i in deciders(record.value.values[there], index)
+            for i in deciders(record.value.values[is_judged], index)
         ],
         "border": None
-        if at < 0
+        if border_index < 0
         else {
-            "parameter": str(record.parameter.values[at]),
-            "unit": str(record.parameter_unit.values[at]),
-            "at": float(one.border_at),
-            "true": "above" if bool(one.border_above) else "below",
-            "separation": float(one.border_separation),
+            "parameter": str(record.parameter.values[border_index]),
+            "unit": str(record.parameter_unit.values[border_index]),
+            "at": float(claim_record.border_at),
+            "true": "above" if bool(claim_record.border_above) else "below",
+            "separation": float(claim_record.border_separation),
         },
     }
 
@@ -83,14 +85,14 @@ def deciders(parameters: np.ndarray, index: Index) -> list[int]:
         parameters: shape (sample, parameter).
         index: of each parameter, see ``answers.first_order``.
     """
-    named: list[int] = []
+    indices: list[int] = []
     for i in np.argsort(-index.share):
-        if len(named) == _NAMED:
+        if len(indices) == _MAX_DECIDERS:
             break
-        passes = (first_order(parameters[:, [i]], parameters[:, j]).share[0] > _TOGETHER for j in named)
+        passes = (first_order(parameters[:, [i]], parameters[:, j]).share[0] > _MAX_SHARED_VARIANCE for j in indices)
         if index.low[i] > 0 and not any(passes):
-            named.append(int(i))
-    return named
+            indices.append(int(i))
+    return indices
 
 
 def table(rows: Sequence[Mapping[str, Any]]) -> str:
@@ -116,31 +118,37 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def turned(rows: Sequence[Mapping[str, Any]]) -> dict[str, str]:
     """Return by claim where it holds, in a few words, for those that too few designs agree on."""
-    found = {}
+    texts = {}
     for row in rows:
         edge = row["border"]
         if edge and max(row["true"], 1.0 - row["true"]) < ROBUST:
-            found[row["claim"]] = f"{spoken(edge['parameter'])} {edge['true']} {edge['at']:.3g} {edge['unit']}"
-    return found
+            texts[row["claim"]] = f"{spoken(edge['parameter'])} {edge['true']} {edge['at']:.3g} {edge['unit']}"
+    return texts
 
 
-def shares(rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) -> dict[str, dict[str, Any]]:
+def shares(rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]) -> dict[str, dict[str, Any]]:
     """Return the rows in the form of ``verdict.Share``, by claim, or of ``verdict.TooFew`` where few could judge it.
 
     Args:
         rows: of ``claim_row``.
-        varied: of ``varied.conduct_varied``, by experiment.
+        sweep_records: of ``varied.conduct_varied``, by experiment.
     """
-    of = {str(claim): name for name, one in varied.items() for claim in one.claim.values}
-    found = {}
+    experiment_of_claim = {
+        str(claim): name for name, claim_record in sweep_records.items() for claim in claim_record.claim.values
+    }
+    share_rows = {}
     for row in rows:
         if row["samples"] < LEAST:
             if row.get("words"):
-                named = {"words": row["words"], "of": of[row["claim"]], "rule": RULES[row["claim"]].asked}
-                found[row["claim"]] = named
+                word_row = {
+                    "words": row["words"],
+                    "of": experiment_of_claim[row["claim"]],
+                    "rule": RULES[row["claim"]].asked,
+                }
+                share_rows[row["claim"]] = word_row
         else:
             edge = row["border"]
-            found[row["claim"]] = {
+            share_rows[row["claim"]] = {
                 "share": round(row["true"], 6),
                 "low": round(row["interval"][0], 6),
                 "high": round(row["interval"][1], 6),
@@ -148,10 +156,10 @@ def shares(rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) 
                 "turned_by": edge["parameter"] if edge else "",
                 "at": float(f"{edge['at']:.6g}") if edge else None,
                 "above": bool(edge and edge["true"] == "above"),
-                "of": of.get(row["claim"], ""),
+                "of": experiment_of_claim.get(row["claim"], ""),
                 "rule": RULES[row["claim"]].asked,
             }
-    return found
+    return share_rows
 
 
 def became(record: xr.Dataset) -> dict[str, int]:
@@ -159,62 +167,65 @@ def became(record: xr.Dataset) -> dict[str, int]:
     return dict(sorted(Counter(record.status.values.tolist()).items()))
 
 
-def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) -> str:
+def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]) -> str:
     """Return the table of shares that ``suchus.article.verdict`` ships: JSON, with its rows' digest and what made it.
 
     Args:
         record: of ``claims.conduct_claims``.
         rows: of ``claim_row``, of this record and of those that follow.
-        varied: of ``varied.conduct_varied``, by experiment.
+        sweep_records: of ``varied.conduct_varied``, by experiment.
     """
-    claims = shares(rows, varied)
-    made_by = json.loads(record.attrs["made_by"])
+    claims = shares(rows, sweep_records)
+    provenance = json.loads(record.attrs["made_by"])
     content = {
         "samples": record.sizes["sample"],
         "became": became(record),
-        "varied": _varied(varied),
+        "varied": _sweep_sources(sweep_records),
         "parameters": record.sizes["parameter"],
         "seed": int(record.attrs["seed"]),
         "cycles": int(record.attrs["cycles"]),
         "timestep": float(record.attrs["timestep"]),
         "agreement": finite(json.loads(record.attrs["agreed"])),
-        "versions": {name: version for name, version in made_by.items() if name != "source"},
-        "source": {"runs": made_by["source"], "answers": code_digest(*_ANSWERED_BY)[:12]},
+        "versions": {name: version for name, version in provenance.items() if name != "source"},
+        "source": {"runs": provenance["source"], "answers": code_digest(*_ANSWER_MODULES)[:12]},
     }
     return _table(content, claims)
 
 
-def renewed(before: str, rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) -> str:
+def renewed(shipped_text: str, rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]) -> str:
     """Return a table of shares with the rows of some experiments anew; all other rows that today's rules ask stay.
 
     Args:
-        before: the table, of ``shipped``.
+        shipped_text: the table, of ``shipped``.
         rows: of ``claim_row``, of the experiments.
-        varied: of ``varied.conduct_varied``, by experiment.
+        sweep_records: of ``varied.conduct_varied``, by experiment.
     """
-    content = json.loads(before)
+    content = json.loads(shipped_text)
     claims = {key: row for key, row in content["claims"].items() if key in RULES and row["rule"] == RULES[key].asked}
-    answered = {claim for one in varied.values() for claim in one.claim.values.tolist()}
-    claims = {key: row for key, row in claims.items() if key not in answered} | shares(rows, varied)
-    content["varied"] = content.get("varied", {}) | _varied(varied)
+    answered_claims = {claim for claim_record in sweep_records.values() for claim in claim_record.claim.values.tolist()}
+    claims = {key: row for key, row in claims.items() if key not in answered_claims} | shares(rows, sweep_records)
+    content["varied"] = content.get("varied", {}) | _sweep_sources(sweep_records)
     return _table(content, claims)
 
 
-def _varied(varied: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    """Return by experiment how many designs became what, which source asked them, and which made the rows."""
+def _sweep_sources(sweep_records: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Return by experiment the number of designs by status, and the hashes of the source code."""
     return {
         name: {
-            "became": became(one),
-            "samples": one.sizes["sample"],
-            "source": {"runs": json.loads(one.attrs["made_by"])["source"], "answers": code_digest(*_ANSWERED_BY)[:12]},
+            "became": became(claim_record),
+            "samples": claim_record.sizes["sample"],
+            "source": {
+                "runs": json.loads(claim_record.attrs["made_by"])["source"],
+                "answers": code_digest(*_ANSWER_MODULES)[:12],
+            },
         }
-        for name, one in varied.items()
+        for name, claim_record in sweep_records.items()
     }
 
 
 def _table(content: Mapping[str, Any], claims: Mapping[str, Mapping[str, object]]) -> str:
-    whole = {**content, "claims": claims, "digest": digest(claims)}
-    return json.dumps(whole, indent=1, sort_keys=True, allow_nan=False) + "\n"
+    document = {**content, "claims": claims, "digest": digest(claims)}
+    return json.dumps(document, indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
 def finite(value: Any) -> Any:

@@ -42,9 +42,12 @@ def measured(record: xr.Dataset, names: tuple[str, ...]) -> list[dict[str, float
 def _of_each_run(name: str, array: object) -> xr.DataArray:
     """Return a measured array with the runs as its first dimension."""
     if not isinstance(array, xr.DataArray) or "run" not in array.dims or "time" in array.dims:
-        what = f"the dimensions {', '.join(map(str, array.dims))}" if isinstance(array, xr.DataArray) else show(array)
+        shape_text = (
+            f"the dimensions {', '.join(map(str, array.dims))}" if isinstance(array, xr.DataArray) else show(array)
+        )
         raise InvalidDesign(
-            f"the measure {name} returns {what}; an xarray.DataArray with the dimension run and without time is needed."
+            f"the measure {name} returns {shape_text}; an xarray.DataArray with the dimension run and without time is "
+            "needed."
         )
     return array.transpose("run", ...)
 

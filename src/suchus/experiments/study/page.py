@@ -126,17 +126,19 @@ def resolved_arm(arm: Arm, place: Path, robot: Robot) -> Arm:
     Raises:
         SuchusError: it names nothing that is there.
     """
-    return replace(arm, values={field: _meant(field, value, place, robot) for field, value in arm.values.items()})
+    return replace(
+        arm, values={field: _resolve_value(field, value, place, robot) for field, value in arm.values.items()}
+    )
 
 
 def _resolved(vary: Vary, place: Path, robot: Robot) -> Vary:
     """Return a field with the things that its values name."""
     if vary.values is None:
         return vary
-    return replace(vary, values=tuple(_meant(vary.field, value, place, robot) for value in vary.values))
+    return replace(vary, values=tuple(_resolve_value(vary.field, value, place, robot) for value in vary.values))
 
 
-def _meant(field: str, value: Any, place: Path, robot: Robot) -> Any:
+def _resolve_value(field: str, value: Any, place: Path, robot: Robot) -> Any:
     """Return what a value of a file stands for: robots and gaits have names, faults are tables, lists are tuples."""
     if field == "robot" and isinstance(value, str):
         return ROBOTS.resolve(value, place)
@@ -148,6 +150,7 @@ def _meant(field: str, value: Any, place: Path, robot: Robot) -> Any:
 
 
 def _faults(value: Any) -> tuple[Fault, ...]:
+    """Return the faults that a list of tables describes."""
     if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
         raise InvalidDesign(
             "faults take lists of tables, as [[], [{kind = 'limp', joint = 'LF_yaw'}]]; one of them is "

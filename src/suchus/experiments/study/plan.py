@@ -15,7 +15,7 @@ from suchus.experiments.study.study import Study, Vary
 from suchus.robot.design import with_values
 from suchus.sim.land import Run
 
-_MOST = 10_000_000
+_MAX_RUNS = 10_000_000
 
 
 class Point(NamedTuple):
@@ -40,43 +40,45 @@ class Plan(Sequence[Point]):
     """
 
     def __init__(self, study: Study) -> None:
+        """Sample the unit cube and count the runs."""
         self.study = study
         factorial = study.design == "factorial"
-        self._each = [v for v in study.vary if factorial or v.each]
+        self._factorial_fields = [v for v in study.vary if factorial or v.each]
         self._sampled = [v for v in study.vary if not (factorial or v.each)]
-        self._whole = {v.field: study.whole(v.field) for v in study.vary}
-        self._levels = [levels(v, whole=self._whole[v.field]) for v in self._each]
+        self._takes_whole = {v.field: study.whole(v.field) for v in study.vary}
+        self._levels = [levels(v, is_whole=self._takes_whole[v.field]) for v in self._factorial_fields]
         self._combinations = prod(len(v) for v in self._levels)
         count = (study.samples or 1) if self._sampled else 1
         self._arms = study.arms or (None,)
         self._length = count * len(self._arms) * self._combinations * study.seeds
-        if self._length > _MOST:
-            raise InvalidDesign(f"study {study.name!r} has {self._length} runs; up to {_MOST} are allowed.")
+        if self._length > _MAX_RUNS:
+            raise InvalidDesign(f"study {study.name!r} has {self._length} runs; up to {_MAX_RUNS} are allowed.")
         self._shares = evenly(study.design, count, len(self._sampled), study.seed)
-        self._varied: dict[tuple[int, int], Run] = {}
+        self._cached_runs: dict[tuple[int, int], Run] = {}
 
     def __len__(self) -> int:
         return self._length
 
     def __getitem__(self, index: Any) -> Any:
+        """Return one point, or the list of points of a slice."""
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
         if not 0 <= index < len(self):
             raise IndexError(index)
         sample, arm, combination, repeat = self._place(index)
-        chosen: dict[str, Any] = {}
-        for vary, levels_ in zip(reversed(self._each), reversed(self._levels), strict=True):
+        values: dict[str, Any] = {}
+        for vary, levels_ in zip(reversed(self._factorial_fields), reversed(self._levels), strict=True):
             combination, level = divmod(combination, len(levels_))
-            chosen[vary.field] = levels_[level]
+            values[vary.field] = levels_[level]
         for vary, share in zip(self._sampled, self._shares[sample], strict=True):
-            chosen[vary.field] = value_of(vary, float(share), whole=self._whole[vary.field])
-        return Point({v.field: chosen[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
+            values[vary.field] = value_of(vary, float(share), whole=self._takes_whole[vary.field])
+        return Point({v.field: values[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
 
     def _place(self, index: int) -> tuple[int, int, int, int]:
         """Return the numbers of a run's sample, arm, combination and seed."""
-        rest, repeat = divmod(index, self.study.seeds)
-        rest, combination = divmod(rest, self._combinations)
-        return *divmod(rest, len(self._arms)), combination, repeat
+        quotient, repeat = divmod(index, self.study.seeds)
+        quotient, combination = divmod(quotient, self._combinations)
+        return *divmod(quotient, len(self._arms)), combination, repeat
 
     @property
     def chunks(self) -> int:
@@ -84,10 +86,10 @@ class Plan(Sequence[Point]):
         return -(-len(self) // self.study.chunk)
 
     def chunk(self, number: int) -> range:
-        """Return which runs a batch holds; batches of a study differ by one run at most."""
-        least, more = divmod(len(self), self.chunks)
-        first = number * least + min(number, more)
-        return range(first, first + least + (number < more))
+        """Return the indices of the runs in a batch; batches of a study differ by one run at most."""
+        base_size, larger_count = divmod(len(self), self.chunks)
+        start = number * base_size + min(number, larger_count)
+        return range(start, start + base_size + (number < larger_count))
 
     def run(self, index: int) -> Run:
         """Return one run.
@@ -96,11 +98,11 @@ class Plan(Sequence[Point]):
             InvalidDesign: its values cannot be together.
         """
         point, (sample, _, combination, _) = self[index], self._place(index)
-        if (sample, combination) not in self._varied:  # arms and seeds of a point share robot and gait
-            varied = self._vary(point.values)
-            self._varied = {key: run for key, run in self._varied.items() if key[0] == sample}
-            self._varied[sample, combination] = varied
-        run = with_values(self._varied[sample, combination], {"seed": point.seed, "label": str(index)})
+        if (sample, combination) not in self._cached_runs:  # arms and seeds of a point share robot and gait
+            point_run = self._vary(point.values)
+            self._cached_runs = {key: run for key, run in self._cached_runs.items() if key[0] == sample}
+            self._cached_runs[sample, combination] = point_run
+        run = with_values(self._cached_runs[sample, combination], {"seed": point.seed, "label": str(index)})
         return run if point.arm is None else with_values(run, point.arm.values)
 
     def _vary(self, values: Mapping[str, Any]) -> Run:
@@ -115,38 +117,38 @@ def _depth(path: str) -> int:
     return path.count(".") + path.count("[")
 
 
-def levels(vary: Vary, *, whole: bool = False) -> tuple[Any, ...]:
+def levels(vary: Vary, *, is_whole: bool = False) -> tuple[Any, ...]:
     """Return the values of a field that are combined.
 
     Args:
         vary: the field.
-        whole: whether it takes whole numbers only.
+        is_whole: whether it takes whole numbers only.
     """
     if vary.values is not None:
         return vary.values
     assert vary.steps is not None
     values = [value_of(vary, i / (vary.steps - 1)) for i in range(vary.steps)]
-    return tuple(dict.fromkeys(round(value) for value in values)) if whole else tuple(values)
+    return tuple(dict.fromkeys(round(value) for value in values)) if is_whole else tuple(values)
 
 
 def value_of(vary: Vary, share: float, *, whole: bool = False) -> Any:
-    """Return the value below which a share of a field's values lies.
+    """Return the quantile of a field's values.
 
     Args:
         vary: the field.
-        share: 0 to 1.
+        share: fraction of the values below the quantile, 0 to 1.
         whole: whether the field takes whole numbers only; those of an even range are then equally frequent.
     """
     if vary.values is not None:
         return vary.values[min(int(share * len(vary.values)), len(vary.values) - 1)]
     if whole:
-        return _whole(vary, share)
+        return _whole_value(vary, share)
     if vary.mean is not None and vary.spread is not None:
-        low = -np.inf if vary.low is None else (vary.low - vary.mean) / vary.spread
-        high = np.inf if vary.high is None else (vary.high - vary.mean) / vary.spread
-        inside = stats.norm.cdf(low) + share * (stats.norm.cdf(high) - stats.norm.cdf(low))
-        inside = float(np.clip(inside, 1e-12, 1 - 1e-12))
-        return float(vary.mean + vary.spread * np.clip(stats.norm.ppf(inside), low, high))
+        lower_bound = -np.inf if vary.low is None else (vary.low - vary.mean) / vary.spread
+        upper_bound = np.inf if vary.high is None else (vary.high - vary.mean) / vary.spread
+        probability = stats.norm.cdf(lower_bound) + share * (stats.norm.cdf(upper_bound) - stats.norm.cdf(lower_bound))
+        probability = float(np.clip(probability, 1e-12, 1 - 1e-12))
+        return float(vary.mean + vary.spread * np.clip(stats.norm.ppf(probability), lower_bound, upper_bound))
     assert vary.low is not None
     assert vary.high is not None
     if vary.scale == "log":
@@ -154,7 +156,8 @@ def value_of(vary: Vary, share: float, *, whole: bool = False) -> Any:
     return float(vary.low + (vary.high - vary.low) * share)
 
 
-def _whole(vary: Vary, share: float) -> int:
+def _whole_value(vary: Vary, share: float) -> int:
+    """Return the integer below which a fraction of the values of a field lies."""
     if vary.mean is not None or vary.scale == "log":
         return round(value_of(vary, share))
     assert vary.low is not None

@@ -71,7 +71,7 @@ def write_tables(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    shown = [
+    page_sections = [
         {
             "title": section.title,
             "texts": section.texts,
@@ -82,7 +82,9 @@ def write_tables(
         for section in sections
     ]
     foot = f"suchus {versions()['suchus']}, MuJoCo {versions()['mujoco']}."
-    page = environment.get_template("result_table.html").render(title=title, lead=lead, sections=shown, foot=foot)
+    page = environment.get_template("result_table.html").render(
+        title=title, lead=lead, sections=page_sections, foot=foot
+    )
     path = folder / "index.html"
     path.write_text(page, encoding="utf-8")
     return path

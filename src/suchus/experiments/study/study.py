@@ -44,33 +44,34 @@ class Vary:
 
     def __post_init__(self) -> None:
         field: object = self.field  # of any kind until it was looked at
-        called = field if isinstance(field, str) else "a field"
-        with Checks(f"what varies {called}", self) as check:
+        label = field if isinstance(field, str) else "a field"
+        with Checks(f"what varies {label}", self) as check:
             self._check(check)
 
     def _check(self, check: Checks) -> None:
+        """Refuse a field that has no values, or whose values, range and distribution contradict each other."""
         ends = self.low is not None and self.high is not None
         normal = self.mean is not None or self.spread is not None
-        given = [self.values is not None, ends or (normal and self.mean is not None)]
+        definitions = [self.values is not None, ends or (normal and self.mean is not None)]
         field: object = self.field
-        called = field if isinstance(field, str) else "a field that varies"
-        check.that(sum(given) == 1, f"{called} needs either values, or low and high, or mean and spread")
+        label = field if isinstance(field, str) else "a field that varies"
+        check.that(sum(definitions) == 1, f"{label} needs either values, or low and high, or mean and spread")
         if self.values is not None:
-            check.that(len(self.values) > 0, f"{called} has no values; at least one is needed")
+            check.that(len(self.values) > 0, f"{label} has no values; at least one is needed")
         for name in ("low", "high", "mean", "spread"):
             if getattr(self, name) is not None:
                 check.number(name, -1e12, 1e12, "")
         if self.low is not None and self.high is not None and isfinite(self.low) and isfinite(self.high):
-            check.that(self.low < self.high, f"{called} has low {self.low:g} and high {self.high:g}; low must be less")
+            check.that(self.low < self.high, f"{label} has low {self.low:g} and high {self.high:g}; low must be less")
             positive = self.scale == "linear" or self.low > 0
-            check.that(positive, f"{called} has low {self.low:g}; a logarithm needs more than 0")
+            check.that(positive, f"{label} has low {self.low:g}; a logarithm needs more than 0")
         if normal:
-            both = self.mean is not None and self.spread is not None and self.spread > 0
-            check.that(both, f"{called} needs a mean and a spread of more than 0")
+            is_valid = self.mean is not None and self.spread is not None and self.spread > 0
+            check.that(is_valid, f"{label} needs a mean and a spread of more than 0")
         if self.steps is not None:
             check.whole("steps", 2, 100_000)
         listed = self.values is not None or self.steps is not None
-        check.that(listed or not self.each, f"{called} is taken with each of its values; give values or steps")
+        check.that(listed or not self.each, f"{label} is taken with each of its values; give values or steps")
 
     @property
     def ends(self) -> tuple[Any, ...]:
@@ -115,6 +116,7 @@ class Study:
     """Why these fields and ranges, for whoever reads the results."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, unknown measures, and fields that the run does not have."""
         with Checks("study", self) as check:
             check.whole("seed", 0, 2**32 - 1)
             check.whole("seeds", 1, 100_000)
@@ -140,8 +142,8 @@ class Study:
 
     def whole(self, field: str) -> bool:
         """Return whether a field of the run takes whole numbers only."""
-        there = value_at(self.run, field)
-        return isinstance(there, int) and not isinstance(there, bool)
+        current_value = value_at(self.run, field)
+        return isinstance(current_value, int) and not isinstance(current_value, bool)
 
     def _check_measures(self) -> None:
         for name in self.measure:
@@ -165,10 +167,10 @@ class Study:
                 raise InvalidDesign(
                     f"study {self.name!r} varies {vary.field}; the study sets it: choose seed and seeds."
                 )
-            whole = self.whole(vary.field)
-            if whole:
+            is_whole = self.whole(vary.field)
+            if is_whole:
                 self._check_whole(vary)
-            for value in (round(end) if whole and vary.values is None else end for end in vary.ends):
+            for value in (round(end) if is_whole and vary.values is None else end for end in vary.ends):
                 try:
                     with_values(self.run, {vary.field: value})
                 except InvalidFields as error:

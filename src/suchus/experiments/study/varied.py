@@ -1,4 +1,4 @@
-"""An experiment asked again with other plausible designs and settings: what its walks of the claims cannot answer."""
+"""An experiment repeated with other plausible designs and settings, for claims that the study of walks cannot judge."""
 
 import json
 from collections.abc import Collection, Mapping
@@ -26,14 +26,14 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 
 LEAST = 8
-"""Fewer points than these make no share: its interval would be half of the whole [-]."""
+"""Fewest points for a fraction of designs [-]; with fewer its interval would span half of the range."""
 
 
 class Question(Protocol):
-    """What is asked: an experiment, a frozen dataclass."""
+    """An experiment, which is a frozen dataclass."""
 
     def name(self) -> str:
-        """Return its name on the shelf."""
+        """Return its name in the catalog."""
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Any]:
         """Return the numbers that are wanted at least, each with its ``value``."""
@@ -41,7 +41,7 @@ class Question(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VariedStudy:
-    """An experiment that is asked once for each of some points: another design, other settings."""
+    """An experiment that runs once at each point of a plan of designs and settings."""
 
     name: str
     """Name of the experiment."""
@@ -70,9 +70,9 @@ class VariedStudy:
     def point(self, sample: int) -> dict[str, Any]:
         """Return the values of a point, by field; the first points stay the same, however many there are."""
         shares = evenly("sobol", self.samples, len(self.vary), self.seed)[sample]
-        whole = [isinstance(value_at(self.experiment, one.field), int) for one in self.vary]
-        rows = zip(self.vary, shares, whole, strict=True)
-        return {one.field: value_of(one, float(share), whole=is_whole) for one, share, is_whole in rows}
+        whole_flags = [isinstance(value_at(self.experiment, vary.field), int) for vary in self.vary]
+        rows = zip(self.vary, shares, whole_flags, strict=True)
+        return {vary.field: value_of(vary, float(share), whole=is_whole) for vary, share, is_whole in rows}
 
     def asked(self, sample: int) -> Question:
         """Return the question of a point.
@@ -87,35 +87,39 @@ def varied_study(question: Question, samples: int | None = None) -> VariedStudy 
     """Return the study of an experiment's designs and settings, or None where it declares none.
 
     Args:
-        question: the experiment, as on the shelf.
+        question: the experiment, as in the catalog.
         samples: number of points; as many as the experiment asks for if None [-].
     """
-    declared = varied_of(question.name())
-    if declared is None:
+    sweep = varied_of(question.name())
+    if sweep is None:
         return None
-    experiment: Any = replace(question, **declared.settings)  # type: ignore[type-var]
-    rows = [(path, low, high) for path, (low, high, _) in declared.over.items()]
-    for held_in in declared.designs:
-        thing = getattr(experiment, held_in)
-        shelves: Any = ROBOTS if isinstance(thing, Robot) else GAITS
-        chosen = shelves.beside(thing.name, "chosen", ())
-        rows += [(f"{held_in}.{one.field}", one.low, one.high) for one in chosen if not only_forbids(one.field)]
+    experiment: Any = replace(question, **sweep.settings)  # type: ignore[type-var]
+    rows = [(path, lower_bound, upper_bound) for path, (lower_bound, upper_bound, _) in sweep.over.items()]
+    for design_field in sweep.designs:
+        design = getattr(experiment, design_field)
+        shelves: Any = ROBOTS if isinstance(design, Robot) else GAITS
+        choices = shelves.beside(design.name, "chosen", ())
+        rows += [
+            (f"{design_field}.{choice.field}", choice.low, choice.high)
+            for choice in choices
+            if not only_forbids(choice.field)
+        ]
     return VariedStudy(
         name=question.name(),
         experiment=experiment,
-        vary=tuple(Vary(field=path, low=low, high=high) for path, low, high in rows),
-        claims=declared.claims,
-        samples=declared.samples if samples is None else samples,
+        vary=tuple(Vary(field=path, low=lower_bound, high=upper_bound) for path, lower_bound, upper_bound in rows),
+        claims=sweep.claims,
+        samples=sweep.samples if samples is None else samples,
     )
 
 
 def conduct_varied(
     study: VariedStudy, folder: Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
 ) -> xr.Dataset:
-    """Ask the experiment at every point that is not in the store yet, and answer.
+    """Run the experiment at every point that is missing in the store, and judge the claims.
 
     Args:
-        study: what is asked.
+        study: the experiment and its points.
         folder: of the stores, one below it for each experiment; each point is kept as it is finished.
         progress: told how many points are done.
         client: a ``distributed.Client``, whose workers then ask; this machine if None.
@@ -140,42 +144,46 @@ def conduct_varied(
     )
     with Store(folder / study.name, study).opened() as store:
         finish(job, store, place=place_for("a study", client=client, jobs=jobs), progress=progress)
-        return _made_by(answer_varied(study, store.gather(study.samples)), folder / study.name)
+        return _with_provenance(answer_varied(study, store.gather(study.samples)), folder / study.name)
 
 
 def varied_finished(study: VariedStudy, folder: Path) -> xr.Dataset | None:
     """Return the answer from the points that are stored, whatever version stored them; None where there are too few.
 
     Args:
-        study: what is asked.
+        study: the experiment and its points.
         folder: of the stores.
 
     Raises:
         IncompatibleRecord: they are points of another plan, so that nobody knows any more what varied.
     """
     store = Store(folder / study.name, study)
-    said = made_by(folder / study.name, key="fields") if (folder / study.name / MARK).is_file() else {}
-    other = [name for name in ("vary", "seed") if said and said.get(name) != repr(getattr(study, name))]
-    if other:
+    stored_fields = made_by(folder / study.name, key="fields") if (folder / study.name / MARK).is_file() else {}
+    changed_names = [
+        name for name in ("vary", "seed") if stored_fields and stored_fields.get(name) != repr(getattr(study, name))
+    ]
+    if changed_names:
         raise IncompatibleRecord(
-            f"{folder / study.name} holds points of another plan, which differs in {listed(other)}: numbers were added "
-            f"or have other ranges since. Renew it: suchus study claims --only {study.name} --out FOLDER"
+            f"{folder / study.name} holds points of another plan, which differs in {listed(changed_names)}: numbers "
+            f"were added or have other ranges since. Renew it: suchus study claims --only {study.name} --out FOLDER"
         )
-    done = [store.get(sample) for sample in range(study.samples) if store.has(sample)]
-    return _made_by(answer_varied(study, together(done)), folder / study.name) if len(done) >= LEAST else None
+    tables = [store.get(sample) for sample in range(study.samples) if store.has(sample)]
+    return (
+        _with_provenance(answer_varied(study, together(tables)), folder / study.name) if len(tables) >= LEAST else None
+    )
 
 
-def _made_by(record: xr.Dataset, folder: Path) -> xr.Dataset:
+def _with_provenance(record: xr.Dataset, folder: Path) -> xr.Dataset:
     return record.assign_attrs(made_by=json.dumps(made_by(folder)))
 
 
 def ask(study: VariedStudy, sample: int, progress: Progress = silent) -> xr.Dataset:
-    """Return what the experiment measures at one point: what its rules read, or why there is nothing, in ``error``."""
-    needed = sorted(set().union(*(rule.needs for rule in study.rules)))
-    numbers, error = dict.fromkeys(needed, np.nan), ""
+    """Return the measures that the rules need at one point, or the reason why there are none in ``error``."""
+    measure_names = sorted(set().union(*(rule.needs for rule in study.rules)))
+    numbers, error = dict.fromkeys(measure_names, np.nan), ""
     try:
-        measures = study.asked(sample).measured(needed, progress)
-        numbers = {name: float(measures[name].value) for name in needed}
+        measures = study.asked(sample).measured(measure_names, progress)
+        numbers = {name: float(measures[name].value) for name in measure_names}
     except SuchusError as refused:
         error = f"{type(refused).__name__}: {' '.join(str(refused).split())}"
     columns: dict[str, Any] = {name: ("sample", [value]) for name, value in numbers.items()}
@@ -183,7 +191,7 @@ def ask(study: VariedStudy, sample: int, progress: Progress = silent) -> xr.Data
 
 
 def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
-    """Return what became of each claim from what was measured at the points.
+    """Return number, truth and word of each claim from the measures at the points.
 
     Args:
         study: what was asked.
@@ -192,22 +200,26 @@ def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
     points = [study.point(int(sample)) for sample in results.sample.values]
     measures = {str(name): results[name].values for name in results.data_vars if name != "error"}
     kinds = [str(error).partition(":")[0] for error in results.error.values]
-    value = np.array([[float(point[one.field]) for one in study.vary] for point in points])
+    value = np.array([[float(point[vary.field]) for vary in study.vary] for point in points])
     record = xr.Dataset(
         {
             "status": ("sample", np.array([_STATUS.get(kind, "impossible") for kind in kinds])),
             "value": (("sample", "parameter"), value, {"units": "1", "long_name": "each in its own unit"}),
         },
         coords={
-            "parameter": [one.field for one in study.vary],
-            "parameter_unit": ("parameter", [unit_at(study.experiment, one.field) for one in study.vary]),
+            "parameter": [vary.field for vary in study.vary],
+            "parameter_unit": ("parameter", [unit_at(study.experiment, vary.field) for vary in study.vary]),
         },
     )
-    found = {rule.claim: held(rule, measures) for rule in study.rules}
-    said = np.array([words(rule, measures) for rule in study.rules], dtype=object)
-    said[:, record.status.values != "asked"] = ""
-    record["word"] = ("claim", "sample"), said.astype(str), {"units": "1", "long_name": "what it says of the claim"}
-    return record.merge(answered(found, value))
+    claim_results = {rule.claim: held(rule, measures) for rule in study.rules}
+    claim_words = np.array([words(rule, measures) for rule in study.rules], dtype=object)
+    claim_words[:, record.status.values != "asked"] = ""
+    record["word"] = (
+        ("claim", "sample"),
+        claim_words.astype(str),
+        {"units": "1", "long_name": "what it says of the claim"},
+    )
+    return record.merge(answered(claim_results, value))
 
 
 _STATUS: Mapping[str, str] = {"": "asked", "OutsideLimits": "outside limits", "Diverged": "diverged"}

@@ -35,24 +35,25 @@ from suchus.sim.land import Run, simulate
 from suchus.sim.land.afloat import floats
 from suchus.sim.metrics import displacement, heading_change
 
-_NUMBERS = Oscillators()
-_EDGE = 0.01  # above the limbs' highest drive, where they have just fallen silent
+_OSCILLATORS = Oscillators()
+_DRIVE_MARGIN = 0.01  # above the highest drive of the limbs [-]; their oscillators are silent there
 STRAIGHT = ("drive_low", "straight", "drive_high")
-"""Walks by an even drive: the lowest that moves the limbs, the one for walking, the highest."""
+"""Walks by an equal drive on both sides: the lowest that moves the limbs, the one for walking, the highest."""
 _TURNS = {"turn_gained": ("straight", "asymmetry")}
-"""Measures that are of some walks alone, and of which."""
-_EVERY = 4  # control periods between the samples kept of the oscillators
-_LEAST_TIME = START + 1.5  # of the runs from the water, beyond the time in which the felt load settles [s]
-_SETTLED = 0.25  # the last part of a sweep's time, over which frequencies are taken
+"""Measures that need some walks only, and the names of these walks."""
+_SAMPLE_INTERVAL = 4  # control periods between stored samples of the oscillators
+_MIN_SHORE_TIME = START + 1.5  # shortest run from the water; the sensed load settles before [s]
+_MEASURED_FRACTION = 0.25  # last fraction of a sweep, over which frequencies are measured
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PatternGeneratorExperiment(Experiment):
     """Phase oscillators under a drive: alone, then on the body on land.
 
-    The sweep starts at the gait's phases and is measured when it has settled. Locked: from some time on until the end,
-    and for at least ``hold`` cycles, no active oscillator is farther than ``within`` from its place in the state that a
-    start at the gait's phases reaches, the common shift of all aside. Turning is that of the body's heading.
+    The sweep starts at the gait's phases and is measured after it has settled. A start counts as locked if the phase
+    error of every active oscillator stays below ``within`` for at least ``hold`` cycles until the end. The reference is
+    the state that a start at the gait's phases reaches; a phase shift that all oscillators share is no error. Turning
+    is the change of the body's heading.
     """
 
     title = "What do coupled oscillators make of a single drive: walking, swimming, turning, order from any start?"
@@ -100,11 +101,12 @@ class PatternGeneratorExperiment(Experiment):
     """Seed of the first start; the others follow [-]."""
 
     def __post_init__(self) -> None:
-        low, middle, high = *_NUMBERS.limb_drives, _NUMBERS.axis_drives[1]
+        """Refuse drives outside the range of the oscillators, and other settings outside their ranges."""
+        min_drive, max_limb_drive, max_drive = *_OSCILLATORS.limb_drives, _OSCILLATORS.axis_drives[1]
         with Checks(self.name(), self) as check:
-            check.rising("drives", low, high, "")
-            check.number("walk", low, middle, "")
-            check.number("swim", middle + _EDGE, high, "")
+            check.rising("drives", min_drive, max_drive, "")
+            check.number("walk", min_drive, max_limb_drive, "")
+            check.number("swim", max_limb_drive + _DRIVE_MARGIN, max_drive, "")
             check.whole("starts", 1, 1000)
             check.number("followed", 1.0, 1000.0, "cycle")
             check.number("within", 1e-6, 3.0, "rad")
@@ -114,7 +116,7 @@ class PatternGeneratorExperiment(Experiment):
             check.number("ramp", 1.0, 1000.0, "")
             check.number("slope", 0.01, 1.0, "rad")
             check.number("water_line", 0.0, 100.0, "m")
-            check.number("shore_time", _LEAST_TIME, 3600.0, "s")
+            check.number("shore_time", _MIN_SHORE_TIME, 3600.0, "s")
             check.whole("seed", 0, 2**31)
 
     def quick(self) -> "PatternGeneratorExperiment":
@@ -125,9 +127,9 @@ class PatternGeneratorExperiment(Experiment):
 
     def on(self, robot: Robot) -> "PatternGeneratorExperiment":
         """Return the same question for another robot, which goes from the water to the land itself where it floats."""
-        asked = super(PatternGeneratorExperiment, self).on(robot)  # a class with slots has no short form
+        variant = super(PatternGeneratorExperiment, self).on(robot)  # a class with slots has no short form
         if robot == self.robot:
-            return asked
+            return variant
         swimmer = robot if floats(robot) else self.swimmer
         sized = scaled_fields(
             self,
@@ -135,9 +137,9 @@ class PatternGeneratorExperiment(Experiment):
             length_factor=swimmer.length / self.swimmer.length,
             mass_factor=swimmer.mass / self.swimmer.mass,
         )
-        across = {"water_line": self.water_line, "shore_time": self.shore_time} | sized
-        across["shore_time"] = max(across["shore_time"], _LEAST_TIME)
-        return replace(asked, swimmer=swimmer, swimmer_gait=own_gait(swimmer), **across)
+        shore_settings = {"water_line": self.water_line, "shore_time": self.shore_time} | sized
+        shore_settings["shore_time"] = max(shore_settings["shore_time"], _MIN_SHORE_TIME)
+        return replace(variant, swimmer=swimmer, swimmer_gait=own_gait(swimmer), **shore_settings)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Sweep the drive, start at random, ramp the drive, and walk."""
@@ -147,25 +149,32 @@ class PatternGeneratorExperiment(Experiment):
             for name, drive, start in (("walk", self.walk, 0.15), ("swim", self.swim, 0.3))
         ]
         parts.append(self._ramp())
-        found, ramped = self._land(progress)
+        walks, ramped = self._land(progress)
         stage = staged(progress, "one drive across the shore", 0.85, 1.0)
-        across = one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
-        swum = simulate(across, duration=self.shore_time, every=_EVERY, progress=stage)
-        record = xr.merge([*parts, found, one_drive.reduced(swum, self.water_line)]).assign_attrs(
-            within=self.within, hold=self.hold, silent_above=_NUMBERS.limb_drives[1], walk=self.walk, swim=self.swim
+        shore_runs = one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
+        shore_record = simulate(shore_runs, duration=self.shore_time, every=_SAMPLE_INTERVAL, progress=stage)
+        record = xr.merge([*parts, walks, one_drive.reduced(shore_record, self.water_line)]).assign_attrs(
+            within=self.within, hold=self.hold, silent_above=_OSCILLATORS.limb_drives[1], walk=self.walk, swim=self.swim
         )
         return Simulated(record=record, replays=self._replays(ramped))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; turns alone need no drive but the walks'."""
+        """Return at least the wanted measures; if only turns are wanted, only their walks are simulated."""
         if not set(wanted) <= _TURNS.keys():
             return super(PatternGeneratorExperiment, self).measured(wanted, progress)
         arms = dict.fromkeys(arm for name in wanted for arm in _TURNS[name])
-        return _turned(self._walked({name: arm for name, arm in self._arms.items() if name in arms}, progress))
+        return _turn_measures(
+            self._walk_arms({name: arm for name, arm in self._arms.items() if name in arms}, progress)
+        )
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return frequencies, lags and indices over the drive, locks, strides and turns."""
-        measures = _swept(record) | _locked(record, "walk", "") | _locked(record, "swim", "_swim") | _turned(record)
+        measures = (
+            _sweep_measures(record)
+            | _locked(record, "walk", "")
+            | _locked(record, "swim", "_swim")
+            | _turn_measures(record)
+        )
         for arm in STRAIGHT:
             walk = record.sel(arm=arm)
             stride = float(walk.forward / walk.walked / record.attrs["length"])
@@ -173,7 +182,7 @@ class PatternGeneratorExperiment(Experiment):
         return measures | one_drive.measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what the drive does, what steers, and how order comes about."""
+        """Return what drive and steering do, and how the oscillators lock, in words."""
         return self.told(measures, standing=STANDING)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -181,60 +190,74 @@ class PatternGeneratorExperiment(Experiment):
         record = outcome.record
         return {
             "drive_ramp": draw_ramp(record, self.robot),
-            "drive_sweep": draw_sweep(record, _NUMBERS),
+            "drive_sweep": draw_sweep(record, _OSCILLATORS),
             "phase_locks": draw_locks(record),
             "walking_by_drive": draw_land(record),
         }
 
     def _sweep(self, progress: Progress) -> xr.Dataset:
         """Return settled frequencies, phases and amplitudes at every drive."""
-        edge = _NUMBERS.limb_drives[1]
-        drives = sorted({*self.drives, self.walk, self.swim, edge, edge + _EDGE})
+        edge = _OSCILLATORS.limb_drives[1]
+        drives = sorted({*self.drives, self.walk, self.swim, edge, edge + _DRIVE_MARGIN})
         controls = [PatternGenerator(drive=drive) for drive in drives]
         duration = self.followed * self.gait.period
-        done = oscillate(controls, self.robot, self.gait, duration=duration, every=_EVERY, progress=progress)
-        n, since = done.wave.shape[2], int((1 - _SETTLED) * len(done.time))
-        rate = (done.phase[:, -1] - done.phase[:, since]) / (done.time[-1] - done.time[since])
-        phase = done.phase[:, -1, :n] - done.phase[:, -1, :1]
+        oscillation = oscillate(
+            controls, self.robot, self.gait, duration=duration, every=_SAMPLE_INTERVAL, progress=progress
+        )
+        n, start_index = oscillation.wave.shape[2], int((1 - _MEASURED_FRACTION) * len(oscillation.time))
+        rate = (oscillation.phase[:, -1] - oscillation.phase[:, start_index]) / (
+            oscillation.time[-1] - oscillation.time[start_index]
+        )
+        phase = oscillation.phase[:, -1, :n] - oscillation.phase[:, -1, :1]
         segments = axis_segments(self.robot, self.gait)
         return xr.Dataset(
             {
                 "frequency_axis": ("drive", rate[:, 0], {"units": "Hz", "long_name": "of the axis"}),
                 "frequency_limbs": ("drive", rate[:, 2 * n], {"units": "Hz", "long_name": "of the limbs"}),
-                "amplitude_axis": ("drive", done.amplitude[:, -1, 0], {"units": "1"}),
-                "amplitude_limbs": ("drive", done.amplitude[:, -1, 2 * n], {"units": "1"}),
+                "amplitude_axis": ("drive", oscillation.amplitude[:, -1, 0], {"units": "1"}),
+                "amplitude_limbs": ("drive", oscillation.amplitude[:, -1, 2 * n], {"units": "1"}),
                 "phase_axis": (("drive", "segment"), phase, {"units": "1", "long_name": "against the first [cycle]"}),
-                "bend": ("segment", [one.amplitude for one in segments], {"units": "rad", "long_name": "in the gait"}),
+                "bend": (
+                    "segment",
+                    [segment.amplitude for segment in segments],
+                    {"units": "rad", "long_name": "in the gait"},
+                ),
             },
             coords={
                 "drive": drives,
                 "segment": np.arange(1, n + 1),
-                "place": ("segment", [one.place for one in segments], {"units": "1"}),
-                "girdle": ("segment", [one.part.girdle for one in segments]),
+                "place": ("segment", [segment.place for segment in segments], {"units": "1"}),
+                "girdle": ("segment", [segment.part.girdle for segment in segments]),
             },
             attrs={"frequency_scale": self._pace, "length": self.robot.length},
         )
 
     @property
     def _pace(self) -> float:
-        """How many times faster than published the oscillators go, so that the gait's period belongs to drive 2."""
-        return 1.0 / (self.gait.period * float(_NUMBERS.limbs(np.array(_NUMBERS.reference))[0]))
+        """Factor on the published frequencies [-]; with it drive 2 gives the period of the gait."""
+        return 1.0 / (self.gait.period * float(_OSCILLATORS.limbs(np.array(_OSCILLATORS.reference))[0]))
 
     def _starts(self, name: str, drive: float, progress: Progress) -> xr.Dataset:
-        """Return over time how far the oscillators are from their places, for every random start."""
-        walks = drive <= _NUMBERS.limb_drives[1]
-        law = _NUMBERS.limbs if walks else _NUMBERS.axis
+        """Return the phase error of the farthest oscillator over time, for every random start [rad].
+
+        Args:
+            name: state of the record, ``walk`` or ``swim``.
+            drive: of the oscillators [-].
+            progress: called with the fraction that is done.
+        """
+        walks = drive <= _OSCILLATORS.limb_drives[1]
+        law = _OSCILLATORS.limbs if walks else _OSCILLATORS.axis
         frequency = self._pace * float(law(np.array(drive))[0])
-        whole = PatternGenerator(drive=drive)
-        controls = [whole, *(replace(whole, initial="random") for _ in range(self.starts))]
+        control = PatternGenerator(drive=drive)
+        controls = [control, *(replace(control, initial="random") for _ in range(self.starts))]
         seeds = [self.seed, *range(self.seed, self.seed + self.starts)]
         duration = self.followed / frequency
-        done = oscillate(
-            controls, self.robot, self.gait, duration=duration, seeds=seeds, every=_EVERY, progress=progress
+        oscillation = oscillate(
+            controls, self.robot, self.gait, duration=duration, seeds=seeds, every=_SAMPLE_INTERVAL, progress=progress
         )
-        active = done.amplitude[0, -1] > 0.0
-        error = lock_error(done.phase[1:][..., active], done.phase[0, -1, active])
-        cycles = (done.time - done.time[0]) * frequency
+        active = oscillation.amplitude[0, -1] > 0.0
+        error = lock_error(oscillation.phase[1:][..., active], oscillation.phase[0, -1, active])
+        cycles = (oscillation.time - oscillation.time[0]) * frequency
         dims = (f"{name}_start", f"{name}_cycle")
         return xr.Dataset(
             {f"{name}_error": (dims, error, {"units": "rad", "long_name": "greatest distance from the locked state"})},
@@ -245,52 +268,66 @@ class PatternGeneratorExperiment(Experiment):
     def _ramped(self) -> tuple[tuple[float, float], ...]:
         """The drive over the ramp: up in one half, down in the other."""
         end = self.ramp * self.gait.period
-        low, high = _NUMBERS.axis_drives
-        return (START, low), (START + end / 2, high), (START + end, low)
+        min_drive, max_drive = _OSCILLATORS.axis_drives
+        return (START, min_drive), (START + end / 2, max_drive), (START + end, min_drive)
 
     def _ramp(self) -> xr.Dataset:
+        """Return drive, phases, amplitudes and bends of the oscillators over the ramp, without a body."""
         control = PatternGenerator(drive=self._ramped)
-        done = oscillate([control], self.robot, self.gait, duration=self.ramp * self.gait.period)
-        drive = np.interp(done.time, *np.array(self._ramped).T)
+        oscillation = oscillate([control], self.robot, self.gait, duration=self.ramp * self.gait.period)
+        drive = np.interp(oscillation.time, *np.array(self._ramped).T)
         return xr.Dataset(
             {
                 "ramp_drive": ("ramp_time", drive, {"units": "1"}),
-                "ramp_phase": (("ramp_time", "oscillator"), done.phase[0], {"units": "1", "long_name": "[cycle]"}),
-                "ramp_amplitude": (("ramp_time", "oscillator"), done.amplitude[0], {"units": "1"}),
-                "ramp_wave": (("ramp_time", "segment"), done.wave[0], {"units": "1", "long_name": "to the left"}),
+                "ramp_phase": (
+                    ("ramp_time", "oscillator"),
+                    oscillation.phase[0],
+                    {"units": "1", "long_name": "[cycle]"},
+                ),
+                "ramp_amplitude": (("ramp_time", "oscillator"), oscillation.amplitude[0], {"units": "1"}),
+                "ramp_wave": (
+                    ("ramp_time", "segment"),
+                    oscillation.wave[0],
+                    {"units": "1", "long_name": "to the left"},
+                ),
             },
             coords={
-                "ramp_time": ("ramp_time", done.time - START, {"units": "s"}),
-                "oscillator": list(done.names),
-                "segment": np.arange(1, done.wave.shape[2] + 1),
+                "ramp_time": ("ramp_time", oscillation.time - START, {"units": "s"}),
+                "oscillator": list(oscillation.names),
+                "segment": np.arange(1, oscillation.wave.shape[2] + 1),
             },
         )
 
     @property
     def _arms(self) -> dict[str, PatternGenerator]:
-        """Under what it walks on land."""
-        low, high = _NUMBERS.limb_drives
+        """Controls of the walks on land, by name."""
+        min_drive, max_drive = _OSCILLATORS.limb_drives
         return {
-            "drive_low": PatternGenerator(drive=low),
+            "drive_low": PatternGenerator(drive=min_drive),
             "straight": PatternGenerator(drive=self.walk),
-            "drive_high": PatternGenerator(drive=high),
+            "drive_high": PatternGenerator(drive=max_drive),
             "asymmetry": PatternGenerator(drive=self.walk, asymmetry=self.asymmetry),
             "steering": PatternGenerator(drive=self.walk, steering=1.0),
             "steering_right": PatternGenerator(drive=self.walk, steering=-1.0),
         }
 
-    def _walked(self, arms: Mapping[str, PatternGenerator], progress: Progress) -> xr.Dataset:
-        """Return how far and in which direction it walks under each control."""
-        runs = [Run(robot=self.robot, gait=self.gait, control=one, label=name) for name, one in arms.items()]
+    def _walk_arms(self, arms: Mapping[str, PatternGenerator], progress: Progress) -> xr.Dataset:
+        """Return displacement forward [m], change of heading [rad] and cycles walked [-] under each control.
+
+        Args:
+            arms: controls by name.
+            progress: called with the fraction that is done.
+        """
+        runs = [Run(robot=self.robot, gait=self.gait, control=control, label=name) for name, control in arms.items()]
         duration = START + self.cycles * self.gait.period
-        record = simulate(runs, duration=duration, every=_EVERY, progress=progress)
-        walked = record.limb_phase.isel(leg=0)
-        begun = walked.sel(time=START, method="nearest")
+        record = simulate(runs, duration=duration, every=_SAMPLE_INTERVAL, progress=progress)
+        phase = record.limb_phase.isel(leg=0)
+        initial_phase = phase.sel(time=START, method="nearest")
         units = {"forward": "m", "turned": "rad", "walked": "1"}
         values = {
             "forward": displacement(record).sel(xyz="x").values,
             "turned": heading_change(record).values,
-            "walked": (walked.isel(time=-1) - begun).values,
+            "walked": (phase.isel(time=-1) - initial_phase).values,
         }
         return xr.Dataset(
             {name: ("arm", value, {"units": units[name]}) for name, value in values.items()},
@@ -298,14 +335,15 @@ class PatternGeneratorExperiment(Experiment):
         )
 
     def _land(self, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return what it walks under each control, and the run under the ramp."""
-        found = self._walked(self._arms, staged(progress, "walks", 0.45, 0.65))
+        """Return displacement and turns under each control, and the record of the run under the ramp."""
+        walks = self._walk_arms(self._arms, staged(progress, "walks", 0.45, 0.65))
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
         stage = staged(progress, "drive ramp", 0.65, 0.85)
-        return found, simulate([ramped], duration=end, every=2, progress=stage)
+        return walks, simulate([ramped], duration=end, every=2, progress=stage)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the walk under the drive ramp, by file name."""
         return replayed(
             "drive_ramp_replay.html",
             ramped.isel(run=0),
@@ -317,45 +355,45 @@ class PatternGeneratorExperiment(Experiment):
 
 
 def lock_error(phase: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Return how far the farthest oscillator is from its place, the common shift of all aside [rad].
+    """Return the greatest phase error of an oscillator, without the mean phase shift of all [rad].
 
     Args:
         phase: of the oscillators, shape (..., oscillator) [cycle].
         place: of the oscillators, shape (oscillator,) [cycle].
     """
-    off = np.exp(2j * np.pi * (phase - place))
-    common = off.mean(axis=-1, keepdims=True)
-    return np.asarray(np.abs(np.angle(off * np.conj(common))).max(axis=-1))
+    phasor = np.exp(2j * np.pi * (phase - place))
+    common = phasor.mean(axis=-1, keepdims=True)
+    return np.asarray(np.abs(np.angle(phasor * np.conj(common))).max(axis=-1))
 
 
-def _swept(record: xr.Dataset) -> Measures:
-    """Return what the sweep shows at the two drives, and on both sides of where the limbs fall silent."""
+def _sweep_measures(record: xr.Dataset) -> Measures:
+    """Return frequencies, lags and amplitudes at the two drives, and around the highest drive of the limbs."""
     edge = record.attrs["silent_above"]
-    states = {"walk": record.attrs["walk"], "swim": record.attrs["swim"], "below": edge, "above": edge + _EDGE}
-    found = Measures()
+    states = {"walk": record.attrs["walk"], "swim": record.attrs["swim"], "below": edge, "above": edge + _DRIVE_MARGIN}
+    measures = Measures()
     for name, drive in states.items():
-        one = record.sel(drive=drive, method="nearest")
-        found[f"frequency_{name}"] = Measure(float(one.frequency_axis), "Hz")
+        drive_record = record.sel(drive=drive, method="nearest")
+        measures[f"frequency_{name}"] = Measure(float(drive_record.frequency_axis), "Hz")
         if name in ("walk", "swim"):
-            lags = _lags(one.phase_axis.values)
-            found[f"standing_index_{name}"] = Measure(
-                standing_index(record.bend.values, 2 * np.pi * one.phase_axis.values), "-"
+            lags = _lags(drive_record.phase_axis.values)
+            measures[f"standing_index_{name}"] = Measure(
+                standing_index(record.bend.values, 2 * np.pi * drive_record.phase_axis.values), "-"
             )
-            found[f"lag_{name}"] = Measure(float(np.median(lags)), "cycle")
-            found[f"lag_{name}_least"] = Measure(float(lags.min()), "cycle")
-            found[f"lag_{name}_most"] = Measure(float(lags.max()), "cycle")
-            found[f"frequency_limbs_{name}"] = Measure(float(one.frequency_limbs), "Hz")
-            found[f"amplitude_limbs_{name}"] = Measure(float(one.amplitude_limbs), "-")
-    jump = found["frequency_above"].value / found["frequency_below"].value
-    return found | {"frequency_jump": Measure(jump, "-")}
+            measures[f"lag_{name}"] = Measure(float(np.median(lags)), "cycle")
+            measures[f"lag_{name}_least"] = Measure(float(lags.min()), "cycle")
+            measures[f"lag_{name}_most"] = Measure(float(lags.max()), "cycle")
+            measures[f"frequency_limbs_{name}"] = Measure(float(drive_record.frequency_limbs), "Hz")
+            measures[f"amplitude_limbs_{name}"] = Measure(float(drive_record.amplitude_limbs), "-")
+    jump = measures["frequency_above"].value / measures["frequency_below"].value
+    return measures | {"frequency_jump": Measure(jump, "-")}
 
 
-def _turned(record: xr.Dataset) -> Measures:
-    """Return by how much each walk turns in a cycle, and what unequal drives add."""
+def _turn_measures(record: xr.Dataset) -> Measures:
+    """Return the turn of each walk in a cycle, and its change by unequal drives [rad/cycle]."""
     turns, unit = record.turned / record.walked, "rad/cycle"
-    found = Measures((f"turn_{arm}", Measure(float(turns.sel(arm=arm)), unit)) for arm in record.arm.values)
-    gained = abs(found["turn_asymmetry"].value - found["turn_straight"].value)
-    return found | {"turn_gained": Measure(gained, unit)}
+    measures = Measures((f"turn_{arm}", Measure(float(turns.sel(arm=arm)), unit)) for arm in record.arm.values)
+    gained = abs(measures["turn_asymmetry"].value - measures["turn_straight"].value)
+    return measures | {"turn_gained": Measure(gained, unit)}
 
 
 def _lags(phase: np.ndarray) -> np.ndarray:
@@ -366,7 +404,13 @@ def _lags(phase: np.ndarray) -> np.ndarray:
 
 
 def _locked(record: xr.Dataset, state: str, ending: str) -> Measures:
-    """Return the share of starts that lock, and after how many cycles those do; NaN if none does."""
+    """Return the fraction of starts that lock, and mean and greatest time until they do; NaN if none does.
+
+    Args:
+        record: with ``STATE_error`` over starts and cycles [rad].
+        state: ``walk`` or ``swim``.
+        ending: of the names of the measures.
+    """
     error, cycle = record[f"{state}_error"], record[f"{state}_cycle"]
     step = float(cycle[1] - cycle[0])
     since = (cycle.where(error > record.attrs["within"]).max(str(cycle.dims[0])) + step).fillna(0.0)

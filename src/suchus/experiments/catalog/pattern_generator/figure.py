@@ -26,9 +26,9 @@ def draw_ramp(record: xr.Dataset, robot: Robot) -> Any:
         top, middle, waves, rate = axes[:, 0]
         top.plot(time, drive, color="black")
         top.set_ylabel("drive")
-        out = record.ramp_amplitude * (1.0 + np.cos(2 * np.pi * record.ramp_phase))
+        output = record.ramp_amplitude * (1.0 + np.cos(2 * np.pi * record.ramp_phase))
         for i, (limb, colour) in enumerate(reversed(limb_colours(robot))):
-            middle.fill_between(time, i, i + 0.85 * out.sel(oscillator=limb), color=colour, linewidth=0)
+            middle.fill_between(time, i, i + 0.85 * output.sel(oscillator=limb), color=colour, linewidth=0)
         middle.set_yticks(np.arange(len(limbs)) + 0.3, limbs[::-1])
         middle.set_ylim(-0.15, len(limbs) + 0.1)
         middle.set_ylabel("limbs")
@@ -61,6 +61,7 @@ def _draw_waves(ax: Axes, record: xr.Dataset) -> None:
 
 
 def _draw_rates(ax: Axes, record: xr.Dataset, limb: str) -> None:
+    """Draw the frequency of the axis and of one limb over the ramp, as the slope of their phases [Hz]."""
     for name, label, colour, dashes in (
         (str(record.oscillator.values[0]), "axis", COLOURS["spine"], "-"),
         (limb, "limbs", COLOURS["RF"], (0, (4, 1.5))),
@@ -72,32 +73,34 @@ def _draw_rates(ax: Axes, record: xr.Dataset, limb: str) -> None:
     ax.legend(loc="upper left", ncols=2)
 
 
-def draw_sweep(record: xr.Dataset, numbers: Oscillators) -> Any:
+def draw_sweep(record: xr.Dataset, oscillators: Oscillators) -> Any:
     """Return frequency, amplitude and lags over the drive.
 
     Args:
         record: of the sweep.
-        numbers: of the oscillators, for the lines that they follow alone.
+        oscillators: of the oscillators, for the lines that they follow alone.
     """
     drive, scale = record.drive.values, record.attrs["frequency_scale"]
     fine = np.linspace(0.5, 5.5, 1001)
     with styled():
         figure, axes = panels(1, 3, width=12.5, height=4.0)
         for name, law, colour, size in (
-            ("axis", numbers.axis, COLOURS["spine"], 9),
-            ("limbs", numbers.limbs, COLOURS["RF"], 5),
+            ("axis", oscillators.axis, COLOURS["spine"], 9),
+            ("limbs", oscillators.limbs, COLOURS["RF"], 5),
         ):
-            for ax, line, found in zip(axes[0], law(fine), ("frequency", "amplitude"), strict=False):
-                own = line * (scale if found == "frequency" else 1.0)
-                ax.plot(fine, np.where(own > 0.0, own, np.nan), color=colour, linewidth=1.2, linestyle=(0, (1, 1.2)))
-                ax.plot(drive, record[f"{found}_{name}"], "o", color=colour, label=name, markersize=size)
+            for ax, line, quantity in zip(axes[0], law(fine), ("frequency", "amplitude"), strict=False):
+                curve = line * (scale if quantity == "frequency" else 1.0)
+                ax.plot(
+                    fine, np.where(curve > 0.0, curve, np.nan), color=colour, linewidth=1.2, linestyle=(0, (1, 1.2))
+                )
+                ax.plot(drive, record[f"{quantity}_{name}"], "o", color=colour, label=name, markersize=size)
                 ax.set_xlabel("drive")
         axes[0, 0].set_ylabel("frequency [Hz]")
         axes[0, 1].set_ylabel("amplitude")
         axes[0, 0].legend(loc="upper left")
         for state, marker in (("walk", "o"), ("swim", "s")):
-            one = record.sel(drive=record.attrs[state], method="nearest")
-            lag = -np.unwrap(2 * np.pi * one.phase_axis.values) / (2 * np.pi)
+            drive_record = record.sel(drive=record.attrs[state], method="nearest")
+            lag = -np.unwrap(2 * np.pi * drive_record.phase_axis.values) / (2 * np.pi)
             axes[0, 2].plot(record.segment, lag, marker=marker, label=f"drive {record.attrs[state]:g}")
         axes[0, 2].set_xlabel("segment, from the head")
         axes[0, 2].set_ylabel("behind the first [cycle]")

@@ -1,4 +1,4 @@
-"""One drive from the water onto the land: a pattern generator whose drive never changes, and the load that it feels."""
+"""One drive from the water onto the land: a pattern generator with a constant drive and a load sensor."""
 
 from math import sin
 
@@ -13,29 +13,29 @@ from suchus.robot.motion import START, Gait
 from suchus.sim.land import Lake, Run
 
 ARMS = ("felt", "unfelt")
-"""With the load felt, and without."""
-_BEGUN = 1.0
-"""Time after the begin of the walk from which is measured; the low pass of the load has settled [s]."""
+"""With the sensed load, and without."""
+_SETTLING_TIME = 1.0
+"""Time after the start of the walk at which measuring begins; the low pass of the load has settled [s]."""
 _SILENT = 0.02
 """Rate below which the limbs' clock stands still [cycle/s]; walking at the lowest drive it is six times as much."""
 
 
-def runs(robot: Robot, gait: Gait, drive: float, slope: float, line: float) -> list[Run]:
-    """Return a run towards a shore with the load felt, and one without.
+def runs(robot: Robot, gait: Gait, drive: float, slope: float, water_line: float) -> list[Run]:
+    """Return a run towards a shore with the sensed load, and one without.
 
     Args:
-        robot: who floats.
-        gait: whose bends and foot paths are followed.
+        robot: a floating robot.
+        gait: gives bends and foot paths.
         drive: of the oscillators, for the whole run [-].
         slope: of the shore [rad].
-        line: distance of the water line ahead, along the ground [m].
+        water_line: distance of the water line ahead, along the ground [m].
     """
     return [
         Run(
             robot=robot,
             gait=gait,
             ground=Ground(uphill=slope),
-            lake=Lake(level=line * sin(slope)),
+            lake=Lake(level=water_line * sin(slope)),
             control=PatternGenerator(drive=drive, load=rule),
             label=arm,
         )
@@ -43,13 +43,18 @@ def runs(robot: Robot, gait: Gait, drive: float, slope: float, line: float) -> l
     ]
 
 
-def reduced(record: xr.Dataset, line: float) -> xr.Dataset:
-    """Return what is kept of these runs: distance up the shore from the water line, and the limbs' clock."""
+def reduced(record: xr.Dataset, water_line: float) -> xr.Dataset:
+    """Return the stored part of these runs: distance up the shore from the water line, limb phase, load on the feet.
+
+    Args:
+        record: of the runs, in the order of ``ARMS``.
+        water_line: distance of the water line from the start, along the ground [m].
+    """
     limbs = record.limb_phase.isel(leg=0, drop=True)
-    ahead = record.centre_of_mass.sel(xyz="x", drop=True) - line
+    distance = record.centre_of_mass.sel(xyz="x", drop=True) - water_line
     return xr.Dataset(
         {
-            "shore_ahead": (("shore_arm", "shore_time"), ahead.values, {"units": "m"}),
+            "shore_ahead": (("shore_arm", "shore_time"), distance.values, {"units": "m"}),
             "shore_limbs": (("shore_arm", "shore_time"), limbs.values, {"units": "1", "long_name": "[cycle]"}),
             "shore_feet": (("shore_arm", "shore_time"), record.feet_share.values, {"units": "1"}),
         },
@@ -58,29 +63,29 @@ def reduced(record: xr.Dataset, line: float) -> xr.Dataset:
 
 
 def measures(record: xr.Dataset) -> Measures:
-    """Return how it swims and walks by one drive: speeds, changes, and how far it comes."""
-    late = record.sel(shore_time=slice(START + _BEGUN - 1e-9, None))
-    time, ahead = late.shore_time.values, late.shore_ahead.sel(shore_arm="felt").values
+    """Return speeds afloat and ashore, number of changes between them, and the distance reached, by one drive."""
+    steady_record = record.sel(shore_time=slice(START + _SETTLING_TIME - 1e-9, None))
+    time, distance = steady_record.shore_time.values, steady_record.shore_ahead.sel(shore_arm="felt").values
     step = np.diff(time)
-    silent = np.diff(late.shore_limbs.sel(shore_arm="felt").values) / step < _SILENT
-    speed = np.diff(ahead) / step
+    silent = np.diff(steady_record.shore_limbs.sel(shore_arm="felt").values) / step < _SILENT
+    speed = np.diff(distance) / step
     parts = {"swim": silent, "walk": ~silent}
     measures_of_arm = Measures(
         {
-            f"drive_{name}_speed": Measure(float(speed[part].mean()) if part.any() else float("nan"), "m/s")
-            for name, part in parts.items()
+            f"drive_{name}_speed": Measure(float(speed[mask].mean()) if mask.any() else float("nan"), "m/s")
+            for name, mask in parts.items()
         }
     )
-    unfelt = late.shore_ahead.sel(shore_arm="unfelt").values
+    unfelt = steady_record.shore_ahead.sel(shore_arm="unfelt").values
     return Measures(
         measures_of_arm,
         {
             "drive_changes": Measure(float(np.count_nonzero(np.diff(silent.astype(int)))), "-"),
             "drive_afloat_share": Measure(float(silent.mean()), "-"),
-            "drive_ashore": Measure(float(ahead[-1]), "m"),
+            "drive_ashore": Measure(float(distance[-1]), "m"),
             "drive_ashore_unfelt": Measure(float(unfelt[-1]), "m"),
             "drive_feet_walking": Measure(
-                float(late.shore_feet.sel(shore_arm="felt").values[1:][~silent][-len(time) // 4 :].mean())
+                float(steady_record.shore_feet.sel(shore_arm="felt").values[1:][~silent][-len(time) // 4 :].mean())
                 if (~silent).any()
                 else float("nan"),
                 "-",

@@ -26,30 +26,30 @@ from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 RULES = ("open", "closed", "steered", "pattern")
 LOSES = 0.02
-"""Share of its displacement from whose loss on a rule is flagged [-]; a real walk scatters by about as much."""
+"""Relative change of the displacement above which a rule is flagged [-]; real walks scatter by about as much."""
 TURNS = radians(5.0)
-"""Further change of heading from which on it is flagged [rad]."""
+"""Additional change of heading above which a rule is flagged [rad]."""
 ENOUGH = 2.0
-"""Cycles below which no wire is judged [-]: a rule needs about one to answer."""
-_UNHEARD = DriveLimits(silent=10_000, patience=10.0)  # what is studied here is what losses do, not when to stop
+"""Fewest cycles with which a wire is judged [-]; a rule takes about one cycle to respond."""
+_DRIVE_LIMITS = DriveLimits(silent=10_000, patience=10.0)  # lost packets must not stop the walk here
 
 
 class Wire(NamedTuple):
     """One kind of imperfect wire."""
 
     name: str
-    """As tables name it."""
+    """Name in tables."""
     trouble: Trouble
-    """What is imperfect."""
+    """Its imperfections."""
 
 
 class Rehearsed(NamedTuple):
     """A walk over an emulated bus."""
 
     log: xr.Dataset
-    """What the robot said."""
+    """Log of the driver: commands and readings."""
     truth: xr.Dataset
-    """What truly happened."""
+    """Record of the emulated body."""
 
 
 def rehearse(
@@ -62,29 +62,29 @@ def rehearse(
     trouble: Trouble | None = None,
     built: Wiring | None = None,
 ) -> Rehearsed:
-    """Let a robot walk over an emulated bus whose time is told.
+    """Simulate a walk over an emulated bus whose clock is set by the driver.
 
     Args:
         robot: the robot.
-        gait: in which it walks.
-        control: what decides.
-        duration: the first second of standing included [s].
-        protocol: that its servos speak.
-        trouble: of the wire; none by default.
-        built: how the robot is built, where that is not as its wiring says.
+        gait: of the walk.
+        control: control rule of the walk.
+        duration: with the first second of standing [s].
+        protocol: of the servos.
+        trouble: imperfections of the wire; none by default.
+        built: actual wiring of the robot, where it differs from the configured one.
     """
     wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], USUAL[protocol], boards=True)  # type: ignore[arg-type]
     trouble = trouble or Trouble()
     emulator = Emulator(built or wiring, EmulatedBody(robot, gait, latency=trouble.latency), trouble, clocked=True)
     rig = Rig(robot, wiring, [MemoryPort(emulator)], clocked=True)
-    settings = DriveSettings(duration=duration, stop="hold", limits=_UNHEARD)
+    settings = DriveSettings(duration=duration, stop="hold", limits=_DRIVE_LIMITS)
     log = drive(rig, gait, control, settings, clock=BusClock(rig))
     truth = emulator.body.record()
     return Rehearsed(log, truth.isel(time=slice(log.sizes["time"])))
 
 
 def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
-    """Let a robot be sent goals without a wire: what is left between this and a rehearsed walk is the wire's own.
+    """Simulate a robot that gets its goals without a wire; the difference to a rehearsed walk is due to the wire.
 
     Args:
         robot: the robot.
@@ -92,7 +92,7 @@ def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
         goals: of all servos at every tick, shape (time, servo) [rad].
 
     Returns:
-        What it did, a sample for each row of goals.
+        Record of the body, with a sample for each row of goals.
     """
     body = EmulatedBody(robot, gait)
     for row in goals:
@@ -101,14 +101,14 @@ def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
     return body.record().isel(time=slice(len(goals)))
 
 
-def flagged(lost: float, turned: float) -> bool:
-    """Return whether a wire costs a rule so much that people should know.
+def flagged(displacement_change: float, heading_difference: float) -> bool:
+    """Return whether a wire changes a walk by more than ``LOSES`` or ``TURNS``; NaN counts as more.
 
     Args:
-        lost: change of the displacement, as a share of that without the wire [-].
-        turned: further change of heading [rad].
+        displacement_change: change of the displacement, as a share of that without the wire [-].
+        heading_difference: further change of heading [rad].
     """
-    return not (abs(lost) <= LOSES and abs(turned) <= TURNS)  # what is not a number is flagged
+    return not (abs(displacement_change) <= LOSES and abs(heading_difference) <= TURNS)  # NaN is flagged
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,18 +151,19 @@ class Rehearsal(Experiment):
     """Seed of what is lost [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse unknown protocols and controls, and imperfections of the wire outside their ranges."""
         with Checks(self.name(), self) as check:
             check.number("cycles", 0.1, 100.0, "")
             check.number("rule_cycles", 0.1, 100.0, "")
-            for name, known in (("protocols", USUAL), ("controls", RULES)):
-                unknown = [one for one in getattr(self, name) if one not in known]
-                check.that(not unknown, f"{self.name()}.{name} has {unknown}; there is {', '.join(known)}")
+            for name, options in (("protocols", USUAL), ("controls", RULES)):
+                unknown = [choice for choice in getattr(self, name) if choice not in options]
+                check.that(not unknown, f"{self.name()}.{name} has {unknown}; there is {', '.join(options)}")
             check.that(bool(self.protocols), f"{self.name()}.protocols is empty; one at least is needed")
-            for name, most in (("latencies", 1.0), ("resolutions", 10.0), ("losses", 1.0)):
+            for name, upper_bound in (("latencies", 1.0), ("resolutions", 10.0), ("losses", 1.0)):
                 row = getattr(self, name)
                 check.that(
-                    all(0.0 <= one <= most for one in row) and len(set(row)) == len(row),
-                    f"{self.name()}.{name} is {row}; 0 to {most:g} is allowed, each once",
+                    all(0.0 <= setting <= upper_bound for setting in row) and len(set(row)) == len(row),
+                    f"{self.name()}.{name} is {row}; 0 to {upper_bound:g} is allowed, each once",
                 )
 
     def quick(self) -> "Rehearsal":
@@ -184,47 +185,47 @@ class Rehearsal(Experiment):
         """Walk in the simulation, over ideal wires, and over imperfect ones."""
         wires = list(self.wires())
         steps = len(self.protocols) + len(self.controls) * (1 + len(wires))
-        done = 0
+        finished_steps = 0
 
-        def pass_on(what: str) -> None:
-            nonlocal done
-            done += 1
-            progress(what, done / steps)
+        def report_step(label: str) -> None:
+            nonlocal finished_steps
+            finished_steps += 1
+            progress(label, finished_steps / steps)
 
         duration = START + self.cycles * self.gait.period
         truth = crawl(self.robot, self.gait, duration=duration)
-        off, wired, goal, angle = [], [], [], []
+        position_errors, wire_errors, goal_errors, angle_errors = [], [], [], []
         for protocol in self.protocols:
             walk = rehearse(self.robot, self.gait, OpenLoop(), duration, protocol=protocol)
-            off.append(np.abs(walk.truth.position - truth.position).max("xyz").values)
+            position_errors.append(np.abs(walk.truth.position - truth.position).max("xyz").values)
             direct = sent_directly(self.robot, self.gait, walk.log.servo_target.values)
-            wired.append(np.abs(walk.truth.position - direct.position).max("xyz").values)
-            goal.append(np.abs(walk.log.servo_target - truth.servo_target).max("time").values)
-            angle.append(np.sqrt(((walk.log.servo_angle - truth.servo_angle) ** 2).mean("time")).values)
-            pass_on(protocol)
-        far, turned = np.full((2, len(self.controls), 1 + len(wires)), np.nan)
+            wire_errors.append(np.abs(walk.truth.position - direct.position).max("xyz").values)
+            goal_errors.append(np.abs(walk.log.servo_target - truth.servo_target).max("time").values)
+            angle_errors.append(np.sqrt(((walk.log.servo_angle - truth.servo_angle) ** 2).mean("time")).values)
+            report_step(protocol)
+        distances, headings = np.full((2, len(self.controls), 1 + len(wires)), np.nan)
         for i, rule in enumerate(self.controls):
             control = self.control(rule)
             length = START + (self.cycles if rule == "open" else self.rule_cycles) * self.gait.period
-            alone = crawl(self.robot, self.gait, duration=length, control=control)
-            far[i, 0], turned[i, 0] = _went(alone)
-            pass_on(rule)
+            ideal = crawl(self.robot, self.gait, duration=length, control=control)
+            distances[i, 0], headings[i, 0] = _displacement_and_turn(ideal)
+            report_step(rule)
             for j, wire in enumerate(wires, 1):
                 try:
                     walk = rehearse(self.robot, self.gait, control, length, trouble=wire.trouble)
-                    far[i, j], turned[i, j] = _went(walk.truth)
+                    distances[i, j], headings[i, j] = _displacement_and_turn(walk.truth)
                 except Diverged:
-                    pass  # not a number: flagged
-                pass_on(f"{rule}, {wire.name.replace('_', ' ')}")
+                    pass  # stays NaN, which is flagged
+                report_step(f"{rule}, {wire.name.replace('_', ' ')}")
         step = 2 * np.pi / 4096
         record = xr.Dataset(
             {
-                "position_off": (("protocol", "time"), np.array(off), {"units": "m"}),
-                "wire_off": (("protocol", "time"), np.array(wired), {"units": "m"}),
-                "goal_off": (("protocol", "servo"), np.array(goal), {"units": "rad"}),
-                "angle_off": (("protocol", "servo"), np.array(angle), {"units": "rad"}),
-                "forward": (("rule", "wire"), far, {"units": "m"}),
-                "turned": (("rule", "wire"), turned, {"units": "rad"}),
+                "position_off": (("protocol", "time"), np.array(position_errors), {"units": "m"}),
+                "wire_off": (("protocol", "time"), np.array(wire_errors), {"units": "m"}),
+                "goal_off": (("protocol", "servo"), np.array(goal_errors), {"units": "rad"}),
+                "angle_off": (("protocol", "servo"), np.array(angle_errors), {"units": "rad"}),
+                "forward": (("rule", "wire"), distances, {"units": "m"}),
+                "turned": (("rule", "wire"), headings, {"units": "rad"}),
                 "latency": ("wire", [0.0, *(wire.trouble.latency for wire in wires)], {"units": "s"}),
                 "half_step": ((), step / 2, {"units": "rad"}),
             },
@@ -239,7 +240,7 @@ class Rehearsal(Experiment):
         return Simulated(record=record)
 
     def control(self, rule: str) -> Control:
-        """Return what decides, by its name."""
+        """Return the control of a rule by its name."""
         closed = Coordinated().suited(self.robot, self.gait)
         controls: dict[str, Control] = {
             "open": OpenLoop(),
@@ -250,8 +251,8 @@ class Rehearsal(Experiment):
         return controls[rule]
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return how far the walks differ, and which wires cost which rule too much."""
-        found = Measures(
+        """Return how far the walks differ, and which wires change the walk of which rule too much."""
+        measures = Measures(
             {
                 "position_off": Measure(float(record.position_off.max()), "m"),
                 "wire_off": Measure(float(record.wire_off.max()), "m"),
@@ -261,27 +262,31 @@ class Rehearsal(Experiment):
             }
         )
         count = 0
-        kept: dict[float, bool] = {}
+        is_borne: dict[float, bool] = {}
         for rule in record.rule.values:
-            of = record.sel(rule=rule)
-            ideal = of.isel(wire=0)
-            found[f"forward_{rule}"] = Measure(float(ideal.forward), "m")
+            rule_record = record.sel(rule=rule)
+            ideal = rule_record.isel(wire=0)
+            measures[f"forward_{rule}"] = Measure(float(ideal.forward), "m")
             for wire in record.wire.values[1:]:
-                lost = float(of.forward.sel(wire=wire) / ideal.forward - 1.0)
-                turned = float(of.turned.sel(wire=wire) - ideal.turned)
-                found[f"lost_{rule}_{wire}"] = Measure(lost, "-")
-                found[f"turned_{rule}_{wire}"] = Measure(turned, "rad")
-                bad = flagged(lost, turned)
-                found[f"flagged_{rule}_{wire}"] = Measure(float(bad) if self.judges(str(rule)) else np.nan, "-")
+                displacement_change = float(rule_record.forward.sel(wire=wire) / ideal.forward - 1.0)
+                heading_difference = float(rule_record.turned.sel(wire=wire) - ideal.turned)
+                measures[f"lost_{rule}_{wire}"] = Measure(displacement_change, "-")
+                measures[f"turned_{rule}_{wire}"] = Measure(heading_difference, "rad")
+                bad = flagged(displacement_change, heading_difference)
+                measures[f"flagged_{rule}_{wire}"] = Measure(float(bad) if self.judges(str(rule)) else np.nan, "-")
                 count += bad
-                late = float(record.latency.sel(wire=wire))
-                if late > 0.0:
-                    kept[late] = kept.get(late, True) and not bad
-        borne = [late for late in sorted(kept) if all(kept[other] for other in kept if other <= late)]
-        judged = all(self.judges(rule) for rule in self.controls)
-        return found | {
-            "latency_budget": Measure(max(borne, default=0.0) if judged else np.nan, "s"),
-            "flagged": Measure(float(count) if judged else np.nan, "-"),
+                latency = float(record.latency.sel(wire=wire))
+                if latency > 0.0:
+                    is_borne[latency] = is_borne.get(latency, True) and not bad
+        borne_latencies = [
+            latency
+            for latency in sorted(is_borne)
+            if all(is_borne[shorter_latency] for shorter_latency in is_borne if shorter_latency <= latency)
+        ]
+        is_judged = all(self.judges(rule) for rule in self.controls)
+        return measures | {
+            "latency_budget": Measure(max(borne_latencies, default=0.0) if is_judged else np.nan, "s"),
+            "flagged": Measure(float(count) if is_judged else np.nan, "-"),
         }
 
     def judges(self, rule: str) -> bool:
@@ -298,6 +303,7 @@ class Rehearsal(Experiment):
             return {"rehearsal": self._draw(outcome.record)}
 
     def _draw(self, record: xr.Dataset) -> Figure:
+        """Draw the relative change of displacement by wire and rule, and the angle errors over ideal wires."""
         figure, axes = panels(2, 1, height=7.0)
         wires, rules = record.wire.values[1:], record.rule.values
         colours = [COLOURS["neutral"], COLOURS["coordinated"], COLOURS["tail_drag"], COLOURS["limbs_only"]]
@@ -310,13 +316,13 @@ class Rehearsal(Experiment):
         for side in (-1.0, 1.0):
             bound = "beyond: flagged" if side > 0 else None
             axes[0, 0].axhline(side * 100.0 * LOSES, color=COLOURS["alarm"], linewidth=0.8, linestyle="--", label=bound)
-        axes[0, 0].set_xticks(np.arange(len(wires)), [_words(str(wire)) for wire in wires])
+        axes[0, 0].set_xticks(np.arange(len(wires)), [_wire_label(str(wire)) for wire in wires])
         axes[0, 0].set_ylabel("change of displacement [%]")
         axes[0, 0].legend(loc="lower right", ncols=2)
         servos = [str(name).replace("_", " ") for name in record.servo.values]
         for marker, protocol in zip("ox", record.protocol.values, strict=False):
-            off = np.degrees(record.angle_off.sel(protocol=protocol).values)
-            axes[1, 0].plot(np.arange(len(servos)), off, marker, color=COLOURS["ours"], label=str(protocol))
+            errors = np.degrees(record.angle_off.sel(protocol=protocol).values)
+            axes[1, 0].plot(np.arange(len(servos)), errors, marker, color=COLOURS["ours"], label=str(protocol))
         axes[1, 0].set_xticks(np.arange(len(servos)), servos, rotation=90)
         axes[1, 0].set_ylabel("off [degrees]")
         axes[1, 0].set_ylim(bottom=0.0)
@@ -330,14 +336,14 @@ class Rehearsal(Experiment):
         )
 
 
-def _went(record: xr.Dataset) -> tuple[float, float]:
+def _displacement_and_turn(record: xr.Dataset) -> tuple[float, float]:
     """Return displacement forward [m] and change of heading [rad] of a walk."""
     return float(displacement(record).sel(xyz="x")), float(heading_change(record))
 
 
-def _words(wire: str) -> str:
-    kind, _, rest = wire.partition("_")
-    return f"{kind}\n{rest.replace('_percent', ' %').replace('_degrees', '°').replace('_', ' ')}"
+def _wire_label(wire: str) -> str:
+    kind, _, amount = wire.partition("_")
+    return f"{kind}\n{amount.replace('_percent', ' %').replace('_degrees', '°').replace('_', ' ')}"
 
 
 experiment = Rehearsal()

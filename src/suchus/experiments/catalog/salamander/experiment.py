@@ -40,8 +40,8 @@ _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
 class Salamander(Experiment):
     """The mean walking cycle of Pleurodeles waltl, played on the robot built after it; nothing is fitted.
 
-    Beside it walks the same robot with its axis held straight, and on ground of other friction. Forces are those at
-    the instant of the greatest net force on a foot in the mean cycle, as in the animals' data.
+    For comparison the same robot walks with its axis held straight, and on ground of other friction. Forces are
+    measured at the instant of the greatest net force on a foot in the mean cycle, as in the animals' data.
     """
 
     title = "Does a salamander's own walk, played on its model, walk as the animal does?"
@@ -72,6 +72,7 @@ class Salamander(Experiment):
     """Vertical force from which a foot stands [body weight]; hind feet trail with a tenth of the weight in swing."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
         with Checks(self.name(), self) as check:
             check.whole("settle", 0, 1000)
             check.whole("cycles", 1, 1000)
@@ -84,11 +85,11 @@ class Salamander(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Walk with the animal's angles, with a straight axis, and on other ground."""
-        place = layout(self.robot)
-        if len(place.robot.girdles) < 2:
+        robot_layout = layout(self.robot)
+        if len(robot_layout.robot.girdles) < 2:
             raise UnsuitedRobot(
                 f"the animal's walk needs a robot with two pairs of limbs; robot {self.robot.name!r} has "
-                f"{len(place.robot.girdles)}: choose another robot."
+                f"{len(robot_layout.robot.girdles)}: choose another robot."
             )
         straight = self.gait.without("axis", name=f"{self.gait.name}, straight")
         runs = [
@@ -103,20 +104,21 @@ class Salamander(Experiment):
         ]
         duration = START + (self.settle + self.cycles) * self.gait.period
         record = simulate(runs, duration=duration, progress=staged(progress, "walks", 0.0, 1.0))
-        last = place.limbs[-1].number
+        last_girdle = robot_layout.limbs[-1].number
         record = record.assign_attrs(
             measured_from=START + self.settle * self.gait.period,
             cycles=self.cycles,
             length=float(self.robot.length),
             loaded=self.loaded,
-            axis=[place.servos[i] for i in place.axial_yaw],
-            fore=[limb.name for limb in place.limbs if limb.number == 0],
-            hind=[limb.name for limb in place.limbs if limb.number == last],
+            axis=[robot_layout.servos[i] for i in robot_layout.axial_yaw],
+            fore=[limb.name for limb in robot_layout.limbs if limb.number == 0],
+            hind=[limb.name for limb in robot_layout.limbs if limb.number == last_girdle],
         )
         tables = {"beside_the_animal.csv": beside(self.measure(record))}
         return Simulated(record=record, tables=tables, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the animal's walk, with the walk of the straight axis half transparent, by file name."""
         return replayed(
             "animal_walk_replay.html",
             record.isel(run=0),
@@ -129,49 +131,55 @@ class Salamander(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return wave, stride, foot forces and slip of the walk, and what axis and friction change."""
-        when, length = measured_window(record), float(record.attrs["length"])
+        cycle_window, length = measured_window(record), float(record.attrs["length"])
         walk = record.isel(run=0)
-        stride = [float(np.hypot(*advance(record.isel(run=i), when))) / length for i in range(record.sizes["run"])]
-        turned = float(heading_change(walk, when.start, when.end)) / when.cycles
-        body = _under_load(walk, when)
+        stride = [
+            float(np.hypot(*advance(record.isel(run=i), cycle_window))) / length for i in range(record.sizes["run"])
+        ]
+        turn_per_cycle = float(heading_change(walk, cycle_window.start, cycle_window.end)) / cycle_window.cycles
+        body = _under_load(walk, cycle_window)
         return Measures(
-            waves(walk, when),
+            waves(walk, cycle_window),
             {
                 "stride_walk": Measure(stride[0], "body length"),
                 "stride_straight_axis": Measure(stride[1], "body length"),
                 "stride_low": Measure(min([stride[0], *stride[2:]]), "body length"),
                 "stride_high": Measure(max([stride[0], *stride[2:]]), "body length"),
-                "turn_per_cycle": Measure(turned, "rad"),
-                "way_forward": Measure(float(displacement(walk, when.start, when.end).sel(xyz="x")), "m"),
+                "turn_per_cycle": Measure(turn_per_cycle, "rad"),
+                "way_forward": Measure(
+                    float(displacement(walk, cycle_window.start, cycle_window.end).sel(xyz="x")), "m"
+                ),
             },
-            steps(walk, when, float(record.attrs["loaded"])),
+            steps(walk, cycle_window, float(record.attrs["loaded"])),
             body,
         )
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Set wave and forces beside the animal's, and say what the axis adds."""
+        """Return a comparison of wave and forces with the animal's, and the effect of the axis, in words."""
         return self.told(measures, animal=ANIMAL)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the joint angles over the cycle, and the foot forces beside the animal's."""
         record = outcome.record
-        when, walk = measured_window(record), record.isel(run=0)
-        force, least = stance_forces(walk, when), float(record.attrs["loaded"])
+        cycle_window, walk = measured_window(record), record.isel(run=0)
+        force, stance_threshold = stance_forces(walk, cycle_window), float(record.attrs["loaded"])
         return {
-            "joint_angles": draw_angles(walk, when),
-            "foot_forces": draw_feet(force, {pair: list(record.attrs[pair]) for pair in PAIRS}, least, ANIMAL),
+            "joint_angles": draw_angles(walk, cycle_window),
+            "foot_forces": draw_feet(
+                force, {pair: list(record.attrs[pair]) for pair in PAIRS}, stance_threshold, ANIMAL
+            ),
         }
 
 
-def _under_load(record: xr.Dataset, when: Window) -> Measures:
-    """Return what belly and tail carry of the weight in the mean, and how long the belly touches."""
-    part = record.sel(time=slice(when.start - 1e-9, when.end + 1e-9))
-    belly = part.belly_force.sel(xyz="z").sum("segment")
+def _under_load(record: xr.Dataset, cycle_window: Window) -> Measures:
+    """Return the mean load on belly and tail over the weight, and the fraction of time with belly contact [-]."""
+    excerpt = record.sel(time=slice(cycle_window.start - 1e-9, cycle_window.end + 1e-9))
+    belly = excerpt.belly_force.sel(xyz="z").sum("segment")
     return Measures(
         {
             "belly_load": Measure(float(belly.mean()) / weight(record), "-"),
             "belly_share": Measure(float((belly > 0.0).mean()), "-"),
-            "tail_load": Measure(float(part.tail_force.sel(xyz="z").mean()) / weight(record), "-"),
+            "tail_load": Measure(float(excerpt.tail_force.sel(xyz="z").mean()) / weight(record), "-"),
         }
     )
 

@@ -46,8 +46,8 @@ class SalamanderSwim(Experiment):
     frequency is repeated with factors on each of them. Beside the model, which is 0.1 m long and lighter than the
     animal, swim the animal and others at their own length, mass and volume, each with its own wave.
 
-    Of how far it comes, the two slender-body theories are asked too (``rules.LADDER``), a body in line with its mean
-    course. ``stride_sections`` is the mean of two halves of the measured cycles, ``_apart`` how far these are apart.
+    The two slender-body theories give a stride too (``rules.LADDER``), of a body that is aligned with its mean course.
+    ``stride_sections`` is the mean of two halves of the measured cycles, ``_apart`` how far these are apart.
     """
 
     title = "How does a salamander's own swim, played joint by joint on its model, swim?"
@@ -72,6 +72,7 @@ class SalamanderSwim(Experiment):
     """Animals that swim at their own length, mass and volume, see ``own_size.ANIMALS``."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and animals that are not in ``own_size.ANIMALS``."""
         with Checks(self.name(), self) as check:
             check.rising("frequencies", 0.1, 20.0, "Hz")
             check.whole("settle", 0, 1000)
@@ -103,43 +104,45 @@ class SalamanderSwim(Experiment):
         records = []
         for i, frequency in enumerate(self.frequencies):
             gait = animal.played(self.robot, frequency)
-            tried = waters if i == len(self.frequencies) - 1 else waters[:1]
-            runs = [Run(robot=self.robot, gait=gait, lake=one, label=f"{frequency:g} Hz") for one in tried]
-            part = (0.7 * i / len(self.frequencies), 0.7 * (i + 1) / len(self.frequencies))
-            stage = staged(progress, f"swim at {frequency:g} Hz", *part)
+            lakes = waters if i == len(self.frequencies) - 1 else waters[:1]
+            runs = [
+                Run(robot=self.robot, gait=gait, lake=lake_variant, label=f"{frequency:g} Hz") for lake_variant in lakes
+            ]
+            stage_bounds = (0.7 * i / len(self.frequencies), 0.7 * (i + 1) / len(self.frequencies))
+            stage = staged(progress, f"swim at {frequency:g} Hz", *stage_bounds)
             records.append(simulate(runs, duration=(self.settle + self.cycles) / frequency, progress=stage))
-        last = records[-1].isel(run=[0])
+        fastest_record = records[-1].isel(run=[0])
         animals = own_size.swum(
             self.own_size, settle=self.settle, cycles=self.cycles,
             progress=staged(progress, "animals of their own size", 0.7, 1.0),
         )  # fmt: skip
-        whole = last.merge(self._swims(records), combine_attrs="override", compat="no_conflicts").merge(
+        full_record = fastest_record.merge(self._swims(records), combine_attrs="override", compat="no_conflicts").merge(
             animals, combine_attrs="override", compat="no_conflicts"
         )
-        return Simulated(record=whole, replays=self._replays(whole))
+        return Simulated(record=full_record, replays=self._replays(full_record))
 
     def _swims(self, records: list[xr.Dataset]) -> xr.Dataset:
         """Return stride, swing and envelope of each swim, and the strides in other waters."""
-        strides, envelopes, turned, under, heel = [], [], [], [], []
+        strides, envelopes, angle_errors, submerged_fractions, heel = [], [], [], [], []
         for record, frequency in zip(records, self.frequencies, strict=True):
             start = self.settle / frequency
             strides.append([self._stride(record.isel(run=i), start, self.cycles) for i in range(record.sizes["run"])])
             envelopes.append(animal.envelope(self.robot, record.isel(run=0), start, 1.0 / frequency))
             names = [name for name in record.servo.values if name in record.joint.values]
-            missed = record.joint_angle.sel(joint=names).values - record.servo_target.sel(servo=names).values
-            turned.append(float(np.sqrt((missed[0] ** 2).mean())))
-            part = record.isel(run=0).sel(time=slice(start - 1e-9, None))
-            under.append(float(part.share_under.mean()))
-            heel.append(float(np.abs(rotation.heel(part.orientation.values)).max()))
+            angle_error = record.joint_angle.sel(joint=names).values - record.servo_target.sel(servo=names).values
+            angle_errors.append(float(np.sqrt((angle_error[0] ** 2).mean())))
+            excerpt = record.isel(run=0).sel(time=slice(start - 1e-9, None))
+            submerged_fractions.append(float(excerpt.share_under.mean()))
+            heel.append(float(np.abs(rotation.heel(excerpt.orientation.values)).max()))
         units = {"units": "body length"}
         return xr.Dataset(
             {
                 "stride": ("swim", [lengths[0] for lengths in strides], units),
                 "stride_other": ("water", strides[-1], units),
                 "stride_rung": (("rung", "swim", "half"), self._rungs(records), units),
-                "swing": (("swim", "point"), [one.swing for one in envelopes], units),
-                "missed": ("swim", turned, {"units": "rad"}),
-                "under": ("swim", under, {"units": "1"}),
+                "swing": (("swim", "point"), [envelope.swing for envelope in envelopes], units),
+                "missed": ("swim", angle_errors, {"units": "rad"}),
+                "under": ("swim", submerged_fractions, {"units": "1"}),
                 "heel": ("swim", heel, {"units": "rad"}),
             },
             coords={
@@ -150,29 +153,32 @@ class SalamanderSwim(Experiment):
         )
 
     def _rungs(self, records: list[xr.Dataset]) -> np.ndarray:
-        """Return the strides by rung, swim and half of the measured cycles; NaN where a theory knows no such body."""
-        found = np.full((len(LADDER), len(records), 2), np.nan)
-        outline, long = Outline(self.robot), self.robot.length
+        """Return the strides by rung, swim and half of the measured cycles [body length]; NaN where a theory cannot."""
+        strides = np.full((len(LADDER), len(records), 2), np.nan)
+        outline, length = Outline(self.robot), self.robot.length
         for i, (record, frequency) in enumerate(zip(records, self.frequencies, strict=True)):
             gait, half = animal.played(self.robot, frequency), self.cycles // 2 / frequency
             for rung, model in MODELS.items():
                 with suppress(SuchusError):
-                    found[list(LADDER).index(rung), i] = cruise(outline, gait, model, Water()).speed / frequency / long
+                    strides[list(LADDER).index(rung), i] = (
+                        cruise(outline, gait, model, Water()).speed / frequency / length
+                    )
             for j in (0, 1) if self.cycles > 1 else ():
                 start = self.settle / frequency + j * half
-                part = record.isel(run=0).sel(time=slice(None, start + half + 1e-9))
-                found[list(LADDER).index("sections"), i, j] = self._stride(part, start, self.cycles // 2)
-        return found
+                excerpt = record.isel(run=0).sel(time=slice(None, start + half + 1e-9))
+                strides[list(LADDER).index("sections"), i, j] = self._stride(excerpt, start, self.cycles // 2)
+        return strides
 
     def _stride(self, record: xr.Dataset, start: float, cycles: int) -> float:
-        """Return how far the centre of mass of one run comes in a cycle, less than 0 tail first [body length]."""
-        part = record.sel(time=slice(start - 1e-9, None))
-        way = part.centre_of_mass.transpose("time", "xyz").values[[0, -1], :2]
-        facing = rotation.rotate(part.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))
-        distance = float(np.hypot(*(way[1] - way[0]))) / cycles / self.robot.length
-        return float(np.copysign(distance, (way[1] - way[0]) @ facing[:, :2].mean(axis=0)))
+        """Return the displacement of the centre of mass in a cycle; negative if it moves tail first [body length]."""
+        excerpt = record.sel(time=slice(start - 1e-9, None))
+        path_ends = excerpt.centre_of_mass.transpose("time", "xyz").values[[0, -1], :2]
+        facing = rotation.rotate(excerpt.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))
+        distance = float(np.hypot(*(path_ends[1] - path_ends[0]))) / cycles / self.robot.length
+        return float(np.copysign(distance, (path_ends[1] - path_ends[0]) @ facing[:, :2].mean(axis=0)))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the swim at the highest frequency, by file name."""
         return replayed(
             "animal_swim_replay.html",
             record.isel(run=0),
@@ -183,39 +189,39 @@ class SalamanderSwim(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return stride, Strouhal number and envelope of the swims, and how far off the animal's stride they are."""
-        found, strides = Measures(), record.stride.values
+        measures, strides = Measures(), record.stride.values
         for i, frequency in enumerate(record.frequency.values):
             name = f"{frequency:g}".replace(".", "_")
-            found[f"stride_swim_{name}"] = Measure(float(strides[i]), "body length")
-            found |= similar(self._numbers(frequency, strides[i], float(record.swing[i, -1])), f"_{name}")
-        other, mean = record.stride_other.values, float(strides.mean())
-        middle = record.swing.mean("swim").values
+            measures[f"stride_swim_{name}"] = Measure(float(strides[i]), "body length")
+            measures |= similar(self._numbers(frequency, strides[i], float(record.swing[i, -1])), f"_{name}")
+        other_strides, mean = record.stride_other.values, float(strides.mean())
+        mean_swing = record.swing.mean("swim").values
         swims = zip(record.frequency.values, strides, record.swing.values[:, -1], strict=True)
-        whole = SwimNumbers(*np.mean([self._numbers(*one) for one in swims], axis=0).tolist())
-        least = int(middle.argmin())
-        return found | {
+        mean_numbers = SwimNumbers(*np.mean([self._numbers(*swim) for swim in swims], axis=0).tolist())
+        narrowest_index = int(mean_swing.argmin())
+        return measures | {
             "stride_swim": Measure(mean, "body length"),
             "stride_off": Measure(mean / animal.STRIDE - 1.0, "-"),
-            "stride_least": Measure(float(other.min()), "body length"),
-            "stride_most": Measure(float(other.max()), "body length"),
-            **similar(whole),
-            "swing_snout": Measure(float(middle[0]), "body length"),
-            "swing_least": Measure(float(middle[least]), "body length"),
-            "swing_least_at": Measure(float(record.place[least]), "body length"),
-            "swing_tail": Measure(float(middle[-1]), "body length"),
+            "stride_least": Measure(float(other_strides.min()), "body length"),
+            "stride_most": Measure(float(other_strides.max()), "body length"),
+            **similar(mean_numbers),
+            "swing_snout": Measure(float(mean_swing[0]), "body length"),
+            "swing_least": Measure(float(mean_swing[narrowest_index]), "body length"),
+            "swing_least_at": Measure(float(record.place[narrowest_index]), "body length"),
+            "swing_tail": Measure(float(mean_swing[-1]), "body length"),
             "share_under": Measure(float(record.under.mean()), "-"),
             "heel": Measure(float(record.heel.max()), "rad"),
             "angle_missed": Measure(float(record.missed.max()), "rad"),
             "trim_submerged": Measure(own_size.trim_submerged(self.robot), "rad"),
-            **dict(_of_rungs(record)),
+            **dict(_rung_measures(record)),
             **own_size.measures(record),
         }
 
     def _numbers(self, frequency: float, stride: float, swing: float) -> SwimNumbers:
-        """Return the numbers of a swim whose stride and way of the tail are in body lengths."""
-        long = self.robot.length
+        """Return the similarity numbers of a swim whose stride and tail swing are in body lengths."""
+        length = self.robot.length
         return swim_numbers(
-            speed=stride * long * frequency, length=long, frequency=frequency, swing=swing * long,
+            speed=stride * length * frequency, length=length, frequency=frequency, swing=swing * length,
             viscosity=Water().viscosity,
         )  # fmt: skip
 
@@ -230,17 +236,17 @@ class SalamanderSwim(Experiment):
         return figures | ({"own_size": own_size.draw(record, animal.STRIDE)} if "animal" in record.dims else {})
 
 
-def _of_rungs(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
-    """Return every rung's stride and how far it is off the animal's, with the two halves of the cycles."""
+def _rung_measures(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield every rung's stride and its relative error, with bounds and spread over two halves of the cycles."""
     for rung in record.rung.values:
         halves = record.stride_rung.sel(rung=rung).mean("swim", skipna=False).values
-        apart = float(np.ptp(halves)) / max(abs(float(halves.mean())), 1e-9)
+        spread = float(np.ptp(halves)) / max(abs(float(halves.mean())), 1e-9)
         ends = {"": halves.mean(), "_low": halves.min(), "_high": halves.max()}
-        for end, one in ends.items():
-            yield f"stride_{rung}{end}", Measure(float(one), "body length")
-            yield f"stride_off_{rung}{end}", Measure(float(one) / animal.STRIDE - 1.0, "-")
-        yield f"stride_{rung}_apart", Measure(apart, "-")
-        yield f"stride_off_{rung}_apart", Measure(apart, "-")
+        for end, stride in ends.items():
+            yield f"stride_{rung}{end}", Measure(float(stride), "body length")
+            yield f"stride_off_{rung}{end}", Measure(float(stride) / animal.STRIDE - 1.0, "-")
+        yield f"stride_{rung}_apart", Measure(spread, "-")
+        yield f"stride_off_{rung}_apart", Measure(spread, "-")
 
 
 def draw_strides(record: xr.Dataset, animal: float) -> Figure:
@@ -250,16 +256,16 @@ def draw_strides(record: xr.Dataset, animal: float) -> Figure:
         record: with ``frequency`` and ``stride`` of each swim, and ``stride_other`` in other waters.
         animal: the animal's stride [body length].
     """
-    frequency, stride, other = record.frequency.values, record.stride.values, record.stride_other.values
+    frequency, stride, other_strides = record.frequency.values, record.stride.values, record.stride_other.values
     with styled():
         figure, axes = panels(1, 1, width=7.0, height=4.2)
         ax = axes[0, 0]
         ax.axhline(animal, color=COLOURS["neutral"], linewidth=1.2, linestyle=(0, (5, 2)), label="the animal, mean")
         ax.plot(frequency, stride, "o-", color=COLOURS["coordinated"], label="its angles on the model")
-        spread = [[stride[-1] - other.min()], [other.max() - stride[-1]]]
+        spread = [[stride[-1] - other_strides.min()], [other_strides.max() - stride[-1]]]
         ax.errorbar(frequency[-1:], stride[-1:], yerr=spread, color=COLOURS["coordinated"], capsize=4)
         ax.set(xlabel="frequency [Hz]", ylabel="stride [body lengths a cycle]")
-        ax.set_ylim(0.0, 1.15 * max(animal, float(other.max()), float(stride.max())))
+        ax.set_ylim(0.0, 1.15 * max(animal, float(other_strides.max()), float(stride.max())))
         ax.legend(loc="lower left")
     return captioned(
         figure,

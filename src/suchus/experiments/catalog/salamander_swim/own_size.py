@@ -28,8 +28,8 @@ from suchus.swimming.water import FilmedWave, fit, swim_of
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 ASTRAY = float(np.radians(90.0))
-"""Heel from which on a body has rolled over [rad]."""
-_DEEP = 4.0  # [body length]
+"""Heel above which a body counts as rolled over [rad]."""
+_WATER_DEPTH = 4.0  # [body length]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,43 +52,47 @@ class OwnSize:
     """Where length, mass, density and swim are from."""
 
 
-def _salamander(one: OwnSize) -> Robot:
-    return pleurodeles(one.length, one.mass, one.density, 0.25, beat=FREQUENCIES[-1])
+def _salamander(animal: OwnSize) -> Robot:
+    return pleurodeles(animal.length, animal.mass, animal.density, 0.25, beat=FREQUENCIES[-1])
 
 
-def _catshark(one: OwnSize) -> Robot:
-    return catshark(one.length, one.mass, one.density, 1.0, 1.0, beat=one.frequency)
+def _catshark(animal: OwnSize) -> Robot:
+    return catshark(animal.length, animal.mass, animal.density, 1.0, 1.0, beat=animal.frequency)
 
 
-def _eel(one: OwnSize) -> Robot:
-    return eel(one.length, one.mass, one.density, beat=one.frequency)
+def _eel(animal: OwnSize) -> Robot:
+    return eel(animal.length, animal.mass, animal.density, beat=animal.frequency)
 
 
-def _alligator(one: OwnSize) -> Robot:
+def _alligator(animal: OwnSize) -> Robot:
     """Return the article's robot with air at the size of an alligator, its axis as wide as the volume asks."""
-    afloat = ROBOTS["floating_caiman"]
-    grown = scaled(afloat, length_factor=one.length / afloat.length, mass_factor=one.mass / afloat.mass)
-    return widened(grown, one.mass / one.density)
+    floating_robot = ROBOTS["floating_caiman"]
+    scaled_robot = scaled(
+        floating_robot,
+        length_factor=animal.length / floating_robot.length,
+        mass_factor=animal.mass / floating_robot.mass,
+    )
+    return widened(scaled_robot, animal.mass / animal.density)
 
 
-def _as_filmed(one: OwnSize, robot: Robot) -> Gait:
-    return played(robot, one.frequency)
+def _filmed_gait(animal: OwnSize, robot: Robot) -> Gait:
+    return played(robot, animal.frequency)
 
 
 def _wave(wavelength: float, head: float, tail: float) -> Callable[[OwnSize, Robot], Gait]:
-    """Return what makes the gait of a wave whose length and amplitudes were filmed [body length]."""
+    """Return a function that makes the gait of a wave with filmed wavelength and amplitudes [body length]."""
 
-    def made(one: OwnSize, robot: Robot) -> Gait:
+    def make_gait(animal: OwnSize, robot: Robot) -> Gait:
         wave = FilmedWave(
-            length=robot.length, frequency=one.frequency, wavelength=wavelength, head=head, tail=tail
+            length=robot.length, frequency=animal.frequency, wavelength=wavelength, head=head, tail=tail
         )  # fmt: skip
         return fit(robot, wave, name="filmed_wave", most=0.4).gait
 
-    return made
+    return make_gait
 
 
-def _of_the_robot(one: OwnSize, robot: Robot) -> Gait:
-    return swim_of(robot, frequency=one.frequency)
+def _robot_wave_gait(animal: OwnSize, robot: Robot) -> Gait:
+    return swim_of(robot, frequency=animal.frequency)
 
 
 _PLEURODELES = (
@@ -106,11 +110,11 @@ _ALLIGATOR = (
 )
 ANIMALS: Mapping[str, OwnSize] = {
     "salamander": OwnSize(
-        length=0.176, mass=0.0163, density=900.0, frequency=2.9, body=_salamander, swim=_as_filmed,
+        length=0.176, mass=0.0163, density=900.0, frequency=2.9, body=_salamander, swim=_filmed_gait,
         source=f"{_PLEURODELES}; lungs filled",
     ),
     "salamander_neutral": OwnSize(
-        length=0.176, mass=0.0163, density=997.0, frequency=2.9, body=_salamander, swim=_as_filmed,
+        length=0.176, mass=0.0163, density=997.0, frequency=2.9, body=_salamander, swim=_filmed_gait,
         source=f"{_PLEURODELES}; air let out until it hovers",
     ),
     "catshark": OwnSize(
@@ -129,11 +133,11 @@ ANIMALS: Mapping[str, OwnSize] = {
         "frequency: Tytell and Lauder 2004, J. Exp. Biol. 207, 1825 [memory]; mass: that volume of water",
     ),
     "alligator_0_3": OwnSize(
-        length=0.3, mass=2.9 * 0.3**3, density=950.0, frequency=1.8, body=_alligator, swim=_of_the_robot,
+        length=0.3, mass=2.9 * 0.3**3, density=950.0, frequency=1.8, body=_alligator, swim=_robot_wave_gait,
         source=_ALLIGATOR,
     ),
     "alligator_1": OwnSize(
-        length=1.0, mass=2.9, density=950.0, frequency=1.0, body=_alligator, swim=_of_the_robot, source=_ALLIGATOR
+        length=1.0, mass=2.9, density=950.0, frequency=1.0, body=_alligator, swim=_robot_wave_gait, source=_ALLIGATOR
     ),
 }  # fmt: skip
 """The animals by name."""
@@ -146,21 +150,23 @@ CALLED: Mapping[str, str] = {
     "alligator_0_3": "alligator of 0.3 m",
     "alligator_1": "alligator of 1 m",
 }
-"""What they are called in sentences and figures."""
+"""Labels of the animals in sentences and figures."""
 
 
 def swum(names: Sequence[str], *, settle: int, cycles: int, progress: Progress) -> xr.Dataset:
     """Return how animals at their own size float and swim, over ``animal``.
 
-    Each is let go upright at the surface, or on the ground where it sinks, and swims.
+    Each starts upright at the surface, or on the ground if it sinks, and swims.
 
     Args:
         names: in ``ANIMALS``.
         settle: cycles before anything is measured [-].
         cycles: that are measured [-].
-        progress: told the share that is done.
+        progress: called with the fraction that is done.
     """
-    rows = [_swum(ANIMALS[name], settle, cycles, portion(progress, i, len(names))) for i, name in enumerate(names)]
+    rows = [
+        _swim_animal(ANIMALS[name], settle, cycles, portion(progress, i, len(names))) for i, name in enumerate(names)
+    ]
     data = {f"own_{key}": ("animal", [row[key] for row in rows], {"units": unit}) for key, unit in _KEPT.items()}
     return xr.Dataset(data, coords={"animal": list(names)})
 
@@ -171,94 +177,106 @@ _KEPT = {
 }  # fmt: skip
 
 
-def _swum(one: OwnSize, settle: int, cycles: int, progress: Progress) -> dict[str, float]:
-    robot = one.body(one)
-    gait = one.swim(one, robot)
+def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) -> dict[str, float]:
+    """Return size, stability and swim of one animal by quantity, each in its unit of ``_KEPT``.
+
+    The swim is measured over the last ``cycles``. The speed is negative where the animal moves tail first.
+
+    Args:
+        animal: the animal at its own size.
+        settle: cycles before anything is measured [-].
+        cycles: measured cycles [-].
+        progress: called with the fraction that is done.
+    """
+    robot = animal.body(animal)
+    gait = animal.swim(animal, robot)
     straight = cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0)  # limbs as they are held
-    afloat = hydrostatics(robot, straight)
+    flotation = hydrostatics(robot, straight)
     run = Run(
-        robot=robot, gait=gait, lake=Lake(level=_DEEP * robot.length), label=robot.name,
+        robot=robot, gait=gait, lake=Lake(level=_WATER_DEPTH * robot.length), label=robot.name,
         control=Swimming(ramp=0.0 if gait.curves else gait.period),
     )  # fmt: skip
     record = simulate([run], duration=(settle + cycles) * gait.period, progress=progress).isel(run=0)
-    part = record.sel(time=slice(settle * gait.period - 1e-9, None))
-    centre = part.centre_of_mass.transpose("time", "xyz").values
-    lasts = float(part.time[-1] - part.time[0])
-    way = centre[-1] - centre[0]
-    facing = rotation.rotate(part.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))
-    course = way[:2] / max(float(np.hypot(*way[:2])), 1e-12)
-    aside = (part.tail_tip.transpose("time", "xyz").values - centre)[:, :2] @ np.array([-course[1], course[0]])
-    ahead = float(np.sign(way[:2] @ facing[:, :2].mean(axis=0)))
-    names = [name for name in part.servo.values if name in part.joint.values]
-    missed = part.joint_angle.sel(joint=names).values - part.servo_target.sel(servo=names).values
+    excerpt = record.sel(time=slice(settle * gait.period - 1e-9, None))
+    centre = excerpt.centre_of_mass.transpose("time", "xyz").values
+    duration = float(excerpt.time[-1] - excerpt.time[0])
+    displacement = centre[-1] - centre[0]
+    facing = rotation.rotate(excerpt.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))
+    course = displacement[:2] / max(float(np.hypot(*displacement[:2])), 1e-12)
+    lateral_offset = (excerpt.tail_tip.transpose("time", "xyz").values - centre)[:, :2] @ np.array(
+        [-course[1], course[0]]
+    )
+    direction_sign = float(np.sign(displacement[:2] @ facing[:, :2].mean(axis=0)))
+    names = [name for name in excerpt.servo.values if name in excerpt.joint.values]
+    angle_error = excerpt.joint_angle.sel(joint=names).values - excerpt.servo_target.sel(servo=names).values
     return {
         "length": robot.length, "mass": robot.mass, "volume": sum(volumes(robot).values()),
-        "frequency": gait.frequency, "keel": afloat.metacentric_height,
-        "trim": afloat.trim if afloat.floats else afloat.trim_submerged, "vanishing": afloat.vanishing,
-        "speed": ahead * float(np.hypot(*way[:2])) / lasts, "surplus": afloat.surplus,
-        "heel": float(np.abs(rotation.heel(part.orientation.values)).max()),
-        "pitch": float(rotation.pitch(part.orientation.values).mean()),
-        "under": float(part.share_under.mean()), "swing": float(np.ptp(aside)),
-        "missed": float(np.sqrt((missed**2).mean())),
+        "frequency": gait.frequency, "keel": flotation.metacentric_height,
+        "trim": flotation.trim if flotation.floats else flotation.trim_submerged, "vanishing": flotation.vanishing,
+        "speed": direction_sign * float(np.hypot(*displacement[:2])) / duration, "surplus": flotation.surplus,
+        "heel": float(np.abs(rotation.heel(excerpt.orientation.values)).max()),
+        "pitch": float(rotation.pitch(excerpt.orientation.values).mean()),
+        "under": float(excerpt.share_under.mean()), "swing": float(np.ptp(lateral_offset)),
+        "missed": float(np.sqrt((angle_error**2).mean())),
     }  # fmt: skip
 
 
 def trim_submerged(robot: Robot) -> float:
-    """Return at which pitch a robot would hover that plays the animal's swim, nose down positive [rad]."""
+    """Return the equilibrium pitch of a submerged robot in the mean posture of the swim, nose down positive [rad]."""
     gait = played(robot, FREQUENCIES[0])
     return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heels=3).trim_submerged
 
 
 def measures(record: xr.Dataset) -> Measures:
-    """Return of each animal what it is, how it floats and how it swims; nothing if none was asked."""
-    found = Measures()
+    """Return size, stability and swim of each animal; nothing if the record has none."""
+    animal_measures = Measures()
     for name in record.animal.values if "animal" in record.dims else ():
-        one = {key: float(record[f"own_{key}"].sel(animal=name)) for key in _KEPT}
-        long, often = one["length"], one["frequency"]
+        row = {key: float(record[f"own_{key}"].sel(animal=name)) for key in _KEPT}
+        length, frequency = row["length"], row["frequency"]
         for key in ("length", "mass", "volume", "trim", "vanishing", "heel", "pitch"):
-            found[f"{key}_{name}"] = Measure(one[key], _KEPT[key])
-        found |= {
-            f"density_{name}": Measure(one["mass"] / one["volume"], "kg/m3"),
-            f"metacentric_height_{name}": Measure(one["keel"], "m"),
-            f"share_under_{name}": Measure(one["under"], "-"),
-            f"too_heavy_{name}": Measure(one["surplus"] / one["mass"], "-"),
-            f"speed_{name}": Measure(one["speed"] / long, "body length/s"),
-            f"stride_{name}": Measure(one["speed"] / often / long, "body length"),
-            f"angle_missed_{name}": Measure(one["missed"], "rad"),
+            animal_measures[f"{key}_{name}"] = Measure(row[key], _KEPT[key])
+        animal_measures |= {
+            f"density_{name}": Measure(row["mass"] / row["volume"], "kg/m3"),
+            f"metacentric_height_{name}": Measure(row["keel"], "m"),
+            f"share_under_{name}": Measure(row["under"], "-"),
+            f"too_heavy_{name}": Measure(row["surplus"] / row["mass"], "-"),
+            f"speed_{name}": Measure(row["speed"] / length, "body length/s"),
+            f"stride_{name}": Measure(row["speed"] / frequency / length, "body length"),
+            f"angle_missed_{name}": Measure(row["missed"], "rad"),
         }
         numbers = swim_numbers(
-            speed=one["speed"], length=long, frequency=often, swing=one["swing"], viscosity=Water().viscosity
+            speed=row["speed"], length=length, frequency=frequency, swing=row["swing"], viscosity=Water().viscosity
         )
-        found |= similar(numbers, f"_{name}")
-    return found
+        animal_measures |= similar(numbers, f"_{name}")
+    return animal_measures
 
 
-def draw(record: xr.Dataset, filmed: float) -> Figure:
+def draw(record: xr.Dataset, filmed_stride: float) -> Figure:
     """Draw how far each animal comes in a cycle, and how it lies in the water.
 
     Args:
         record: with ``animal``.
-        filmed: stride of the salamander that was filmed [body length].
+        filmed_stride: stride of the salamander that was filmed [body length].
     """
-    names, place = [str(name) for name in record.animal.values], np.arange(record.sizes["animal"])
+    names, rows = [str(name) for name in record.animal.values], np.arange(record.sizes["animal"])
     stride = (record.own_speed / record.own_frequency / record.own_length).values
     heel, pitch = np.degrees(record.own_heel.values), np.degrees(record.own_pitch.values)
     with styled():
         figure, axes = panels(1, 2, width=9.0, height=1.6 + 0.45 * len(names))
-        left, right = axes[0]
-        left.barh(place, stride, color=COLOURS["coordinated"], height=0.6)
-        mine = [i for i, name in enumerate(names) if name.startswith("salamander")]
-        left.plot([filmed] * len(mine), mine, "D", color=COLOURS["neutral"], label="filmed")
-        left.set(xlabel="stride [body lengths a cycle]", yticks=place, yticklabels=[CALLED[name] for name in names])
-        right.barh(place - 0.17, heel, height=0.3, color=COLOURS["coordinated"], label="greatest heel")
-        right.barh(place + 0.17, -pitch, height=0.3, color=COLOURS["neutral"], label="mean pitch, nose up positive")
-        right.set(xlabel="angle [deg]", yticks=place, yticklabels=[])
-        for ax in (left, right):
+        stride_ax, angle_ax = axes[0]
+        stride_ax.barh(rows, stride, color=COLOURS["coordinated"], height=0.6)
+        salamanders = [i for i, name in enumerate(names) if name.startswith("salamander")]
+        stride_ax.plot([filmed_stride] * len(salamanders), salamanders, "D", color=COLOURS["neutral"], label="filmed")
+        stride_ax.set(xlabel="stride [body lengths a cycle]", yticks=rows, yticklabels=[CALLED[name] for name in names])
+        angle_ax.barh(rows - 0.17, heel, height=0.3, color=COLOURS["coordinated"], label="greatest heel")
+        angle_ax.barh(rows + 0.17, -pitch, height=0.3, color=COLOURS["neutral"], label="mean pitch, nose up positive")
+        angle_ax.set(xlabel="angle [deg]", yticks=rows, yticklabels=[])
+        for ax in (stride_ax, angle_ax):
             ax.invert_yaxis()
             ax.axvline(0.0, color="black", linewidth=0.6)
-        if mine:
-            left.legend(loc="lower right")
-        right.legend(loc="best")
+        if salamanders:
+            stride_ax.legend(loc="lower right")
+        angle_ax.legend(loc="best")
     return captioned(
         figure,
         "Animals at their own length, mass and volume, swimming with their own waves: how far they come in a cycle, "

@@ -26,7 +26,7 @@ from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.visual.figures.sensitivity import draw_shares, spoken
 
-_ALARM = 0.01  # how seldom chance alone may say that this run and the shipped table differ [-]
+_MIN_CHANCE = 0.01  # how seldom chance alone may say that this run and the shipped table differ [-]
 _COUNTS = {
     name: f"samples_{name.replace(' ', '_')}" for name in ("walked", "outside limits", "impossible", "came apart")
 }
@@ -59,14 +59,17 @@ class Sensitivity(Experiment):
     """Seed of the sequence's scrambling [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and a number of samples that is no power of two."""
         with Checks(self.name(), self) as check:
             check.whole("samples", 2, 2**20)
             check.whole("cycles", 1, 1000)
             check.whole("seed", 0, 2**32 - 1)
             check.number("timestep", 1e-5, control_period(self.robot), "s")
         if log2(self.samples) % 1:
-            near = 2 ** round(log2(self.samples))
-            raise InvalidDesign(f"sensitivity.samples is {self.samples}; a power of two is needed, such as {near}.")
+            nearest_power = 2 ** round(log2(self.samples))
+            raise InvalidDesign(
+                f"sensitivity.samples is {self.samples}; a power of two is needed, such as {nearest_power}."
+            )
 
     def quick(self) -> "Sensitivity":
         """Four samples, of which one cannot walk, one cycle, a coarser time step."""
@@ -92,38 +95,38 @@ class Sensitivity(Experiment):
         chances = []
         for key in (str(claim) for claim in record.claim.values):
             of_claim = record.sel(claim=key)
-            answered = np.isfinite(of_claim.number.values)
-            judged, true = int(answered.sum()), int(of_claim.holds.values[answered].sum())
-            low, high = share_interval(true, judged)
-            median = float(np.median(of_claim.number.values[answered])) if judged else float("nan")
+            is_answered = np.isfinite(of_claim.number.values)
+            judged_count, hold_count = int(is_answered.sum()), int(of_claim.holds.values[is_answered].sum())
+            lower_bound, upper_bound = share_interval(hold_count, judged_count)
+            median = float(np.median(of_claim.number.values[is_answered])) if judged_count else float("nan")
             measures |= {
-                f"share_{key}": Measure(true / judged if judged else float("nan"), "-"),
-                f"share_{key}_low": Measure(low, "-"),
-                f"share_{key}_high": Measure(high, "-"),
-                f"judged_{key}": Measure(judged, "-"),
+                f"share_{key}": Measure(hold_count / judged_count if judged_count else float("nan"), "-"),
+                f"share_{key}_low": Measure(lower_bound, "-"),
+                f"share_{key}_high": Measure(upper_bound, "-"),
+                f"judged_{key}": Measure(judged_count, "-"),
                 f"median_{key}": Measure(median, CLAIMS[key].unit),
             }
             if record.attrs["shipped"] and key in SHARES:
-                chances.append(_chance(true, judged, SHARES[key]))
-        alike = min(1.0, len(chances) * min(chances)) if chances else float("nan")
+                chances.append(_chance(hold_count, judged_count, SHARES[key]))
+        agreement_chance = min(1.0, len(chances) * min(chances)) if chances else float("nan")
         return measures | {
             "compared_with_shipped": Measure(len(chances), "-"),
-            "shipped_agreement_chance": Measure(alike, "-"),
+            "shipped_agreement_chance": Measure(agreement_chance, "-"),
         }
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say which claims nearly all designs agree on, and whether the shipped table holds."""
-        named = {name.removeprefix("judged_"): count for name, count in measures.items() if name.startswith("judged_")}
-        judged = [key for key, count in named.items() if count > 0]
-        hold = [key for key in judged if measures[f"share_{key}"] >= ROBUST]
-        fail = [key for key in judged if 1.0 - measures[f"share_{key}"] >= ROBUST]
-        depend = [key for key in judged if key not in (*hold, *fail)]
-        spoken_of = {"hold": hold, "fail": fail, "depend": depend, "judged": judged}
+        counts = {name.removeprefix("judged_"): count for name, count in measures.items() if name.startswith("judged_")}
+        judged_claims = [key for key, count in counts.items() if count > 0]
+        hold = [key for key in judged_claims if measures[f"share_{key}"] >= ROBUST]
+        fail = [key for key in judged_claims if 1.0 - measures[f"share_{key}"] >= ROBUST]
+        depend = [key for key in judged_claims if key not in (*hold, *fail)]
+        claim_groups = {"hold": hold, "fail": fail, "depend": depend, "judged": judged_claims}
         return self.told(
             measures,
             designs=sum(measures[name] for name in _COUNTS.values()),
-            alarm=_ALARM,
-            **{name: [key.replace("_", " ") for key in keys] for name, keys in spoken_of.items()},
+            alarm=_MIN_CHANCE,
+            **{name: [key.replace("_", " ") for key in keys] for name, keys in claim_groups.items()},
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -146,10 +149,12 @@ def _rows(record: xr.Dataset) -> list[dict[str, Any]]:
     return [claim_row(record, str(claim)) for claim in record.claim.values]
 
 
-def _chance(true: int, judged: int, shipped: Share) -> float:
+def _chance(hold_count: int, judged_count: int, shipped: Share) -> float:
     """Return how likely chance alone makes two samples of designs differ so much, by Fisher's exact test [-]."""
-    held = round(shipped.share * shipped.designs)
-    counts = np.array([[true, judged - true], [held, shipped.designs - held]])
+    shipped_hold_count = round(shipped.share * shipped.designs)
+    counts = np.array(
+        [[hold_count, judged_count - hold_count], [shipped_hold_count, shipped.designs - shipped_hold_count]]
+    )
     return float(stats.fisher_exact(counts).pvalue)
 
 

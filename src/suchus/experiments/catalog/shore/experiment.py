@@ -41,8 +41,8 @@ from suchus.sim.metrics.energy import METRES
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swimming.water import swim_of
 
-_DRY, _DEEP = -10.0, 3.0
-"""Levels of the water far below dry land, and far above the ground [m]."""
+_DRY_LEVEL, _DEEP_LEVEL = -10.0, 3.0
+"""Levels of the water: far below dry land, and far above the ground [m]."""
 _WADE = replace(
     GaitInMetres.near(GAITS["semi_erect"], LIMBS), name="wade", period=1.6, duty_factor=0.5, stroke=0.05,
     hip_height=0.09, limb_phases=(0.0, 0.5, 0.5, 0.0), trunk_bend=0.0, tail_pitch=-0.1,
@@ -51,14 +51,14 @@ _WADE = replace(
 move back in stance, so that over a cycle the water pushes the robot back no more than forward; the slower the cycle,
 the smaller the forces of the water are beside the friction of the ground. The tail is lifted, since pressed on the
 ground it lifts the hind feet. The trunk is straight."""
-_SAMPLE, _KEPT = 4, 5
-"""Control periods between two samples of a run, and samples of a run between two samples of the kept paths [-]."""
+_SAMPLE_INTERVAL, _PATH_INTERVAL = 4, 5
+"""Control periods between two samples of a run, and samples of a run between two samples of a stored path [-]."""
 FALLEN = np.radians(60)
-"""Tilt of the body against gravity beyond which it has fallen [rad]."""
+"""Tilt of the body against gravity above which the robot has fallen [rad]."""
 AFLOAT = 0.01
-"""Share of the weight on the ground below which it floats free [-]."""
+"""Fraction of the weight on the ground below which the robot counts as afloat [-]."""
 LAST = 2.0
-"""Duration at the end over which it must float free to count as in the water [s]."""
+"""Duration at the end over which the robot must be afloat to count as in the water [s]."""
 _UNITS = {
     "ahead": ("m", "centre of mass beyond the water line, up the shore; less than 0 on the water's side"),
     "aside": ("m", "displacement of the centre of mass to the left"),
@@ -134,6 +134,7 @@ class Shore(Experiment):
     """Time step of the physics [s]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
         with Checks(self.name(), self) as check:
             check.rising("slopes", 0.01, pi / 4, "rad")
             check.rising("friction_scales", 0.01, 10.0, "")
@@ -160,80 +161,94 @@ class Shore(Experiment):
 
     def on(self, robot: Robot) -> "Shore":
         """Return the same question for another robot; one without air lets none out."""
-        asked = super(Shore, self).on(robot)  # a class with slots has no short form
+        variant = super(Shore, self).on(robot)  # a class with slots has no short form
         aired = robot.hull is not None and robot.hull.air > 0.0
-        return asked if aired else replace(asked, air_released=0.0, other_air_released=())
+        return variant if aired else replace(variant, air_released=0.0, other_air_released=())
 
     def gaits_on(self, robot: Robot) -> dict[str, Any]:
         """Return the gaits in which another robot walks ashore and lands: its own, or the first that can be steered."""
-        own = own_gait(robot)
-        if not own.has("steering"):
-            able = (gait for gait in GAITS.values() if gait.has("steering") and gait.has("strokes"))
-            own = next((gait for gait in able if suits(robot, gait)), None) or draft_gait(robot, DRAFTED)
-        return {"gait": own, "wade": own, "others": ()}
+        walking_gait = own_gait(robot)
+        if not walking_gait.has("steering"):
+            candidates = (gait for gait in GAITS.values() if gait.has("steering") and gait.has("strokes"))
+            walking_gait = next((gait for gait in candidates if suits(robot, gait)), None) or draft_gait(robot, DRAFTED)
+        return {"gait": walking_gait, "wade": walking_gait, "others": ()}
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Simulate all runs as one batch: to the shore, with other gaits, with less air let out, and into the water."""
-        check_floats(self.robot, Lake(level=_DEEP))
+        check_floats(self.robot, Lake(level=_DEEP_LEVEL))
         cases = self._cases()
         runs = [run for _, _, run in cases]
         record = simulate(
             [self.tolerances.built(run, run.seed) for run in runs],
             duration=self.duration,
             timestep=self.timestep,
-            every=_SAMPLE,
+            every=_SAMPLE_INTERVAL,
             progress=staged(progress, "runs to the shore", 0.0, 0.9),
         )
-        kept = paths(record, runs, _KEPT)
+        case_paths = paths(record, runs, _PATH_INTERVAL)
         for name, values, unit in (
             ("kind", [kind for kind, _, _ in cases], "1"),
             ("walk", [run.gait.name for run in runs], "1"),
             ("slope", [abs(run.ground.uphill) for run in runs], "rad"),
             ("grip", [run.ground.friction_scale for run in runs], "1"),
-            ("air_released", [out for _, out, _ in cases], "1"),
+            ("air_released", [air_fraction for _, air_fraction, _ in cases], "1"),
         ):
-            kept[name] = ("case", np.array(values), {"units": unit})
-        shown = self._shown(kept)
+            case_paths[name] = ("case", np.array(values), {"units": unit})
+        shown_index = self._shown_case_index(case_paths)
         back = cycle_targets(self.robot, still(self.robot, limbs=LIMBS_BACK), np.zeros(1))[0]
         floating = hydrostatics(self.robot, back, heels=3)
         metres = self._metres(staged(progress, "work per metre on land, at the surface and below", 0.9, 1.0))
-        whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
-        whole.attrs.update(
-            record.attrs, beyond=self.beyond, shown=shown, line=water_line(runs[shown]),
+        full_record = xr.merge(
+            [record.isel(run=[shown_index]), case_paths, metres], combine_attrs="override", compat="no_conflicts"
+        )
+        full_record.attrs.update(
+            record.attrs, beyond=self.beyond, shown=shown_index, line=water_line(runs[shown_index]),
             air_released=self.air_released, depth=self.depth, approach=self.approach,
             metacentric_height=floating.metacentric_height, length=self.robot.length, beat=self.frequency,
         )  # fmt: skip
-        return Simulated(record=whole, replays=self._replays(whole))
+        return Simulated(record=full_record, replays=self._replays(full_record))
 
     def _cases(self) -> list[tuple[str, float, Run]]:
-        """Return of each case its kind, the share of the air that is let out, and its run."""
-        out = self.air_released
+        """Return kind, fraction of the air that is let out, and run of each case."""
+        air_fraction = self.air_released
         cases: list[tuple[str, float, Run]] = []
         for slope in self.slopes:
             for scale in self.friction_scales:
                 for _ in range(self.seeds):
-                    cases.append(("ashore", out, self._run(self.gait, slope, scale, out, len(cases))))
-        middle = self.friction_scales[len(self.friction_scales) // 2]
+                    cases.append(("ashore", air_fraction, self._run(self.gait, slope, scale, air_fraction, len(cases))))
+        middle_scale = self.friction_scales[len(self.friction_scales) // 2]
         cases += [
-            ("gait", out, self._run(gait, slope, middle, out, 0)) for gait in self.others for slope in self.slopes
+            ("gait", air_fraction, self._run(gait, slope, middle_scale, air_fraction, 0))
+            for gait in self.others
+            for slope in self.slopes
         ]
-        steep = self.slopes[-1]
+        steepest_slope = self.slopes[-1]
         cases += [
-            ("air", b, self._run(self.gait, steep, scale, b, 0))
+            ("air", b, self._run(self.gait, steepest_slope, scale, b, 0))
             for b in self.other_air_released
             for scale in self.friction_scales
         ]
         ends = dict.fromkeys((self.friction_scales[0], self.friction_scales[-1]))
         cases += [
-            ("into_water", out, self._run(self.gait, -slope, scale, out, 0)) for slope in self.slopes for scale in ends
+            ("into_water", air_fraction, self._run(self.gait, -slope, scale, air_fraction, 0))
+            for slope in self.slopes
+            for scale in ends
         ]
         return cases
 
     def _swim(self) -> Gait:
         return swim_of(self.robot, frequency=self.frequency)
 
-    def _run(self, gait: Gait, uphill: float, scale: float, out: float, seed: int) -> Run:
-        """Return a run: up a shore from the water, or down into it where the slope falls."""
+    def _run(self, gait: Gait, uphill: float, scale: float, air_fraction: float, seed: int) -> Run:
+        """Return a run up a shore from the water, or down into the water where ``uphill`` is negative.
+
+        Args:
+            gait: on land.
+            uphill: slope ahead [rad].
+            scale: factor on the friction of the robot's surfaces [-].
+            air_fraction: fraction of the hull's air that is let out [-].
+            seed: of the errors of the robot as built [-].
+        """
         offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
         course = self.approach if uphill > 0 else 0.0
         control = Amphibious(
@@ -241,7 +256,7 @@ class Shore(Experiment):
             swimming=Swimming(heading=HeadingHold(direction=course)),
             begins="swimming" if uphill > 0 else "walking",
             wade=self.wade if gait == self.gait else None,
-            air_released=out,
+            air_released=air_fraction,
             heading=HeadingRule(direction=course),
         )
         return Run(
@@ -256,28 +271,33 @@ class Shore(Experiment):
 
     def _metres(self, progress: Progress) -> xr.Dataset:
         """Return speed and power of the servos on level dry land, at the surface and at depth."""
-        level, deep = Swimming(heading=HeadingHold()), Lake(level=max(_DEEP, 2.0 * self.robot.length))
+        level, deep_lake = Swimming(heading=HeadingHold()), Lake(level=max(_DEEP_LEVEL, 2.0 * self.robot.length))
         controls: dict[str, Control] = {"land": OpenLoop(), "surface": level}
-        if hovers(self.robot, deep):
+        if hovers(self.robot, deep_lake):
             controls["deep"] = replace(level, depth=DepthHold(depth=self.depth))
         runs = [
-            Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY), control=control)
+            Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY_LEVEL), control=control)
             if name == "land"
-            else Run(robot=self.robot, gait=self._swim(), lake=deep, control=control)
+            else Run(robot=self.robot, gait=self._swim(), lake=deep_lake, control=control)
             for name, control in controls.items()
         ]
-        last = self.cycles * self.gait.period
-        record = simulate(runs, duration=2 * last, timestep=self.timestep, every=_SAMPLE, progress=progress)
-        return metres(record, list(controls), last)
+        duration = self.cycles * self.gait.period
+        record = simulate(
+            runs, duration=2 * duration, timestep=self.timestep, every=_SAMPLE_INTERVAL, progress=progress
+        )
+        return metres(record, list(controls), duration)
 
-    def _shown(self, kept: xr.Dataset) -> int:
+    def _shown_case_index(self, case_paths: xr.Dataset) -> int:
         """Return the index of the case that is drawn: on the second slope with the greatest friction scale."""
-        main = kept.kind.values == "ashore"
+        main = case_paths.kind.values == "ashore"
         slope = self.slopes[min(1, len(self.slopes) - 1)]
-        mine = main & np.isclose(kept.slope, slope) & np.isclose(kept.grip, self.friction_scales[-1])
-        return int(np.flatnonzero(mine)[0])
+        is_candidate = (
+            main & np.isclose(case_paths.slope, slope) & np.isclose(case_paths.grip, self.friction_scales[-1])
+        )
+        return int(np.flatnonzero(is_candidate)[0])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the case that is drawn, by file name."""
         end = ending(record)
         return replayed(
             "shore_replay.html",
@@ -290,67 +310,69 @@ class Shore(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how many runs come ashore and when, by gait and by air let out, the falls, and the work per metre."""
         kind = record.kind.values
-        times, fell, over = times_ashore(record), fallen(record), capsized(record)
-        main, into = kind == "ashore", kind == "into_water"
+        times, has_fallen, has_capsized = times_ashore(record), fallen(record), capsized(record)
+        main, is_into_water = kind == "ashore", kind == "into_water"
         ashore = times[main][np.isfinite(times[main])]
         slope, grip = record.slope.values, record.grip.values
-        steep = main & np.isclose(slope, slope[main].max())
-        found = Measures(
+        is_steepest = main & np.isclose(slope, slope[main].max())
+        measures = Measures(
             {
                 "ashore_share": Measure(_share(times, main), "-"),
-                "falls": Measure(float(fell[main].sum()), "-"),
-                "capsized": Measure(float(over[main].sum()), "-"),
+                "falls": Measure(float(has_fallen[main].sum()), "-"),
+                "capsized": Measure(float(has_capsized[main].sum()), "-"),
                 "metacentric_height": Measure(record.attrs["metacentric_height"], "m"),
                 "switches": Measure(float(record.switches.values[main].max()), "-"),
                 "time_ashore": Measure(float(np.median(ashore)) if ashore.size else float("nan"), "s"),
                 "time_ashore_longest": Measure(float(ashore.max()) if ashore.size else float("nan"), "s"),
-                "into_water_share": Measure(float(in_water(record)[into].mean()), "-"),
-                "falls_into_water": Measure(float(fell[into].sum()), "-"),
-                "switches_into_water": Measure(float(record.switches.values[into].max()), "-"),
-                "ashore_share_steepest": Measure(_share(times, steep), "-"),
+                "into_water_share": Measure(float(in_water(record)[is_into_water].mean()), "-"),
+                "falls_into_water": Measure(float(has_fallen[is_into_water].sum()), "-"),
+                "switches_into_water": Measure(float(record.switches.values[is_into_water].max()), "-"),
+                "ashore_share_steepest": Measure(_share(times, is_steepest), "-"),
                 "ashore_share_least_grip": Measure(_share(times, main & np.isclose(grip, grip[main].min())), "-"),
                 "ashore_share_most_grip": Measure(_share(times, main & np.isclose(grip, grip[main].max())), "-"),
             }
         )
-        for i, out in enumerate(np.unique(record.air_released.values[(kind == "air") | steep])):
-            mine = ((kind == "air") | steep) & (record.air_released.values == out)
-            found[f"air_released_{i}"] = Measure(float(out), "-")
-            found[f"ashore_share_air_released_{i}"] = Measure(_share(times, mine), "-")
+        for i, air_fraction in enumerate(np.unique(record.air_released.values[(kind == "air") | is_steepest])):
+            case_mask = ((kind == "air") | is_steepest) & (record.air_released.values == air_fraction)
+            measures[f"air_released_{i}"] = Measure(float(air_fraction), "-")
+            measures[f"ashore_share_air_released_{i}"] = Measure(_share(times, case_mask), "-")
         middle = float(record.grip.values[kind == "gait"].mean()) if (kind == "gait").any() else 0.0
         for name in np.unique(record.walk.values[(kind == "gait") | main]):
-            mine = (kind == "gait") & (record.walk.values == name)
-            if not mine.any():
-                mine = main & np.isclose(grip, middle)
-            if mine.any():
-                found[f"ashore_share_{name}"] = Measure(_share(times, mine), "-")
-        return found | _costs(record.isel(case=np.flatnonzero(main))) | _metre_costs(record)
+            case_mask = (kind == "gait") & (record.walk.values == name)
+            if not case_mask.any():
+                case_mask = main & np.isclose(grip, middle)
+            if case_mask.any():
+                measures[f"ashore_share_{name}"] = Measure(_share(times, case_mask), "-")
+        return measures | _costs(record.isel(case=np.flatnonzero(main))) | _metre_costs(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how many runs came ashore, what this depends on, and the work per metre."""
-        other = ("steepest", "least_grip", "most_grip", "air_released")
+        dependency_names = ("steepest", "least_grip", "most_grip", "air_released")
         names = [name.removeprefix("ashore_share_") for name in measures if name.startswith("ashore_share_")]
-        metres = {ending: where for ending, where in METRES.items() if f"work_per_metre_{ending}" in measures}
-        return self.told(measures, metres=metres, gaits=[name for name in names if not name.startswith(other)])
+        metres = {ending: label for ending, label in METRES.items() if f"work_per_metre_{ending}" in measures}
+        return self.told(
+            measures, metres=metres, gaits=[name for name in names if not name.startswith(dependency_names)]
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw one run out of the water from the side, and how the time ashore depends on slope, friction and air."""
         return {"ashore": draw_ashore(self.robot, outcome.record), "decides": draw_decides(outcome.record)}
 
 
-def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
-    """Return the kept path of each run, and how often it changed between swimming and walking.
+def paths(record: xr.Dataset, runs: list[Run], interval: int) -> xr.Dataset:
+    """Return the downsampled path of each run, and its number of changes between swimming and walking.
 
     Args:
         record: of the runs.
         runs: on even slopes in lakes of constant level.
-        every: number of samples of which one is kept; powers and shares are means over them.
+        interval: number of samples of which one is kept; powers and shares are means over them.
     """
     ups = np.array([up(run.ground) for run in runs])
     line = np.array([water_line(run) for run in runs])
     ashore = np.sign([run.ground.uphill for run in runs])  # whether the land is ahead of the line or behind it
     shares = _ground_share(record, ups)
     walks = walking(record.limb_phase.isel(leg=0).values)
-    high = rotation.rotate(record.orientation.values, np.array([0.0, 0.0, 1.0]))
+    body_up = rotation.rotate(record.orientation.values, np.array([0.0, 0.0, 1.0]))
     values = {
         "ahead": ashore[:, None] * (record.centre_of_mass.sel(xyz="x").values - line[:, None]),
         "aside": record.centre_of_mass.sel(xyz="y").values,
@@ -358,22 +380,22 @@ def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
         "feet": record.feet_share.values,
         "ground": shares,
         "walks": walks.astype(float),
-        "tilt": np.arccos(np.clip(np.einsum("rti,ri->rt", high, ups), -1.0, 1.0)),
+        "tilt": np.arccos(np.clip(np.einsum("rti,ri->rt", body_up, ups), -1.0, 1.0)),
         "power": record.servo_power.values,
     }
     means = ("feet", "ground", "power")
-    count = record.sizes["time"] // every
-    whole = {name: value[:, : count * every].reshape(len(runs), count, every) for name, value in values.items()}
-    kept = {name: value.mean(axis=-1) if name in means else value[..., 0] for name, value in whole.items()}
-    found = xr.Dataset(
-        {name: (("case", "moment"), kept[name], {"units": unit, "long_name": what})
-         for name, (unit, what) in _UNITS.items()},
-        coords={"moment": ("moment", record.time.values[: count * every : every], {"units": "s"})},
+    count = record.sizes["time"] // interval
+    blocks = {name: value[:, : count * interval].reshape(len(runs), count, interval) for name, value in values.items()}
+    reduced = {name: value.mean(axis=-1) if name in means else value[..., 0] for name, value in blocks.items()}
+    path_record = xr.Dataset(
+        {name: (("case", "moment"), reduced[name], {"units": unit, "long_name": label})
+         for name, (unit, label) in _UNITS.items()},
+        coords={"moment": ("moment", record.time.values[: count * interval : interval], {"units": "s"})},
     )  # fmt: skip
     changes = np.diff(walks[:, 1:].astype(int), axis=1) != 0
-    found["switches"] = ("case", changes.sum(axis=1), {"units": "1"})
-    found["weight"] = ("case", GRAVITY * record.mass.values, {"units": "N"})
-    return found
+    path_record["switches"] = ("case", changes.sum(axis=1), {"units": "1"})
+    path_record["weight"] = ("case", GRAVITY * record.mass.values, {"units": "N"})
+    return path_record
 
 
 def water_line(run: Run) -> float:
@@ -383,7 +405,7 @@ def water_line(run: Run) -> float:
 
 
 def walking(phase: Float[np.ndarray, "run time"]) -> Bool[np.ndarray, "run time"]:
-    """Return when a limb's phase advances; the first sample has the value of the second [-]."""
+    """Return at which samples a limb's phase advances; the first sample has the value of the second."""
     moves = np.diff(phase, axis=1) > 1e-9
     return np.concatenate([moves[:, :1], moves], axis=1)
 
@@ -394,77 +416,83 @@ def _ground_share(record: xr.Dataset, ups: np.ndarray) -> np.ndarray:
 
 
 def fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases tilted too far, or diverged [-]."""
+    """Return which cases tilted by more than ``FALLEN``, or diverged."""
     return np.asarray(~(record.tilt < FALLEN).all("moment").values)
 
 
 def capsized(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases had tilted too far for the first time while they swam and the ground carried nothing [-]."""
-    over = ~(record.tilt < FALLEN)
+    """Return which cases first tilted by more than ``FALLEN`` while they swam and were afloat."""
+    is_over_tilt = ~(record.tilt < FALLEN)
     free = (record.walks == 0.0) & (record.ground < AFLOAT)
-    first = over.argmax("moment")
-    return np.asarray((over.any("moment") & free.isel(moment=first)).values)
+    first_index = is_over_tilt.argmax("moment")
+    return np.asarray((is_over_tilt.any("moment") & free.isel(moment=first_index)).values)
 
 
 def times_ashore(record: xr.Dataset) -> Float[np.ndarray, " case"]:
     """Return the time at which each case was first ashore, NaN for one that never was or fell [s]."""
-    reached = record.ahead.values >= record.attrs["beyond"]
-    first = record.moment.values[reached.argmax(axis=1)]
-    return np.where(reached.any(axis=1) & ~fallen(record), first, np.nan)
+    is_ashore = record.ahead.values >= record.attrs["beyond"]
+    first_time = record.moment.values[is_ashore.argmax(axis=1)]
+    return np.where(is_ashore.any(axis=1) & ~fallen(record), first_time, np.nan)
 
 
 def ending(record: xr.Dataset) -> str:
-    """Return how the case that is drawn ended, in words."""
+    """Return the end of the case that is drawn, in words."""
     case = record.isel(case=[record.attrs["shown"]])
-    walked, found = case.walks.values[0] > 0, []
+    is_walking, phrases = case.walks.values[0] > 0, []
     if capsized(case)[0]:
-        first = int((~(case.tilt < FALLEN)).values[0].argmax())
-        return f"after {float(case.moment[first]):.2g} s it capsizes"
-    if walked.any():
-        found.append(f"after {float(case.moment[walked.argmax()]):.0f} s it walks")
+        first_index = int((~(case.tilt < FALLEN)).values[0].argmax())
+        return f"after {float(case.moment[first_index]):.2g} s it capsizes"
+    if is_walking.any():
+        phrases.append(f"after {float(case.moment[is_walking.argmax()]):.0f} s it walks")
     else:
-        found.append("it does not begin to walk")
+        phrases.append("it does not begin to walk")
     time = float(times_ashore(case)[0])
     if np.isfinite(time):
-        found.append(f"after {time:.0f} s it is {record.attrs['beyond']:g} m beyond the water line")
+        phrases.append(f"after {time:.0f} s it is {record.attrs['beyond']:g} m beyond the water line")
     elif fallen(case)[0]:
-        found.append("it falls")
+        phrases.append("it falls")
     else:
-        found.append(f"it does not get {record.attrs['beyond']:g} m beyond the water line")
-    return ", and ".join(found)
+        phrases.append(f"it does not get {record.attrs['beyond']:g} m beyond the water line")
+    return ", and ".join(phrases)
 
 
 def in_water(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases swim at the end on the water's side of the line and float free for the last seconds [-]."""
+    """Return which cases are afloat and swim on the water's side of the line for the last ``LAST`` seconds."""
     end = record.sel(moment=slice(float(record.moment[-1]) - LAST, None))
     free = (end.ground.mean("moment") < AFLOAT) & (end.walks.max("moment") == 0.0)
     return np.asarray((free & (end.ahead < 0).all("moment")).values) & ~fallen(record)
 
 
-def _share(times: np.ndarray, mine: np.ndarray) -> float:
-    return float(np.isfinite(times[mine]).mean())
+def _share(times: np.ndarray, mask: np.ndarray) -> float:
+    return float(np.isfinite(times[mask]).mean())
 
 
-def metres(record: xr.Dataset, names: Sequence[str], last: float) -> xr.Dataset:
+def metres(record: xr.Dataset, names: Sequence[str], duration: float) -> xr.Dataset:
     """Return speed along its course, power of the servos and error of the depth of each run, over its last seconds.
 
     Args:
         record: record with one run for each name.
         names: names of the conditions, in the order of the runs.
-        last: duration of the end that is measured [s].
+        duration: duration of the end that is measured [s].
     """
-    part = record.sel(time=slice(float(record.time[-1]) - last - 1e-9, None))
-    moved = (part.centre_of_mass.isel(time=-1) - part.centre_of_mass.isel(time=0)).sel(xyz=["x", "y"])
-    way = moved.transpose("run", "xyz").values
-    left = np.stack([-way[:, 1], way[:, 0]], axis=-1) / np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-12)
-    tip = (part.tail_tip - part.centre_of_mass).sel(xyz=["x", "y"]).transpose("run", "time", "xyz").values
-    deep = (part.water_level - part.position.sel(xyz="z")).mean("time")
+    excerpt = record.sel(time=slice(float(record.time[-1]) - duration - 1e-9, None))
+    displacement_xy = (excerpt.centre_of_mass.isel(time=-1) - excerpt.centre_of_mass.isel(time=0)).sel(xyz=["x", "y"])
+    displacements = displacement_xy.transpose("run", "xyz").values
+    lateral_axes = np.stack([-displacements[:, 1], displacements[:, 0]], axis=-1) / np.maximum(
+        np.linalg.norm(displacements, axis=-1, keepdims=True), 1e-12
+    )
+    tip = (excerpt.tail_tip - excerpt.centre_of_mass).sel(xyz=["x", "y"]).transpose("run", "time", "xyz").values
+    depth = (excerpt.water_level - excerpt.position.sel(xyz="z")).mean("time")
     return xr.Dataset(
         {
-            "metre_speed": ("where", np.hypot(*moved.transpose("xyz", "run").values) / last, {"units": "m/s"}),
-            "metre_power": ("where", part.servo_power.mean("time").values, {"units": "W"}),
-            "metre_depth": ("where", deep.values, {"units": "m"}),
-            "metre_swing": ("where", np.ptp(np.einsum("rti,ri->rt", tip, left), axis=1), {"units": "m"}),
+            "metre_speed": (
+                "where",
+                np.hypot(*displacement_xy.transpose("xyz", "run").values) / duration,
+                {"units": "m/s"},
+            ),
+            "metre_power": ("where", excerpt.servo_power.mean("time").values, {"units": "W"}),
+            "metre_depth": ("where", depth.values, {"units": "m"}),
+            "metre_swing": ("where", np.ptp(np.einsum("rti,ri->rt", tip, lateral_axes), axis=1), {"units": "m"}),
             "metre_weight": ("where", GRAVITY * record.mass.values, {"units": "N"}),
         },
         coords={"where": list(names)},
@@ -473,46 +501,51 @@ def metres(record: xr.Dataset, names: Sequence[str], last: float) -> xr.Dataset:
 
 def _metre_costs(record: xr.Dataset) -> Measures:
     """Return speed, work over distance and cost of transport on land, at the surface and at depth."""
-    found = Measures()
-    for where in record["where"].values:
-        one = record.sel(where=where)
-        speed, work = float(one.metre_speed), float(one.metre_power / one.metre_speed)
-        found[f"speed_{where}"] = Measure(speed, "m/s")
-        found[f"work_per_metre_{where}"] = Measure(work, "J/m")
-        found[f"cost_of_transport_{where}"] = Measure(work / float(one.metre_weight), "-")
-        if where != "land":
+    measures = Measures()
+    for condition in record["where"].values:
+        condition_record = record.sel(where=condition)
+        speed, work = (
+            float(condition_record.metre_speed),
+            float(condition_record.metre_power / condition_record.metre_speed),
+        )
+        measures[f"speed_{condition}"] = Measure(speed, "m/s")
+        measures[f"work_per_metre_{condition}"] = Measure(work, "J/m")
+        measures[f"cost_of_transport_{condition}"] = Measure(work / float(condition_record.metre_weight), "-")
+        if condition != "land":
             numbers = swim_numbers(
                 speed=speed, length=record.attrs["length"], frequency=record.attrs["beat"],
-                swing=float(one.metre_swing), viscosity=Water().viscosity,
+                swing=float(condition_record.metre_swing), viscosity=Water().viscosity,
             )  # fmt: skip
-            found |= similar(numbers, f"_{where}")
+            measures |= similar(numbers, f"_{condition}")
     if "deep" not in record["where"].values:
-        return found
+        return measures
     error = abs(float(record.metre_depth.sel(where="deep")) - record.attrs["depth"])
-    return found | {"depth_error": Measure(error, "m")}
+    return measures | {"depth_error": Measure(error, "m")}
 
 
 def _costs(record: xr.Dataset) -> Measures:
-    """Return speed [m/s] and work of the servos over distance [J/m] while it swims, wades and walks ashore.
+    """Return speed [m/s] and servo work over distance [J/m] while the robot swims, wades and walks ashore.
 
-    Both along its heading, which need not be straight up the shore.
+    Both are measured along the heading of the approach.
     """
     step, course = float(record.moment[1] - record.moment[0]), record.attrs["approach"]
-    along = np.cos(course) * record.ahead.values + np.sin(course) * record.aside.values
-    speed = np.gradient(along, step, axis=1)
-    walks, under = record.walks.values > 0, record.under.values
-    late = (record.moment.values > 3.0)[None, :]
-    found = Measures()
-    for name, when in (
-        ("swimming", ~walks & late & (record.ground.values < AFLOAT)),
-        ("wading", walks & (under > 0.05)),
-        ("ashore", walks & (under <= 0.0)),
+    course_distance = np.cos(course) * record.ahead.values + np.sin(course) * record.aside.values
+    speed = np.gradient(course_distance, step, axis=1)
+    walks, submerged_fraction = record.walks.values > 0, record.under.values
+    is_settled = (record.moment.values > 3.0)[None, :]
+    measures = Measures()
+    for name, mask in (
+        ("swimming", ~walks & is_settled & (record.ground.values < AFLOAT)),
+        ("wading", walks & (submerged_fraction > 0.05)),
+        ("ashore", walks & (submerged_fraction <= 0.0)),
     ):
-        ahead, power = speed[when], record.power.values[when]
-        mean = float(ahead.mean()) if ahead.size else float("nan")
-        found[f"speed_{name}"] = Measure(mean, "m/s")
-        found[f"work_per_metre_{name}"] = Measure(float(power.mean()) / mean if ahead.size else float("nan"), "J/m")
-    return found
+        course_speed, power = speed[mask], record.power.values[mask]
+        mean = float(course_speed.mean()) if course_speed.size else float("nan")
+        measures[f"speed_{name}"] = Measure(mean, "m/s")
+        measures[f"work_per_metre_{name}"] = Measure(
+            float(power.mean()) / mean if course_speed.size else float("nan"), "J/m"
+        )
+    return measures
 
 
 experiment = Shore()

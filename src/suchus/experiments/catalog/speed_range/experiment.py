@@ -38,9 +38,9 @@ from suchus.sim.metrics import between, cost_of_transport, displacement, duty_fa
 from suchus.visual.figures.gait_diagram import gait_lines
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
-_TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
-_LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it
-_THICK, _THIN = 2.0, 0.9
+_TOUCH_HEIGHT = 0.00495  # height below which the tail lies on the ground [body length]
+_TOUCH_LOAD = 0.0029  # load above which the tail touches the ground [body weight]
+_OWN_LINE_WIDTH, _OTHER_LINE_WIDTH = 2.0, 0.9
 _FULL, _LINE = "servos of equal torque at any speed", "servos whose torque falls with speed"
 _WALKING = ANIMAL["high_walk_speed"]
 
@@ -85,6 +85,7 @@ class SpeedRange(Experiment):
     """Time step of the physics [s], at most 0.01; speeds at 2 ms are the same within 2 %."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and an empty list of gaits."""
         with Checks(self.name(), self) as check:
             check.rising("slower", 0.1, 10.0, "")
             check.whole("cycles", 1, 1000)
@@ -103,75 +104,87 @@ class SpeedRange(Experiment):
 
     def _replays(self, fastest: Sequence[xr.Dataset]) -> Mapping[str, Replay]:
         """Return the replay of the first gait and the last, where there are two."""
-        shown = [fastest[0], fastest[-1]] if len(fastest) > 1 else fastest
-        until = min(float(walked.time[-1]) for walked in shown)
-        shown = [walked.sel(time=slice(None, until)) for walked in shown]
-        names = [str(walked.gait.item()).replace("_", " ") for walked in shown]
-        beside = f", and, half transparent, {names[1]}" if len(names) > 1 else ""
+        walks = [fastest[0], fastest[-1]] if len(fastest) > 1 else fastest
+        end_time = min(float(walk.time[-1]) for walk in walks)
+        walks = [walk.sel(time=slice(None, end_time)) for walk in walks]
+        names = [str(walk.gait.item()).replace("_", " ") for walk in walks]
+        ghost_text = f", and, half transparent, {names[1]}" if len(names) > 1 else ""
         return replayed(
             "speed_replay.html",
-            shown[0],
+            walks[0],
             self.robot,
-            ghost=shown[1] if len(shown) > 1 else None,
+            ghost=walks[1] if len(walks) > 1 else None,
             labels=names,
             title="In a hurry",
-            caption=f"At the shortest cycle that was tried: {names[0]}{beside}.",
+            caption=f"At the shortest cycle that was tried: {names[0]}{ghost_text}.",
         )
 
     def _walk(self, progress: Progress) -> tuple[xr.Dataset, list[xr.Dataset]]:
-        """Return what was measured, and the fastest walk of each gait as a record."""
+        """Return the measured quantities, and the record of the fastest walk of each gait."""
         rows, fastest, count = [], [], len(self.gaits)
-        parts = [
-            [s for s in self.slower if (s > 1.0) == slow] for slow in (False, True)
-        ]  # the long walks by themselves
+        factor_groups = [
+            [s for s in self.slower if (s > 1.0) == is_slow] for is_slow in (False, True)
+        ]  # slow walks last longer: a batch of their own
         for i, gait in enumerate(self.gaits):
-            found = [
-                self._walked(
-                    gait, part, staged(progress, gait.name, (i + 0.5 * j) / count, (i + 0.5 * j + 0.5) / count)
+            results = [
+                self._measure_gait(
+                    gait, factors, staged(progress, gait.name, (i + 0.5 * j) / count, (i + 0.5 * j + 0.5) / count)
                 )
-                for j, part in enumerate(parts)
-                if part
+                for j, factors in enumerate(factor_groups)
+                if factors
             ]
-            rows.append(np.concatenate([values for values, _ in found], axis=1))
-            fastest.append(found[0][1])
+            rows.append(np.concatenate([values for values, _ in results], axis=1))
+            fastest.append(results[0][1])
         return self._table(np.array(rows)), fastest
 
-    def _walked(self, gait: Gait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
-        """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk."""
-        longest, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
-        looked, shown = [], []
+    def _measure_gait(self, gait: Gait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
+        """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk.
+
+        Args:
+            gait: the gait.
+            slower: factors on its cycle time [-].
+            progress: called with the fraction that is done.
+        """
+        max_duration, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
+        quantities, records = [], []
         for i, robot in enumerate((self.robot, _with_other(self.robot))):
             runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for s in slower]
-            walked = simulate(
+            record = simulate(
                 runs,
-                duration=float(np.ceil(round(longest / period, 6)) * period),
+                duration=float(np.ceil(round(max_duration / period, 6)) * period),
                 timestep=self.timestep,
                 progress=staged(progress, "", 0.5 * i, 0.5 * i + 0.5),
             )
-            looked.append([self._look(walked.isel(run=j), run) for j, run in enumerate(runs)])
-            shown.append(walked.isel(run=0))
-        return np.array(looked), shown[0]
+            quantities.append([self._measure_walk(record.isel(run=j), run) for j, run in enumerate(runs)])
+            records.append(record.isel(run=0))
+        return np.array(quantities), records[0]
 
-    def _look(self, walked: xr.Dataset, run: Run) -> list[float]:
+    def _measure_walk(self, record: xr.Dataset, run: Run) -> list[float]:
+        """Return the quantities of ``_UNITS``, in their order, over the measured cycles of one walk."""
         start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period
-        part = between(walked, start, end)
-        speed = float(displacement(walked, start, end).sel(xyz="x")) / (end - start)
+        excerpt = between(record, start, end)
+        speed = float(displacement(record, start, end).sel(xyz="x")) / (end - start)
         legs = [i for limb in layout(run.robot).limbs for i in range(limb.servos.start, limb.servos.stop)]
-        fastest = float(abs(part.servo_velocity.isel(servo=legs)).quantile(0.99, "time").max())
+        fastest = float(abs(excerpt.servo_velocity.isel(servo=legs)).quantile(0.99, "time").max())
         height = hip_height(run.robot, run.gait)
         return [
             run.gait.period,
             speed,
-            float(duty_factor(walked, start, end).mean()),
-            float(cost_of_transport(walked, start, end)),
+            float(duty_factor(record, start, end).mean()),
+            float(cost_of_transport(record, start, end)),
             speed**2 / (GRAVITY * height) if height > 0.0 else float("nan"),
-            float(roll_peak_to_peak(walked, start, end)),
+            float(roll_peak_to_peak(record, start, end)),
             fastest,
-            float((part.tail_force.sel(xyz="z") > _LOADED * run.robot.mass * GRAVITY).mean()),
-            _lying(run.robot, part),
+            float((excerpt.tail_force.sel(xyz="z") > _TOUCH_LOAD * run.robot.mass * GRAVITY).mean()),
+            _lying_fraction(run.robot, excerpt),
         ]
 
     def _table(self, values: np.ndarray) -> xr.Dataset:
+        """Return measured quantities as a record.
+
+        Args:
+            values: the quantities of ``_UNITS``, shape (gait, servo_model, slower, quantity).
+        """
         dims = ("gait", "servo_model", "slower")
         data = xr.Dataset(
             {name: (dims, values[..., i], {"units": unit}) for i, (name, unit) in enumerate(_UNITS.items())},
@@ -187,18 +200,18 @@ class SpeedRange(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return speed, cost and posture of every gait, and what is known of animals that walk high."""
         measures = Measures()
-        usual = int(np.argmin(np.abs(np.array(self.slower) - 1.0)))
+        usual_index = int(np.argmin(np.abs(np.array(self.slower) - 1.0)))
         for name in record.gait.values:
-            both = record.sel(gait=name)
-            own, other = (both.sel(servo_model=model) for model in ("own", "other"))
-            usual_cycle = own.isel(slower=usual)
+            gait_record = record.sel(gait=name)
+            own_record, other_record = (gait_record.sel(servo_model=model) for model in ("own", "other"))
+            usual_cycle = own_record.isel(slower=usual_index)
             measures |= {
                 f"speed_{name}": Measure(float(usual_cycle.speed), "m/s"),
-                f"speed_{name}_other_servos": Measure(float(other.isel(slower=usual).speed), "m/s"),
-                **ranged(f"speed_{name}_slowest", own.speed.min(), both.speed.min("slower"), "m/s"),
-                **ranged(f"speed_{name}_fastest", own.speed.max(), both.speed.max("slower"), "m/s"),
+                f"speed_{name}_other_servos": Measure(float(other_record.isel(slower=usual_index).speed), "m/s"),
+                **ranged(f"speed_{name}_slowest", own_record.speed.min(), gait_record.speed.min("slower"), "m/s"),
+                **ranged(f"speed_{name}_fastest", own_record.speed.max(), gait_record.speed.max("slower"), "m/s"),
                 f"cost_{name}": Measure(float(usual_cycle.cost), "-"),
-                f"cost_{name}_least": Measure(float(own.cost.min()), "-"),
+                f"cost_{name}_least": Measure(float(own_record.cost.min()), "-"),
                 f"duty_{name}": Measure(float(usual_cycle.duty), "-"),
                 f"froude_{name}": Measure(float(usual_cycle.froude), "-"),
                 f"roll_{name}": Measure(float(usual_cycle.rolled), "rad"),
@@ -208,17 +221,19 @@ class SpeedRange(Experiment):
         measures["animals_high_walk_slowest"] = Measure(animals.low, "m/s")
         measures["animals_high_walk_fastest"] = Measure(animals.high, "m/s")
         if "high_walk" in record.gait.values:
-            high = record.sel(gait="high_walk", servo_model="own")
-            measures["tail_touches_high_walk"] = Measure(float(high.tail_touches.mean()), "-")
-            measures |= ranged("tail_on_ground_high_walk", high.tail_lies.mean(), high.tail_lies, "-")
+            high_walk = record.sel(gait="high_walk", servo_model="own")
+            measures["tail_touches_high_walk"] = Measure(float(high_walk.tail_touches.mean()), "-")
+            measures |= ranged("tail_on_ground_high_walk", high_walk.tail_lies.mean(), high_walk.tail_lies, "-")
         return measures
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; of single gaits no other gait is walked."""
-        named = tuple(gait for gait in self.gaits if any(f"_{gait.name}" in name for name in wanted))
-        whole = not named or not all(any(f"_{gait.name}" in name for gait in named) for name in wanted)
-        asked = self if whole else replace(self, gaits=named)
-        return super(SpeedRange, asked).measured(wanted, progress)
+        """Return at least the wanted measures; only gaits whose measures are wanted are simulated."""
+        named_gaits = tuple(gait for gait in self.gaits if any(f"_{gait.name}" in name for name in wanted))
+        needs_all_gaits = not named_gaits or not all(
+            any(f"_{gait.name}" in name for gait in named_gaits) for name in wanted
+        )
+        variant = self if needs_all_gaits else replace(self, gaits=named_gaits)
+        return super(SpeedRange, variant).measured(wanted, progress)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how fast and how dear each gait is, and what the other model of the servos changes."""
@@ -264,7 +279,7 @@ def _with_other(robot: Robot) -> Robot:
 
 
 def _models(robot: Robot) -> tuple[str, str]:
-    """Return in words what servos the legs have, and what servos in the other model."""
+    """Return labels of the legs' servos: the robot's own, and those of the other model."""
     falling, count = _falling(robot)
     if not falling:
         return _FULL, _LINE
@@ -272,48 +287,71 @@ def _models(robot: Robot) -> tuple[str, str]:
 
 
 def _falling(robot: Robot) -> tuple[int, int]:
-    """Return of how many servos of its limbs the torque falls with speed, and how many they have [-]."""
-    place, servos = layout(robot), servos_of(robot)
-    limbs = [servos[name] for limb in place.limbs for name in place.servos[limb.servos]]
+    """Return the number of limb servos whose torque falls with speed, and the number of limb servos [-]."""
+    robot_layout, servos = layout(robot), servos_of(robot)
+    limbs = [servos[name] for limb in robot_layout.limbs for name in robot_layout.servos[limb.servos]]
     return sum(servo.winding is not None for servo in limbs), len(limbs)
 
 
-def _lying(robot: Robot, part: xr.Dataset) -> float:
-    """Return the share of the tail's length that lies on the ground, on average; 0 of a body without a tail [-]."""
-    place = layout(robot)
-    if not place.tail:
+def _lying_fraction(robot: Robot, excerpt: xr.Dataset) -> float:
+    """Return the mean fraction of the tail's length that lies on the ground; 0 of a body without a tail [-].
+
+    Args:
+        robot: of the record.
+        excerpt: the measured cycles of one run.
+    """
+    robot_layout = layout(robot)
+    if not robot_layout.tail:
         return 0.0
-    sampled = part.isel(time=slice(None, None, 5))
-    found = frames(robot, sampled.joint_angle.transpose("time", "joint").values)
-    numbers = [i for i, body in enumerate(place.bodies) if body.name in place.tail]
-    segments = [next(one for one in place.robot.axis if one.name == place.bodies[i].name) for i in numbers]
-    last, ahead = numbers[-1], -(segments[-1].front + segments[-1].rear)
-    tip = found.places[:, last] + ahead * found.turns[:, last, :, 0]
-    points = np.concatenate([found.places[:, numbers], tip[:, None]], axis=1)
-    up = rotation.upward(sampled.orientation.transpose("time", "wxyz").values)
-    height = np.einsum("tk,tpk->tp", up, points) + sampled.position.sel(xyz="z").values[:, None]
+    sampled = excerpt.isel(time=slice(None, None, 5))
+    body_frames = frames(robot, sampled.joint_angle.transpose("time", "joint").values)
+    numbers = [i for i, body in enumerate(robot_layout.bodies) if body.name in robot_layout.tail]
+    segments = [
+        next(segment for segment in robot_layout.robot.axis if segment.name == robot_layout.bodies[i].name)
+        for i in numbers
+    ]
+    last_body, tip_offset = numbers[-1], -(segments[-1].front + segments[-1].rear)
+    tip = body_frames.places[:, last_body] + tip_offset * body_frames.turns[:, last_body, :, 0]
+    points = np.concatenate([body_frames.places[:, numbers], tip[:, None]], axis=1)
+    up_axis = rotation.upward(sampled.orientation.transpose("time", "wxyz").values)
+    height = np.einsum("tk,tpk->tp", up_axis, points) + sampled.position.sel(xyz="z").values[:, None]
     lengths = np.array([segment.front + segment.rear for segment in segments])
-    along = np.concatenate([[0.0], np.cumsum(lengths)])
-    share = along / along[-1]
-    lies = (height - _radii(segments, along) < _TOUCHES * robot.length).astype(float)
+    positions = np.concatenate([[0.0], np.cumsum(lengths)])
+    share = positions / positions[-1]
+    lies = (height - _radii(segments, positions) < _TOUCH_HEIGHT * robot.length).astype(float)
     return float(np.trapezoid(lies, share, axis=1).mean())
 
 
-def _radii(segments: Sequence[Segment], along: np.ndarray) -> np.ndarray:
-    """Return how thick a tail is at its joints and its tip, on straight lines through its segments' middles [m]."""
-    thick = np.array(
+def _radii(segments: Sequence[Segment], positions: np.ndarray) -> np.ndarray:
+    """Return the half height of a tail at its joints and its tip, interpolated between the segments' middles [m].
+
+    Args:
+        segments: of the tail, from the root.
+        positions: of joints and tip, along the tail from its root [m].
+    """
+    segment_radii = np.array(
         [max(s.radius if isinstance(s, Rod) else s.half[2] for s in segment.shapes) for segment in segments]
     )
-    middles = (along[1:] + along[:-1]) / 2
-    found = np.interp(along, middles, thick)
+    middles = (positions[1:] + positions[:-1]) / 2
+    radii = np.interp(positions, middles, segment_radii)
     if len(segments) > 1:
-        found[0] = thick[0] + (thick[1] - thick[0]) * (along[0] - middles[0]) / (middles[1] - middles[0])
-        found[-1] = thick[-1] + (thick[-1] - thick[-2]) * (along[-1] - middles[-1]) / (middles[-1] - middles[-2])
-    return np.maximum(found, 0.0)
+        radii[0] = segment_radii[0] + (segment_radii[1] - segment_radii[0]) * (positions[0] - middles[0]) / (
+            middles[1] - middles[0]
+        )
+        radii[-1] = segment_radii[-1] + (segment_radii[-1] - segment_radii[-2]) * (positions[-1] - middles[-1]) / (
+            middles[-1] - middles[-2]
+        )
+    return np.maximum(radii, 0.0)
 
 
 def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]], servos: tuple[str, str]) -> Figure:
-    """Draw speed, cost, duty factor and Froude number over cycle time, the other model of the servos thinly."""
+    """Draw speed, cost, duty factor and Froude number over cycle time, the other model of the servos thinly.
+
+    Args:
+        record: of the experiment ``speed_range``.
+        lines: style of each gait.
+        servos: names of the two servo models, the robot's own first.
+    """
     with styled():
         figure, axes = panels(2, 2, width=9.6, height=8.0, sharex=True)
         rows = (
@@ -324,7 +362,7 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]],
         )
         for ax, (name, label, scale) in zip(axes.flat, rows, strict=True):
             for gait in record.gait.values:
-                for model, width in (("other", _THIN), ("own", _THICK)):
+                for model, width in (("other", _OTHER_LINE_WIDTH), ("own", _OWN_LINE_WIDTH)):
                     of_gait = record.sel(gait=gait, servo_model=model)
                     style = dict(lines[str(gait)]) | {"linewidth": width, "markersize": 3 if model == "other" else 6}
                     if model == "other":
@@ -341,7 +379,9 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]],
         for ax in axes[1]:
             ax.set_xlabel("cycle time [s]")
         handles, labels = axes[0, 0].get_legend_handles_labels()
-        models = [Line2D([], [], color=COLOURS["printed"], linewidth=width) for width in (_THICK, _THIN)]
+        models = [
+            Line2D([], [], color=COLOURS["printed"], linewidth=width) for width in (_OWN_LINE_WIDTH, _OTHER_LINE_WIDTH)
+        ]
         handles, labels = [*handles, *models, band], [*labels, *servos, f"{_WALKING.who}, high walk"]
         figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=11)
     return captioned(

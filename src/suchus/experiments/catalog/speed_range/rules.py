@@ -55,7 +55,7 @@ VARIED = Varied(
     samples=32,
 )
 
-_WHY = {
+_REASON_MEASURES = {
     "animals_high_walk_slowest": 0.1,
     "animals_high_walk_fastest": 0.7,
     "speed_high_walk_slowest": 0.1,
@@ -72,22 +72,22 @@ _WHY = {
 
 EXAMPLES: Examples = {
     "high_walk_speed_low": [
-        (_WHY | between("speed_high_walk_slowest", 1.251, 1.3), "same sense"),  # 4.5 km/h are 1.25 m/s
-        (_WHY | between("speed_high_walk_slowest", 1.249, 1.251), "undecided"),
-        (_WHY | between("speed_high_walk_slowest", 1.2, 1.249), "not testable"),
-        (_WHY, "not testable"),
+        (_REASON_MEASURES | between("speed_high_walk_slowest", 1.251, 1.3), "same sense"),  # 4.5 km/h are 1.25 m/s
+        (_REASON_MEASURES | between("speed_high_walk_slowest", 1.249, 1.251), "undecided"),
+        (_REASON_MEASURES | between("speed_high_walk_slowest", 1.2, 1.249), "not testable"),
+        (_REASON_MEASURES, "not testable"),
     ],
     "high_walk_speed_high": [
-        (_WHY | between("speed_high_walk_fastest", 2.64, 2.7), "same sense"),  # 9.5 km/h are 2.639 m/s
-        (_WHY | between("speed_high_walk_fastest", 2.637, 2.64), "undecided"),
-        (_WHY | between("speed_high_walk_fastest", 2.6, 2.637), "not testable"),
-        (_WHY, "not testable"),
+        (_REASON_MEASURES | between("speed_high_walk_fastest", 2.64, 2.7), "same sense"),  # 9.5 km/h are 2.639 m/s
+        (_REASON_MEASURES | between("speed_high_walk_fastest", 2.637, 2.64), "undecided"),
+        (_REASON_MEASURES | between("speed_high_walk_fastest", 2.6, 2.637), "not testable"),
+        (_REASON_MEASURES, "not testable"),
     ],
     "tail_on_ground_in_high_walk": [
-        (_WHY | between("tail_on_ground_high_walk", 0.351, 0.649), "same sense"),
-        (_WHY | between("tail_on_ground_high_walk", 0.349, 0.5), "undecided"),
-        (_WHY | between("tail_on_ground_high_walk", 0.3, 0.349), "not testable"),
-        (_WHY | between("tail_on_ground_high_walk", 0.5, 0.651), "undecided"),
-        (_WHY | between("tail_on_ground_high_walk", 0.651, 0.7), "not testable"),
+        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.351, 0.649), "same sense"),
+        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.349, 0.5), "undecided"),
+        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.3, 0.349), "not testable"),
+        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.5, 0.651), "undecided"),
+        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.651, 0.7), "not testable"),
     ],
 }

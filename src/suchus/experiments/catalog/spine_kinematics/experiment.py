@@ -23,8 +23,8 @@ _SHOWN = (0.2, -0.15, 0.25, -0.15, 0.2)
 
 _METRE = {"units": "m"}
 MILD = pi / 6
-"""Joint angles up to this one show what the misprint does in a crawl [rad]."""
-_FEW = 2000  # postures whose least bending is sought: a search, not a formula
+"""Greatest joint angle of the postures in which the misprint is measured; a crawl bends as much [rad]."""
+_SEARCH_COUNT = 2000  # postures whose least bending is searched numerically, which is slow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,13 +78,13 @@ class SpineKinematics(Experiment):
         return Simulated(record=record.assign_attrs(_facts(back)))
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return lengths and errors of (15), as printed and mended, and how well the inverse finds its way back."""
-        long, error = record.attrs["straight_length"], record.error_printed
+        """Return lengths and errors of (15), as printed and corrected, and the round-trip errors of the inverse."""
+        length, error = record.attrs["straight_length"], record.error_printed
         return Measures(
             {
-                "straight_length": Measure(long, "m"),
+                "straight_length": Measure(length, "m"),
                 "straight_length_printed": Measure(record.attrs["straight_length_printed"], "m"),
-                "printed_error_share": Measure(float(error.max()) / long, "-"),
+                "printed_error_share": Measure(float(error.max()) / length, "-"),
                 "printed_error_mean": Measure(float(error.mean()), "m"),
                 "printed_error_min": Measure(float(error.min()), "m"),
                 "printed_error_max": Measure(float(error.max()), "m"),
@@ -102,7 +102,7 @@ class SpineKinematics(Experiment):
         )
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say how far (15) is from Table II, whether the lost term explains it, and what the inverse leaves open."""
+        """Return the difference of (15) to Table II, its cause, and the freedom of the inverse, in words."""
         return self.told(measures, exact=EXACT)
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
@@ -121,8 +121,10 @@ class SpineKinematics(Experiment):
 
 def _random(back: SpineMeasures, count: int, seed: int) -> np.ndarray:
     """Return postures spread evenly over the joints' ranges [rad], shape (count, 5)."""
-    low, high = np.array([back.yaw_range, back.pitch_range, back.yaw_range, back.pitch_range, back.yaw_range]).T
-    return np.random.default_rng(seed).uniform(low, high, (count, 5))
+    lower_bound, upper_bound = np.array(
+        [back.yaw_range, back.pitch_range, back.yaw_range, back.pitch_range, back.yaw_range]
+    ).T
+    return np.random.default_rng(seed).uniform(lower_bound, upper_bound, (count, 5))
 
 
 def _azimuth(T: np.ndarray) -> np.ndarray:
@@ -143,26 +145,31 @@ def _facts(back: SpineMeasures) -> dict[str, float]:
 
 
 def _inverted(back: SpineMeasures, angles: np.ndarray) -> xr.Dataset:
-    """Return how far the inverse misses the postures that it is asked for, on its worse branch."""
+    """Return position, azimuth and joint errors of the inverse in random postures, on the worse of its two branches.
+
+    Args:
+        back: measures of the spine.
+        angles: of the postures, shape (sample, 5) [rad].
+    """
     T = spine.forward(back, angles)
     target, azimuth = T[:, :3, 3], _azimuth(T)
     position, heading = np.zeros(len(angles)), np.zeros(len(angles))
-    missed = np.full(len(angles), np.inf)
+    angle_error = np.full(len(angles), np.inf)
     for branch in (1, -1):
-        found = spine.inverse(back, target, azimuth, first_yaw=angles[:, 0], branch=branch)
-        again = spine.forward(back, found)
-        position = np.maximum(position, np.linalg.norm(again[:, :3, 3] - target, axis=1))
-        heading = np.maximum(heading, np.abs(np.angle(np.exp(1j * (_azimuth(again) - azimuth)))))
-        missed = np.minimum(missed, np.abs(found - angles).max(axis=1))
-    few = slice(0, _FEW)
-    easy = spine.least_bending(back, target[few], azimuth[few])
-    saved = 1 - np.sum(easy**2, axis=1) / np.sum(angles[few] ** 2, axis=1)
+        solution = spine.inverse(back, target, azimuth, first_yaw=angles[:, 0], branch=branch)
+        round_trip = spine.forward(back, solution)
+        position = np.maximum(position, np.linalg.norm(round_trip[:, :3, 3] - target, axis=1))
+        heading = np.maximum(heading, np.abs(np.angle(np.exp(1j * (_azimuth(round_trip) - azimuth)))))
+        angle_error = np.minimum(angle_error, np.abs(solution - angles).max(axis=1))
+    subset = slice(0, _SEARCH_COUNT)
+    easy = spine.least_bending(back, target[subset], azimuth[subset])
+    saved = 1 - np.sum(easy**2, axis=1) / np.sum(angles[subset] ** 2, axis=1)
     rad = {"units": "rad"}
     return xr.Dataset(
         {
             "error_inverse": ("random", position, _METRE | {"long_name": "how far the inverse misses the point"}),
             "error_azimuth": ("random", heading, rad | {"long_name": "how far the inverse misses the azimuth"}),
-            "angle_missed": ("random", missed, rad | {"long_name": "greatest angle off the posture itself"}),
+            "angle_missed": ("random", angle_error, rad | {"long_name": "greatest angle off the posture itself"}),
             "bending_saved": ("few", saved, {"units": "1", "long_name": "squared angles saved by the least bending"}),
         }
     )
@@ -175,13 +182,19 @@ def _density(x: np.ndarray, y: np.ndarray, cell: float) -> tuple[np.ndarray, np.
 
 
 def _workspace(back: SpineMeasures, angles: np.ndarray, grid: int) -> xr.Dataset:
-    """Map how often joint 5 is where, from above and from the side, and a few postures."""
+    """Return the density of joint 5 from above and from the side over random postures, and a few named postures.
+
+    Args:
+        back: measures of the spine.
+        angles: of the random postures, shape (sample, 5) [rad].
+        grid: cells along the longer side of the maps [-].
+    """
     x, y, z = spine.forward(back, angles)[:, :3, 3].T
     cell = float(np.ptp(y)) / grid  # [m]
     top, x1, y1 = _density(x, y, cell)
     side, x2, z2 = _density(x, z, cell)
     yaw, pitch = back.yaw_range[1], back.pitch_range[1]
-    named = {
+    postures = {
         "straight": (0.0, 0.0, 0.0, 0.0, 0.0),
         "left": (yaw, 0.0, yaw, 0.0, yaw),
         "right": (-yaw, 0.0, -yaw, 0.0, -yaw),
@@ -193,14 +206,18 @@ def _workspace(back: SpineMeasures, angles: np.ndarray, grid: int) -> xr.Dataset
         {
             "density_top": (("top_x", "top_y"), top, share),
             "density_side": (("side_x", "side_z"), side, share),
-            "posture_points": (("posture", "point", "axis"), _polyline(back, np.array(list(named.values()))), _METRE),
+            "posture_points": (
+                ("posture", "point", "axis"),
+                _polyline(back, np.array(list(postures.values()))),
+                _METRE,
+            ),
         },
         coords={
             "top_x": ("top_x", x1, _METRE),
             "top_y": ("top_y", y1, _METRE),
             "side_x": ("side_x", x2, _METRE),
             "side_z": ("side_z", z2, _METRE),
-            "posture": list(named),
+            "posture": list(postures),
             "axis": list("xyz"),
         },
     )
@@ -216,22 +233,28 @@ def _polyline(back: SpineMeasures, angles: np.ndarray, *, head: float = 0.0) -> 
 
 
 def _errors(back: SpineMeasures, count: int, seed: int) -> xr.Dataset:
-    """Return how far off (15) is in mildly bent postures, as printed and with its lost term."""
+    """Return the error of (15) in mildly bent random postures, as printed and with its missing term [m].
+
+    Args:
+        back: measures of the spine.
+        count: number of postures [-].
+        seed: of the postures [-].
+    """
     angles = np.random.default_rng(seed + 1).uniform(-MILD, MILD, (count, 5))
-    end, wrong = spine.forward(back, angles)[:, :3, 3], printed.spine_position(back, angles)
+    end, printed_end = spine.forward(back, angles)[:, :3, 3], printed.spine_position(back, angles)
     c1, c2, c3, c4, _ = np.cos(angles).T
-    lost = (back.link * c4 - printed.LOST_TERM)[:, None] * (c2 * c3)[:, None]
-    mended = wrong + lost * np.stack([c1, np.sin(angles[:, 0]), np.zeros(count)], axis=1)
-    error = np.linalg.norm(wrong - end, axis=1)
+    missing_term = (back.link * c4 - printed.LOST_TERM)[:, None] * (c2 * c3)[:, None]
+    mended_end = printed_end + missing_term * np.stack([c1, np.sin(angles[:, 0]), np.zeros(count)], axis=1)
+    error = np.linalg.norm(printed_end - end, axis=1)
     edges = np.linspace(0.0, 1.1 * back.link, 56)
     share = {"units": "-", "long_name": "share of the postures in the class"}
     return xr.Dataset(
         {
             "error_printed": ("mild", error, _METRE | {"long_name": "error of (15)"}),
-            "error_upward": ("mild", np.abs(wrong - end)[:, 2], _METRE | {"long_name": "error of Pz of (15)"}),
+            "error_upward": ("mild", np.abs(printed_end - end)[:, 2], _METRE | {"long_name": "error of Pz of (15)"}),
             "error_mended": (
                 "mild",
-                np.linalg.norm(mended - end, axis=1),
+                np.linalg.norm(mended_end - end, axis=1),
                 _METRE | {"long_name": "error of (15) with its lost term"},
             ),
             "error_share": ("error", np.histogram(error, edges)[0] / count, share),
@@ -241,7 +264,7 @@ def _errors(back: SpineMeasures, count: int, seed: int) -> xr.Dataset:
 
 
 def _turns(back: SpineMeasures) -> xr.Dataset:
-    """Follow joint 5 while all yaw joints bend alike, ours and as printed."""
+    """Return the position of joint 5 while all yaw joints bend by the same angle, by Table II and as printed."""
     bend = np.linspace(-pi / 2, pi / 2, 121)
     angles = np.zeros((len(bend), 5))
     angles[:, ::2] = bend[:, None] / 3
@@ -260,11 +283,11 @@ def _family(robot: Robot) -> xr.Dataset:
     aim = spine.forward(back, np.radians([20.0, 20, -45, 40, -45]))
     target, azimuth = aim[:3, 3], float(_azimuth(aim))
     best = spine.least_bending(back, target, azimuth)
-    first = np.linspace(-pi / 2, pi / 2, 721)
+    yaw_angles = np.linspace(-pi / 2, pi / 2, 721)
     signs = np.array([[1], [-1]])
-    cost = np.sum(spine.candidates(back, target, azimuth, first_yaw=first, branch=signs) ** 2, axis=-1)
+    cost = np.sum(spine.candidates(back, target, azimuth, first_yaw=yaw_angles, branch=signs) ** 2, axis=-1)
     branch = 1 if best[3] >= 0 else -1
-    open_to = first[np.isfinite(cost[0 if branch == 1 else 1])]
+    open_to = yaw_angles[np.isfinite(cost[0 if branch == 1 else 1])]
     first_yaws = np.linspace(open_to[0], open_to[-1], 9)[1:-1]
     family = spine.inverse(back, np.tile(target, (7, 1)), azimuth, first_yaw=first_yaws, branch=branch)
     return xr.Dataset(
@@ -276,7 +299,7 @@ def _family(robot: Robot) -> xr.Dataset:
         },
         coords={
             "branch": [1, -1],
-            "first_yaw": ("first_yaw", first, {"units": "rad", "long_name": "first yaw angle"}),
+            "first_yaw": ("first_yaw", yaw_angles, {"units": "rad", "long_name": "first yaw angle"}),
             "joint": list(spine_joints()),
             "axis": list("xyz"),
         },

@@ -5,17 +5,18 @@ from suchus.article.verdict.rule import Clause, Rule
 
 EXACT = 1e-9
 """Greatest error that counts as rounding, as a share of the length [-]."""
-_BUILT = "A count of the robot that was built so; nothing is simulated."
+_CONSTRUCTION_NOTE = "A count of the robot that was built so; nothing is simulated."
 
 
 def _count(claim: str) -> Rule:
+    """Return the rule of a claim that is a count of joints: the robot was built with this number."""
     return Rule(
         claim=claim,
         experiment="spine_kinematics",
         measure=claim,
         kind="construction",
-        why=f"{_BUILT} Yaw and pitch joints take turns, beginning with yaw.",
-        unswept=_BUILT,
+        why=f"{_CONSTRUCTION_NOTE} Yaw and pitch joints take turns, beginning with yaw.",
+        unswept=_CONSTRUCTION_NOTE,
     )
 
 

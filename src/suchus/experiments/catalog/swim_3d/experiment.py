@@ -56,7 +56,7 @@ LIMBS = "limbs folded"
 AS_COMMANDED = "as commanded"
 """The same along the midline that is commanded."""
 COUPLED = ("coupling_residual", "energy_error", "power_error")
-"""How well robots and water came to terms; see ``coupling.swim_on_joints``."""
+"""Measures of the convergence of robot and water; see ``coupling.swim_on_joints``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -140,6 +140,7 @@ class Swim3d(Experiment):
     here."""
 
     def __post_init__(self) -> None:
+        """Refuse an unknown reading, a Reynolds number that no grid resolves, and settings outside their ranges."""
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("beside", 0.0, 3.0, "body lengths")
@@ -175,65 +176,89 @@ class Swim3d(Experiment):
             return self._simulated(progress, client)
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
+        """Run every swim, here or on a cluster, and return record, film, replay and checkpoint files.
+
+        Args:
+            progress: called with the stage and the fraction that is done.
+            client: Dask client of the scheduler; None computes the swims in processes of this machine.
+        """
         check_kept(self.keep)
-        ours, printed = (self._motion(sign) for sign in (-1, 1))
-        bent = midlines(self.robot, ours, self.compared_cells + 1) if self.taken else []
-        runs = self._runs(ours, printed, bent)
+        swim_gait, printed_gait = (self._motion(sign) for sign in (-1, 1))
+        joint_midlines = midlines(self.robot, swim_gait, self.compared_cells + 1) if self.taken else []
+        runs = self._runs(swim_gait, printed_gait, joint_midlines)
         for _, item in runs:
             check_resolved_swim(self.robot, item.motion, item.setting)
             if item.joints:
                 assert isinstance(item.motion, Gait)
                 check_on_joints(self.robot, item.motion, item.setting)
-        check_resolved_swim(self.robot, ours, self._slice)
+        check_resolved_swim(self.robot, swim_gait, self._slice)
         items = [item for _, item in runs]
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
-            found = conduct_sweep(
+            records = conduct_sweep(
                 self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
                 progress=staged(progress, "", 0.0, 0.9), jobs=self.jobs,
                 local=partial(_swum_here, self.robot, self.keep),
             )  # fmt: skip
-        beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
-        swims = {name: swum for (name, _), swum in zip(runs, found, strict=True)}
-        record = self.recorded(swims, with_midlines(beside, bent))
+        reference = self._reference_speeds(swim_gait, staged(progress, "the slice", 0.9, 0.95))
+        swims = {name: swim_record for (name, _), swim_record in zip(runs, records, strict=True)}
+        record = self.recorded(swims, with_midlines(reference, joint_midlines))
         film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
-        kept = all_kept(self.keep, ["slice", *map(_kept_as, items)])
-        return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record), kept=kept)
+        stored_swims = all_kept(self.keep, ["slice", *map(_checkpoint_name, items)])
+        return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record), kept=stored_swims)
 
-    def recorded(self, swims: Mapping[str, xr.Dataset], beside: xr.Dataset) -> xr.Dataset:
-        """Return the record of the experiment from the swims by name, and what slice and models say."""
+    def recorded(self, swims: Mapping[str, xr.Dataset], reference: xr.Dataset) -> xr.Dataset:
+        """Return the record of the experiment.
+
+        Args:
+            swims: records of the swims in three dimensions, by name.
+            reference: speeds of slice and slender-body models, of ``with_midlines``.
+        """
         grids = [swims[f"{cells} cells"] for cells in self.cells]
-        whole = swims.get("compared", swims.get(f"{self.compared_cells} cells"))
-        assert whole is not None
+        base_swim = swims.get("compared", swims.get(f"{self.compared_cells} cells"))
+        assert base_swim is not None
         arms = ("trunk only", "tail only", "as printed", AS_COMMANDED, LIMBS, *TAKEN)
         names = [name for name in arms if name in swims]
-        tails = {f"tail {high:g} m": high for high in self.tail_heights}
-        compared = {WHOLE: whole, **{name: swims[name] for name in (*names, *tails)}}
-        apart = ("speed", "thrust", "power", "steps", "million_cells", "thin", "cycle", *COUPLED)
-        finest = grids[-1].drop_vars(apart, errors="ignore")
-        n, held = self.compared_cycles, swims["held"]
-        coupled = [one for one in {id(one): one for one in (*grids, *compared.values())}.values() if COUPLED[0] in one]
-        terms = {name: ("own", [float(one[name]) for one in coupled], {"units": "1"}) for name in COUPLED if coupled}
-        speeds, powers = ([one[name].values[:n] for one in compared.values()] for name in ("speed", "power"))
+        tails = {f"tail {height:g} m": height for height in self.tail_heights}
+        compared_swims = {WHOLE: base_swim, **{name: swims[name] for name in (*names, *tails)}}
+        dropped_names = ("speed", "thrust", "power", "steps", "million_cells", "thin", "cycle", *COUPLED)
+        finest_record = grids[-1].drop_vars(dropped_names, errors="ignore")
+        n, held_swim = self.compared_cycles, swims["held"]
+        coupled_swims = [
+            swim_record
+            for swim_record in {
+                id(swim_record): swim_record for swim_record in (*grids, *compared_swims.values())
+            }.values()
+            if COUPLED[0] in swim_record
+        ]
+        terms = {
+            name: ("own", [float(swim_record[name]) for swim_record in coupled_swims], {"units": "1"})
+            for name in COUPLED
+            if coupled_swims
+        }
+        speeds, powers = (
+            [swim_record[name].values[:n] for swim_record in compared_swims.values()] for name in ("speed", "power")
+        )
+        weights = [float(swim_record.weight) for swim_record in compared_swims.values()]
         data = xr.Dataset(
             {
-                **{name: (("grid", "cycle"), [one[name].values for one in grids], grids[0][name].attrs)
+                **{name: (("grid", "cycle"), [swim_record[name].values for swim_record in grids], grids[0][name].attrs)
                    for name in ("speed", "thrust", "power")},
-                **{name: ("grid", [float(one[name]) for one in grids], grids[0][name].attrs)
+                **{name: ("grid", [float(swim_record[name]) for swim_record in grids], grids[0][name].attrs)
                    for name in ("steps", "million_cells", "thin")},
                 "compared_speed": (("compared", "compared_cycle"), speeds, {"units": "m/s"}),
                 "compared_power": (("compared", "compared_cycle"), powers, {"units": "W"}),
-                "tail_height": ("compared", [tails.get(name, 0.0) for name in compared], {"units": "m"}),
-                "weight_compared": ("compared", [float(one.weight) for one in compared.values()], {"units": "N"}),
-                "held_thrust": ((), float(held.thrust[-1]), {"units": "N"}),
-                "held_power": ((), float(held.power[-1]), {"units": "W"}),
+                "tail_height": ("compared", [tails.get(name, 0.0) for name in compared_swims], {"units": "m"}),
+                "weight_compared": ("compared", weights, {"units": "N"}),
+                "held_thrust": ((), float(held_swim.thrust[-1]), {"units": "N"}),
+                "held_power": ((), float(held_swim.power[-1]), {"units": "W"}),
                 "compared_cells": ((), float(self.compared_cells), {"units": "1"}),
                 "reynolds": ((), self.reynolds, {"units": "1"}),
                 **terms,
             },
-            coords={"cells": ("grid", list(self.cells)), "compared": list(compared),
+            coords={"cells": ("grid", list(self.cells)), "compared": list(compared_swims),
                     "cycle": grids[0].cycle.values, "compared_cycle": np.arange(1, n + 1)},
         )  # fmt: skip
-        return data.merge(finest).merge(beside).assign_attrs(joints=int(self.joints))
+        return data.merge(finest_record).merge(reference).assign_attrs(joints=int(self.joints))
 
     def _motion(self, sign: int) -> Gait:
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
@@ -249,38 +274,53 @@ class Swim3d(Experiment):
         """Grid, water and time of the slice."""
         return SwimSetting(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
 
-    def _runs(self, ours: Gait, printed: Gait, bent: Sequence[TakenMidline] = ()) -> "Sequence[tuple[str, Item]]":
-        """Return name, motion, grid and time of every swim in space."""
+    def _runs(
+        self, swim_gait: Gait, printed_gait: Gait, joint_midlines: Sequence[TakenMidline] = ()
+    ) -> "Sequence[tuple[str, Item]]":
+        """Return the name of every swim in three dimensions with its motion, grid and time.
 
-        def setting(cells: int, cycles: int, **other: Any) -> SwimSetting:
+        Args:
+            swim_gait: wave that swims forward.
+            printed_gait: wave in the printed direction.
+            joint_midlines: midlines of the joints in six degrees of freedom.
+        """
+
+        def setting(cells: int, cycles: int, **options: Any) -> SwimSetting:
             return SwimSetting(
-                axes=3, cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other
+                axes=3, cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **options
             )
 
-        def swims(name: str, motion: Gait, how: SwimSetting) -> tuple[str, Item]:
-            return name, Item(motion, how, self.joints)
+        def swims(name: str, motion: Gait, grid_setting: SwimSetting) -> tuple[str, Item]:
+            return name, Item(motion, grid_setting, self.joints)
 
-        compared = setting(self.compared_cells, self.compared_cycles)
-        runs = [swims(f"{cells} cells", ours, setting(cells, self.cycles)) for cells in self.cells[:-1]]
-        runs.append(swims(f"{self.cells[-1]} cells", ours, setting(self.cells[-1], self.cycles, frames=self.frames)))
+        compared_setting = setting(self.compared_cells, self.compared_cycles)
+        runs = [swims(f"{cells} cells", swim_gait, setting(cells, self.cycles)) for cells in self.cells[:-1]]
+        runs.append(
+            swims(f"{self.cells[-1]} cells", swim_gait, setting(self.cells[-1], self.cycles, frames=self.frames))
+        )
         if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
-            runs.append(swims("compared", ours, compared))
-        runs.append(("held", Item(ours, setting(self.compared_cells, min(3, self.compared_cycles), free=ON_THE_SPOT))))
+            runs.append(swims("compared", swim_gait, compared_setting))
+        runs.append(
+            ("held", Item(swim_gait, setting(self.compared_cells, min(3, self.compared_cycles), free=ON_THE_SPOT)))
+        )
         if self.tail_heights:
-            trunk, tail = ours.straightened("tail"), ours.straightened("trunk")
-            arms = {"trunk only": trunk, "tail only": tail, "as printed": printed}
-            runs += [swims(name, motion, compared) for name, motion in arms.items()]
-            runs += [(AS_COMMANDED, Item(ours, compared))] * self.joints
-            runs.append(swims(LIMBS, ours, replace(compared, limbs=True)))
-        runs += [(one.name, Item(one.motion, compared)) for one in bent]
+            trunk, tail = swim_gait.straightened("tail"), swim_gait.straightened("trunk")
+            arms = {"trunk only": trunk, "tail only": tail, "as printed": printed_gait}
+            runs += [swims(name, motion, compared_setting) for name, motion in arms.items()]
+            runs += [(AS_COMMANDED, Item(swim_gait, compared_setting))] * self.joints
+            runs.append(swims(LIMBS, swim_gait, replace(compared_setting, limbs=True)))
+        runs += [(midline.name, Item(midline.motion, compared_setting)) for midline in joint_midlines]
         return runs + [
-            swims(f"tail {high:g} m", ours, replace(compared, tail_height=high)) for high in self.tail_heights
+            swims(f"tail {height:g} m", swim_gait, replace(compared_setting, tail_height=height))
+            for height in self.tail_heights
         ]
 
-    def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
+    def _reference_speeds(self, swim_gait: Any, progress: Any) -> xr.Dataset:
         """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
-        plane = resolved_swim(self.robot, ours, self._slice, checkpoint=kept_in(self.keep, "slice"), progress=progress)
-        models, real = swim(self.robot, ours, water=Water(viscosity=self.viscosity)), swim(self.robot, ours)
+        plane = resolved_swim(
+            self.robot, swim_gait, self._slice, checkpoint=kept_in(self.keep, "slice"), progress=progress
+        )
+        models, real = swim(self.robot, swim_gait, water=Water(viscosity=self.viscosity)), swim(self.robot, swim_gait)
         return xr.Dataset(
             {
                 "slice_speed": ("cycle", plane.speed.values, {"units": "m/s"}),
@@ -295,7 +335,7 @@ class Swim3d(Experiment):
             _body(record, self.robot, self.frequency),
             _grids(record),
             _slice_and_models(record),
-            _compared(record),
+            _comparison_measures(record),
             _loads(record),
             _joints(record),
         )
@@ -313,18 +353,18 @@ class Swim3d(Experiment):
 
 
 class Item(NamedTuple):
-    """What differs between the swims."""
+    """Motion and setting of one swim."""
 
     motion: Motion
-    """What is commanded."""
+    """Commanded motion."""
     setting: SwimSetting
-    """Grid, water, time, and what moves the body."""
+    """Grid, water, time, and degrees of freedom of the body."""
     joints: bool = False
-    """Whether the robot's own joints do it."""
+    """Whether the robot's own joints move the body; otherwise it follows the commanded midline."""
 
 
 def swum_in_space(robot: Robot, item: Item, progress: Progress, checkpoint: Path | None = None) -> xr.Dataset:
-    """Return a swim of a robot, see ``water.resolved``; its bytes follow from robot and item alone."""
+    """Return a swim of a robot, see ``water.resolved``; the result depends on robot and item alone."""
     motion, setting, joints = item
     if joints:
         assert isinstance(motion, Gait)
@@ -333,17 +373,17 @@ def swum_in_space(robot: Robot, item: Item, progress: Progress, checkpoint: Path
 
 
 def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
-    """Return the same, and keep in a folder how far it has come."""
-    return swum_in_space(robot, item, progress, kept_in(keep, _kept_as(item)))
+    """Return the same swim, with a checkpoint in the folder ``keep``."""
+    return swum_in_space(robot, item, progress, kept_in(keep, _checkpoint_name(item)))
 
 
-def _kept_as(item: Item) -> str:
-    """Return the name of what is kept of an unfinished swim."""
+def _checkpoint_name(item: Item) -> str:
+    """Return the name of the checkpoint of an unfinished swim."""
     return fingerprint(item)[:16]
 
 
 def _joints(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
-    """Yield what the robot's joints did on the finest grid, and how well all robots came to terms with the water."""
+    """Yield servo power and tail spread on the finest grid, and the coupling errors of all swims."""
     if not record.attrs["joints"]:
         return
     yield "servo_power", Measure(float(record.servo_power[-1]), "W")
@@ -364,15 +404,26 @@ def _replays(record: xr.Dataset) -> dict[str, Replay]:
     return {"swim_3d_replay.html": Replay(caption=caption, make=page)}
 
 
-def with_midlines(beside: xr.Dataset, bent: Sequence[TakenMidline]) -> xr.Dataset:
-    """Return what stands beside the swims, with how far the midlines that the joints took are off, if there are any."""
-    if not bent:
-        return beside
-    away = ("taken_arm", [one.away for one in bent], {"units": "1", "long_name": "rms angle off, over that commanded"})
-    return beside.assign(taken_away=away).assign_coords(taken_arm=[one.name for one in bent])
+def with_midlines(reference: xr.Dataset, joint_midlines: Sequence[TakenMidline]) -> xr.Dataset:
+    """Return the reference speeds with the misfit of the joints' midlines, where there are midlines."""
+    if not joint_midlines:
+        return reference
+    misfit = (
+        "taken_arm",
+        [midline.away for midline in joint_midlines],
+        {"units": "1", "long_name": "rms angle off, over that commanded"},
+    )
+    return reference.assign(taken_away=misfit).assign_coords(taken_arm=[midline.name for midline in joint_midlines])
 
 
 def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[str, Measure]]:
+    """Yield speed, power, mass and similarity numbers of the free body on the finest grid, and its thrust while held.
+
+    Args:
+        record: of ``Swim3d.recorded``.
+        robot: the robot that swims.
+        frequency: of the wave [Hz].
+    """
     speeds, power = record.speed.values[-1], float(record.power[-1, -1])
     speed, weight = float(speeds[-1]), float(record.weight)
     yield "reynolds", Measure(float(record.reynolds), "-")
@@ -399,36 +450,42 @@ def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[
 
 
 def _grids(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield speed and power by grid, and by which fraction the finest grid differs from the next coarser one."""
     for i, cells in enumerate(record.cells.values):
         yield f"speed_{cells}_cells", Measure(float(record.speed[i, -1]), "m/s")
         yield f"power_{cells}_cells", Measure(float(record.power[i, -1]), "W")
         yield f"thin_share_{cells}_cells", Measure(float(record["thin"][i]), "-")
     if record.sizes["grid"] > 1:
-        last, power = record.speed.values[-2:, -1], record.power.values[-2:, -1]
-        yield "speed_over_grids", Measure(float(last[1] / last[0] - 1.0), "-")
+        final_speeds, power = record.speed.values[-2:, -1], record.power.values[-2:, -1]
+        yield "speed_over_grids", Measure(float(final_speeds[1] / final_speeds[0] - 1.0), "-")
         yield "power_over_grids", Measure(float(power[1] / power[0] - 1.0), "-")
 
 
 def _slice_and_models(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield the speed of the slice, and speed, power and thrust by slender-body model."""
     plane, speed = float(record.slice_speed[-1]), float(record.speed[-1, -1])
     yield "speed_slice", Measure(plane, "m/s")
     yield "slice_over_body", Measure(plane / speed, "-")
     for model in record.model.values:
-        one = record.sel(model=model)
-        yield f"speed_{model}", Measure(float(one.model_speed), "m/s")
-        yield f"power_{model}", Measure(float(one.model_power), "W")
-        yield f"thrust_held_{model}", Measure(float(one.model_thrust), "N")
-        yield f"speed_{model}_real_water", Measure(float(one.real_model_speed), "m/s")
+        model_record = record.sel(model=model)
+        yield f"speed_{model}", Measure(float(model_record.model_speed), "m/s")
+        yield f"power_{model}", Measure(float(model_record.model_power), "W")
+        yield f"thrust_held_{model}", Measure(float(model_record.model_thrust), "N")
+        yield f"speed_{model}_real_water", Measure(float(model_record.real_model_speed), "m/s")
 
 
-def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+def _comparison_measures(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield speed, power and cost of transport of each motion and tail on the compared grid."""
     for name in record.compared.values:
-        one, key = record.sel(compared=name), _key(str(name))
-        speed, power = one.compared_speed.values, float(one.compared_power[-1])
+        motion_record, key = record.sel(compared=name), _key(str(name))
+        speed, power = motion_record.compared_speed.values, float(motion_record.compared_power[-1])
         yield f"speed_{key}", Measure(float(speed[-1]), "m/s")
         yield f"speed_gain_{key}", Measure(_gain(speed), "-")
         yield f"power_{key}", Measure(power, "W")
-        yield f"cost_of_transport_{key}", Measure(power / (float(one.weight_compared) * abs(float(speed[-1]))), "-")
+        yield (
+            f"cost_of_transport_{key}",
+            Measure(power / (float(motion_record.weight_compared) * abs(float(speed[-1]))), "-"),
+        )
     for name in record.taken_arm.values if "taken_away" in record else ():
         yield f"misfit_{_key(str(name))}", Measure(float(record.taken_away.sel(taken_arm=name)), "-")
 
@@ -443,9 +500,13 @@ def _key(name: str) -> str:
 
 
 def _loads(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield the greatest torque of each servo over its torque limit [-]."""
     for servo in record.servo.values:
-        one = record.sel(servo=servo)
-        yield f"servo_load_peak_{servo}", Measure(float(abs(one.servo_torque).max() / one.servo_limit), "-")
+        servo_record = record.sel(servo=servo)
+        yield (
+            f"servo_load_peak_{servo}",
+            Measure(float(abs(servo_record.servo_torque).max() / servo_record.servo_limit), "-"),
+        )
 
 
 experiment = Swim3d()

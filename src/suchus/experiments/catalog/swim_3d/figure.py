@@ -14,7 +14,7 @@ _DOTS = ((0, (1, 1.5)), (0, (3, 1, 1, 1)))
 
 
 def how(record: xr.Dataset) -> str:
-    """Return what moves the body, for captions, where it is not the commanded midline."""
+    """Return a clause for captions if the robot's own joints move the body; otherwise nothing."""
     return ", moved by its own joints," if record.attrs["joints"] else ""
 
 
@@ -38,13 +38,13 @@ def draw_speeds(record: xr.Dataset) -> Figure:
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
         ax.set(xlabel="cycle [-]", ylabel="mean speed [mm/s]")
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=11)
-    others = (
+    reference_text = (
         "the slice and the slender-body models of the round body" + ", which are commanded" * record.attrs["joints"]
     )
     return captioned(
         figure,
         f"Mean speed of each cycle from rest, at f L² / ν = {float(record.reynolds):.0f}: the robot's body in three "
-        f"dimensions{how(record)} on grids of so many cells a length, and {others}.",
+        f"dimensions{how(record)} on grids of so many cells a length, and {reference_text}.",
     )
 
 
@@ -55,10 +55,12 @@ def draw_wake(record: xr.Dataset) -> Figure:
         record: of the experiment ``swim_3d``.
     """
     limit = span(record.vorticity.values, 0.985)
-    strong = float(np.quantile(record.vortices_above.values, 0.985))
-    wide, high = float(np.ptp(record.y.values)), 2.0 * float(record.z.max())  # one scale in all panels
+    vortex_limit = float(np.quantile(record.vortices_above.values, 0.985))
+    panel_width, panel_height = float(np.ptp(record.y.values)), 2.0 * float(record.z.max())  # one scale in all panels
     with styled(axes__grid=False):
-        figure, axes = panels(3, 1, width=9.0, height=10.5, sharex=True, height_ratios=[wide, wide, high])
+        figure, axes = panels(
+            3, 1, width=9.0, height=10.5, sharex=True, height_ratios=[panel_width, panel_width, panel_height]
+        )
         ax = axes[0, 0]
         image = ax.pcolormesh(record.x, record.y, record.vorticity, vmin=-limit, vmax=limit, cmap=VORTICITY)
         figure.colorbar(image, ax=ax, label="vorticity about z [1/s]", extend="both")
@@ -66,18 +68,21 @@ def draw_wake(record: xr.Dataset) -> Figure:
         for ax, name, title in (
             (axes[1, 0], "vortices_above", "Vortices from above"), (axes[2, 0], "vortices_beside", "and from the side"),
         ):  # fmt: skip
-            values, across = record[name].values, record[name].dims[0]
-            places = record[str(across)].values
-            if across == "z":  # the other half is the image
-                values, places = np.concatenate([values[::-1], values]), np.concatenate([-places[::-1], places])
-            image = ax.pcolormesh(record.x, places, values, vmin=0.0, vmax=strong, cmap="Purples")
+            values, dimension = record[name].values, record[name].dims[0]
+            positions = record[str(dimension)].values
+            if dimension == "z":  # the other half is the image
+                values, positions = (
+                    np.concatenate([values[::-1], values]),
+                    np.concatenate([-positions[::-1], positions]),
+                )
+            image = ax.pcolormesh(record.x, positions, values, vmin=0.0, vmax=vortex_limit, cmap="Purples")
             figure.colorbar(image, ax=ax, label="Q [1/s²]", extend="both")
             ax.set_title(title, fontsize=12)
         for ax in axes[:2, 0]:
-            _above(ax, record)
+            _draw_body_above(ax, record)
             ax.set_ylabel("y [m]")
-        x, high = record.midline_x.values, record.half_height.values
-        axes[2, 0].fill_between(x, -high, high, color="#6b705c", linewidth=0)
+        x, half_height = record.midline_x.values, record.half_height.values
+        axes[2, 0].fill_between(x, -half_height, half_height, color="#6b705c", linewidth=0)
         axes[2, 0].set(xlabel="x [m], head to tail", ylabel="z [m]")
         for ax in axes[:, 0]:
             ax.set_aspect("equal")
@@ -89,11 +94,11 @@ def draw_wake(record: xr.Dataset) -> Figure:
     )
 
 
-def _above(ax: Axes, record: xr.Dataset) -> None:
+def _draw_body_above(ax: Axes, record: xr.Dataset) -> None:
     """Draw the body as seen from above."""
     x, y = record.midline_x.values, record.midline_y.values
-    heading, wide = record.midline_heading.values, record.midline_half_width.values
-    nx, ny = -np.sin(heading) * wide, np.cos(heading) * wide
+    heading, half_width = record.midline_heading.values, record.midline_half_width.values
+    nx, ny = -np.sin(heading) * half_width, np.cos(heading) * half_width
     ax.fill(np.concatenate([x + nx, (x - nx)[::-1]]), np.concatenate([y + ny, (y - ny)[::-1]]), color="#6b705c")
 
 
@@ -105,18 +110,19 @@ def draw_tails(record: xr.Dataset) -> Figure:
     """
     names = [str(name) for name in record.compared.values]
     colours: dict[tuple[Axes, str], object] = {}
-    taken = any(name.endswith(AS_TAKEN) for name in names)
+    has_midlines = any(name.endswith(AS_TAKEN) for name in names)
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=5.6, sharey=True)
         for name in names:
-            one, motion = record.sel(compared=name), name.removesuffix(AS_TAKEN)
-            high, whole = float(one.tail_height), name == "trunk and tail"
-            label = f"last third {high:g} m high" if high else "the robot's tail" if whole else name
-            for ax, wanted in zip(axes[0], (high > 0 or whole, high == 0), strict=True):
-                if wanted:
+            motion_record, motion = record.sel(compared=name), name.removesuffix(AS_TAKEN)
+            height, is_reference = float(motion_record.tail_height), name == "trunk and tail"
+            label = f"last third {height:g} m high" if height else "the robot's tail" if is_reference else name
+            for ax, is_in_panel in zip(axes[0], (height > 0 or is_reference, height == 0), strict=True):
+                if is_in_panel:
                     (line,) = ax.plot(
-                        record.compared_cycle, 1e3 * one.compared_speed, "o-" if name == motion else "o--", label=label,
-                        color=colours.get((ax, motion)), markerfacecolor=None if name == motion else "white",
+                        record.compared_cycle, 1e3 * motion_record.compared_speed, "o-" if name == motion else "o--",
+                        label=label, color=colours.get((ax, motion)),
+                        markerfacecolor=None if name == motion else "white",
                     )  # fmt: skip
                     colours.setdefault((ax, motion), line.get_color())
         for ax in axes[0]:
@@ -133,7 +139,7 @@ def draw_tails(record: xr.Dataset) -> Figure:
         f"{float(record.reynolds):.0f}. Left: the last third of the body raised to a fin as thick as the tail. Right: "
         f"{', '.join(right[:-1])}, and {right[-1]}."
         + " Dashed: the midline that the joints take of the same commands in six degrees of freedom."
-        * taken,
+        * has_midlines,
     )
 
 

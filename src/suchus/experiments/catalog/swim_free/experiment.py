@@ -59,7 +59,12 @@ from suchus.visual.figures.vortices import film_vortices
 MOTIONS = ("whole", "tail_only", "trunk_only", "reversed")
 """Motions that are compared, in open loop; those of a tail or a trunk alone where both bend."""
 _MODELS = ("resistive", "reactive")
-_SPREAD = {"cross_drag": (0.7, 1.5), "thickening": (0.5, 2.0), "added_mass": (0.7, 1.4), "shedding": (0.5, 1.5)}
+_COEFFICIENT_FACTORS = {
+    "cross_drag": (0.7, 1.5),
+    "thickening": (0.5, 2.0),
+    "added_mass": (0.7, 1.4),
+    "shedding": (0.5, 1.5),
+}
 """Plausible factors on the coefficients of the water [-]: round sections that oscillate, swimming fish, how the tail
 sheds. Drag and added mass may be farther off, as ``water.sections.likely`` says of the robot's sections."""
 
@@ -116,7 +121,7 @@ class SwimFree(Experiment):
     """Cycles that are swum before anything is measured [-]."""
     cycles: int = 6
     """Cycles that are measured [-]."""
-    spread: tuple[str, ...] = tuple(_SPREAD)
+    spread: tuple[str, ...] = tuple(_COEFFICIENT_FACTORS)
     """Coefficients of the water that are varied."""
     level: float = 2.0
     """Depth of the water [m]."""
@@ -150,6 +155,7 @@ class SwimFree(Experiment):
     from there to the same bytes; empty keeps nothing."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, unknown swims and coefficients, and contradictory flow settings."""
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.05, 10.0, "Hz")
             check.number("stiffness", 1e-9, 1e6, "N m/rad")
@@ -198,8 +204,8 @@ class SwimFree(Experiment):
             swims = [name + ending for name in MOTIONS for ending in ("", "_stiff")]
             odd = [name for name in self.in_flow if name not in swims]
             check.that(not odd, f"in_flow names {', '.join(odd)}; there is {', '.join(swims)}")
-            unknown = [name for name in self.spread if name not in _SPREAD]
-            check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_SPREAD)}")
+            unknown = [name for name in self.spread if name not in _COEFFICIENT_FACTORS]
+            check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_COEFFICIENT_FACTORS)}")
 
     def quick(self) -> "SwimFree":
         """Return the first cycle alone, coefficients as they are."""
@@ -218,7 +224,7 @@ class SwimFree(Experiment):
         return Lake(level=self.level, correction=self._correction)
 
     def _doubt_correction(self) -> None:
-        """Say if the correction that is asked for was found at another Reynolds number."""
+        """Warn if the requested correction was fitted at another Reynolds number."""
         if self._correction is not None:
             doubt = self._correction.outside(self.frequency * self.robot.length**2 / Water().viscosity)
             if doubt:
@@ -250,8 +256,10 @@ class SwimFree(Experiment):
         )
         models = self._models(motions)
         record["fine_centre_of_mass"] = fine.centre_of_mass.isel(run=0, drop=True)
-        deep = self._deep(motion, staged(progress, "swims below the surface", 0.8, 1.0))
-        record = xr.merge([record, models, *deep], join="exact", compat="no_conflicts", combine_attrs="override")
+        dive_records = self._dive_records(motion, staged(progress, "swims below the surface", 0.8, 1.0))
+        record = xr.merge(
+            [record, models, *dive_records], join="exact", compat="no_conflicts", combine_attrs="override"
+        )
         record.attrs.update(
             measured_from=self.settle / self.frequency,
             deep_from=self.dive / self.frequency,
@@ -263,12 +271,12 @@ class SwimFree(Experiment):
         )
         if not flow:
             return Simulated(record=record, replays=self._replays(record))
-        found, first, judgement, correction = swum(flow, self.flow_cycles, self.keep, progress)
-        record = xr.merge([record, found], join="exact", compat="no_conflicts", combine_attrs="override")
+        flow_record, first_record, judgement, correction = swum(flow, self.flow_cycles, self.keep, progress)
+        record = xr.merge([record, flow_record], join="exact", compat="no_conflicts", combine_attrs="override")
         record.attrs.update(flow=self.water, linked=int(self.linked))
         films = {"swim_in_flow.gif": film_vortices(record)} if "vortices" in record else film_slice(record)
         return Simulated(
-            record=record, replays={**self._replays(record), **self._flow_replay(first)}, films=films,
+            record=record, replays={**self._replays(record), **self._flow_replay(first_record)}, films=films,
             tables={
                 "residual.md": residual_text(record, judgement, is_earned=correction is not None),
                 **({} if correction is None else {"correction.toml": render(correction)}),
@@ -300,8 +308,8 @@ class SwimFree(Experiment):
         """Joints that cables bend, from the front to the rear."""
         return tuple(name for cable in self.robot.cables for name in cable.hinges)
 
-    def _deep(self, motion: Gait, progress: Any) -> list[xr.Dataset]:
-        """Return what is kept of the swims below the surface; nothing of a robot that cannot hover."""
+    def _dive_records(self, motion: Gait, progress: Any) -> list[xr.Dataset]:
+        """Return the stored variables of the swims below the surface; nothing of a robot that cannot hover."""
         runs = submerged.deep_runs(self.robot, motion, self._lake, self.depth)
         duration = (self.dive + self.cycles) / self.frequency
         return [submerged.kept(simulate(runs, duration=duration, progress=progress), runs)] if runs else []
@@ -309,8 +317,8 @@ class SwimFree(Experiment):
     def _by_table(self, motion: Gait) -> Mapping[str, float]:
         """Return the factors by which the table of sections differs from the coefficients of the swims [-]."""
         outline = Outline(with_values(self.robot, {"hull": None}))
-        swum = cruise(outline, motion, reactive, Water())
-        side = np.ptp(cycle(outline, motion, swum.sway, swum.turn).y, axis=0) / 2
+        free_swim = cruise(outline, motion, reactive, Water())
+        side = np.ptp(cycle(outline, motion, free_swim.sway, free_swim.turn).y, axis=0) / 2
         return dict(zip(("cross_drag", "added_mass"), likely(*outline.silhouette, side), strict=True))
 
     @property
@@ -321,100 +329,110 @@ class SwimFree(Experiment):
         return {"": self.robot, "_stiff": with_spring(self.robot, self._cable, self.stiffness)}
 
     def _runs(self, motions: Mapping[str, Gait], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
-        """Return every run; their labels say what they are."""
-        lake, whole = self._lake, motions["whole"]
+        """Return every run by sections: motions, stiffer joints, steering, varied coefficients of the water.
+
+        Args:
+            motions: by name.
+            factors: least and greatest factor on each coefficient [-].
+        """
+        lake, whole_wave = self._lake, motions["whole"]
         control = Swimming(ramp=1.0 / self.frequency)
         runs = [
             Run(robot=robot, gait=gait, lake=lake, control=control, label=name + ending)
             for ending, robot in self._joints.items()
             for name, gait in motions.items()
         ]
-        steered = _steered(self.robot, whole, tail=self.turn, trunk=self.trunk_turn)
-        runs.append(Run(robot=self.robot, gait=steered, lake=lake, control=control, label="steered"))
+        steered_gait = _steered(self.robot, whole_wave, tail=self.turn, trunk=self.trunk_turn)
+        runs.append(Run(robot=self.robot, gait=steered_gait, lake=lake, control=control, label="steered"))
         for name, ends in factors.items():
             for factor in ends:
-                other = _other(lake, name, factor)
+                lake_variant = _lake_with_factor(lake, name, factor)
                 label = f"{name} x {factor:g}"
-                runs.append(Run(robot=self.robot, gait=whole, lake=other, control=control, label=label))
+                runs.append(Run(robot=self.robot, gait=whole_wave, lake=lake_variant, control=control, label=label))
         return runs
 
     def _models(self, motions: Mapping[str, Gait]) -> xr.Dataset:
         """Return the speeds of the models whose midline is commanded, and the speed of the body wave [m/s]."""
-        bare = with_values(self.robot, {"hull": None})
-        found = {name: swim(bare, one) for name, one in motions.items()}
-        speeds = [[float(found[name].speed.sel(model=model)) for model in _MODELS] for name in motions]
-        whole = found["whole"].sel(model="reactive")
+        bare_robot = with_values(self.robot, {"hull": None})
+        model_swims = {name: swim(bare_robot, gait) for name, gait in motions.items()}
+        speeds = [[float(model_swims[name].speed.sel(model=model)) for model in _MODELS] for name in motions]
+        whole_swim = model_swims["whole"].sel(model="reactive")
         return xr.Dataset(
             {
                 "model_speed": (("motion", "model"), speeds, {"units": "m/s"}),
-                "wave_speed": ((), float(whole.speed / whole.slip), {"units": "m/s"}),
+                "wave_speed": ((), float(whole_swim.speed / whole_swim.slip), {"units": "m/s"}),
             },
             coords={"motion": list(motions), "model": list(_MODELS)},
         )
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the whole wave at the surface, with one other swim half transparent, by file name."""
         labels = [str(label) for label in record.label.values]
         ghost = next(label for label in ("whole_stiff", "tail_only", "reversed") if label in labels)
-        called = {"whole_stiff": "stiffer joints", "tail_only": "tail only", "reversed": "reversed wave"}[ghost]
+        ghost_label = {"whole_stiff": "stiffer joints", "tail_only": "tail only", "reversed": "reversed wave"}[ghost]
         return replayed(
             "swim_replay.html",
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=labels.index(ghost)),
-            labels=("joints as designed" if self._cable else "whole wave", called),
+            labels=("joints as designed" if self._cable else "whole wave", ghost_label),
             title="Swimming in six degrees of freedom",
             caption="Swimming at the surface by the wave of (20), limbs held back; half transparent, with "
-            f"{'stiffer joints' if self._cable else f'the {called}'}.",
+            f"{'stiffer joints' if self._cable else f'the {ghost_label}'}.",
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return speeds, what the swim costs, how it rolls and turns, and how the cable's joints share their bend."""
         labels = [str(label) for label in record.label.values]
         speed = {label: _speed(record.centre_of_mass.isel(run=i), record) for i, label in enumerate(labels)}
-        part = record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
-        whole, found = part.isel(run=0), {}
+        excerpt = record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
+        whole_swim, measures = excerpt.isel(run=0), {}
         for name in [name for name in MOTIONS if name in labels]:
-            found[f"speed_{name}"] = Measure(speed[name], "m/s")
+            measures[f"speed_{name}"] = Measure(speed[name], "m/s")
             if f"{name}_stiff" in speed:
-                found[f"speed_{name}_stiff"] = Measure(speed[f"{name}_stiff"], "m/s")
+                measures[f"speed_{name}_stiff"] = Measure(speed[f"{name}_stiff"], "m/s")
             for model in _MODELS:
                 value = float(record.model_speed.sel(motion=name, model=model))
-                found[f"speed_{name}_{model}"] = Measure(value, "m/s")
+                measures[f"speed_{name}_{model}"] = Measure(value, "m/s")
         waters = [value for label, value in speed.items() if " x " in label] + [speed["whole"]]
-        ahead, weight = abs(speed["whole"]), float(whole.mass) * GRAVITY
-        swing = float(np.ptp((whole.tail_tip - whole.centre_of_mass).sel(xyz="y").values))
+        absolute_speed, weight = abs(speed["whole"]), float(whole_swim.mass) * GRAVITY
+        swing = float(np.ptp((whole_swim.tail_tip - whole_swim.centre_of_mass).sel(xyz="y").values))
         fine = _speed(record.fine_centre_of_mass, record)
-        yaw = np.unwrap(rotation.yaw(whole.orientation.values))
+        yaw = np.unwrap(rotation.yaw(whole_swim.orientation.values))
         return (
-            found
+            measures
             | submerged.measures(record)
             | {
                 "speed_low": Measure(min(waters), "m/s"),
                 "speed_high": Measure(max(waters), "m/s"),
                 "cross_drag_by_table": Measure(record.attrs["cross_drag_by_table"], "-"),
                 "added_mass_by_table": Measure(record.attrs["added_mass_by_table"], "-"),
-                "step_change": Measure(abs(fine - speed["whole"]) / ahead, "-"),
-                "roll_amplitude": Measure(float(np.abs(rotation.heel(whole.orientation.values)).max()), "rad"),
-                "pitch": Measure(float(rotation.pitch(whole.orientation.values).mean()), "rad"),
+                "step_change": Measure(abs(fine - speed["whole"]) / absolute_speed, "-"),
+                "roll_amplitude": Measure(float(np.abs(rotation.heel(whole_swim.orientation.values)).max()), "rad"),
+                "pitch": Measure(float(rotation.pitch(whole_swim.orientation.values).mean()), "rad"),
                 "yaw_amplitude": Measure(float(np.ptp(yaw)) / 2, "rad"),
-                "share_above": Measure(float(1.0 - whole.share_under.mean()), "-"),
+                "share_above": Measure(float(1.0 - whole_swim.share_under.mean()), "-"),
                 "slip": Measure(speed["whole"] / float(record.wave_speed), "-"),
-                "servo_power": Measure(float(whole.servo_power.mean()), "W"),
-                "water_power": Measure(-float(whole.water_power.mean()), "W"),
-                "cost_of_transport": Measure(float(whole.servo_power.mean()) / (weight * ahead), "-"),
-                "cost_of_transport_water": Measure(-float(whole.water_power.mean()) / (weight * ahead), "-"),
-                "turn_radius": Measure(_radius(part.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"),
+                "servo_power": Measure(float(whole_swim.servo_power.mean()), "W"),
+                "water_power": Measure(-float(whole_swim.water_power.mean()), "W"),
+                "cost_of_transport": Measure(float(whole_swim.servo_power.mean()) / (weight * absolute_speed), "-"),
+                "cost_of_transport_water": Measure(
+                    -float(whole_swim.water_power.mean()) / (weight * absolute_speed), "-"
+                ),
+                "turn_radius": Measure(
+                    _radius(excerpt.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"
+                ),
             }
             | similar(
                 swim_numbers(
-                    speed=ahead,
+                    speed=absolute_speed,
                     length=self.robot.length,
                     frequency=record.attrs["frequency"],
                     swing=swing,
                     viscosity=Water().viscosity,
                 )
             )
-            | _shares(part, labels)
+            | _shares(excerpt, labels)
             | flow_measures(record)
         )
 
@@ -422,33 +440,33 @@ class SwimFree(Experiment):
         """Draw the speeds beside the models', and how the joints of the cable share the bend."""
         speeds = {name: measure.value for name, measure in self.measure(outcome.record).items()}
         motions = [name for name in MOTIONS if f"speed_{name}" in speeds]
-        found = {"swim_speeds": draw_speeds(speeds, motions, _MODELS), "tail_shares": draw_tail(outcome.record)}
+        figures = {"swim_speeds": draw_speeds(speeds, motions, _MODELS), "tail_shares": draw_tail(outcome.record)}
         if "dive" in outcome.record:
-            found["below"] = draw_below(outcome.record, submerged.DEEP)
-        return {**found, **(draw_in_flow(outcome.record) if "flow_run" in outcome.record else {})}
+            figures["below"] = draw_below(outcome.record, submerged.DEEP)
+        return {**figures, **(draw_in_flow(outcome.record) if "flow_run" in outcome.record else {})}
 
 
 def _motions(motion: Gait) -> dict[str, Gait]:
     """Return those of ``MOTIONS`` that a wave along an axis has."""
-    found = {"whole": motion}
+    motions = {"whole": motion}
     bends = {"tail" if bend.part == "tail" else "trunk" for bend in motion.axis if any(bend.amplitude)}
     if len(bends) == 2:
-        found |= {"tail_only": motion.straightened("neck", "trunk"), "trunk_only": motion.straightened("tail")}
-    return found | {"reversed": motion.reversed()}
+        motions |= {"tail_only": motion.straightened("neck", "trunk"), "trunk_only": motion.straightened("tail")}
+    return motions | {"reversed": motion.reversed()}
 
 
 def _steered(robot: Robot, motion: Gait, *, tail: float, trunk: float) -> Gait:
-    """Return a wave about mean bends, less by halves until the joints can follow it [rad]."""
-    steered = motion.with_numbers(tail_offset=tail, trunk_offset=trunk)
-    return steered if suits(robot, steered) else _steered(robot, motion, tail=tail / 2, trunk=trunk / 2)
+    """Return a wave about mean bends, which are halved until the joints can follow it."""
+    candidate = motion.with_numbers(tail_offset=tail, trunk_offset=trunk)
+    return candidate if suits(robot, candidate) else _steered(robot, motion, tail=tail / 2, trunk=trunk / 2)
 
 
-def _shares(part: xr.Dataset, labels: Sequence[str]) -> Measures:
-    """Return how unevenly the joints of a cable share its bend; nothing of a robot without cables."""
-    ends = {"": "whole", "_stiff": "whole_stiff"} if part.attrs["cable"] else {}
+def _shares(excerpt: xr.Dataset, labels: Sequence[str]) -> Measures:
+    """Return the largest amplitude of a cable joint over the mean; nothing of a robot without cables."""
+    ends = {"": "whole", "_stiff": "whole_stiff"} if excerpt.attrs["cable"] else {}
     return Measures(
         {
-            f"tail_spread{end}": Measure(_uneven(part.isel(run=labels.index(name)), part), "-")
+            f"tail_spread{end}": Measure(_uneven(excerpt.isel(run=labels.index(name)), excerpt), "-")
             for end, name in ends.items()
         }
     )
@@ -456,12 +474,14 @@ def _shares(part: xr.Dataset, labels: Sequence[str]) -> Measures:
 
 def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     """Return the least and the greatest factor on each coefficient, those of the table among them [-]."""
-    some = {name: (*_SPREAD[name], by_table.get(name, _SPREAD[name][0])) for name in names}
-    return {name: (min(factors), max(factors)) for name, factors in some.items()}
+    factors_by_name = {
+        name: (*_COEFFICIENT_FACTORS[name], by_table.get(name, _COEFFICIENT_FACTORS[name][0])) for name in names
+    }
+    return {name: (min(factors), max(factors)) for name, factors in factors_by_name.items()}
 
 
-def _other(lake: Lake, name: str, factor: float) -> Lake:
-    """Return a lake in which one coefficient is another."""
+def _lake_with_factor(lake: Lake, name: str, factor: float) -> Lake:
+    """Return a lake in which one coefficient of the water is multiplied by a factor."""
     if name in ("added_mass", "shedding"):
         return replace(lake, **{name: factor})  # type: ignore[arg-type]
     return replace(lake, water=replace(Water(), **{name: factor * getattr(Water(), name)}))
@@ -473,17 +493,17 @@ def _speed(centre: xr.DataArray, record: xr.Dataset) -> float:
     return float((x[-1] - x[0]) / (x.time[-1] - x.time[0]))
 
 
-def _radius(part: xr.Dataset, frequency: float) -> float:
+def _radius(excerpt: xr.Dataset, frequency: float) -> float:
     """Return the radius of a circle, left positive: distance over the turn, cycle by cycle [m]."""
-    every = max(round(1.0 / (frequency * float(part.time[1] - part.time[0]))), 1)
-    x, y = (part.centre_of_mass.sel(xyz=axis).values[::every] for axis in "xy")
-    yaw = np.unwrap(rotation.yaw(part.orientation.values))[::every]
+    samples_per_cycle = max(round(1.0 / (frequency * float(excerpt.time[1] - excerpt.time[0]))), 1)
+    x, y = (excerpt.centre_of_mass.sel(xyz=axis).values[::samples_per_cycle] for axis in "xy")
+    yaw = np.unwrap(rotation.yaw(excerpt.orientation.values))[::samples_per_cycle]
     return float(np.hypot(np.diff(x), np.diff(y)).sum() / (yaw[-1] - yaw[0]))
 
 
-def _uneven(part: xr.Dataset, record: xr.Dataset) -> float:
+def _uneven(excerpt: xr.Dataset, record: xr.Dataset) -> float:
     """Return the largest amplitude of a cable joint over their mean [-]."""
-    angles = part.joint_angle.sel(joint=record.attrs["cable"]).transpose("time", "joint").values
+    angles = excerpt.joint_angle.sel(joint=record.attrs["cable"]).transpose("time", "joint").values
     half = np.ptp(angles, axis=0) / 2
     return float(half.max() / half.mean())
 

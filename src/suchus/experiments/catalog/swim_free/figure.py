@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _GREYS = ("#AAAAAA", "#666666")
-_CALLED = {"whole": "whole wave", "tail_only": "tail only", "trunk_only": "trunk only", "reversed": "reversed"}
+_MOTION_LABELS = {"whole": "whole wave", "tail_only": "tail only", "trunk_only": "trunk only", "reversed": "reversed"}
 
 
 def draw_speeds(speeds: Mapping[str, float], motions: Sequence[str], models: Sequence[str]) -> Figure:
@@ -32,15 +32,19 @@ def draw_speeds(speeds: Mapping[str, float], motions: Sequence[str], models: Seq
         figure, axes = panels(1, 1, width=9.0, height=4.2)
         ax, width = axes[0, 0], 0.8 / len(bars)
         for i, (ending, label, colour, hatch) in enumerate(bars):
-            at = np.arange(len(motions)) + (i - (len(bars) - 1) / 2) * width
+            positions = np.arange(len(motions)) + (i - (len(bars) - 1) / 2) * width
             values = [speeds[f"speed_{name}{ending}"] for name in motions]
-            ax.bar(at, values, width, color=colour, hatch=hatch, edgecolor="white", label=label)
-        middle, low, high = (speeds[name] for name in ("speed_whole", "speed_low", "speed_high"))
+            ax.bar(positions, values, width, color=colour, hatch=hatch, edgecolor="white", label=label)
+        nominal_speed, min_speed, max_speed = (speeds[name] for name in ("speed_whole", "speed_low", "speed_high"))
         ax.errorbar(
-            -(len(bars) - 1) / 2 * width, middle, yerr=[[middle - low], [high - middle]], color="#333333", capsize=4
+            -(len(bars) - 1) / 2 * width,
+            nominal_speed,
+            yerr=[[nominal_speed - min_speed], [max_speed - nominal_speed]],
+            color="#333333",
+            capsize=4,
         )
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
-        ax.set_xticks(range(len(motions)), [_CALLED.get(name, name) for name in motions])
+        ax.set_xticks(range(len(motions)), [_MOTION_LABELS.get(name, name) for name in motions])
         ax.set_ylabel("speed [m/s]")
         ax.legend(loc="lower left")
     return captioned(
@@ -63,7 +67,7 @@ def draw_tail(record: xr.Dataset) -> Figure:
         if cabled:
             _draw_shares(axes[0, 0], record, labels)
         ax = axes[0, -1]
-        for label, colour, dashes, called in (
+        for label, colour, dashes, line_label in (
             ("whole", "coordinated", "-", "whole wave"),
             ("trunk_only", "spine_only", (0, (1, 1.2)), "trunk only"),
             ("reversed", "limbs_only", (0, (5, 2)), "reversed"),
@@ -71,7 +75,9 @@ def draw_tail(record: xr.Dataset) -> Figure:
         ):
             if label in labels:
                 track = record.centre_of_mass.isel(run=labels.index(label))
-                ax.plot(track.sel(xyz="x"), track.sel(xyz="y"), color=COLOURS[colour], linestyle=dashes, label=called)
+                ax.plot(
+                    track.sel(xyz="x"), track.sel(xyz="y"), color=COLOURS[colour], linestyle=dashes, label=line_label
+                )
         ax.set_aspect("equal", adjustable="datalim")
         ax.set(xlabel="forward [m]", ylabel="to the left [m]")
         ax.legend(loc="best")
@@ -80,9 +86,10 @@ def draw_tail(record: xr.Dataset) -> Figure:
 
 
 def _draw_shares(ax: Axes, record: xr.Dataset, labels: Sequence[str]) -> None:
-    names, part = record.attrs["cable"], record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
+    """Draw the amplitude of each joint of the cable in up to four swims, and the equal amplitude that is commanded."""
+    names, excerpt = record.attrs["cable"], record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
     number = np.arange(len(names)) + 1
-    for label, colour, dashes, called in (
+    for label, colour, dashes, line_label in (
         ("whole", "coordinated", "-", "whole wave"),
         ("whole_stiff", "tail_still", (0, (5, 2)), "whole wave, stiffer"),
         ("tail_only", "limbs_only", (0, (1, 1.2)), "tail only"),
@@ -90,33 +97,33 @@ def _draw_shares(ax: Axes, record: xr.Dataset, labels: Sequence[str]) -> None:
     ):
         if label not in labels:
             continue
-        angles = part.joint_angle.isel(run=labels.index(label)).sel(joint=names).transpose("time", "joint").values
+        angles = excerpt.joint_angle.isel(run=labels.index(label)).sel(joint=names).transpose("time", "joint").values
         half = np.degrees(np.ptp(angles, axis=0) / 2)
-        ax.plot(number, half, marker="o", color=COLOURS[colour], linestyle=dashes, label=called)
+        ax.plot(number, half, marker="o", color=COLOURS[colour], linestyle=dashes, label=line_label)
     ax.axhline(np.degrees(record.attrs["meant"]), color=COLOURS["neutral"], linewidth=0.9, label="even share")
     ax.set(xlabel="joint of the cable, from the root", ylabel="amplitude [deg]", xticks=number)
     ax.set_ylim(bottom=0.0)
     ax.legend(loc="best")
 
 
-def draw_below(record: xr.Dataset, called: Mapping[str, str]) -> Figure:
+def draw_below(record: xr.Dataset, swim_labels: Mapping[str, str]) -> Figure:
     """Draw depth and pitch of the swims below the surface over time.
 
     Args:
         record: with ``deep_depth`` and ``deep_pitch`` over ``dive`` and ``dive_time``; attributes ``depth`` and
             ``deep_from``.
-        called: what each swim is called.
+        swim_labels: what each swim is called.
     """
     looks = (("coordinated", "-"), ("tail_still", (0, (5, 2))), ("spine_only", (0, (5, 1.5, 1, 1.5))),
              ("limbs_only", (0, (1, 1.2))))  # fmt: skip
     with styled():
         figure, axes = panels(1, 2, width=12.0, height=4.2)
-        for name, (colour, dashes) in zip(called, looks, strict=True):
+        for name, (colour, dashes) in zip(swim_labels, looks, strict=True):
             if name not in record.dive.values:
                 continue
-            one, time = record.sel(dive=name), record.dive_time
-            for ax, values in ((axes[0, 0], -one.deep_depth), (axes[0, 1], np.degrees(one.deep_pitch))):
-                ax.plot(time, values, color=COLOURS[colour], linestyle=dashes, label=called[name])
+            dive_record, time = record.sel(dive=name), record.dive_time
+            for ax, values in ((axes[0, 0], -dive_record.deep_depth), (axes[0, 1], np.degrees(dive_record.deep_pitch))):
+                ax.plot(time, values, color=COLOURS[colour], linestyle=dashes, label=swim_labels[name])
         axes[0, 0].axhline(-record.attrs["depth"], color=COLOURS["neutral"], linewidth=0.9)
         axes[0, 1].axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         axes[0, 0].set(xlabel="time [s]", ylabel="root above the surface [m]")

@@ -1,4 +1,4 @@
-"""Swims in a flow that is solved with the robot: speeds, joints, what the links feel, and the balances."""
+"""Swims in a flow that is solved with the robot: speeds, joint angles, forces on the links, and energy balance."""
 
 from collections.abc import Mapping
 
@@ -15,21 +15,21 @@ _LINES = (COLOURS["coordinated"], COLOURS["tail_still"], COLOURS["ours"], COLOUR
 
 
 def draw_in_flow(record: xr.Dataset) -> Mapping[str, Figure]:
-    """Draw what the swims of a record did in the flow.
+    """Draw speeds, forces, residuals and energy balance of the swims in the flow.
 
     Args:
         record: of the experiment ``swim_free`` with a flow; see ``in_flow``.
     """
-    tried = fins(record)
-    drawn = {"flow_fin": _fins(record, tried)} if tried.stiffness.size > 1 else {}
+    fin_swims = fins(record)
+    fin_figures = {"flow_fin": _fins(record, fin_swims)} if fin_swims.stiffness.size > 1 else {}
     return {
-        **drawn, "flow_speeds": _speeds(record), "flow_links": _links(record), "flow_residual": _residual(record),
+        **fin_figures, "flow_speeds": _speeds(record), "flow_links": _links(record), "flow_residual": _residual(record),
         "flow_balance": _balance(record),
     }  # fmt: skip
 
 
 def film_slice(record: xr.Dataset) -> Mapping[str, bytes]:
-    """Return the last cycle of the first swim in a slice as a film of its vorticity; nothing if it was not seen."""
+    """Return the last cycle of the first swim in a slice as a film of its vorticity; nothing without fields."""
     if "field_vorticity" not in record:
         return {}
     values, phase = record.field_vorticity.values, record.field_frame.values
@@ -47,55 +47,56 @@ def film_slice(record: xr.Dataset) -> Mapping[str, bytes]:
             ax.set_title(f"t = {phase[i]:.2f} T", fontsize=12)
 
         caption = (
-            f"Vorticity over the last cycle of the whole wave in {_where(record)}, red counter-clockwise; the picture "
-            "travels with the body."
+            f"Vorticity over the last cycle of the whole wave in {_water_text(record)}, red counter-clockwise; the "
+            "picture travels with the body."
         )
         return {"swim_in_flow.gif": film(figure, show, len(values), seconds=2.4, caption=caption)}
 
 
-_MANY = 16
-"""Names beside a picture that are written as large as usual [-]."""
+_MAX_LARGE_NAMES = 16
+"""Most names beside a picture that are written in the usual size [-]."""
 
 
-def _called(name: object) -> str:
+def _label(name: object) -> str:
     return str(name).replace("_", " ")
 
 
-def _where(record: xr.Dataset) -> str:
+def _water_text(record: xr.Dataset) -> str:
     water = "a slice of water" if record.attrs["flow"] == "slice" else "water in space"
     return f"{water} at f L² / ν = {float(record.reynolds):.0f}"
 
 
 def _speeds(record: xr.Dataset) -> Figure:
+    """Draw the mean speed of each cycle by swim, and the joint angles over the last cycle of the first swim."""
     time, period = record.flow_time.values, float(record.flow_period)
     with styled():
         figure, axes = panels(1, 2, width=9.5, height=4.0)
-        left, right = axes[0]
+        left_ax, right_ax = axes[0]
         swims = [str(name) for name in record.flow_run.values if FIN not in str(name)]
-        every = max(round(period / float(time[1] - time[0])), 1)
+        samples_per_cycle = max(round(period / float(time[1] - time[0])), 1)
         colours = dict(zip(dict.fromkeys(name.removesuffix("_stiff") for name in swims), _LINES, strict=False))
         for name in swims:
-            x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x").values[::every]
+            x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x").values[::samples_per_cycle]
             cycles = np.arange(1, x.size)
             motion = name.removesuffix("_stiff")
-            left.plot(
+            left_ax.plot(
                 cycles, np.diff(x) / period, "o-" if name == motion else "s--", color=colours[motion],
-                label=_called(motion) + ", stiffer joints" * (name != motion),
+                label=_label(motion) + ", stiffer joints" * (name != motion),
             )  # fmt: skip
-        left.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
-        left.set(xlabel="cycle", ylabel="speed [m/s]", xticks=cycles)
-        left.legend()
+        left_ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
+        left_ax.set(xlabel="cycle", ylabel="speed [m/s]", xticks=cycles)
+        left_ax.legend()
         cable = list(record.attrs["cable"]) or [str(name) for name in record.part.values[record.part_kind == "joint"]]
-        last = time > time[-1] - period - 1e-9
+        is_last_cycle = time > time[-1] - period - 1e-9
         for k, name in enumerate(cable):
-            angle = record.flow_joint_angle.isel(flow_run=0).sel(joint=name).values[last]
-            phase, shade = (time[last] - time[last][0]) / period, str(0.75 - 0.75 * k / len(cable))
-            right.plot(phase, np.degrees(angle), color=shade, label=_called(name))
-        right.set(xlabel="phase of the last cycle", ylabel="joint angle [degree]")
-        right.legend(fontsize="small", ncols=3)
+            angle = record.flow_joint_angle.isel(flow_run=0).sel(joint=name).values[is_last_cycle]
+            phase, shade = (time[is_last_cycle] - time[is_last_cycle][0]) / period, str(0.75 - 0.75 * k / len(cable))
+            right_ax.plot(phase, np.degrees(angle), color=shade, label=_label(name))
+        right_ax.set(xlabel="phase of the last cycle", ylabel="joint angle [degree]")
+        right_ax.legend(fontsize="small", ncols=3)
     return captioned(
         figure,
-        f"Left: mean speed of each cycle from rest in {_where(record)}, robot and flow solved together. "
+        f"Left: mean speed of each cycle from rest in {_water_text(record)}, robot and flow solved together. "
         "Right: angles that "
         + ("the joints of the cable take in the last cycle; the cable holds their sum alone."
            if record.attrs["cable"] else "the joints take in the last cycle."),
@@ -103,11 +104,12 @@ def _speeds(record: xr.Dataset) -> Figure:
 
 
 def _links(record: xr.Dataset) -> Figure:
+    """Draw the force on each link and the moment about each joint over the last cycle of the first swim, as maps."""
     period, time = float(record.flow_period), record.flow_time.values
-    last = time > time[-1] - period - 1e-9
-    force = record.flow_link_force.isel(flow_run=0).sel(xyz="y").values[last]
+    is_last_cycle = time > time[-1] - period - 1e-9
+    force = record.flow_link_force.isel(flow_run=0).sel(xyz="y").values[is_last_cycle]
     joints = [str(name) for name in record.part.values[record.part_kind.values == "joint"]]
-    moment = record.flow_joint_water_torque.isel(flow_run=0).sel(joint=joints).values[last]
+    moment = record.flow_joint_water_torque.isel(flow_run=0).sel(joint=joints).values[is_last_cycle]
     with styled(axes__grid=False):
         figure, axes = panels(1, 2, width=10.5, height=4.4)
         for ax, values, names, unit in (
@@ -120,48 +122,61 @@ def _links(record: xr.Dataset) -> Figure:
             (axes[0, 1], moment, [name.replace("_", " ") for name in joints], "moment of the water [N m]"),
         ):
             limit = float(np.abs(values).max()) or 1.0
-            shown = ax.imshow(values.T, aspect="auto", cmap="RdBu_r", vmin=-limit, vmax=limit,
+            image = ax.imshow(values.T, aspect="auto", cmap="RdBu_r", vmin=-limit, vmax=limit,
                               extent=(0.0, 1.0, len(names) - 0.5, -0.5), interpolation="nearest")  # fmt: skip
-            ax.set_yticks(range(len(names)), names, fontsize="medium" if len(names) <= _MANY else 5)
+            ax.set_yticks(range(len(names)), names, fontsize="medium" if len(names) <= _MAX_LARGE_NAMES else 5)
             ax.grid(visible=False)
             ax.set_xlabel("phase of the last cycle")
-            figure.colorbar(shown, ax=ax, label=unit)
+            figure.colorbar(image, ax=ax, label=unit)
         axes[0, 0].set_ylabel("link" if record.attrs["linked"] else "link, from the head on")
-    which = "rigid link of the robot" if record.attrs["linked"] else "link between two lateral joints"
+    link_text = "rigid link of the robot" if record.attrs["linked"] else "link between two lateral joints"
     return captioned(
         figure,
-        f"What the water does to each {which}, and about each lateral joint, over the last cycle of the whole wave in "
-        f"{_where(record)}.",
+        f"What the water does to each {link_text}, and about each lateral joint, over the last cycle of the whole wave "
+        f"in {_water_text(record)}.",
     )
 
 
 def _residual(record: xr.Dataset) -> Figure:
+    """Draw the rms force by link and the rms moment by joint, in the flow and by the section model, with R2."""
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.4)
         for ax, kind, unit in ((axes[0, 0], "link", "N"), (axes[0, 1], "joint", "N m")):
-            part = record.isel(part=np.flatnonzero(record.part_kind.values == kind))
-            names = [str(name).replace("_", " ") for name in part.part.values]
-            at = np.arange(len(names))
-            ax.bar(at - 0.2, part.residual_rms, 0.4, color=COLOURS["ours"], label="flow")
-            ax.bar(at + 0.2, part.residual_rms_sections, 0.4, color=COLOURS["neutral"], label="sections, as shipped")
-            top = np.maximum(part.residual_rms, part.residual_rms_sections)
-            for x, r2, high in zip(at, part.residual_r2.values, top, strict=True):
-                ax.annotate(f"{r2:.2f}", (x, float(high)), ha="center", va="bottom", fontsize=7)
-            ax.set_xticks(at, names, rotation=60, ha="right", fontsize=8)
+            kind_record = record.isel(part=np.flatnonzero(record.part_kind.values == kind))
+            names = [str(name).replace("_", " ") for name in kind_record.part.values]
+            positions = np.arange(len(names))
+            ax.bar(positions - 0.2, kind_record.residual_rms, 0.4, color=COLOURS["ours"], label="flow")
+            ax.bar(
+                positions + 0.2,
+                kind_record.residual_rms_sections,
+                0.4,
+                color=COLOURS["neutral"],
+                label="sections, as shipped",
+            )
+            top = np.maximum(kind_record.residual_rms, kind_record.residual_rms_sections)
+            for x, r2, rms in zip(positions, kind_record.residual_r2.values, top, strict=True):
+                ax.annotate(f"{r2:.2f}", (x, float(rms)), ha="center", va="bottom", fontsize=7)
+            ax.set_xticks(positions, names, rotation=60, ha="right", fontsize=8)
             ax.set_ylabel(f"rms [{unit}]")
             ax.margins(y=0.12)
         axes[0, 0].legend()
     return captioned(
         figure,
         "Root mean square, over the measured cycles, of the force across each link and of the moment about each joint "
-        f"in {_where(record)}, and what the section model says of "
+        f"in {_water_text(record)}, and what the section model says of "
         "the same motion in the same water. Numbers are R², the share of the variance that the section model explains; "
         "below 0 a constant would be nearer.",
     )
 
 
-def _fins(record: xr.Dataset, tried: xr.Dataset) -> Figure:
-    stiffness, speed, cost = tried.stiffness.values, tried.speed.values, tried.cost.values
+def _fins(record: xr.Dataset, fin_swims: xr.Dataset) -> Figure:
+    """Draw speed and cost of transport over the stiffness of the passive end, with the best stiffness marked.
+
+    Args:
+        record: of the experiment ``swim_free`` with a flow.
+        fin_swims: of ``in_flow.fins``.
+    """
+    stiffness, speed, cost = fin_swims.stiffness.values, fin_swims.speed.values, fin_swims.cost.values
     with styled():
         figure, axes = panels(1, 2, width=9.5, height=3.8)
         for ax, values, label, best in (
@@ -170,41 +185,53 @@ def _fins(record: xr.Dataset, tried: xr.Dataset) -> Figure:
         ):
             ax.semilogx(stiffness, values, "o-", color=COLOURS["ours"])
             if np.isfinite(values).any():
-                at = int(np.flatnonzero(values == best(values))[0])
-                ax.plot(stiffness[at], values[at], "o", color=COLOURS["tail_still"], markersize=10, fillstyle="none")
-                edge = ", the end of what was tried" if at in (0, len(values) - 1) else ""
-                ax.set_title(f"best at {stiffness[at]:g} N m/rad{edge}", fontsize=11)
+                best_index = int(np.flatnonzero(values == best(values))[0])
+                ax.plot(
+                    stiffness[best_index],
+                    values[best_index],
+                    "o",
+                    color=COLOURS["tail_still"],
+                    markersize=10,
+                    fillstyle="none",
+                )
+                edge = ", the end of what was tried" if best_index in (0, len(values) - 1) else ""
+                ax.set_title(f"best at {stiffness[best_index]:g} N m/rad{edge}", fontsize=11)
             ax.set(xlabel="stiffness of each passive joint [N m/rad]", ylabel=label)
             ax.set_xlim(0.8 * stiffness[0], 1.25 * stiffness[-1])
-            ax.set_xticks(stiffness, [f"{one:g}" for one in stiffness])
+            ax.set_xticks(stiffness, [f"{tick:g}" for tick in stiffness])
             ax.minorticks_off()
     return captioned(
         figure,
         "How stiff the passive end of the tail is best, in the last cycle of the whole wave from rest in "
-        f"{_where(record)}: speed, and the servos' power over weight in air times speed.",
+        f"{_water_text(record)}: speed, and the servos' power over weight in air times speed.",
     )
 
 
 def _balance(record: xr.Dataset) -> Figure:
+    """Draw the coupling residual before and after the correction, and the errors of energy and power, over time."""
     time, period = record.flow_time.values, float(record.flow_period)
     with styled():
         figure, axes = panels(1, 2, width=9.5, height=4.0)
-        left, right = axes[0]
-        first, after = (record[name].isel(flow_run=0).values for name in ("coupling_first", "coupling_residual"))
-        left.semilogy(time / period, np.maximum(first, 1e-7), color=COLOURS["neutral"], label="before the correction")
-        left.semilogy(time / period, np.maximum(after, 1e-7), color=COLOURS["ours"], label="after it")
-        left.set(xlabel="cycle", ylabel="force left over [-]")
-        left.legend()
+        left_ax, right_ax = axes[0]
+        initial_residual, final_residual = (
+            record[name].isel(flow_run=0).values for name in ("coupling_first", "coupling_residual")
+        )
+        left_ax.semilogy(
+            time / period, np.maximum(initial_residual, 1e-7), color=COLOURS["neutral"], label="before the correction"
+        )
+        left_ax.semilogy(time / period, np.maximum(final_residual, 1e-7), color=COLOURS["ours"], label="after it")
+        left_ax.set(xlabel="cycle", ylabel="force left over [-]")
+        left_ax.legend()
         for name, colour, label in (
             ("energy_error", COLOURS["ours"], "missing in the robot's balance, over its servos' work"),
             ("power_error", COLOURS["tail_still"], "force times velocity against the flow's own power"),
         ):
-            right.plot(time / period, record[name].isel(flow_run=0).values, color=colour, label=label)
-        right.set(xlabel="cycle", ylabel="error [-]", ylim=(-0.1, 0.1))
-        right.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
-        right.legend(fontsize="small")
+            right_ax.plot(time / period, record[name].isel(flow_run=0).values, color=colour, label=label)
+        right_ax.set(xlabel="cycle", ylabel="error [-]", ylim=(-0.1, 0.1))
+        right_ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
+        right_ax.legend(fontsize="small")
     return captioned(
         figure,
-        f"How well robot and flow came to terms in {_where(record)}: the force that each step left over, as a "
+        f"How well robot and flow came to terms in {_water_text(record)}: the force that each step left over, as a "
         "share of the greatest so far, and the energy that is missing so far.",
     )

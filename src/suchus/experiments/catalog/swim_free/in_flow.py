@@ -21,29 +21,31 @@ from suchus.swimming.coupling.earned import LinkJudgement
 from suchus.swimming.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
 from suchus.swimming.water.samples import kept_in
 
-_KEPT = (
+_FLOW_VARIABLES = (
     "centre_of_mass", "position", "orientation", "joint_angle", "servo_power", "water_force", "water_power",
     "link_force", "link_torque", "joint_water_torque",
 )  # fmt: skip
-"""What is kept of each swim as ``flow_NAME``, over a time of its own."""
+"""Variables of each swim that are stored as ``flow_NAME``, over their own time."""
 _COUPLING = ("coupling_residual", "coupling_first", "coupling_iterations", "energy_error", "power_error")
 FRAMES = 24
 """Instants of the last cycle that are filmed [-]."""
 FIN = "_fin_"
-"""What stands between the motion and the stiffness in the label of a swim with another passive end."""
-_SHOWN = ("r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_held_out")
-"""What is measured of every link and joint in the first swim in a flow."""
-_GROWN = 1.0
-"""Cycles from the start in which the motion grows, and what is left over is not judged [-]."""
+"""Separator of motion and stiffness in the label of a swim with another passive end."""
+_RESIDUAL_NUMBERS = ("r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_held_out")
+"""Residual numbers that are measured for every link and joint of the first swim in a flow."""
+_GROWTH_CYCLES = 1.0
+"""Cycles from the start in which the motion grows; the coupling residual is measured after them [-]."""
 
 
-def flow_runs(joints: Mapping[str, Robot], motions: Mapping[str, Gait], asked: Sequence[str], water: Any) -> list[Run]:
-    """Return the runs in a flow that are asked for, of those that the robot has.
+def flow_runs(
+    joints: Mapping[str, Robot], motions: Mapping[str, Gait], swim_names: Sequence[str], water: Any
+) -> list[Run]:
+    """Return the requested runs in a flow, of those that the robot has.
 
     Args:
         joints: the robot by the ending of its swims' names, as it is and with stiffer joints.
         motions: by name.
-        asked: names of swims.
+        swim_names: names of swims.
         water: a ``Slice`` or a ``Space``.
     """
     period = motions["whole"].period
@@ -51,7 +53,7 @@ def flow_runs(joints: Mapping[str, Robot], motions: Mapping[str, Gait], asked: S
         Run(robot=robot, gait=gait, water=water, control=Swimming(ramp=period), label=name + ending)
         for ending, robot in joints.items()
         for name, gait in motions.items()
-        if name + ending in asked
+        if name + ending in swim_names
     ]
 
 
@@ -89,12 +91,17 @@ def fins(record: xr.Dataset) -> xr.Dataset:
 
     The cost is that of the servos, of the robot's weight in air and as far as it comes ahead. Swims that broke off have
     NaN; a record without such swims has none.
+
+    Args:
+        record: of the experiment with a flow.
     """
     names = [str(name) for name in record.flow_run.values if FIN in str(name)]
-    last = record.flow_servo_power.sel(flow_time=slice(float(record.flow_time[-1] - record.flow_period) - 1e-9, None))
+    last_cycle = record.flow_servo_power.sel(
+        flow_time=slice(float(record.flow_time[-1] - record.flow_period) - 1e-9, None)
+    )
     weight = float(record.mass.isel(run=0) if "run" in record.mass.dims else record.mass) * GRAVITY
     speeds = np.array([flow_speed(record, name) for name in names])
-    powers = np.array([float(last.sel(flow_run=name).mean(skipna=False)) for name in names])
+    powers = np.array([float(last_cycle.sel(flow_run=name).mean(skipna=False)) for name in names])
     costs = np.divide(powers, weight * speeds, out=np.full(speeds.shape, np.nan), where=speeds > 0)
     return xr.Dataset(
         {"speed": ("stiffness", speeds), "cost": ("stiffness", costs)},
@@ -103,122 +110,143 @@ def fins(record: xr.Dataset) -> xr.Dataset:
 
 
 def flow_kept(labels: Sequence[str]) -> list[str]:
-    """Return the names of what is kept of unfinished swims in a flow."""
+    """Return the checkpoint names of unfinished swims in a flow."""
     return [f"flow {label}" for label in labels]
 
 
 class InFlow(NamedTuple):
-    """What became of the swims in a flow."""
+    """Results of the swims in a flow."""
 
     kept: xr.Dataset
-    """What is kept of them."""
+    """Stored variables of all swims."""
     first: xr.Dataset
-    """Record of the first."""
+    """Record of the first swim."""
     judgement: str
-    """Whether they earn a correction of the section model, link by link, as Markdown."""
+    """Whether the swims justify a correction of the section model, link by link, as Markdown."""
     correction: SectionCorrection | None
-    """The correction that they have earned; None if they have none."""
+    """The justified correction of the section model; None if there is none."""
 
 
 def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InFlow:
-    """Swim in a flow.
+    """Simulate swims in a flow that is solved with the robot.
 
-    A later swim that diverges ends there, with NaN beyond.
+    A later swim that diverges has NaN from there on.
 
     Args:
         runs: of ``flow_runs``.
-        cycles: that are swum [-].
-        keep: folder in which swims are kept, from which they go on; empty keeps nothing.
-        progress: told the share that is done.
+        cycles: of each swim [-].
+        keep: folder of checkpoints, from which swims resume; empty keeps nothing.
+        progress: called with the fraction that is done.
 
     Raises:
-        Diverged: the first swim did.
-        UnreadableFile: what is kept is broken or belongs to other swims.
+        Diverged: the first swim diverged.
+        UnreadableFile: a checkpoint is broken or belongs to other swims.
     """
     swims = [Swim(run, cycles * run.gait.period) for run in runs]  # refused before any is computed
-    records, seen = [], xr.Dataset()
+    records, film_data = [], xr.Dataset()
     for number, (run, swim) in enumerate(zip(runs, swims, strict=True)):
-        part = staged(progress, f"{run.label} in the flow", number / len(runs), (number + 1) / len(runs))
+        stage = staged(progress, f"{run.label} in the flow", number / len(runs), (number + 1) / len(runs))
         film = _Film(swim, cycles) if number == 0 and not is_linked(run) else None
         with suppress(*([Diverged] if number else [])):
             swim.go(
-                swim.ticks * swim.stepper.period, progress=part, watch=film,
+                swim.ticks * swim.stepper.period, progress=stage, watch=film,
                 checkpoint=kept_in(keep, *flow_kept([run.label])),
             )  # fmt: skip
         records.append(swim.record().isel(run=0))
-        seen = film.dataset() if film is not None else seen
+        film_data = film.dataset() if film is not None else film_data
         del swim.sim
-    first = records[0]
-    units = {name: first[name].attrs for name in (*_KEPT, *_COUPLING)}
+    first_record = records[0]
+    units = {name: first_record[name].attrs for name in (*_FLOW_VARIABLES, *_COUPLING)}
     data = {
         (name if name in _COUPLING else f"flow_{name}"): (
-            ("flow_run", *("flow_time" if dim == "time" else dim for dim in first[name].dims)),
+            ("flow_run", *("flow_time" if dim == "time" else dim for dim in first_record[name].dims)),
             np.stack([record[name].values for record in records]), units[name],
         )
-        for name in (*_KEPT, *_COUPLING)
+        for name in (*_FLOW_VARIABLES, *_COUPLING)
     }  # fmt: skip
     coords = {
         "flow_run": [run.label for run in runs],
-        "flow_time": ("flow_time", first.time.values, {"units": "s"}),
-        "link": first.link.values, "joint": first.joint.values, "xyz": first.xyz.values, "wxyz": first.wxyz.values,
+        "flow_time": ("flow_time", first_record.time.values, {"units": "s"}),
+        "link": first_record.link.values, "joint": first_record.joint.values,
+        "xyz": first_record.xyz.values, "wxyz": first_record.wxyz.values,
     }  # fmt: skip
     water = runs[0].solved
     assert water is not None
     period, viscosity = runs[0].gait.period, swims[0].viscosity
-    whole = [one for one in records if np.isfinite(one.coupling_residual.values[1:]).all()]
-    table = _beside_sections(runs, records, whole, viscosity)
+    complete_records = [record for record in records if np.isfinite(record.coupling_residual.values[1:]).all()]
+    table = _section_tables(runs, records, complete_records, viscosity)
     numbers = {
         "flow_period": ((), period, {"units": "s"}),
         "flow_radius": ("flow_run", [float(record.radius) for record in records], {"units": "1"}),
         "cells": ("grid", [water.cells], {"units": "1"}),
         "reynolds": ((), water.reynolds, {"units": "1"}),
         "added_mass": (
-            ("coordinate", "coordinate_too"), first.added_mass.values, first.added_mass.attrs,
+            ("coordinate", "coordinate_too"), first_record.added_mass.values, first_record.added_mass.attrs,
         ),
     }  # fmt: skip
-    names = {"coordinate": first.coordinate.values, "coordinate_too": first.coordinate_too.values}
-    correction, found = None, dict[str, LinkJudgement]()
-    if whole and whole[0] is first:
-        others = [run.label for run, one in zip(runs, records, strict=True) if one is not first and _is_in(one, whole)]
-        correction, found = earned_correction(
-            runs[0].robot, whole, period=period, first=_GROWN * period, viscosity=viscosity,
+    names = {"coordinate": first_record.coordinate.values, "coordinate_too": first_record.coordinate_too.values}
+    correction, judgements = None, dict[str, LinkJudgement]()
+    if complete_records and complete_records[0] is first_record:
+        held_out_names = [
+            run.label
+            for run, record in zip(runs, records, strict=True)
+            if record is not first_record and _is_in(record, complete_records)
+        ]
+        correction, judgements = earned_correction(
+            runs[0].robot, complete_records, period=period, first=_GROWTH_CYCLES * period, viscosity=viscosity,
             name=f"{runs[0].robot.name}_{water.reynolds:.0f}",
         )  # fmt: skip
-    kept = xr.Dataset({**data, **numbers}, coords={**coords, **names}).merge(table).merge(seen)
-    text = judgement_text(found, others) if found else ""
+    flow_record = xr.Dataset({**data, **numbers}, coords={**coords, **names}).merge(table).merge(film_data)
+    text = judgement_text(judgements, held_out_names) if judgements else ""
     if correction is not None:
-        held_out = [run for run in runs[1:] if run.label in others]
-        said, is_nearer = speeds_beside(held_out, [flow_speed(kept, name) for name in others], cycles, viscosity,
-                                        correction)  # fmt: skip
-        text, correction = text + said, correction if is_nearer else None
-    return InFlow(kept, first, text, correction)
+        held_out_runs = [run for run in runs[1:] if run.label in held_out_names]
+        in_flow = [flow_speed(flow_record, name) for name in held_out_names]
+        speed_text, is_nearer = speeds_beside(held_out_runs, in_flow, cycles, viscosity, correction)
+        text, correction = text + speed_text, correction if is_nearer else None
+    return InFlow(flow_record, first_record, text, correction)
 
 
-def _beside_sections(
-    runs: Sequence[Run], records: Sequence[xr.Dataset], whole: Sequence[xr.Dataset], viscosity: float
+def _section_tables(
+    runs: Sequence[Run], records: Sequence[xr.Dataset], complete_records: Sequence[xr.Dataset], viscosity: float
 ) -> xr.Dataset:
-    """Return the residual table of the first swim, and of every one by ``flow_run``, as ``swim_NAME``, what it says.
+    """Return the residual table of the first swim, and those of all swims as ``swim_NAME`` over ``flow_run``.
 
     A later swim that broke off has NaN.
+
+    Args:
+        runs: in the flow.
+        records: of the runs.
+        complete_records: those of ``records`` that did not diverge.
+        viscosity: kinematic, of the flow's water [m2/s].
     """
     period = runs[0].gait.period
     tables = list[xr.Dataset]()
     for run, record in zip(runs, records, strict=True):
         valid = record.isel(time=np.flatnonzero(np.isfinite(record.coupling_residual.values)))
-        if not tables or _is_in(record, whole):
-            tables.append(residual_table(run.robot, valid, period=period, first=_GROWN * period, viscosity=viscosity))
+        if not tables or _is_in(record, complete_records):
+            tables.append(
+                residual_table(run.robot, valid, period=period, first=_GROWTH_CYCLES * period, viscosity=viscosity)
+            )
         else:
-            tables.append(tables[0].map(lambda one: one if one.dtype.kind in "US" else one * np.nan))
+            tables.append(
+                tables[0].map(lambda variable: variable if variable.dtype.kind in "US" else variable * np.nan)
+            )
     swims = {
-        f"swim_{name}": (("flow_run", "part"), np.stack([one[f"residual_{name}"].values for one in tables]))
+        f"swim_{name}": (("flow_run", "part"), np.stack([table[f"residual_{name}"].values for table in tables]))
         for name in ("rms", "r2", "added", "drag", "r2_fitted", "r2_held_out")
     }
     return tables[0].assign(swims)
 
 
 def nearer(flow: Sequence[float], shipped: Sequence[float], corrected: Sequence[float]) -> bool:
-    """Return whether corrected speeds miss those in the flow by less in the mean than the model's as it is shipped."""
-    misses = [float(np.abs(np.subtract(one, flow)).mean()) for one in (shipped, corrected)]
+    """Return whether corrected speeds have a smaller mean absolute error than those of the shipped model.
+
+    Args:
+        flow: speeds in the flow [m/s].
+        shipped: speeds by sections with the shipped coefficients [m/s].
+        corrected: speeds by sections with the correction [m/s].
+    """
+    misses = [float(np.abs(np.subtract(speeds, flow)).mean()) for speeds in (shipped, corrected)]
     return misses[1] < misses[0]
 
 
@@ -227,25 +255,25 @@ def speeds_beside(
 ) -> tuple[str, bool]:
     """Swim by sections as in the flow, with a correction and without, at the flow's viscosity and below the surface.
 
-    Forces that come nearer need not make speeds do so: a speed is a small difference of thrust and drag.
+    Better forces do not guarantee a better speed, because speed depends on the small difference of thrust and drag.
 
     Args:
-        runs: in the flow, those that the fit did not see.
-        in_flow: their speeds there [m/s].
-        cycles: that are swum [-].
+        runs: in the flow, without those that the correction was fitted to.
+        in_flow: speeds of the runs in the flow [m/s].
+        cycles: of each swim [-].
         viscosity: kinematic, of the flow's water [m2/s].
-        correction: that forces have earned.
+        correction: fitted to the forces.
 
     Returns:
-        What is to be said of it, as Markdown, and whether the speeds are nearer too.
+        A table of the speeds as Markdown, and whether the correction reduces the error of the speeds.
     """
     water = Water(viscosity=viscosity)
-    lakes = [Lake(level=2 * runs[0].robot.length, water=water, correction=one) for one in (None, correction)]
-    both = [replace(run, water=None, lake=lake) for lake in lakes for run in runs]
+    lakes = [Lake(level=2 * runs[0].robot.length, water=water, correction=factors) for factors in (None, correction)]
+    section_runs = [replace(run, water=None, lake=lake) for lake in lakes for run in runs]
     period = runs[0].gait.period
-    x = simulate(both, duration=cycles * period).centre_of_mass.sel(xyz="x")
-    late = x.sel(time=slice((cycles - 1) * period - 1e-9, None)).transpose("run", "time").values
-    speeds = ((late[:, -1] - late[:, 0]) / period).reshape(2, len(runs))
+    x = simulate(section_runs, duration=cycles * period).centre_of_mass.sel(xyz="x")
+    last_cycle = x.sel(time=slice((cycles - 1) * period - 1e-9, None)).transpose("run", "time").values
+    speeds = ((last_cycle[:, -1] - last_cycle[:, 0]) / period).reshape(2, len(runs))
     is_nearer = nearer(in_flow, speeds[0], speeds[1])
     head = "\n| speed in the last cycle | flow | sections as shipped | corrected |\n|---|---:|---:|---:|\n"
     rows = [
@@ -260,14 +288,15 @@ def speeds_beside(
     return f"{head}{''.join(rows)}\nIn the mean these speeds are {end}.\n", is_nearer
 
 
-def _is_in(record: xr.Dataset, those: Sequence[xr.Dataset]) -> bool:
-    return any(record is one for one in those)
+def _is_in(record: xr.Dataset, records: Sequence[xr.Dataset]) -> bool:
+    return any(record is candidate for candidate in records)
 
 
 class _Film:
-    """Looks at the last cycle of a swim: vortices in space, vorticity in the plane, as ``field_NAME``."""
+    """Samples the last cycle of a swim: vortices in space, vorticity in the plane, as ``field_NAME``."""
 
     def __init__(self, swim: Swim, cycles: int) -> None:
+        """Prepare to sample the last of ``cycles`` cycles of a swim at ``FRAMES`` instants."""
         self._swim = swim
         self._end, frequency = cycles * swim.run.gait.period, 1.0 / swim.run.gait.period
         self._frequency = frequency
@@ -280,79 +309,87 @@ class _Film:
         if self._window is None:
             self._vortices.sample(swim.sim, swim.samples)
             return
-        left = (self._end - swim.sim.time) * self._frequency
-        if left < 1.0 - (self._swim.samples.count("frames") + 1) / FRAMES + 1e-6:
-            seen = {"vorticity": self._window.fields(swim.sim)["vorticity"]}
-            values = {**seen, **midline_values(midline(swim.sim))}
+        remaining_cycles = (self._end - swim.sim.time) * self._frequency
+        if remaining_cycles < 1.0 - (self._swim.samples.count("frames") + 1) / FRAMES + 1e-6:
+            fields = {"vorticity": self._window.fields(swim.sim)["vorticity"]}
+            values = {**fields, **midline_values(midline(swim.sim))}
             self._swim.samples.add("frames", swim.sim.time, **values)
 
     def dataset(self) -> xr.Dataset:
-        """Return what was seen; nothing of a swim that ended too soon."""
+        """Return the sampled fields; nothing of a swim that ended before the first sample."""
         if not self._swim.samples.count("frames"):
             return xr.Dataset()
         if self._window is None:
             return wake(self._swim.sim).merge(self._vortices.record(self._swim.samples))
         series = self._swim.samples.series("frames")
         phase = (series["time"] - self._end) * self._frequency + 1.0
-        found = self._window.dataset(series, "frame").assign_coords(frame=("frame", phase, {"units": "1"}))
-        return found.rename({str(name): f"field_{name}" for name in found.variables})
+        field_record = self._window.dataset(series, "frame").assign_coords(frame=("frame", phase, {"units": "1"}))
+        return field_record.rename({str(name): f"field_{name}" for name in field_record.variables})
 
 
 def flow_speed(record: xr.Dataset, name: str) -> float:
     """Return the mean speed of the centre of mass along its first heading in the last cycle of a swim [m/s]."""
     x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x")
     end = float(record.flow_time[-1])
-    last = x.sel(flow_time=slice(end - float(record.flow_period) - 1e-9, None))
-    return float((last[-1] - last[0]) / (last.flow_time[-1] - last.flow_time[0]))
+    last_cycle = x.sel(flow_time=slice(end - float(record.flow_period) - 1e-9, None))
+    return float((last_cycle[-1] - last_cycle[0]) / (last_cycle.flow_time[-1] - last_cycle.flow_time[0]))
 
 
 def flow_measures(record: xr.Dataset) -> Measures:
-    """Return speeds in the flow, how well robot and flow came to terms, and how far the section model is from it."""
+    """Return speeds in the flow, coupling errors, and the residual of the section model."""
     if "flow_run" not in record:
         return Measures()
     rung = record.attrs["flow"]
-    period, found = float(record.flow_period), Measures()
-    later = record.sel(flow_time=slice(_GROWN * period, None))
-    last = record.sel(flow_time=slice(float(record.flow_time[-1]) - period - 1e-9, None))
-    tried = fins(record)
-    if np.isfinite(tried.speed.values).any():
-        fastest = tried.isel(stiffness=int(np.nanargmax(tried.speed.values)))
-        found["fin_fastest"] = Measure(float(fastest.stiffness), "N m/rad")
-        found["fin_speed"] = Measure(float(fastest.speed), "m/s")
-        found["fin_slowest"] = Measure(float(tried.speed.min()), "m/s")
-        if np.isfinite(tried.cost.values).any():
-            found["fin_cheapest"] = Measure(float(tried.stiffness[int(np.nanargmin(tried.cost.values))]), "N m/rad")
-            found["fin_cost"] = Measure(float(tried.cost.min()), "-")
-    for name in (str(one) for one in record.flow_run.values if FIN not in str(one)):
+    period, measures = float(record.flow_period), Measures()
+    grown_record = record.sel(flow_time=slice(_GROWTH_CYCLES * period, None))
+    last_cycle = record.sel(flow_time=slice(float(record.flow_time[-1]) - period - 1e-9, None))
+    fin_swims = fins(record)
+    if np.isfinite(fin_swims.speed.values).any():
+        fastest = fin_swims.isel(stiffness=int(np.nanargmax(fin_swims.speed.values)))
+        measures["fin_fastest"] = Measure(float(fastest.stiffness), "N m/rad")
+        measures["fin_speed"] = Measure(float(fastest.speed), "m/s")
+        measures["fin_slowest"] = Measure(float(fin_swims.speed.min()), "m/s")
+        if np.isfinite(fin_swims.cost.values).any():
+            measures["fin_cheapest"] = Measure(
+                float(fin_swims.stiffness[int(np.nanargmin(fin_swims.cost.values))]), "N m/rad"
+            )
+            measures["fin_cost"] = Measure(float(fin_swims.cost.min()), "-")
+    for name in (str(label) for label in record.flow_run.values if FIN not in str(label)):
         ending = rung if name == "whole" else f"{rung}_{name}"
-        found[f"speed_{ending}"] = Measure(flow_speed(record, name), "m/s")
-        found[f"servo_power_{ending}"] = Measure(float(last.flow_servo_power.sel(flow_run=name).mean()), "W")
+        measures[f"speed_{ending}"] = Measure(flow_speed(record, name), "m/s")
+        measures[f"servo_power_{ending}"] = Measure(float(last_cycle.flow_servo_power.sel(flow_run=name).mean()), "W")
         if record.attrs["cable"]:
-            angles = last.flow_joint_angle.sel(flow_run=name, joint=record.attrs["cable"]).values
+            angles = last_cycle.flow_joint_angle.sel(flow_run=name, joint=record.attrs["cable"]).values
             half = np.ptp(angles, axis=0) / 2
-            found[f"tail_spread_{ending}"] = Measure(float(half.max() / half.mean()), "-")
+            measures[f"tail_spread_{ending}"] = Measure(float(half.max() / half.mean()), "-")
     end = record.isel(flow_time=-1)
-    for name, part in {
-        "coupling_residual": later,
-        "coupling_first": later,
+    for name, cycles_record in {
+        "coupling_residual": grown_record,
+        "coupling_first": grown_record,
         "energy_error": end,
         "power_error": end,
     }.items():
-        found[name] = Measure(float(abs(part[name]).max(skipna=False)), "-")  # NaN says that a swim broke off
-    found["added_mass_radius"] = Measure(float(record.flow_radius.max()), "-")
+        measures[name] = Measure(
+            float(abs(cycles_record[name]).max(skipna=False)), "-"
+        )  # NaN says that a swim broke off
+    measures["added_mass_radius"] = Measure(float(record.flow_radius.max()), "-")
     for kind in ("link", "joint"):
-        part = record.isel(part=np.flatnonzero(record.part_kind.values == kind))
-        felt = part.isel(part=np.flatnonzero(part.residual_rms.values > 0.1 * float(part.residual_rms.max())))
+        kind_record = record.isel(part=np.flatnonzero(record.part_kind.values == kind))
+        loaded_parts = kind_record.isel(
+            part=np.flatnonzero(kind_record.residual_rms.values > 0.1 * float(kind_record.residual_rms.max()))
+        )
         for name, unit in (("r2", "-"), ("r2_held_out", "-"), ("added", "-"), ("drag", "-")):
-            found[f"{kind}_{name}"] = Measure(float(felt[f"residual_{name}"].median()), unit)
-        for name in _SHOWN:
-            for there in part.part.values:
-                found[f"{kind}_{name}_of_{there}"] = Measure(float(part[f"residual_{name}"].sel(part=there)), "-")
-        for swim in (str(one) for one in record.flow_run.values[1:] if FIN not in str(one)):
+            measures[f"{kind}_{name}"] = Measure(float(loaded_parts[f"residual_{name}"].median()), unit)
+        for name in _RESIDUAL_NUMBERS:
+            for part_name in kind_record.part.values:
+                measures[f"{kind}_{name}_of_{part_name}"] = Measure(
+                    float(kind_record[f"residual_{name}"].sel(part=part_name)), "-"
+                )
+        for swim in (str(label) for label in record.flow_run.values[1:] if FIN not in str(label)):
             for name in ("r2", "r2_fitted", "added", "drag"):
-                middle = felt[f"swim_{name}"].sel(flow_run=swim).median(skipna=False)
-                found[f"{kind}_{name}_in_{swim}"] = Measure(float(middle), "-")
-    return found
+                middle = loaded_parts[f"swim_{name}"].sel(flow_run=swim).median(skipna=False)
+                measures[f"{kind}_{name}_in_{swim}"] = Measure(float(middle), "-")
+    return measures
 
 
 def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = False) -> str:
@@ -363,7 +400,7 @@ def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = 
         judgement: see ``InFlow``; empty for none.
         is_earned: whether a correction is written beside it.
     """
-    earned = (
+    correction_text = (
         "\n## Whether a correction is earned\n\nThe factors are fitted to the whole of the first swim and held against "
         "the other ones, which the fit never saw: they are offered where they leave less of the force unexplained in "
         "each of them, by more than its cycles differ, and swims by sections with them come nearer to its speeds. "
@@ -380,13 +417,14 @@ def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = 
     )
     rows = []
     for k, name in enumerate(record.part.values):
-        one = {key: float(record[f"residual_{key}"][k]) for key in (
+        numbers = {key: float(record[f"residual_{key}"][k]) for key in (
             "rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high",
             "r2_fitted", "r2_held_out")}  # fmt: skip
         unit = "N" if record.part_kind.values[k] == "link" else "N m"
         rows.append(
-            f"| {name} | {one['rms']:.3g} {unit} | {one['rms_sections']:.3g} | {one['r2']:.2f} | "
-            f"{_factor(one, 'added')} | {_factor(one, 'drag')} | {one['r2_fitted']:.2f} | {one['r2_held_out']:.2f} |\n"
+            f"| {name} | {numbers['rms']:.3g} {unit} | {numbers['rms_sections']:.3g} | {numbers['r2']:.2f} | "
+            f"{_factor(numbers, 'added')} | {_factor(numbers, 'drag')} | {numbers['r2_fitted']:.2f} | "
+            f"{numbers['r2_held_out']:.2f} |\n"
         )
     return (
         f"# The section model beside the flow\n\nAt f L2 / nu = {float(record.reynolds):.0f}, along the motion that "
@@ -396,18 +434,20 @@ def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = 
         + head
         + "".join(rows)
         + _other_swims(record)
-        + (earned if judgement else "")
+        + (correction_text if judgement else "")
     )
 
 
 def _other_swims(record: xr.Dataset) -> str:
-    """Return how much sections explain of each further swim, and its own factors; empty for one swim."""
-    whole = [swim for swim in record.flow_run.values[1:] if np.isfinite(record.swim_r2.sel(flow_run=swim)).all()]
+    """Return R2 and fitted factors of the section model for each further swim, as Markdown; empty for one swim."""
+    complete_swims = [
+        swim for swim in record.flow_run.values[1:] if np.isfinite(record.swim_r2.sel(flow_run=swim)).all()
+    ]
     parts = {kind: np.flatnonzero(record.part_kind.values == kind) for kind in ("link", "joint")}
     rows = [
-        f"| {swim} | {kind}s | {_spread_text(record.sel(flow_run=swim).isel(part=where))} |\n"
-        for swim in whole
-        for kind, where in parts.items()
+        f"| {swim} | {kind}s | {_spread_text(record.sel(flow_run=swim).isel(part=indices))} |\n"
+        for swim in complete_swims
+        for kind, indices in parts.items()
     ]
     if not rows:
         return ""
@@ -421,13 +461,16 @@ def _other_swims(record: xr.Dataset) -> str:
 def _spread_text(swim: xr.Dataset) -> str:
     """Return median, least and greatest over the parts of one swim, cell by cell."""
     values = [swim[f"swim_{name}"] for name in ("r2", "added", "drag", "r2_fitted")]
-    return " | ".join(f"{float(one.median()):.2f} ({float(one.min()):.2f} to {float(one.max()):.2f})" for one in values)
+    return " | ".join(
+        f"{float(quantity.median()):.2f} ({float(quantity.min()):.2f} to {float(quantity.max()):.2f})"
+        for quantity in values
+    )
 
 
 def _factor(row: Mapping[str, float], name: str) -> str:
     """Return a factor, with its interval if it has one."""
-    low, high = row[f"{name}_low"], row[f"{name}_high"]
-    return f"{row[name]:.2f}" + (f" ({low:.2f} to {high:.2f})" if low <= high else "")
+    lower_bound, upper_bound = row[f"{name}_low"], row[f"{name}_high"]
+    return f"{row[name]:.2f}" + (f" ({lower_bound:.2f} to {upper_bound:.2f})" if lower_bound <= upper_bound else "")
 
 
 def water_of(rung: str, cells: int, reynolds: float, tail_height: float, *, linked: bool = False) -> Slice | Space:

@@ -1,4 +1,4 @@
-"""The swims of ``swim_free`` below the surface: how level the robot is, by where its air is and by what holds it."""
+"""The swims of ``swim_free`` below the surface: pitch and depth, by place of the air and control of the pitch."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,11 +21,11 @@ DEEP = {
     "deep": "chambers as designed", "held": "the same, pitch held", "pitched": "the same, dives by pitch",
     "in_foam": "air in the foam",
 }  # fmt: skip
-"""Names of the swims, and what they are called."""
+"""Labels of the swims by name."""
 NEAR = 0.05
-"""Distance from the depth within which a dive has arrived [m]."""
+"""Greatest distance from the depth at which a dive counts as finished [m]."""
 _DIVE = 1.0
-"""How steeply the swim that dives by pitch pitches for each metre that it is too high [rad/m]."""
+"""Pitch of the swim that dives by pitch, over its height above the depth [rad/m]."""
 
 
 def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
@@ -46,11 +46,14 @@ def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
         cases["pitched"] = robot, replace(plain, pitch=PitchHold(dive=_DIVE))
     if robot.hull is not None and robot.hull.chambers:
         cases["in_foam"] = with_values(robot, {"hull.chambers": ()}), plain
-    return [Run(robot=one, gait=gait, lake=lake, control=control, label=name) for name, (one, control) in cases.items()]
+    return [
+        Run(robot=swimmer, gait=gait, lake=lake, control=control, label=name)
+        for name, (swimmer, control) in cases.items()
+    ]
 
 
 def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
-    """Return what is kept of the swims below the surface, by their names, over a time of their own.
+    """Return the stored variables of the swims below the surface, by name, over their own time.
 
     Beside it, from statics: the pitch at which each robot hovers, straight and at rest, and how much of its air is in
     front chambers.
@@ -73,7 +76,7 @@ def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
         "deep_front": ("dive", air[:, 0] / air.sum(axis=1), {"units": "1"}),
     }
     return xr.Dataset(
-        statics | {name: (("dive", "dive_time"), one, {"units": unit}) for name, (one, unit) in values.items()},
+        statics | {name: (("dive", "dive_time"), series, {"units": unit}) for name, (series, unit) in values.items()},
         coords={"dive": names, "dive_time": ("dive_time", record.time.values, {"units": "s"})},
     )
 
@@ -91,18 +94,24 @@ def measures(record: xr.Dataset) -> Measures:
     """
     if "dive" not in record:
         return Measures()
-    part, depth = record.sel(dive_time=slice(record.attrs["deep_from"] - 1e-9, None)), record.attrs["depth"]
-    found = Measures()
-    for name in (str(one) for one in record.dive.values):
-        one, ending = part.sel(dive=name), "_deep" if name == "deep" else f"_deep_{name}"
-        x, time = one.deep_along.values, one.dive_time.values
+    excerpt, depth = record.sel(dive_time=slice(record.attrs["deep_from"] - 1e-9, None)), record.attrs["depth"]
+    dive_measures = Measures()
+    for name in (str(label) for label in record.dive.values):
+        swim, ending = excerpt.sel(dive=name), "_deep" if name == "deep" else f"_deep_{name}"
+        x, time = swim.deep_along.values, swim.dive_time.values
         if name in ("deep", "in_foam"):  # rest is the same for what moves its air
-            found[f"trim{ending}"] = Measure(round(float(one.deep_trim), 9) + 0.0, "rad")
-        found[f"pitch{ending}"] = Measure(float(one.deep_pitch.mean()), "rad")
-        found[f"speed{ending}"] = Measure(float((x[-1] - x[0]) / (time[-1] - time[0])), "m/s")
-        found[f"depth_error{ending}"] = Measure(float(np.abs(one.deep_depth.values - depth).max()), "m")
-        far = np.flatnonzero(np.abs(record.deep_depth.sel(dive=name).values - depth) > NEAR)
+            dive_measures[f"trim{ending}"] = Measure(round(float(swim.deep_trim), 9) + 0.0, "rad")
+        dive_measures[f"pitch{ending}"] = Measure(float(swim.deep_pitch.mean()), "rad")
+        dive_measures[f"speed{ending}"] = Measure(float((x[-1] - x[0]) / (time[-1] - time[0])), "m/s")
+        dive_measures[f"depth_error{ending}"] = Measure(float(np.abs(swim.deep_depth.values - depth).max()), "m")
+        far_samples = np.flatnonzero(np.abs(record.deep_depth.sel(dive=name).values - depth) > NEAR)
         times = record.dive_time.values
-        arrived = 0.0 if not far.size else float(times[far[-1] + 1]) if far[-1] + 1 < len(times) else float("nan")
-        found[f"dive_time{ending}"] = Measure(arrived, "s")
-    return found | {"front_air": Measure(float(record.deep_front[0]), "-")}
+        arrived = (
+            0.0
+            if not far_samples.size
+            else float(times[far_samples[-1] + 1])
+            if far_samples[-1] + 1 < len(times)
+            else float("nan")
+        )
+        dive_measures[f"dive_time{ending}"] = Measure(arrived, "s")
+    return dive_measures | {"front_air": Measure(float(record.deep_front[0]), "-")}

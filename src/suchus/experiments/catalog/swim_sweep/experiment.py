@@ -33,21 +33,21 @@ _PEERS = (
 )  # fmt: skip
 
 _HERTZ = 1.0  # [Hz]; frequency of the points
-_SWUM = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
-"""What is kept of a swim by CFD, with units; see ``water.Swum``."""
+_SWIM_UNITS = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
+"""Stored numbers of a swim by CFD, with units; see ``water.Swum``."""
 
 
 def swum_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progress) -> xr.Dataset:
     """Return the numbers of one swim from rest by CFD.
 
     Args:
-        robot: who swims.
-        setting: how finely and how long.
-        motion: how, at 1 Hz.
-        progress: called with the share that is done.
+        robot: the robot that swims.
+        setting: grid, water and duration.
+        motion: gait at 1 Hz.
+        progress: called with the fraction that is done.
     """
-    found = Swum.of(resolved_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
-    return xr.Dataset({name: ((), found[name], {"units": unit}) for name, unit in _SWUM.items()})
+    numbers = Swum.of(resolved_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
+    return xr.Dataset({name: ((), numbers[name], {"units": unit}) for name, unit in _SWIM_UNITS.items()})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,15 +99,16 @@ class SwimSweep(Experiment):
     here."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and maps or lists of points that are too short."""
         with Checks("swim_sweep", self) as check:
-            for name, least, most, unit in (
+            for name, lower_bound, upper_bound, unit in (
                 ("frequencies", 0.01, 20.0, "Hz"), ("amplitudes", 0.01, 4.0, ""), ("waves", 0.1, 1.4, ""),
             ):  # fmt: skip
-                check.rising(name, least, most, unit)
+                check.rising(name, lower_bound, upper_bound, unit)
                 check.that(len(getattr(self, name)) > 1, f"swim_sweep.{name} has one number; a map needs two")
-            right = [0.01 <= amplitude <= 4.0 and 0.1 <= waves <= 1.4 for amplitude, waves in self.points]
+            is_valid = [0.01 <= amplitude <= 4.0 and 0.1 <= waves <= 1.4 for amplitude, waves in self.points]
             check.that(
-                all(right) and right != [],
+                all(is_valid) and is_valid != [],
                 f"swim_sweep.points is {self.points}; an amplitude of 0.01 to 4 and 0.1 to 1.4 waves are needed "
                 "of each, one point at least",
             )
@@ -128,11 +129,12 @@ class SwimSweep(Experiment):
             return self._simulated(progress, client)
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
+        """Compute maps and points; ``client`` is the Dask client that computes the points, None computes them here."""
         check_kept(self.keep)
-        fitted = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
-        by_frequency = self._map("frequency", self.frequencies, lambda a, f: replace(fitted[1.0].bent(a), period=1 / f))
+        gaits = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
+        by_frequency = self._map("frequency", self.frequencies, lambda a, f: replace(gaits[1.0].bent(a), period=1 / f))
         progress("slender-body models", 0.15)
-        by_waves = self._map("waves", self.waves, lambda a, w: fitted[w].bent(a))
+        by_waves = self._map("waves", self.waves, lambda a, w: gaits[w].bent(a))
         progress("slender-body models", 0.3)
         points = self._points(staged(progress, "CFD", 0.3, 1.0), client)
         record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
@@ -143,17 +145,23 @@ class SwimSweep(Experiment):
         return fit(self.robot, wave, name=f"(20), {waves:.2g} waves per body").gait
 
     def _map(self, axis: str, values: tuple[float, ...], motion: Callable[[float, float], Gait]) -> xr.Dataset:
-        """Return the results of the slender-body models on a grid of amplitude and another quantity."""
+        """Return the results of the slender-body models on a grid of amplitude and another parameter.
+
+        Args:
+            axis: the other parameter, ``frequency`` or ``waves``.
+            values: of the other parameter, in Hz or waves per body length.
+            motion: gait of an amplitude factor and a value of the other parameter.
+        """
         motions = [motion(amplitude, value) for amplitude in self.amplitudes for value in values]
         flat = survey(self.robot, motions)
         shape = (len(self.amplitudes), len(values))
         data: dict[str, Any] = {}
-        for name, found in flat.data_vars.items():
-            dims = ("model", "amplitude", axis) if "model" in found.dims else ("amplitude", axis)
-            sizes = (*found.shape[:-1], *shape)
-            data[f"{name}_by_{axis}"] = (dims, found.values.reshape(sizes), found.attrs)
-        most = [greatest(self.robot, motion(1.0, value)) for value in values]
-        data[f"most_amplitude_by_{axis}"] = (axis, most, {"units": "1"})
+        for name, variable in flat.data_vars.items():
+            dims = ("model", "amplitude", axis) if "model" in variable.dims else ("amplitude", axis)
+            sizes = (*variable.shape[:-1], *shape)
+            data[f"{name}_by_{axis}"] = (dims, variable.values.reshape(sizes), variable.attrs)
+        max_amplitudes = [greatest(self.robot, motion(1.0, value)) for value in values]
+        data[f"most_amplitude_by_{axis}"] = (axis, max_amplitudes, {"units": "1"})
         units = {"frequency": "Hz", "waves": "1"}
         coords = {
             "model": flat.model.values.tolist(),
@@ -163,17 +171,22 @@ class SwimSweep(Experiment):
         return xr.Dataset(data, coords=coords)
 
     def _points(self, progress: Progress, client: Any) -> xr.Dataset:
-        """Return the points by CFD at 1 Hz, and their speeds by the slender-body models."""
+        """Return the points by CFD at 1 Hz, and their speeds by the slender-body models.
+
+        Args:
+            progress: called with the fraction that is done.
+            client: Dask client that computes the points; None computes them here.
+        """
         motions = [self._fit(waves).bent(amplitude) for amplitude, waves in self.points]
         setting = SwimSetting(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles)
         work = partial(swum_point, self.robot, setting)
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
-            swum = conduct_sweep(self.name(), work, motions, Path(folder), progress=progress, client=client)
+            swims = conduct_sweep(self.name(), work, motions, Path(folder), progress=progress, client=client)
         slender = survey(self.robot, motions)
         data: dict[str, Any] = {
             **{
-                f"point_{name}": ("point", [float(one[name]) for one in swum], {"units": unit})
-                for name, unit in _SWUM.items()
+                f"point_{name}": ("point", [float(swim[name]) for swim in swims], {"units": unit})
+                for name, unit in _SWIM_UNITS.items()
             },
             "point_model_speed": (("model", "point"), slender.speed.values, {"units": "m/s"}),
             "point_amplitude": ("point", [amplitude for amplitude, _ in self.points], {"units": "1"}),
@@ -183,33 +196,35 @@ class SwimSweep(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the best of the maps, the errors of the slender-body models, and the speed of every point."""
-        found = Measures()
+        measures = Measures()
         possible = record.possible_by_frequency
         for model in record.model.values:
             speed = record.speed_by_frequency.sel(model=model).where(possible)
             by_waves = record.sel(model=model).where(record.possible_by_waves)
-            found[f"speed_most_{model}"] = Measure(float(speed.max()), "m/s")
-            along = speed.sel(amplitude=1.0, method="nearest")
-            found[f"speed_power_of_frequency_{model}"] = Measure(_power(record.frequency, along), "-")
-            found[f"speed_power_of_amplitude_{model}"] = Measure(_power(record.amplitude, speed.isel(frequency=0)), "-")
-            found[f"efficiency_most_{model}"] = Measure(float(by_waves.efficiency_by_waves.max()), "-")
+            measures[f"speed_most_{model}"] = Measure(float(speed.max()), "m/s")
+            nominal_speed = speed.sel(amplitude=1.0, method="nearest")
+            measures[f"speed_power_of_frequency_{model}"] = Measure(_power(record.frequency, nominal_speed), "-")
+            measures[f"speed_power_of_amplitude_{model}"] = Measure(
+                _power(record.amplitude, speed.isel(frequency=0)), "-"
+            )
+            measures[f"efficiency_most_{model}"] = Measure(float(by_waves.efficiency_by_waves.max()), "-")
             cheapest = float(by_waves.cost_of_transport_by_waves.min())
-            found[f"cost_of_transport_least_{model}"] = Measure(cheapest, "-")
-            apart = record.point_model_speed.sel(model=model) / record.point_speed - 1
-            found[f"error_mean_{model}"] = Measure(float(apart.mean()), "-")
-            found[f"error_worst_{model}"] = Measure(float(apart[int(np.argmax(np.abs(apart.values)))]), "-")
-            found[f"order_agrees_{model}"] = Measure(_order(record, str(model)), "-")
+            measures[f"cost_of_transport_least_{model}"] = Measure(cheapest, "-")
+            errors = record.point_model_speed.sel(model=model) / record.point_speed - 1
+            measures[f"error_mean_{model}"] = Measure(float(errors.mean()), "-")
+            measures[f"error_worst_{model}"] = Measure(float(errors[int(np.argmax(np.abs(errors.values)))]), "-")
+            measures[f"order_agrees_{model}"] = Measure(_order(record, str(model)), "-")
         for i, (amplitude, waves) in enumerate(self.points):
             name = f"{amplitude:.1f}_waves_{waves:.1f}".replace(".", "_")
             speed = float(record.point_speed[i])
-            found[f"speed_amplitude_{name}"] = Measure(speed, "m/s")
+            measures[f"speed_amplitude_{name}"] = Measure(speed, "m/s")
             numbers = swim_numbers(
                 speed=speed, length=self.robot.length, frequency=_HERTZ,
                 swing=float(record.point_strouhal[i]) * abs(speed) / _HERTZ,
                 viscosity=_HERTZ * self.robot.length**2 / self.reynolds,
             )  # fmt: skip
-            found |= similar(numbers, f"_amplitude_{name}")
-        return found
+            measures |= similar(numbers, f"_amplitude_{name}")
+        return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how the speed depends on frequency and amplitude, and how far the slender-body models are from CFD."""
@@ -219,11 +234,11 @@ class SwimSweep(Experiment):
         """Return a table of published motions of crocodilians and robots beside the caiman's."""
         motion = self._fit(1.0)
         slips = record.point_slip.values
-        ours = (
+        motion_text = (
             f"1 Hz; {', '.join(_amplitudes(self.robot, motion))}; one wave per body; slip {slips.min():.2f} to "
             f"{slips.max():.2f}"
         )
-        rows = [(self.robot.name, ours, "this run"), *_PEERS]
+        rows = [(self.robot.name, motion_text, "this run"), *_PEERS]
         lines = ["| who | what | source |", "|---|---|---|", *(f"| {a} | {b} | {c} |" for a, b, c in rows)]
         return "\n".join(lines) + "\n"
 
@@ -234,13 +249,18 @@ class SwimSweep(Experiment):
         return {**maps, "swim_sweep_check": draw_check(record)}
 
 
-def _power(along: xr.DataArray, speed: xr.DataArray) -> float:
-    """Return the power of a quantity with which the speed grows, from the first to the last possible motion [-]."""
+def _power(quantity: xr.DataArray, speed: xr.DataArray) -> float:
+    """Return the exponent of a quantity in the speed, from the first to the last possible motion [-].
+
+    Args:
+        quantity: parameter of each motion.
+        speed: of each motion; NaN where the motion is impossible [m/s].
+    """
     good = np.flatnonzero(np.isfinite(speed.values) & (speed.values > 0.0))
     if good.size < 2:
         return float("nan")
     ends = [good[0], good[-1]]
-    rise, run = np.diff(np.log(speed.values[ends])), np.diff(np.log(along.values[ends]))
+    rise, run = np.diff(np.log(speed.values[ends])), np.diff(np.log(quantity.values[ends]))
     return float((rise / run)[0])
 
 
@@ -253,13 +273,13 @@ def _order(record: xr.Dataset, model: str) -> float:
 
 
 def _amplitudes(robot: Robot, gait: Gait) -> list[str]:
-    """Return how far the joints of trunk and tail bend to either side, from the root on, in words."""
+    """Return the amplitudes of the joints of trunk and tail, from the root, in words."""
     yaw, words = movement(robot, gait).yaw, []
-    for part in ("trunk", "tail"):
-        bends = [f"{bend:.2f}" for bend in yaw.amplitude()[0][yaw.hinges.within(part)]]
-        from_root = bends[::-1] if part == "trunk" else bends
+    for body_part in ("trunk", "tail"):
+        bends = [f"{bend:.2f}" for bend in yaw.amplitude()[0][yaw.hinges.within(body_part)]]
+        from_root = bends[::-1] if body_part == "trunk" else bends
         if from_root:
-            words.append(f"{part} {', '.join(dict.fromkeys(from_root))} rad per joint")
+            words.append(f"{body_part} {', '.join(dict.fromkeys(from_root))} rad per joint")
     return words
 
 

@@ -24,8 +24,8 @@ _ROWS: tuple[tuple[str, str], ...] = (
     ("cost_of_transport", "cost of transport [-]"),
 )
 """Rows of the maps: quantity and label."""
-_PALE = 0.55
-"""Share of the scale from which dark digits are read better than light ones [-]."""
+_DARK_TEXT_LEVEL = 0.55
+"""Fraction of the scale above which digits are dark [-]."""
 _HATCHED: Mapping[str, Any] = {"facecolor": "#EDEDED", "edgecolor": "#555555", "hatch": "///", "linewidth": 0.0}
 
 
@@ -38,14 +38,14 @@ def draw_maps(record: xr.Dataset, model: str) -> Figure:
         record: of the experiment ``swim_sweep``.
         model: which of the slender-body models.
     """
-    chosen = record.sel(model=model)
+    model_record = record.sel(model=model)
     with styled(axes__grid=False):
         figure, axes = panels(len(_ROWS), 2, width=10.5, height=10.2, sharex="col", sharey=True)
         for row, (name, label) in zip(axes, _ROWS, strict=True):
-            scale = Normalize(0.0, _greatest(chosen, name))
+            scale = Normalize(0.0, _max_value(model_record, name))
             for ax, axis in zip(row, _AXES, strict=True):
-                drawn = _map(ax, chosen, name, axis, scale)
-            figure.colorbar(drawn, ax=row, label=label, shrink=0.9)
+                mesh = _map(ax, model_record, name, axis, scale)
+            figure.colorbar(mesh, ax=row, label=label, shrink=0.9)
             row[0].set_ylabel("amplitude over\nthat of eq. (20) [-]")
         for ax, text in zip(axes[-1], ("frequency [Hz]", "waves per body length [-]"), strict=True):
             ax.set_xlabel(text)
@@ -60,30 +60,39 @@ def draw_maps(record: xr.Dataset, model: str) -> Figure:
     )
 
 
-def _greatest(record: xr.Dataset, name: str) -> float:
-    """Return the greatest value in both maps of a quantity that the robot can do; 1 where it can do none."""
+def _max_value(record: xr.Dataset, name: str) -> float:
+    """Return the greatest value of a quantity in both maps over possible motions; 1 if none is possible."""
     maps = [record[f"{name}_by_{axis}"].where(record[f"possible_by_{axis}"]).values.ravel() for axis in _AXES]
-    known = np.concatenate(maps)
-    known = known[np.isfinite(known)]
-    return max(float(known.max()), 1e-9) if known.size else 1.0
+    values = np.concatenate(maps)
+    values = values[np.isfinite(values)]
+    return max(float(values.max()), 1e-9) if values.size else 1.0
 
 
 def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -> ScalarMappable:
+    """Draw one quantity as a map over amplitude and another parameter; motions that cannot be followed are hatched.
+
+    Args:
+        ax: axes to draw on.
+        record: of one slender-body model.
+        name: of the quantity, one of ``_ROWS``.
+        axis: the other parameter, one of ``_AXES``.
+        scale: colour scale of the quantity.
+    """
     x, y = record[axis].values, record.amplitude.values
     values = record[f"{name}_by_{axis}"].transpose("amplitude", axis).values
     possible = record[f"possible_by_{axis}"].transpose("amplitude", axis).values.astype(bool)
-    edges, done = (_edges(x), _edges(y)), np.where(possible, values, np.nan)
-    drawn = ax.pcolormesh(*edges, done, cmap=SEQUENTIAL, norm=scale, edgecolors="white", linewidth=0.8)
-    carry(drawn, done, x, y)
-    if not np.isfinite(done).any():
-        why = "no value was found" if possible.any() else "joints or servos can follow none"
-        ax.text(0.5, 0.5, f"empty: {why}", transform=ax.transAxes, ha="center", va="center", bbox=_PAPER, zorder=6)
+    edges, possible_values = (_edges(x), _edges(y)), np.where(possible, values, np.nan)
+    mesh = ax.pcolormesh(*edges, possible_values, cmap=SEQUENTIAL, norm=scale, edgecolors="white", linewidth=0.8)
+    carry(mesh, possible_values, x, y)
+    if not np.isfinite(possible_values).any():
+        reason = "no value was found" if possible.any() else "joints or servos can follow none"
+        ax.text(0.5, 0.5, f"empty: {reason}", transform=ax.transAxes, ha="center", va="center", bbox=_PAPER, zorder=6)
     for j, i in np.ndindex(values.shape):
         if not possible[j, i]:
             corners = (edges[0][i], edges[0][i + 1])
             ax.fill_between(corners, edges[1][j], edges[1][j + 1], **_HATCHED)
         elif np.isfinite(values[j, i]):
-            colour = "black" if scale(values[j, i]) > _PALE else "white"
+            colour = "black" if scale(values[j, i]) > _DARK_TEXT_LEVEL else "white"
             ax.text(
                 float(x[i]), float(y[j]), f"{values[j, i]:.2g}", color=colour, ha="center", va="center", fontsize=10
             )
@@ -95,7 +104,7 @@ def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -
         ax.plot(record.point_waves, record.point_amplitude, **_CHECKED)
     ax.set_xticks(x, [f"{value:g}" for value in x])
     ax.set_yticks(y, [f"{value:g}" for value in y])
-    return drawn
+    return mesh
 
 
 _PAPER: Mapping[str, Any] = {"facecolor": "white", "edgecolor": "none", "alpha": 0.9}
@@ -105,6 +114,7 @@ _CHECKED: Mapping[str, Any] = {"marker": "o", "linestyle": "none", "markersize":
 
 
 def _legend() -> list[Line2D | Patch]:
+    """Return the entries of the legend: checked points, Salamandra's range, hatching."""
     return [
         Line2D([], [], **{**_CHECKED, "markersize": 9}, label="checked by CFD"),
         Line2D([], [], **_DOTTED, label="range of Salamandra"),
@@ -112,12 +122,12 @@ def _legend() -> list[Line2D | Patch]:
     ]
 
 
-def _edges(places: np.ndarray) -> np.ndarray:
+def _edges(positions: np.ndarray) -> np.ndarray:
     """Return the borders of cells around places, half way between them."""
-    if places.size == 1:
-        return np.array([places[0] - 0.5, places[0] + 0.5])
-    middle = 0.5 * (places[1:] + places[:-1])
-    return np.concatenate([[2 * places[0] - middle[0]], middle, [2 * places[-1] - middle[-1]]])
+    if positions.size == 1:
+        return np.array([positions[0] - 0.5, positions[0] + 0.5])
+    middle = 0.5 * (positions[1:] + positions[:-1])
+    return np.concatenate([[2 * positions[0] - middle[0]], middle, [2 * positions[-1] - middle[-1]]])
 
 
 def draw_check(record: xr.Dataset) -> Figure:
@@ -129,7 +139,7 @@ def draw_check(record: xr.Dataset) -> Figure:
     with styled():
         figure, axes = panels(1, 1, width=7.2, height=3.9)
         ax = axes[0, 0]
-        place = np.arange(record.point_speed.size)
+        positions = np.arange(record.point_speed.size)
         names = [
             f"{float(a):.1f} × (20)\n{float(w):.1f} waves"
             for a, w in zip(record.point_amplitude, record.point_waves, strict=True)
@@ -139,8 +149,8 @@ def draw_check(record: xr.Dataset) -> Figure:
         for model, colour in zip(record.model.values, colours, strict=True):
             bars.append((f"{model} model, round body", record.point_model_speed.sel(model=model).values, colour))
         for k, (label, values, colour) in enumerate(bars):
-            ax.bar(place + 0.27 * (k - 1), values, width=0.25, color=colour, label=label)
-        ax.set_xticks(place, names)
+            ax.bar(positions + 0.27 * (k - 1), values, width=0.25, color=colour, label=label)
+        ax.set_xticks(positions, names)
         ax.set_ylabel("speed at 1 Hz [m/s]")
         ax.grid(visible=False, axis="x")
         ax.set_ylim(0.0, 1.45 * float(max(b[1].max() for b in bars)))

@@ -50,7 +50,7 @@ from suchus.swimming.water.samples import all_kept, check_kept, kept_in
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Conditions: the motions whose slices are compared while swimming freely, the first three of them the ladder's."""
 _OF_RUNGS = tuple(f"_{rung}{end}" for rung in LADDER for end in ("", "_low", "_high", "_apart"))
-"""How the names of the ladder's measures end."""
+"""Endings of the names of the ladder's measures."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,6 +123,7 @@ class PlaneSwims(Experiment):
     keeps nothing."""
 
     def __post_init__(self) -> None:
+        """Refuse unknown readings of (20), and settings outside their ranges."""
         with Checks("swimming", self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("reynolds", 10.0, 2e4, "")
@@ -147,37 +148,42 @@ class PlaneSwims(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Swim tethered and free, in every motion, on every rung of the ladder."""
-        climb, printed = self.climb(), self._fit(1)
-        ours = climb.fitted
-        slices = swims(climb, "slice", motions(ours.gait), staged(progress, "slice", 0.0, 0.3), frames=self.frames)
-        held, free = slices["held"], slices[MOTIONS[0]].drop_vars(("course", "course_centre"))
-        printed_swim = self._held("as printed", printed, staged(progress, "as printed", 0.3, 0.35))
-        conditions = self._conditions(printed, slices, staged(progress, "directions", 0.35, 0.45))
+        climb, printed_fit = self.climb(), self._fit(1)
+        wave_fit = climb.fitted
+        slices = swims(climb, "slice", motions(wave_fit.gait), staged(progress, "slice", 0.0, 0.3), frames=self.frames)
+        held_swim, free_swim = slices["held"], slices[MOTIONS[0]].drop_vars(("course", "course_centre"))
+        printed_swim = self._held_swim("as printed", printed_fit, staged(progress, "as printed", 0.3, 0.35))
+        conditions = self._conditions(printed_fit, slices, staged(progress, "directions", 0.35, 0.45))
         rungs = climbed(climb, staged(progress, "", 0.45, 0.92), slices=slices)
         readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
-        drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
+        drag = self._drag(float(free_swim.speed[-1]), staged(progress, "towed", 0.96, 1.0))
         printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
-        parts = [_prefixed(held, "held"), _prefixed(printed_forces, "printed"), _prefixed(free, "free"), conditions]
+        parts = [
+            _prefixed(held_swim, "held"),
+            _prefixed(printed_forces, "printed"),
+            _prefixed(free_swim, "free"),
+            conditions,
+        ]
         record = xr.merge([*parts, readings, rungs], join="exact")
-        record["model_speed"] = swim(self.robot, ours.gait).speed
-        record["printed_model_speed"] = swim(self.robot, printed.gait).speed
+        record["model_speed"] = swim(self.robot, wave_fit.gait).speed
+        record["printed_model_speed"] = swim(self.robot, printed_fit.gait).speed
         record["towed_drag"] = ((), drag, {"units": "N/m"})
-        record["servo_limit"] = ("held_servo", [self.robot.servo(str(s)).torque for s in held.servo.values])
+        record["servo_limit"] = ("held_servo", [self.robot.servo(str(s)).torque for s in held_swim.servo.values])
         record.servo_limit.attrs["units"] = "N m"
-        record.attrs |= {"misfit": ours.misfit, **rungs.attrs}
+        record.attrs |= {"misfit": wave_fit.misfit, **rungs.attrs}
         progress("films", 1.0)
         films = {"swimming_vorticity.gif": film_vorticity(record), "swimming_pressure.gif": film_pressure(record)}
-        numbers = {name: float(one.value) for name, one in measures(rungs, self.robot.length)}
+        numbers = {name: float(measure.value) for name, measure in measures(rungs, self.robot.length)}
         tables = {"readings.md": table, "ladder.md": ladder_table(numbers, self.unable(record))}
         swam = [f"{rung} {name}" for rung in ("slice", "slice_taken", "space") for name in (*MOTIONS, "held")]
         names = ("held as printed", *(f"free {arm}" for arm in ARMS[len(MOTIONS) :]), *swam)
         return Simulated(record=record, tables=tables, films=films, kept=all_kept(self.keep, names))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; for those of the ladder nothing else swims.
+        """Return at least the wanted measures; if they are the ladder's, only the ladder swims.
 
-        Nor does what no word needs: where rungs disagree on a claim, those that take longer are not asked for it any
-        more, and what they would have measured is NaN.
+        Swims that no verdict needs are left out too: once two rungs disagree on a claim, slower rungs do not swim for
+        it, and their measures are NaN.
         """
         if not all(name.endswith(_OF_RUNGS) for name in wanted):
             return super(PlaneSwims, self).measured(wanted, progress)
@@ -185,30 +191,30 @@ class PlaneSwims(Experiment):
         return Measures(measures(climbed(self.climb(), progress, claims=claims), self.robot.length))
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
-        """Return why rungs of the ladder could not be run, in a sentence, by name."""
-        told: Mapping[str, str] = json.loads(record.attrs["unable"])
-        return told
+        """Return the reasons why rungs of the ladder could not run, by name."""
+        reasons: Mapping[str, str] = json.loads(record.attrs["unable"])
+        return reasons
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return what the tethered and the free body did, and how fast each motion swims."""
-        held, free = part(record, "held"), part(record, "free")
+        held_swim, free_swim = select_swim(record, "held"), select_swim(record, "free")
         return Measures(
             {"misfit": Measure(float(record.attrs["misfit"]), "-")},
-            _thrusts(record, held, self.reading),
-            _tethered(held),
-            _free_swim(record, free, self.robot, self.frequency, self.reynolds),
-            _envelope(free, self.robot),
-            _compared(record),
+            _thrusts(record, held_swim, self.reading),
+            _tethered(held_swim),
+            _free_swim(record, free_swim, self.robot, self.frequency, self.reynolds),
+            _envelope(free_swim, self.robot),
+            _condition_measures(record),
             measures(record, self.robot.length),
-            _loads(held, self.robot),
+            _loads(held_swim, self.robot),
         )
 
-    def _setting(self, cycles: int, *, cells: int, reynolds: float, held: bool = True) -> SwimSetting:
+    def _setting(self, cycles: int, *, cells: int, reynolds: float, is_held: bool = True) -> SwimSetting:
         viscosity = self.frequency * self.robot.length**2 / reynolds
-        return SwimSetting(cells=cells, viscosity=viscosity, cycles=cycles, free=TETHERED if held else FREE)
+        return SwimSetting(cells=cells, viscosity=viscosity, cycles=cycles, free=TETHERED if is_held else FREE)
 
     def climb(self) -> Climb:
-        """Return what is asked of every rung.
+        """Return the setting of the ladder.
 
         Raises:
             Unwritable: unfinished swims cannot be kept where they are to be.
@@ -223,72 +229,86 @@ class PlaneSwims(Experiment):
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
         return fit(self.robot, wave, name=f"(20), reading {self.reading}")
 
-    def _held(self, name: str, fitted: Fit, progress: Progress) -> xr.Dataset:
-        kept = kept_in(self.keep, f"held {name}")
+    def _held_swim(self, name: str, wave_fit: Fit, progress: Progress) -> xr.Dataset:
+        """Return a swim in the slice with the snout fixed; it resumes from its checkpoint in ``keep``."""
+        checkpoint = kept_in(self.keep, f"held {name}")
         setting = self._setting(self.arm_cycles, cells=self.cells, reynolds=self.reynolds)
-        return resolved_swim(self.robot, fitted.gait, setting, turn=fitted.head, checkpoint=kept, progress=progress)
+        return resolved_swim(
+            self.robot, wave_fit.gait, setting, turn=wave_fit.head, checkpoint=checkpoint, progress=progress
+        )
 
-    def _conditions(self, printed: Fit, slices: Swims, progress: Progress) -> xr.Dataset:
-        """Return the speed in every condition and cycle; the first three are the ladder's slices."""
+    def _conditions(self, printed_fit: Fit, slices: Swims, progress: Progress) -> xr.Dataset:
+        """Return the speed in every condition and cycle; the first three are the ladder's slices.
+
+        Args:
+            printed_fit: gait in the printed direction.
+            slices: swims of the ladder's slice, by motion.
+            progress: called with the fraction that is done.
+        """
         exact = [
             ExactWave(name=name, wave=printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign))
             for name, sign in zip(ARMS[4:], (-1, 1), strict=True)
         ]
-        moved: dict[str, Motion] = dict(zip(ARMS[3:], (printed.gait, *exact), strict=True))
-        setting = self._setting(self.arm_cycles, cells=self.cells, reynolds=self.reynolds, held=False)
+        motions_by_arm: dict[str, Motion] = dict(zip(ARMS[3:], (printed_fit.gait, *exact), strict=True))
+        setting = self._setting(self.arm_cycles, cells=self.cells, reynolds=self.reynolds, is_held=False)
         speeds = np.full((len(ARMS), max(self.arm_cycles, self.cycles)), np.nan)
         for i, arm in enumerate(ARMS):
             if arm in slices:
-                swum = slices[arm]
+                swim_record = slices[arm]
             else:
-                kept, stage = kept_in(self.keep, f"free {arm}"), portion(progress, i - len(MOTIONS), len(moved))
-                swum = resolved_swim(self.robot, moved[arm], setting, checkpoint=kept, progress=stage)
-            speeds[i, : swum.sizes["cycle"]] = swum.speed.values
+                checkpoint, stage = (
+                    kept_in(self.keep, f"free {arm}"),
+                    portion(progress, i - len(MOTIONS), len(motions_by_arm)),
+                )
+                swim_record = resolved_swim(
+                    self.robot, motions_by_arm[arm], setting, checkpoint=checkpoint, progress=stage
+                )
+            speeds[i, : swim_record.sizes["cycle"]] = swim_record.speed.values
         data = xr.Dataset({"arm_speed": (("arm", "cycle"), speeds, {"units": "m/s"})})
         return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, speeds.shape[1] + 1))
 
     def _readings(self, progress: Progress) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""
-        tried = {one.letter: one for one in attempts(self.robot, frequency=self.frequency)}
+        attempts_by_letter = {attempt.letter: attempt for attempt in attempts(self.robot, frequency=self.frequency)}
         further = [letter for letter in self.readings if letter != self.reading]
         setting, thrust = (
             self._setting(min(4, self.cycles), cells=self.readings_cells, reynolds=self.readings_reynolds),
             [],
         )
         for i, letter in enumerate(further):
-            fitted, part = tried[letter].fitted, portion(progress, i, len(further))
-            if fitted is None:
+            wave_fit, stage = attempts_by_letter[letter].fitted, portion(progress, i, len(further))
+            if wave_fit is None:
                 thrust.append(float("nan"))
                 continue
-            held = resolved_swim(self.robot, fitted.gait, setting, turn=fitted.head, progress=part)
-            thrust.append(float(held.cycle_thrust[1:].mean()))
+            held_swim = resolved_swim(self.robot, wave_fit.gait, setting, turn=wave_fit.head, progress=stage)
+            thrust.append(float(held_swim.cycle_thrust[1:].mean()))
         thrusts = {
             letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
             for letter, value in zip(further, thrust, strict=True)
         }
         data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
-        return data.assign_coords(reading=further), readings_table(tried.values(), thrusts)
+        return data.assign_coords(reading=further), readings_table(attempts_by_letter.values(), thrusts)
 
     def _drag(self, speed: float, progress: Progress) -> float:
         progress("towing", 0.0)
-        least = 0.02 * self.robot.length
+        min_speed = 0.02 * self.robot.length
         setting = self._setting(1, cells=self.cells, reynolds=self.reynolds)
-        return towed_drag(self.robot, max(abs(speed), least), setting, lengths=self.tow)
+        return towed_drag(self.robot, max(abs(speed), min_speed), setting, lengths=self.tow)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the fields, the two sides of the tail, the forces, the free swim."""
         record = outcome.record
         return {
-            "swimming_ladder": draw_ladder(self._said(record)),
+            "swimming_ladder": draw_ladder(self._claim_voices(record)),
             "swimming_pressure": draw_quarters(record),
             "swimming_sides": draw_sides(record),
             "swimming_forces": draw_forces(record),
             "swimming_free": draw_free(record),
         }
 
-    def _said(self, record: xr.Dataset) -> list[tuple[Rule, tuple[Voice, ...]]]:
-        """Return what each rung says of each claim."""
-        numbers = {name: float(one.value) for name, one in measures(record, self.robot.length)}
+    def _claim_voices(self, record: xr.Dataset) -> list[tuple[Rule, tuple[Voice, ...]]]:
+        """Return the result of each rung for each claim."""
+        numbers = {name: float(measure.value) for name, measure in measures(record, self.robot.length)}
         return [(rule, voices(rule, numbers, self.unable(record))) for rule in RULES]
 
 
@@ -297,88 +317,110 @@ def _prefixed(record: xr.Dataset, name: str) -> xr.Dataset:
     return record.rename({str(old): f"{name}_{old}" for old in {*record.variables, *record.dims}})
 
 
-def part(record: xr.Dataset, name: str) -> xr.Dataset:
+def select_swim(record: xr.Dataset, name: str) -> xr.Dataset:
     """Return one swim of the record as ``water.resolved`` gave it."""
     start = f"{name}_"
-    mine = record[[str(v) for v in record.data_vars if str(v).startswith(start)]]
-    return mine.rename(
-        {str(v): str(v).removeprefix(start) for v in {*mine.variables, *mine.dims} if str(v).startswith(start)}
+    variables = record[[str(v) for v in record.data_vars if str(v).startswith(start)]]
+    return variables.rename(
+        {
+            str(v): str(v).removeprefix(start)
+            for v in {*variables.variables, *variables.dims}
+            if str(v).startswith(start)
+        }
     )
 
 
-def _thrusts(record: xr.Dataset, held: xr.Dataset, reading: str) -> Iterator[tuple[str, Measure]]:
-    settled = held.cycle_thrust[1:]
-    yield f"thrust_mean_{reading}", Measure(float(settled.mean()), "N/m")
-    yield "thrust_scatter", Measure(float(np.ptp(settled.values)), "N/m")
+def _thrusts(record: xr.Dataset, held_swim: xr.Dataset, reading: str) -> Iterator[tuple[str, Measure]]:
+    """Yield the mean thrust of the tethered body, its scatter over the cycles, and that of other readings [N/m]."""
+    cycle_thrusts = held_swim.cycle_thrust[1:]
+    yield f"thrust_mean_{reading}", Measure(float(cycle_thrusts.mean()), "N/m")
+    yield "thrust_scatter", Measure(float(np.ptp(cycle_thrusts.values)), "N/m")
     yield "thrust_mean_as_printed", Measure(float(record.printed_cycle_thrust[1:].mean()), "N/m")
     for letter in record.reading.values:
         yield f"thrust_mean_{letter}", Measure(float(record.reading_thrust.sel(reading=letter)), "N/m")
 
 
-def _tethered(held: xr.Dataset) -> Iterator[tuple[str, Measure]]:
-    each = Quarters.each(held)
-    yield "convex_higher_share", Measure(convex_higher(held), "-")
-    yield "power_held", Measure(float(held.cycle_power[1:].mean()), "W/m")
-    yield "force_noise", Measure(float(held.noise), "-")
-    yield "thin_share", Measure(float(held["thin"]), "-")
+def _tethered(held_swim: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield pressure differences, forces and power of the tethered body at the quarters of the cycle."""
+    cycle_quarters = Quarters.each(held_swim)
+    yield "convex_higher_share", Measure(convex_higher(held_swim), "-")
+    yield "power_held", Measure(float(held_swim.cycle_power[1:].mean()), "W/m")
+    yield "force_noise", Measure(float(held_swim.noise), "-")
+    yield "thin_share", Measure(float(held_swim["thin"]), "-")
     for i in range(4):
-        yield from _ranged(f"pressure_difference_{i + 1}_quarter", [one.difference[i] for one in each], "Pa")
+        yield from _ranged(
+            f"pressure_difference_{i + 1}_quarter", [quarters.difference[i] for quarters in cycle_quarters], "Pa"
+        )
     for i in (0, 2):
-        yield from _ranged(f"thrust_{i + 1}_quarter", [one.thrust[i] for one in each], "N/m")
-        yield from _ranged(f"aside_{i + 1}_quarter", [one.aside[i] for one in each], "N/m")
-    yield from _ranged("pressure_moves", [one.moves for one in each], "-")
+        yield from _ranged(f"thrust_{i + 1}_quarter", [quarters.thrust[i] for quarters in cycle_quarters], "N/m")
+        yield from _ranged(f"aside_{i + 1}_quarter", [quarters.aside[i] for quarters in cycle_quarters], "N/m")
+    yield from _ranged("pressure_moves", [quarters.moves for quarters in cycle_quarters], "-")
 
 
 def _free_swim(
-    record: xr.Dataset, free: xr.Dataset, robot: Robot, frequency: float, reynolds: float
+    record: xr.Dataset, free_swim: xr.Dataset, robot: Robot, frequency: float, reynolds: float
 ) -> Iterator[tuple[str, Measure]]:
-    swum = Swum.of(free, frequency)
-    yield "speed_free", Measure(swum.speed, "m/s")
-    yield "speed_free_lengths", Measure(swum.speed / robot.length, "1/s")
-    yield "speed_free_gain_last_cycle", Measure(swum.gain, "-")
-    yield "slip", Measure(swum.slip, "-")
+    """Yield speed, efficiency and similarity numbers of the free body, and the speeds of the slender-body models.
+
+    Args:
+        record: of the experiment.
+        free_swim: the free swim, of ``select_swim``.
+        robot: the robot that swims.
+        frequency: of the wave [Hz].
+        reynolds: frequency times length squared over viscosity [-].
+    """
+    swim_result = Swum.of(free_swim, frequency)
+    yield "speed_free", Measure(swim_result.speed, "m/s")
+    yield "speed_free_lengths", Measure(swim_result.speed / robot.length, "1/s")
+    yield "speed_free_gain_last_cycle", Measure(swim_result.gain, "-")
+    yield "slip", Measure(swim_result.slip, "-")
     numbers = swim_numbers(
-        speed=swum.speed, length=robot.length, frequency=frequency, swing=swum.strouhal * abs(swum.speed) / frequency,
+        speed=swim_result.speed, length=robot.length, frequency=frequency,
+        swing=swim_result.strouhal * abs(swim_result.speed) / frequency,
         viscosity=frequency * robot.length**2 / reynolds,
     )  # fmt: skip
     yield from similar(numbers).items()
-    yield "efficiency", Measure(efficiency(float(record.towed_drag), swum.speed, float(free.power[-1])), "-")
-    yield "cost_of_transport", Measure(swum.cost_of_transport, "-")
-    yield "head_yaw", Measure(swum.head_yaw, "rad")
+    yield (
+        "efficiency",
+        Measure(efficiency(float(record.towed_drag), swim_result.speed, float(free_swim.power[-1])), "-"),
+    )
+    yield "cost_of_transport", Measure(swim_result.cost_of_transport, "-")
+    yield "head_yaw", Measure(swim_result.head_yaw, "rad")
     for model in record.model.values:
         yield f"speed_{model}", Measure(float(record.model_speed.sel(model=model)), "m/s")
         yield f"speed_as_printed_{model}", Measure(float(record.printed_model_speed.sel(model=model)), "m/s")
 
 
-def _envelope(free: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
-    """Return how the swing of the free body grows from its least place to the tip."""
-    swings, s = free.swing.values, np.linspace(0.0, 1.0, free.swing.size)
-    least = int(swings.argmin())
-    running = np.maximum.accumulate(np.maximum(swings[least:], np.finfo(float).tiny))
-    dips = 1.0 - np.maximum(swings[least:], np.finfo(float).tiny) / running
+def _envelope(free_swim: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
+    """Yield the growth of the free body's swing from its narrowest place to the tip."""
+    swings, s = free_swim.swing.values, np.linspace(0.0, 1.0, free_swim.swing.size)
+    narrowest_index = int(swings.argmin())
+    running = np.maximum.accumulate(np.maximum(swings[narrowest_index:], np.finfo(float).tiny))
+    dips = 1.0 - np.maximum(swings[narrowest_index:], np.finfo(float).tiny) / running
     yield "envelope_growth", Measure(float(swings[-1] / running[0]), "-")
-    yield "envelope_least_place", Measure(float(s[least]), "-")
+    yield "envelope_least_place", Measure(float(s[narrowest_index]), "-")
     yield "envelope_dip", Measure(float(dips.max()), "-")
     yield "snout_sway", Measure(float(swings[0]) / robot.length, "-")
 
 
-def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+def _condition_measures(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     """Return the speed of the conditions that are no rung of the ladder, in their last cycle."""
     for arm in ARMS[3:]:
         speeds = record.arm_speed.sel(arm=arm).values
         yield f"speed_{arm.replace(' ', '_')}", Measure(float(speeds[np.isfinite(speeds)][-1]), "m/s")
 
 
-def _loads(held: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
-    for joint in held.joint.values:
-        yield f"joint_torque_peak_{joint}", Measure(float(abs(held.joint_torque.sel(joint=joint)).max()), "N m/m")
-    for servo in held.servo.values:
-        peak = float(abs(held.servo_torque.sel(servo=servo)).max())
+def _loads(held_swim: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
+    """Yield the peak torque of each joint [N m/m], and of each servo over its torque limit [-]."""
+    for joint in held_swim.joint.values:
+        yield f"joint_torque_peak_{joint}", Measure(float(abs(held_swim.joint_torque.sel(joint=joint)).max()), "N m/m")
+    for servo in held_swim.servo.values:
+        peak = float(abs(held_swim.servo_torque.sel(servo=servo)).max())
         yield f"servo_load_peak_{servo}", Measure(peak / robot.servo(str(servo)).torque, "-")
 
 
 def _ranged(name: str, values: list[float], unit: str) -> Iterator[tuple[str, Measure]]:
-    """Return the value of the last cycle, with the least and the greatest of all cycles."""
+    """Yield the value of the last cycle, with the least and the greatest of all cycles."""
     yield name, Measure(float(values[-1]), unit)
     yield f"{name}_low", Measure(float(min(values)), unit)
     yield f"{name}_high", Measure(float(max(values)), unit)

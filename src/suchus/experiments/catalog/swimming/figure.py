@@ -32,23 +32,23 @@ _QUARTERS = ("T/4", "T/2", "3T/4", "T")
 _FILM_DPI = 68
 _FILM_SECONDS = 2.4
 
-_MOST_SERVOS = 6
+_MAX_SERVOS = 6
 """Servos whose loads are drawn at most [-]."""
 
 
-def draw_ladder(said: Sequence[tuple[Rule, tuple[Voice, ...]]]) -> Figure:
-    """Draw what each model says of each claim: green where the statement holds, red where not, grey without a word.
+def draw_ladder(claim_voices: Sequence[tuple[Rule, tuple[Voice, ...]]]) -> Figure:
+    """Draw the result of each model for each claim: green where the statement holds, red where not, grey for none.
 
     Args:
-        said: rules with what their rungs say.
+        claim_voices: rules with what their rungs say.
     """
-    models = [voice.rung.model for voice in said[0][1]]
+    models = [voice.rung.model for voice in claim_voices[0][1]]
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=10.5, height=6.6)
         ax = axes[0, 0]
-        for row, (rule, voices) in enumerate(said):
+        for row, (rule, voices) in enumerate(claim_voices):
             for column, voice in enumerate(voices):
-                fill, mark = _SAID[voice.says]
+                fill, mark = _VOICE_STYLES[voice.says]
                 ax.add_patch(Rectangle((column - 0.48, row - 0.46), 0.96, 0.92, facecolor=fill, edgecolor="none"))
                 number = format(Reading(voice.value), rule.form) if isfinite(voice.value) else "–"
                 ends = f"{format(Reading(voice.low), rule.form)} to {format(Reading(voice.high), rule.form)}"
@@ -56,11 +56,11 @@ def draw_ladder(said: Sequence[tuple[Rule, tuple[Voice, ...]]]) -> Figure:
                 if isfinite(voice.value) and voice.low != voice.high:
                     ax.text(column, row + 0.24, ends, ha="center", va="center", fontsize=8)
         ax.set_xlim(-0.5, len(models) - 0.5)
-        ax.set_ylim(len(said) - 0.5, -0.5)
+        ax.set_ylim(len(claim_voices) - 0.5, -0.5)
         ax.set_xticks(range(len(models)), [fill_text(model, 16) for model in models], fontsize=10)
         ax.xaxis.tick_top()
-        labels = [fill_text(CLAIMS[rule.claim].quantity, 24) for rule, _ in said]
-        ax.set_yticks(range(len(said)), labels, fontsize=10)
+        labels = [fill_text(CLAIMS[rule.claim].quantity, 24) for rule, _ in claim_voices]
+        ax.set_yticks(range(len(claim_voices)), labels, fontsize=10)
         ax.tick_params(length=0)
         for side in ax.spines.values():
             side.set_visible(False)
@@ -72,7 +72,7 @@ def draw_ladder(said: Sequence[tuple[Rule, tuple[Voice, ...]]]) -> Figure:
     )
 
 
-_SAID = {"holds": ("#cfe8d5", "\N{CHECK MARK}"), "does not hold": ("#f3d0c9", "\N{MULTIPLICATION SIGN}"),
+_VOICE_STYLES = {"holds": ("#cfe8d5", "\N{CHECK MARK}"), "does not hold": ("#f3d0c9", "\N{MULTIPLICATION SIGN}"),
          "undecided": ("#f6e8b8", "?"), "no word": ("#ececec", "")}  # fmt: skip
 
 
@@ -82,7 +82,7 @@ def draw_quarters(record: xr.Dataset) -> Figure:
     Args:
         record: of the experiment ``swimming``.
     """
-    # the jump at the tail's edge is far above what surrounds it: the scales end where the two sides still differ
+    # the jump at the tail's edge exceeds all other values: end the scales where the two sides still differ
     limits = {
         "pressure": span(record.held_pressure.values, 0.985),
         "vorticity": span(record.held_vorticity.values, 0.97),
@@ -92,8 +92,8 @@ def draw_quarters(record: xr.Dataset) -> Figure:
         figure, axes = panels(4, 2, width=10.5, height=11.2, sharex=True, sharey=True)
         images = {}
         for i, quarter in enumerate(_QUARTERS):
-            for ax, what, colours in zip(axes[i], ("pressure", "vorticity"), (PRESSURE, VORTICITY), strict=True):
-                images[what] = draw_field(ax, record, "held", what, i, limits[what], colours)
+            for ax, quantity, colours in zip(axes[i], ("pressure", "vorticity"), (PRESSURE, VORTICITY), strict=True):
+                images[quantity] = draw_field(ax, record, "held", quantity, i, limits[quantity], colours)
                 draw_body(ax, record, "held", i)
             draw_streamlines(axes[i, 1], record, "held", i)
             axes[i, 0].set_title(f"{quarter}: tail, convex − concave: {_signed(difference[i])} Pa", fontsize=12)
@@ -102,10 +102,16 @@ def draw_quarters(record: xr.Dataset) -> Figure:
             for ax in axes[i]:
                 ax.set_xlim(-0.3, float(record.held_x[-1]))
                 ax.set_ylim(-0.55, 0.55)
-        for ax, what, unit in zip(axes[3], ("pressure", "vorticity"), ("Pa", "1/s"), strict=True):
+        for ax, quantity, unit in zip(axes[3], ("pressure", "vorticity"), ("Pa", "1/s"), strict=True):
             ax.set_xlabel("x [m], head to tail")
             figure.colorbar(
-                images[what], ax=ax, label=f"{what} [{unit}]", location="bottom", shrink=0.8, aspect=30, extend="both"
+                images[quantity],
+                ax=ax,
+                label=f"{quantity} [{unit}]",
+                location="bottom",
+                shrink=0.8,
+                aspect=30,
+                extend="both",
             )
     return captioned(
         figure,
@@ -122,8 +128,8 @@ def draw_sides(record: xr.Dataset) -> Figure:
     Args:
         record: of the experiment ``swimming``.
     """
-    at = record[["held_place", "held_bend"]].interp(held_phase=record.held_instant.values)
-    place, bend = at.held_place.values, at.held_bend.values
+    quarter_record = record[["held_place", "held_bend"]].interp(held_phase=record.held_instant.values)
+    positions, bend = quarter_record.held_place.values, quarter_record.held_bend.values
     with styled():
         figure, axes = panels(1, 4, width=10.5, height=3.1, sharey=True)
         for i, (ax, quarter) in enumerate(zip(axes[0], _QUARTERS, strict=True)):
@@ -132,7 +138,7 @@ def draw_sides(record: xr.Dataset) -> Figure:
                 values = record.held_sides.isel(held_instant=i).sel(held_side=side)
                 label = f"{side}, convex" if side == convex else side
                 ax.plot(record.held_tail, values, color=colour, label=label)
-            ax.axvline(float(place[i]), color=COLOURS["neutral"], linestyle=(0, (2, 2)), linewidth=1.2)
+            ax.axvline(float(positions[i]), color=COLOURS["neutral"], linestyle=(0, (2, 2)), linewidth=1.2)
             ax.axhline(0.0, color="#999999", linewidth=0.8)
             ax.set_title(quarter, fontsize=12)
             ax.set_xlabel("place on the tail [-]")
@@ -168,17 +174,17 @@ def draw_forces(record: xr.Dataset) -> Figure:
         ax.set_ylabel("force forward [N/m]")
         ax = axes[0, 1]
         for limit in (-1.0, 1.0):
-            named = "limit" if limit > 0 else None
-            ax.axhline(limit, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)), label=named)
+            limit_label = "limit" if limit > 0 else None
+            ax.axhline(limit, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)), label=limit_label)
         shares = record.held_servo_torque / record.servo_limit
-        greatest = abs(shares).max("held_phase")
-        shown = greatest.held_servo.values[np.sort(np.argsort(-greatest.values)[:_MOST_SERVOS])]
-        for servo in shown:
+        peak_loads = abs(shares).max("held_phase")
+        servos = peak_loads.held_servo.values[np.sort(np.argsort(-peak_loads.values)[:_MAX_SERVOS])]
+        for servo in servos:
             ax.plot(record.held_phase, shares.sel(held_servo=servo), label=str(servo).replace("_", " "))
         ax.set_ylabel("torque of the water over servo limit [-]")
         for ax in axes[0]:
             ax.set_xlabel("phase of the last cycle [cycle]")
-            _room_above(ax)
+            _add_headroom(ax)
             ax.legend(loc="upper left", ncols=2, fontsize=9.5)
             ax.set_xlim(0.0, 1.0)
     return captioned(
@@ -186,14 +192,14 @@ def draw_forces(record: xr.Dataset) -> Figure:
         "Fixed at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
         "to tail and as printed; dashed and in numbers the means of all cycles but the first. Right: what the water "
         "asks of the servos at their shafts, every section as high as the robot there, over each servo's limit (red); "
-        f"a flow that cannot pass over and under the body overstates it{_of_most(record)}. On the right: "
+        f"a flow that cannot pass over and under the body overstates it{_servo_note(record)}. On the right: "
         f"{ALONG_THE_SKIN[0].lower()}{ALONG_THE_SKIN[1:]}",
     )
 
 
-def _of_most(record: xr.Dataset) -> str:
-    """Return which servos are drawn, where not all are."""
-    return f"; shown are the {_MOST_SERVOS} with the most load" if record.sizes["held_servo"] > _MOST_SERVOS else ""
+def _servo_note(record: xr.Dataset) -> str:
+    """Return a note for the caption if only some servos are drawn."""
+    return f"; shown are the {_MAX_SERVOS} with the most load" if record.sizes["held_servo"] > _MAX_SERVOS else ""
 
 
 def draw_free(record: xr.Dataset) -> Figure:
@@ -255,15 +261,25 @@ def film_pressure(record: xr.Dataset) -> bytes:
                  "above and brown below that of the far water; the picture travels with the body.")  # fmt: skip
 
 
-def _film(record: xr.Dataset, what: str, unit: str, colours: str, share: float, caption: str) -> bytes:
-    values, phase = record[f"free_{what}"].values, record.free_frame.values
+def _film(record: xr.Dataset, quantity: str, unit: str, colours: str, fraction: float, caption: str) -> bytes:
+    """Return the last cycle of the free swim as a film of one field.
+
+    Args:
+        record: of the experiment ``swimming``.
+        quantity: ``vorticity`` or ``pressure``.
+        unit: of the quantity.
+        colours: name of the colour map.
+        fraction: quantile of the absolute values at which the colour scale ends [-].
+        caption: of the film.
+    """
+    values, phase = record[f"free_{quantity}"].values, record.free_frame.values
     with styled(axes__grid=False, figure__dpi=_FILM_DPI):
         figure, axes = panels(1, 1, width=9.6, height=4.3)
         ax = axes[0, 0]
-        image = draw_field(ax, record, "free", what, 0, span(values, share), colours)
+        image = draw_field(ax, record, "free", quantity, 0, span(values, fraction), colours)
         body = draw_body(ax, record, "free", 0)
         _frame_free(ax, record)
-        figure.colorbar(image, ax=ax, label=f"{what} [{unit}]", shrink=0.85, extend="both")
+        figure.colorbar(image, ax=ax, label=f"{quantity} [{unit}]", shrink=0.85, extend="both")
 
         def show(i: int) -> None:
             image.set_data(smooth(values[i]))
@@ -284,6 +300,6 @@ def _signed(value: float) -> str:
     return f"{value:+.0f}".replace("-", "\N{MINUS SIGN}")
 
 
-def _room_above(ax: Axes) -> None:
-    low, high = ax.get_ylim()
-    ax.set_ylim(low, high + 0.35 * (high - low))
+def _add_headroom(ax: Axes) -> None:
+    y_min, y_max = ax.get_ylim()
+    ax.set_ylim(y_min, y_max + 0.35 * (y_max - y_min))

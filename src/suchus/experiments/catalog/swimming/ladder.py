@@ -1,4 +1,4 @@
-"""The rungs of the ladder: one motion and its parts in six models of the water, each until it is settled."""
+"""The rungs of the ladder: one motion and its parts in six models of the water, each until its numbers converge."""
 
 import json
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -42,39 +42,39 @@ from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved
 from suchus.swimming.water.samples import kept_in
 
 MOTIONS = ("trunk and tail", "tail only", "trunk only")
-"""What swims on every rung."""
+"""Motions that swim on every rung."""
 SWIMS = (*MOTIONS, "held")
 """The swims of a rung that resolves the water: each motion free, and the first held at its snout."""
 _READ_OF: Mapping[str, tuple[str, ...]] = {
     "gain_tail": (MOTIONS[0], MOTIONS[2]), "gain_spine": MOTIONS[:2], "track": MOTIONS[:1], "wave": MOTIONS[:1],
     "tail_sine": MOTIONS[:1], "pressure": ("held",), "force": ("held",), "thrust": ("held",),
 }  # fmt: skip
-"""Of which swims measures are read, by how their names begin."""
+"""Swims that a measure is read from, by the beginning of its name."""
 FEWEST = 6
-"""Cycles without which a rung is not settled [-]; two halves of three."""
+"""Fewest cycles over which a number can be settled [-]: two halves of three."""
 _QUARTERS = ("difference", "thrust", "aside")
 GRIDS = "grids.json"
 """File beside this module: numbers on several grids in three dimensions, see ``tools/ladder_grids.py``."""
-_BENT = 3  # last cycles of the swim on sections over which the joints' midline is averaged
+_AVERAGED_CYCLES = 3  # last cycles of the swim on sections over which the joints' midline is averaged [-]
 
 
 def motions(gait: Gait) -> dict[str, Gait]:
-    """Return what swims on every rung, by ``MOTIONS``."""
+    """Return the gaits of ``MOTIONS``, by name."""
     return dict(zip(MOTIONS, (gait, gait.straightened("trunk"), gait.straightened("tail")), strict=True))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Climb:
-    """What is asked of every rung."""
+    """Robot, motion, water and grids of the ladder."""
 
     robot: Robot
-    """Who swims."""
+    """The robot that swims."""
     fitted: Fit
-    """Its motion, and how the head of a body turns that is held at its snout."""
+    """Motion of the robot, and the turn of its head while the snout is held."""
     viscosity: float
-    """Of the water on the rungs that resolve it [m2/s]; theories and sections take that of real water."""
+    """Kinematic viscosity on the rungs that resolve the water [m2/s]; theories and sections take real water."""
     cycles: int
-    """Cycles that are swum from rest [-]."""
+    """Cycles of every swim, from rest [-]."""
     cells: int
     """Cells per body length of the slices [-]."""
     space_cells: int
@@ -84,17 +84,30 @@ class Climb:
 
     @property
     def digest(self) -> str:
-        """What a study of grids must have been made for: the body, its motion and its water, whatever the grids."""
+        """Hash of body, motion and water; a study of grids is valid for the setting with the same hash."""
         outline, length = Outline(self.robot), self.robot.length
-        bent = undulation(outline, self.fitted.gait).middles
-        asked = (*outline.silhouette, bent.real, bent.imag, length, self.viscosity, self.fitted.head, self.cycles)
-        return fingerprint([np.round(one, 9) for one in asked])[:16]
+        bend_phasors = undulation(outline, self.fitted.gait).middles
+        inputs = (
+            *outline.silhouette,
+            bend_phasors.real,
+            bend_phasors.imag,
+            length,
+            self.viscosity,
+            self.fitted.head,
+            self.cycles,
+        )
+        return fingerprint([np.round(quantity, 9) for quantity in inputs])[:16]
 
-    def setting(self, *, space: bool, held: bool) -> SwimSetting:
-        """Return grid, water and time of a rung that resolves the water."""
+    def setting(self, *, space: bool, is_held: bool) -> SwimSetting:
+        """Return grid, water and time of a rung that resolves the water.
+
+        Args:
+            space: whether it is in three dimensions; otherwise in a slice.
+            is_held: whether the snout is fixed; otherwise the body swims freely.
+        """
         return SwimSetting(
             axes=3 if space else 2, cells=self.space_cells if space else self.cells, viscosity=self.viscosity,
-            cycles=self.cycles, free=TETHERED if held else FREE,
+            cycles=self.cycles, free=TETHERED if is_held else FREE,
         )  # fmt: skip
 
 
@@ -105,7 +118,7 @@ Swims = Mapping[str, xr.Dataset]
 def climbed(
     climb: Climb, progress: Progress, *, slices: Swims | None = None, claims: Collection[str] | None = None
 ) -> xr.Dataset:
-    """Return what every rung did; why one could not be run stands in ``unable``, as JSON by its name.
+    """Return the results of every rung; ``unable`` has the reason why a rung could not run, as JSON by its name.
 
     Args:
         climb: what is asked.
@@ -119,56 +132,71 @@ def climbed(
     """
     unable: dict[str, str] = {}
     sections = _attempt("sections", unable, lambda: _in_sections(climb, staged(progress, "sections", 0.0, 0.1)))
-    bent = None if sections is None else _attempt("slice_taken", unable, lambda: _bent(climb, sections))
-    told = {model: _attempt(model, unable, partial(_of_theory, climb, model)) for model in MODELS}
+    joint_midlines = (
+        None if sections is None else _attempt("slice_taken", unable, lambda: _joint_midlines(climb, sections))
+    )
+    results = {model: _attempt(model, unable, partial(_of_theory, climb, model)) for model in MODELS}
     if sections is None:
         unable["slice_taken"] = unable["sections"]
     else:
-        told["sections"] = _attempt("sections", unable, lambda: _of_sections(climb, sections))
-    meant = motions(climb.fitted.gait)
+        results["sections"] = _attempt("sections", unable, lambda: _of_sections(climb, sections))
+    commanded_motions = motions(climb.fitted.gait)
 
-    def resolved(rung: str, moved: Mapping[str, Motion], part: Progress) -> None:
-        wanted = SWIMS if claims is None else _needed(_ladder(climb, told, unable), climb, claims)
-        told[rung] = _attempt(rung, unable, lambda: _of_swims(climb, swims(climb, rung, moved, part, wanted=wanted)))
+    def resolve(rung: str, rung_motions: Mapping[str, Motion], stage: Progress) -> None:
+        swim_names = SWIMS if claims is None else _needed_swims(_ladder(climb, results, unable), climb, claims)
+        results[rung] = _attempt(
+            rung, unable, lambda: _of_swims(climb, swims(climb, rung, rung_motions, stage, swim_names=swim_names))
+        )
 
     if slices is None:
         check_limits(climb.robot, climb.fitted.gait)  # theories would swim all the same
         check_speeds(climb.robot, climb.fitted.gait)
-        resolved("slice", meant, staged(progress, "slice", 0.1, 0.35))
+        resolve("slice", commanded_motions, staged(progress, "slice", 0.1, 0.35))
     else:
-        told["slice"] = _of_swims(climb, slices)
-    if bent is not None:
-        resolved("slice_taken", bent, staged(progress, "taken", 0.35, 0.6))
-    resolved("space", meant, staged(progress, "three dimensions", 0.6, 1.0))
-    named = {"units": "1", "long_name": "rms angle of the joints' midline off the commanded, over that"}
-    data = _ladder(climb, told, unable)
-    data["taken_away"] = "ladder_motion", _away(climb, bent), named
+        results["slice"] = _of_swims(climb, slices)
+    if joint_midlines is not None:
+        resolve("slice_taken", joint_midlines, staged(progress, "taken", 0.35, 0.6))
+    resolve("space", commanded_motions, staged(progress, "three dimensions", 0.6, 1.0))
+    misfit_attrs = {"units": "1", "long_name": "rms angle of the joints' midline off the commanded, over that"}
+    data = _ladder(climb, results, unable)
+    data["taken_away"] = "ladder_motion", _midline_misfits(climb, joint_midlines), misfit_attrs
     return data
 
 
-def _ladder(climb: Climb, told: Mapping[str, Any], unable: Mapping[str, str]) -> xr.Dataset:
-    """Return what the rungs told so far, as a record; NaN of the others."""
+def _ladder(climb: Climb, results: Mapping[str, Any], unable: Mapping[str, str]) -> xr.Dataset:
+    """Return the results of the rungs so far as a record; NaN of rungs without results."""
     data = xr.Dataset(
-        {key: _stacked(key, [told.get(name) or {} for name in LADDER], climb.cycles) for key in _SHAPES},
+        {key: _stacked(key, [results.get(name) or {} for name in LADDER], climb.cycles) for key in _SHAPES},
         coords={"rung": list(LADDER), "ladder_motion": list(MOTIONS)},
     )
     return data.assign_attrs(unable=json.dumps(unable), grids=json.dumps(kept_grids(climb)))
 
 
-def _needed(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> set[str]:
-    """Return the swims that some claims need of the next rung: those claims on which the rungs do not disagree yet."""
-    numbers = {name: float(one.value) for name, one in _of_rungs(record, climb.robot.length)}
+def _needed_swims(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> set[str]:
+    """Return the swims that the next rung needs for some claims, without claims on which rungs disagree already."""
+    numbers = {name: float(measure.value) for name, measure in _of_rungs(record, climb.robot.length)}
     rules = [rule for rule in RULES if rule.claim in claims and not ladder.disagree(ladder.voices(rule, numbers))]
-    read = {name for rule in rules for name in (rule.measure, *(clause.measure for clause in rule.holds))}
-    return {swim for name in read for start, of in _READ_OF.items() if name.startswith(start) for swim in of}
+    measure_names = {name for rule in rules for name in (rule.measure, *(clause.measure for clause in rule.holds))}
+    return {
+        swim
+        for name in measure_names
+        for start, swim_names in _READ_OF.items()
+        if name.startswith(start)
+        for swim in swim_names
+    }
 
 
 def _attempt(name: str, unable: dict[str, str], run: Callable[[], Any]) -> Any:
-    """Return what a rung did, or None, and then the reason is kept by its name.
+    """Return the result of a rung; None if the rung cannot run, and then ``unable`` has the reason.
+
+    Args:
+        name: of the rung.
+        unable: reasons by rung; a reason is added to it.
+        run: computes the result.
 
     Raises:
-        Unwritable: it could not be kept, which says nothing of the rung.
-        UnreadableFile: what was kept of it is damaged, or is of another swim.
+        Unwritable: a checkpoint could not be written.
+        UnreadableFile: a checkpoint is damaged, or belongs to another swim.
     """
     try:
         return run()
@@ -185,43 +213,66 @@ _SHAPES: Mapping[str, tuple[tuple[str, ...], str]] = {
     "ladder_course": (("ladder_tick", "ladder_place"), "m"),
     **{f"ladder_{name}": (("ladder_cycle", "ladder_quarter"), "1") for name in _QUARTERS},
 }
-"""Dimensions of what a rung may tell, after its own, and unit; quarters are in the rung's own unit of pressure or
+"""Dimensions after ``rung``, and unit, of the results of a rung. Quarters have the rung's own unit of pressure or
 force."""
 
 
-def _stacked(key: str, found: Iterable[Mapping[str, Any]], cycles: int) -> Any:
+def _stacked(key: str, results: Iterable[Mapping[str, Any]], cycles: int) -> Any:
+    """Return one variable of all rungs as a tuple for xarray: dimensions, values, attributes.
+
+    Args:
+        key: of ``_SHAPES``.
+        results: of each rung, by variable; a missing variable becomes NaN.
+        cycles: cycles of each swim [-].
+    """
     dims, unit = _SHAPES[key]
     sizes = {"ladder_motion": len(MOTIONS), "ladder_cycle": cycles, "ladder_tick": TICKS * cycles + 1,
              "ladder_place": COURSE, "ladder_quarter": 4}  # fmt: skip
     empty = np.full([sizes[dim] for dim in dims], np.nan)
-    return ("rung", *dims), np.array([np.asarray(one.get(key, empty), float) for one in found]), {"units": unit}
+    return ("rung", *dims), np.array([np.asarray(result.get(key, empty), float) for result in results]), {"units": unit}
 
 
 def _of_theory(climb: Climb, model: str) -> dict[str, Any]:
-    """Return what a slender-body theory says: the same in every cycle, and of the centre of mass its one harmonic."""
+    """Return speed and sway of the centre of mass by a slender-body theory, the same in every cycle.
+
+    Args:
+        climb: setting of the ladder.
+        model: name in ``MODELS``.
+    """
     outline, water = Outline(climb.robot), Water()
-    swum = {name: cruise(outline, one, MODELS[model], water) for name, one in motions(climb.fitted.gait).items()}
-    whole = swum[MOTIONS[0]]
-    y = cycle(outline, climb.fitted.gait, whole.sway, whole.turn).y
-    wide, high = outline.silhouette
-    centre = np.average(y, axis=1, weights=wide * high)
+    steady_swims = {
+        name: cruise(outline, gait, MODELS[model], water) for name, gait in motions(climb.fitted.gait).items()
+    }
+    whole_swim = steady_swims[MOTIONS[0]]
+    y = cycle(outline, climb.fitted.gait, whole_swim.sway, whole_swim.turn).y
+    width, height = outline.silhouette
+    centre = np.average(y, axis=1, weights=width * height)
     instants = np.arange(TICKS * climb.cycles + 1) / TICKS % 1.0
     return {
-        "ladder_speed": np.tile([[one.speed] for one in swum.values()], climb.cycles),
+        "ladder_speed": np.tile([[steady_swim.speed] for steady_swim in steady_swims.values()], climb.cycles),
         "ladder_centre": np.interp(instants, np.arange(len(centre) + 1) / len(centre), [*centre, centre[0]]),
     }
 
 
 def _of_swims(climb: Climb, swims: Swims) -> dict[str, Any]:
-    """Return what the swims of a rung that resolves the water did; NaN of those that were left out."""
-    still = np.full(climb.cycles, np.nan)
-    found: dict[str, Any] = {"ladder_speed": [swims[one].speed.values if one in swims else still for one in MOTIONS]}
-    if (whole := swims.get(MOTIONS[0])) is not None:
-        found |= {"ladder_centre": whole.course_centre.values, "ladder_course": whole.course.values}
-    if (held := swims.get("held")) is not None:
-        first = np.full((climb.cycles - held.sizes["settled"], 4), np.nan)
-        found |= {f"ladder_{name}": np.vstack([first, held[f"quarter_{name}"].values]) for name in _QUARTERS}
-    return found
+    """Return speeds, midline and forces of the swims of a rung that resolves the water; NaN of missing swims.
+
+    Args:
+        climb: setting of the ladder.
+        swims: by motion, and ``held``.
+    """
+    missing = np.full(climb.cycles, np.nan)
+    results: dict[str, Any] = {
+        "ladder_speed": [swims[motion].speed.values if motion in swims else missing for motion in MOTIONS]
+    }
+    if (whole_swim := swims.get(MOTIONS[0])) is not None:
+        results |= {"ladder_centre": whole_swim.course_centre.values, "ladder_course": whole_swim.course.values}
+    if (held_swim := swims.get("held")) is not None:
+        settling_cycles = np.full((climb.cycles - held_swim.sizes["settled"], 4), np.nan)
+        results |= {
+            f"ladder_{name}": np.vstack([settling_cycles, held_swim[f"quarter_{name}"].values]) for name in _QUARTERS
+        }
+    return results
 
 
 def _in_sections(climb: Climb, progress: Progress) -> xr.Dataset:
@@ -229,23 +280,26 @@ def _in_sections(climb: Climb, progress: Progress) -> xr.Dataset:
     return swum_in_sections(climb.robot, [*motions(climb.fitted.gait).values()], climb.cycles, progress)
 
 
-def _bent(climb: Climb, record: xr.Dataset) -> dict[str, Motion]:
-    """Return the midlines that the joints take there, by motion."""
+def _joint_midlines(climb: Climb, record: xr.Dataset) -> dict[str, Motion]:
+    """Return the midlines of the joints in six degrees of freedom, by motion."""
     outline, frequency = Outline(bare(climb.robot), climb.cells + 1), climb.fitted.gait.frequency
-    last = min(_BENT, climb.cycles)
+    averaged_cycles = min(_AVERAGED_CYCLES, climb.cycles)
     return {
-        name: taken(outline, record.isel(run=i), frequency=frequency, cycles=last, name=f"{name} as taken")
+        name: taken(outline, record.isel(run=i), frequency=frequency, cycles=averaged_cycles, name=f"{name} as taken")
         for i, name in enumerate(MOTIONS)
     }
 
 
-def _away(climb: Climb, bent: Mapping[str, Motion] | None) -> list[float]:
-    """Return how far the midlines that the joints take are off those commanded, the rms angle over that [-]."""
-    if bent is None:
+def _midline_misfits(climb: Climb, joint_midlines: Mapping[str, Motion] | None) -> list[float]:
+    """Return the rms difference of the joints' midlines to the commanded ones, over the commanded angles [-]."""
+    if joint_midlines is None:
         return [nan] * len(MOTIONS)
     outline = Outline(bare(climb.robot), climb.cells + 1)
-    meant = motions(climb.fitted.gait)
-    return [unevenness(undulation(outline, bent[name]), undulation(outline, meant[name])) for name in MOTIONS]
+    commanded_motions = motions(climb.fitted.gait)
+    return [
+        unevenness(undulation(outline, joint_midlines[name]), undulation(outline, commanded_motions[name]))
+        for name in MOTIONS
+    ]
 
 
 def space_swims(climb: Climb, progress: Progress) -> Swims:
@@ -256,76 +310,83 @@ def space_swims(climb: Climb, progress: Progress) -> Swims:
 def swims(
     climb: Climb,
     rung: str,
-    moved: Mapping[str, Motion],
+    rung_motions: Mapping[str, Motion],
     progress: Progress,
     *,
     frames: int = 0,
-    wanted: Collection[str] = SWIMS,
+    swim_names: Collection[str] = SWIMS,
 ) -> Swims:
     """Return the free swims of a rung by motion, and the first held at its snout.
 
     Args:
         climb: what is asked.
         rung: which; ``space`` is in three dimensions, the others are slices.
-        moved: the motions by name.
+        rung_motions: the motions by name.
         progress: told the share that is done.
         frames: pictures of the first that are kept [-].
-        wanted: names of the swims, the others are left out.
+        swim_names: names of the swims, the others are left out.
     """
-    found: dict[str, xr.Dataset] = {}
-    asked = [name for name in SWIMS if name in wanted]
-    for i, name in enumerate(asked):
-        held, first = name == "held", name == MOTIONS[0]
-        setting = climb.setting(space=rung == "space", held=held)
-        found[name] = resolved_swim(
+    records: dict[str, xr.Dataset] = {}
+    names = [name for name in SWIMS if name in swim_names]
+    for i, name in enumerate(names):
+        is_held, is_first = name == "held", name == MOTIONS[0]
+        setting = climb.setting(space=rung == "space", is_held=is_held)
+        records[name] = resolved_swim(
             climb.robot,
-            moved[MOTIONS[0] if held else name],
-            replace(setting, frames=frames) if first else setting,
-            turn=climb.fitted.head if held else 0j,
+            rung_motions[MOTIONS[0] if is_held else name],
+            replace(setting, frames=frames) if is_first else setting,
+            turn=climb.fitted.head if is_held else 0j,
             checkpoint=kept_in(climb.keep, f"{rung} {name}"),
-            progress=portion(progress, i, len(asked)),
+            progress=portion(progress, i, len(names)),
         )
-    return found
+    return records
 
 
 def _of_sections(climb: Climb, record: xr.Dataset) -> dict[str, Any]:
-    """Return speeds and course of the runs in six degrees of freedom, whose y points left, that of a course right."""
+    """Return speeds and midline of the runs in six degrees of freedom; y is turned from left to right.
+
+    Args:
+        climb: setting of the ladder.
+        record: of ``_in_sections``.
+    """
     period, time = 1.0 / climb.fitted.gait.frequency, record.time.values.astype(float)
     ends = period * np.arange(climb.cycles + 1)
-    along = [np.interp(ends, time, record.centre_of_mass.isel(run=i).sel(xyz="x")) for i in range(len(MOTIONS))]
-    whole, even = record.isel(run=0), period * np.arange(TICKS * climb.cycles + 1) / TICKS
+    forward_positions = [
+        np.interp(ends, time, record.centre_of_mass.isel(run=i).sel(xyz="x")) for i in range(len(MOTIONS))
+    ]
+    whole_swim, sample_times = record.isel(run=0), period * np.arange(TICKS * climb.cycles + 1) / TICKS
     outline = Outline(bare(climb.robot))
-    angles = whole.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values
+    angles = whole_swim.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values
     middle = 0.5 * (outline.s[1:] + outline.s[:-1])
     root = outline.joints_at(np.array([outline.tail_root - 1e-6])) @ angles.T  # the heading of the root's segment
-    heading = np.unwrap(rotation.yaw(whole.orientation.values)) + outline.joints_at(middle) @ angles.T - root
+    heading = np.unwrap(rotation.yaw(whole_swim.orientation.values)) + outline.joints_at(middle) @ angles.T - root
     step = outline.s[1] - outline.s[0]
-    tip = -whole.tail_tip.sel(xyz="y").values
-    ahead = step * np.cumsum(np.sin(heading)[::-1], axis=0)[::-1]  # from each station to the tip
-    across = tip - np.vstack([ahead, np.zeros_like(tip)])
-    places = np.linspace(0.0, len(outline.s) - 1.0, COURSE)
-    seen = np.array([np.interp(places, np.arange(len(outline.s)), one) for one in across.T])
+    tip = -whole_swim.tail_tip.sel(xyz="y").values
+    lateral_to_tip = step * np.cumsum(np.sin(heading)[::-1], axis=0)[::-1]  # from each station to the tip
+    lateral_offsets = tip - np.vstack([lateral_to_tip, np.zeros_like(tip)])
+    positions = np.linspace(0.0, len(outline.s) - 1.0, COURSE)
+    course = np.array([np.interp(positions, np.arange(len(outline.s)), offsets) for offsets in lateral_offsets.T])
     return {
-        "ladder_speed": np.diff(along, axis=1) / period,
-        "ladder_centre": np.interp(even, time, -whole.centre_of_mass.sel(xyz="y")),
-        "ladder_course": np.column_stack([np.interp(even, time, one) for one in seen.T]),
+        "ladder_speed": np.diff(forward_positions, axis=1) / period,
+        "ladder_centre": np.interp(sample_times, time, -whole_swim.centre_of_mass.sel(xyz="y")),
+        "ladder_course": np.column_stack([np.interp(sample_times, time, course_column) for course_column in course.T]),
     }
 
 
 def rules_digest() -> str:
-    """Return what the rules ask of three dimensions: a study of grids that was made for other rules is too old."""
-    asked = [
+    """Return a hash of the rules that read the study of grids; a study with another hash is out of date."""
+    clauses = [
         f"{rule.claim} {rule.measure} {clause.measure} {clause.relation} {clause.bound} {rule.settled}"
         for rule in RULES
         for clause in rule.holds
     ]
-    return sha256("\n".join([*asked, str(FEWEST)]).encode()).hexdigest()[:16]
+    return sha256("\n".join([*clauses, str(FEWEST)]).encode()).hexdigest()[:16]
 
 
 def kept_grids(climb: Climb) -> dict[str, Any]:
-    """Return the kept study of grids in three dimensions: its cells, and the least and greatest of each measure.
+    """Return the stored study of grids in three dimensions: its cells, and the range of each measure.
 
-    Nothing where it is of another body, motion or water.
+    It is empty for another body, motion or water.
 
     Raises:
         IncompatibleRecord: it is older than the rules.
@@ -333,17 +394,17 @@ def kept_grids(climb: Climb) -> dict[str, Any]:
     file = resources.files("suchus.experiments.catalog.swimming") / GRIDS
     if not file.is_file():
         return {}
-    told: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-    if told["rules"] != rules_digest():
+    grid_study: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    if grid_study["rules"] != rules_digest():
         raise IncompatibleRecord(
             f"the study of grids that ships with swimming ({GRIDS}) is older than the rules that read it; renew it in "
             "a checkout with: python tools/ladder_grids.py FOLDER"
         )
-    return told if told["swim"] == climb.digest else {}
+    return grid_study if grid_study["swim"] == climb.digest else {}
 
 
 class Settled(NamedTuple):
-    """A number of a rung over the cycles in which it is settled."""
+    """A number of a rung over its settled cycles, with bounds and spread."""
 
     value: float
     """Mean over halves and starting sides."""
@@ -352,36 +413,41 @@ class Settled(NamedTuple):
     high: float
     """Greatest of them."""
     apart: float
-    """Greatest less least, over the size of what is measured [-]; NaN where too few cycles were swum."""
+    """Greatest minus least, over the scale of the number [-]; NaN with too few cycles."""
 
     @classmethod
     def of(cls, values: Iterable[float], scale: float) -> "Settled":
-        """Return it from the values of halves and sides."""
-        found = np.sort(np.asarray([*values], float))  # sorted, so that a mirrored swim gives the same bytes
-        return cls(float(found.mean()), float(found.min()), float(found.max()), float(np.ptp(found)) / scale)
+        """Return a settled number from the values of both halves and both starting sides."""
+        sorted_values = np.sort(np.asarray([*values], float))  # sorted, so that a mirrored swim gives the same bytes
+        return cls(
+            float(sorted_values.mean()),
+            float(sorted_values.min()),
+            float(sorted_values.max()),
+            float(np.ptp(sorted_values)) / scale,
+        )
 
 
 def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 1.0) -> Settled:
-    """Return a number over the most cycles, the first left out, two halves of which agree within ``SETTLED``.
+    """Return a number over the most cycles whose two halves agree within ``SETTLED``; the first cycle is left out.
 
     Args:
-        half: the number from one cycle on and up to another, once for each side to which the swim may start.
-        cycles: that were swum [-].
-        scale: size of what is measured, in its unit.
+        half: returns the number between two cycles, once for each side to which the swim may start.
+        cycles: of the swim [-].
+        scale: of the number, in its unit.
     """
-    found = None
+    number = None
     for count in range((cycles - 1) // 2 * 2, FEWEST - 1, -2):
         ends = cycles - count, cycles - count // 2, cycles
-        found = Settled.of([*half(*ends[:2]), *half(*ends[1:])], scale)
-        if found.apart <= SETTLED:
-            return found
-    return found or Settled.of(half(cycles - 1, cycles), scale)._replace(apart=nan)
+        number = Settled.of([*half(*ends[:2]), *half(*ends[1:])], scale)
+        if number.apart <= SETTLED:
+            return number
+    return number or Settled.of(half(cycles - 1, cycles), scale)._replace(apart=nan)
 
 
 def numbers_in_space(climb: Climb, swims: Swims) -> Iterator[tuple[str, Settled]]:
     """Return the numbers of the rung in three dimensions from its swims."""
-    told = _of_swims(climb, swims)
-    rung = xr.Dataset({key: _stacked(key, [told], climb.cycles) for key in _SHAPES}).isel(rung=0)
+    results = _of_swims(climb, swims)
+    rung = xr.Dataset({key: _stacked(key, [results], climb.cycles) for key in _SHAPES}).isel(rung=0)
     return _numbers(rung.assign_coords(ladder_motion=list(MOTIONS)), climb.robot.length)
 
 
@@ -394,33 +460,57 @@ def measures(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]
     """
     yield from _of_rungs(record, length)
     for motion in MOTIONS:
-        away = float(record.taken_away.sel(ladder_motion=motion))
-        yield f"misfit_{motion.replace(' ', '_')}_as_taken", Measure(away, "-")
+        misfit = float(record.taken_away.sel(ladder_motion=motion))
+        yield f"misfit_{motion.replace(' ', '_')}_as_taken", Measure(misfit, "-")
     yield "space_grids", Measure(float(len(json.loads(record.attrs["grids"]).get("cells", [0]))), "-")
 
 
 def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]:
+    """Yield by rung the speeds, and each number with its bounds and its spread.
+
+    In three dimensions the bounds include those of the stored study of grids.
+
+    Args:
+        record: of ``climbed``.
+        length: of the robot [m].
+    """
     grids = json.loads(record.attrs["grids"])
     for name in record.rung.values:
         rung = record.sel(rung=name)
         for motion in MOTIONS:
             speed = float(rung.ladder_speed.sel(ladder_motion=motion)[-1])
             yield f"speed_{motion.replace(' ', '_')}_{name}", Measure(speed, "m/s")
-        for what, (value, low, high, apart) in _numbers(rung, length):
-            ends = grids.get("measures", {}).get(what, ()) if name == "space" else ()
-            whole = {"": value, "_low": min(low, *ends, low), "_high": max(high, *ends, high), "_apart": apart}
-            for end, one in whole.items():
-                yield f"{what}_{name}{end}", Measure(one, "rad" if "angle" in what and end != "_apart" else "-")
+        for quantity, (value, lower_bound, upper_bound, spread) in _numbers(rung, length):
+            ends = grids.get("measures", {}).get(quantity, ()) if name == "space" else ()
+            number_by_ending = {
+                "": value,
+                "_low": min(lower_bound, *ends, lower_bound),
+                "_high": max(upper_bound, *ends, upper_bound),
+                "_apart": spread,
+            }
+            for end, number in number_by_ending.items():
+                yield (
+                    f"{quantity}_{name}{end}",
+                    Measure(number, "rad" if "angle" in quantity and end != "_apart" else "-"),
+                )
 
 
 def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
-    cycles = rung.sizes["ladder_cycle"]
-    whole, tail, trunk = (rung.ladder_speed.sel(ladder_motion=motion).values for motion in MOTIONS)
+    """Yield every number of one rung by name.
 
-    def gain(without: np.ndarray) -> Settled:
+    Args:
+        rung: record of one rung.
+        length: of the robot [m].
+    """
+    cycles = rung.sizes["ladder_cycle"]
+    whole_speed, tail, trunk = (rung.ladder_speed.sel(ladder_motion=motion).values for motion in MOTIONS)
+
+    def gain(partial_speed: np.ndarray) -> Settled:
+        """Return the fraction of the speed that is missing without a part of the motion."""
+
         def share(a: int, b: int) -> list[float]:
-            both = float(whole[a:b].mean())
-            return [(both - float(without[a:b].mean())) / abs(both) if both else nan]
+            whole_mean = float(whole_speed[a:b].mean())
+            return [(whole_mean - float(partial_speed[a:b].mean())) / abs(whole_mean) if whole_mean else nan]
 
         return settle(share, cycles)
 
@@ -433,7 +523,7 @@ def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
 
 
 def _swaying(centre: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
-    """Return how far the centre of mass sways, and what of its track is no sine of one cycle [body length]."""
+    """Yield the sway amplitude of the centre of mass, and the part of its track that is no sine [body length]."""
 
     def sway(a: int, b: int) -> Sway:
         return Sway.of(centre[a * TICKS : b * TICKS + 1], b - a)
@@ -444,80 +534,97 @@ def _swaying(centre: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
 
 
 def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
-    """Return which share of the tip's swing is a sine, and which wave of the form (20) the midline follows."""
+    """Yield the sine fraction of the tip's swing, and the wave of the form (20) that fits the midline best.
+
+    Args:
+        course: lateral position of the midline, shape (tick, place) [body length].
+        cycles: of the swim [-].
+    """
     names = ("wave_share", "wave_waves_per_body", "wave_envelope_middle", "wave_envelope_tip")
     s = np.linspace(0.0, 1.0, course.shape[1])
 
     @cache
     def wave(a: int, b: int) -> tuple[float, ...]:
-        part = course[a * TICKS : b * TICKS + 1]
-        side = 1.0 if part[0, -1] >= part[:-1, -1].mean() else -1.0  # so that a mirrored swim gives the same bytes
-        swung = swing(side * part, b - a)
-        linear, quadratic, waves, share = wave_form(s, swung.amplitude, swung.phase_lag)
-        sine = float(np.average(swung.share, weights=swung.amplitude**2))
+        """Return wave fraction [-], waves per body [-], and amplitudes at the middle and the tip [body length]."""
+        excerpt = course[a * TICKS : b * TICKS + 1]
+        side = (
+            1.0 if excerpt[0, -1] >= excerpt[:-1, -1].mean() else -1.0
+        )  # so that a mirrored swim gives the same bytes
+        swing_fit = swing(side * excerpt, b - a)
+        linear, quadratic, waves, share = wave_form(s, swing_fit.amplitude, swing_fit.phase_lag)
+        sine = float(np.average(swing_fit.share, weights=swing_fit.amplitude**2))
         return sine * share, waves, abs(0.5 * linear + 0.25 * quadratic), abs(linear + quadratic)
 
     def tip(a: int, b: int) -> list[float]:
-        each = [course[i * TICKS : (i + 1) * TICKS + 1, -1:] for i in range(a, b)]
-        return [float(np.mean([swing(one, 1).share[0] for one in each]))]
+        cycle_courses = [course[i * TICKS : (i + 1) * TICKS + 1, -1:] for i in range(a, b)]
+        return [float(np.mean([swing(cycle_course, 1).share[0] for cycle_course in cycle_courses]))]
 
-    known = float(np.ptp(course[:, -1])) > 0.0  # neither NaN nor at rest
-    none = Settled(nan, nan, nan, nan)
-    yield "tail_sine_share", settle(tip, cycles) if known else none
-    size = wave(1, cycles)[-1] if known else nan
+    is_moving = float(np.ptp(course[:, -1])) > 0.0  # neither NaN nor at rest
+    no_number = Settled(nan, nan, nan, nan)
+    yield "tail_sine_share", settle(tip, cycles) if is_moving else no_number
+    size = wave(1, cycles)[-1] if is_moving else nan
 
-    def one(which: int, a: int, b: int) -> list[float]:
-        return [wave(a, b)[which]]
+    def wave_component(index: int, a: int, b: int) -> list[float]:
+        return [wave(a, b)[index]]
 
     for i, (name, scale) in enumerate(zip(names, (1.0, 1.0, size, size), strict=True)):
-        yield name, settle(partial(one, i), cycles, scale) if known else none
+        yield name, settle(partial(wave_component, i), cycles, scale) if is_moving else no_number
 
 
 def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
-    """Return the difference between the tail's sides at T/4, and its fall to 3T/4, over its mean size [-].
+    """Yield the pressure difference of the tail's sides at T/4, and its fall to 3T/4, over its mean size [-].
 
     A swim that starts to the other side is the mirror image of this one: it does at T/4 what this one does at 3T/4.
+
+    Args:
+        difference: mean pressure difference, shape (cycle, quarter).
+        cycles: of the swim [-].
     """
     size = float(np.sort(np.abs(difference[1:]), axis=None).mean())
 
-    def at(a: int, b: int) -> tuple[float, float]:
-        first, third = difference[a:b, [0, 2]].mean(axis=0) / size
-        return float(first), float(third)
+    def quarter_differences(a: int, b: int) -> tuple[float, float]:
+        first_quarter, third_quarter = difference[a:b, [0, 2]].mean(axis=0) / size
+        return float(first_quarter), float(third_quarter)
 
     def fall(a: int, b: int) -> list[float]:
-        first, third = at(a, b)
-        return [abs(first) - abs(third), abs(third) - abs(first)]
+        first_quarter, third_quarter = quarter_differences(a, b)
+        return [abs(first_quarter) - abs(third_quarter), abs(third_quarter) - abs(first_quarter)]
 
-    yield "pressure_convex_share", settle(lambda a, b: [*at(a, b)], cycles)
+    yield "pressure_convex_share", settle(lambda a, b: [*quarter_differences(a, b)], cycles)
     yield "pressure_fall_share", settle(fall, cycles)
 
 
 def _pushing(force: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
-    """Return angle, asymmetry and forward part of the force, shape (cycle, quarter, 2), started to either side."""
+    """Yield angle, asymmetry and forward part of the force at the quarters, for a start to either side.
+
+    Args:
+        force: forward and lateral, shape (cycle, quarter, 2).
+        cycles: of the swim [-].
+    """
     size = float(np.sort(np.hypot(force[1:, :, 0], force[1:, :, 1]), axis=None).mean())
 
     def sides(a: int, b: int) -> list[tuple[np.ndarray, np.ndarray]]:
-        first, third = force[a:b, 0].mean(axis=0), force[a:b, 2].mean(axis=0)
-        return [(first, third), (third * (1.0, -1.0), first * (1.0, -1.0))]
+        first_quarter, third_quarter = force[a:b, 0].mean(axis=0), force[a:b, 2].mean(axis=0)
+        return [(first_quarter, third_quarter), (third_quarter * (1.0, -1.0), first_quarter * (1.0, -1.0))]
 
-    def angle(first: np.ndarray, third: np.ndarray) -> float:
-        del third
-        return float(np.arctan2(abs(first[1]), first[0]))
+    def angle(first_quarter: np.ndarray, third_quarter: np.ndarray) -> float:
+        del third_quarter
+        return float(np.arctan2(abs(first_quarter[1]), first_quarter[0]))
 
-    def asymmetry(first: np.ndarray, third: np.ndarray) -> float:
-        apart, most = np.abs(first - third * (1.0, -1.0)).max(), np.abs(first).max()
-        return float(apart / most) if most > 0.0 else nan
+    def asymmetry(first_quarter: np.ndarray, third_quarter: np.ndarray) -> float:
+        difference, peak_force = np.abs(first_quarter - third_quarter * (1.0, -1.0)).max(), np.abs(first_quarter).max()
+        return float(difference / peak_force) if peak_force > 0.0 else nan
 
-    def forward(first: np.ndarray, third: np.ndarray) -> float:
-        del first
-        return float(third[0]) / size
+    def forward(first_quarter: np.ndarray, third_quarter: np.ndarray) -> float:
+        del first_quarter
+        return float(third_quarter[0]) / size
 
-    def both(read: Callable[[np.ndarray, np.ndarray], float], a: int, b: int) -> list[float]:
-        return [read(*pair) for pair in sides(a, b)]
+    def both_sides(component: Callable[[np.ndarray, np.ndarray], float], a: int, b: int) -> list[float]:
+        return [component(*pair) for pair in sides(a, b)]
 
-    yield "force_angle_1_quarter", settle(partial(both, angle), cycles, pi / 2)
-    yield "thrust_asymmetry", settle(partial(both, asymmetry), cycles)
-    yield "thrust_3_quarter_share", settle(partial(both, forward), cycles)
+    yield "force_angle_1_quarter", settle(partial(both_sides, angle), cycles, pi / 2)
+    yield "thrust_asymmetry", settle(partial(both_sides, asymmetry), cycles)
+    yield "thrust_3_quarter_share", settle(partial(both_sides, forward), cycles)
 
 
 def table(numbers: Mapping[str, float], unable: Mapping[str, str]) -> str:

@@ -14,11 +14,11 @@ LADDER: Mapping[str, str] = {
     "sections": "six degrees of freedom on sections",
     "space": "three dimensions",
 }
-"""The rungs by name, in words."""
+"""Labels of the rungs by name."""
 SETTLED = 0.1
-"""Greatest spread of halves and starting sides with which a rung has a word, over the size of what is measured [-]."""
+"""Greatest relative spread of halves and starting sides with which a rung counts for a verdict [-]."""
 SEEN = 0.01
-"""Sway of the centre of mass below which a track is a straight line in a picture [body length]."""
+"""Least sway of the centre of mass that is visible in a picture [body length]."""
 _DIAGONAL = 0.1
 
 _RESOLVED = {
@@ -33,9 +33,9 @@ _COMMANDED = "It swings as commanded: what is asked was put in."
 
 def _rungs(cannot: Mapping[str, str], can: Mapping[str, str]) -> tuple[Rung, ...]:
     """Return the ladder with the reasons why rungs cannot carry a claim, and why the others can."""
-    why = {**_RESOLVED, "sections": _JOINTS, **can, **cannot}
+    reasons = {**_RESOLVED, "sections": _JOINTS, **can, **cannot}
     return tuple(
-        Rung(name=name, model=model, why=why[name], carries=name not in cannot) for name, model in LADDER.items()
+        Rung(name=name, model=model, why=reasons[name], carries=name not in cannot) for name, model in LADDER.items()
     )
 
 
@@ -200,14 +200,16 @@ VARIED = Varied(
 )
 
 
-def _all(values: Mapping[str, float], *, apart: float = 0.01, rungs: Sequence[str] = tuple(LADDER)) -> dict[str, float]:
+def _ladder_measures(
+    values: Mapping[str, float], *, spread: float = 0.01, rungs: Sequence[str] = tuple(LADDER)
+) -> dict[str, float]:
     """Return measures of rungs, each the same on all of them and settled."""
-    found: dict[str, float] = {}
+    measures: dict[str, float] = {}
     for name, value in values.items():
         for rung in rungs:
-            ends = {"": value, "_low": value, "_high": value, "_apart": apart}
-            found |= {f"{name}_{rung}{end}": one for end, one in ends.items()}
-    return found
+            ends = {"": value, "_low": value, "_high": value, "_apart": spread}
+            measures |= {f"{name}_{rung}{end}": number for end, number in ends.items()}
+    return measures
 
 
 def _examples(
@@ -220,15 +222,20 @@ def _examples(
         bad: values with which it does not, one or more of them.
         words: what is said where all rungs hold, and where none does.
     """
-    (rule,) = [rule for rule in RULES if {rule.measure, *(one.measure for one in rule.holds)} <= set(good)]
-    whole, worse, rows = _all(good), {**good, **bad}, []
+    (rule,) = [rule for rule in RULES if {rule.measure, *(clause.measure for clause in rule.holds)} <= set(good)]
+    good_measures, worse, rows = _ladder_measures(good), {**good, **bad}, []
     for rung in rule.rungs:
-        other: Word = "models disagree" if rung.carries else words[0]
-        rows.append((whole | _all(worse, rungs=[rung.name]), other))
+        word: Word = "models disagree" if rung.carries else words[0]
+        rows.append((good_measures | _ladder_measures(worse, rungs=[rung.name]), word))
         if rung.carries:
-            rows.append((whole | _all(worse, rungs=[rung.name], apart=0.099), other))
-            rows.append((whole | _all(worse, rungs=[rung.name], apart=0.101), words[0]))
-    return [(whole, words[0]), (_all(worse), words[1]), (_all(good, apart=nan), "not testable"), *rows]
+            rows.append((good_measures | _ladder_measures(worse, rungs=[rung.name], spread=0.099), word))
+            rows.append((good_measures | _ladder_measures(worse, rungs=[rung.name], spread=0.101), words[0]))
+    return [
+        (good_measures, words[0]),
+        (_ladder_measures(worse), words[1]),
+        (_ladder_measures(good, spread=nan), "not testable"),
+        *rows,
+    ]
 
 
 _WAVE = {"wave_share": 0.99, "wave_envelope_tip": 0.1, "wave_envelope_middle": 0.03, "wave_waves_per_body": 1.0}
@@ -239,11 +246,11 @@ EXAMPLES: Examples = {
     "swim_tail_sine": _examples({"tail_sine_share": 0.951}, {"tail_sine_share": 0.949}, ("same sense", "not testable")),
     "swim_body_wave": [
         *_examples(_WAVE, {"wave_share": 0.949}, ("by construction", "contradicted")),
-        (_all(_WAVE | {"wave_share": 0.951}), "by construction"),
-        (_all(_WAVE | {"wave_envelope_middle": 0.099}), "by construction"),
-        (_all(_WAVE | {"wave_envelope_middle": 0.101}), "contradicted"),
-        (_all(_WAVE | {"wave_waves_per_body": 1e-4}), "by construction"),
-        (_all(_WAVE | {"wave_waves_per_body": -1e-4}), "contradicted"),
+        (_ladder_measures(_WAVE | {"wave_share": 0.951}), "by construction"),
+        (_ladder_measures(_WAVE | {"wave_envelope_middle": 0.099}), "by construction"),
+        (_ladder_measures(_WAVE | {"wave_envelope_middle": 0.101}), "contradicted"),
+        (_ladder_measures(_WAVE | {"wave_waves_per_body": 1e-4}), "by construction"),
+        (_ladder_measures(_WAVE | {"wave_waves_per_body": -1e-4}), "contradicted"),
     ],
     "swim_pressure_convex": _examples(
         {"pressure_convex_share": 1e-4}, {"pressure_convex_share": -1e-4}, ("reproduced", "contradicted")
@@ -254,23 +261,23 @@ EXAMPLES: Examples = {
             {"force_angle_1_quarter": 0.0992},
             ("reproduced", "contradicted"),
         ),
-        (_all({"force_angle_1_quarter": 1.47}), "reproduced"),  # that of 10 is 1.4711
-        (_all({"force_angle_1_quarter": 1.472}), "contradicted"),
+        (_ladder_measures({"force_angle_1_quarter": 1.47}), "reproduced"),  # that of 10 is 1.4711
+        (_ladder_measures({"force_angle_1_quarter": 1.472}), "contradicted"),
     ],
     "swim_pressure_falls": _examples(
         {"pressure_fall_share": 0.101}, {"pressure_fall_share": 0.099}, ("reproduced", "contradicted")
     ),
     "swim_thrust_symmetric": [
         *_examples(_FORCES, {"thrust_3_quarter_share": -1e-4}, ("reproduced", "contradicted")),
-        (_all(_FORCES | {"thrust_asymmetry": 0.149}), "reproduced"),
-        (_all(_FORCES | {"thrust_asymmetry": 0.151}), "contradicted"),
-        (_all(_FORCES | {"thrust_3_quarter_share": 1e-4}), "reproduced"),
+        (_ladder_measures(_FORCES | {"thrust_asymmetry": 0.149}), "reproduced"),
+        (_ladder_measures(_FORCES | {"thrust_asymmetry": 0.151}), "contradicted"),
+        (_ladder_measures(_FORCES | {"thrust_3_quarter_share": 1e-4}), "reproduced"),
     ],
     "swim_s_shape": [
         *_examples(_TRACK, {"track_sway": 0.0099}, ("reproduced", "contradicted")),
-        (_all(_TRACK | {"track_sway": 0.0101}), "reproduced"),
-        (_all(_TRACK | {"track_noise": 0.0198}), "reproduced"),
-        (_all(_TRACK | {"track_noise": 0.0202}), "contradicted"),
+        (_ladder_measures(_TRACK | {"track_sway": 0.0101}), "reproduced"),
+        (_ladder_measures(_TRACK | {"track_noise": 0.0198}), "reproduced"),
+        (_ladder_measures(_TRACK | {"track_noise": 0.0202}), "contradicted"),
     ],
     "swim_tail_thrust": _examples(
         {"gain_tail_share": 0.505}, {"gain_tail_share": 0.495}, ("reproduced", "contradicted")

@@ -31,8 +31,8 @@ SHAPES = (0.0, pi / 2, pi)
 class TailBending(Experiment):
     """Follow cords, servo and joints of the tail from straight to a half turn, exactly and as printed.
 
-    That all joints turn alike, from which the formulas start, is tried in two crawls: the article's, and one whose
-    trunk is straight while the tail swings.
+    The formulas assume that all joints turn by the same angle. Two crawls test this assumption: the article's, and one
+    with a straight trunk and a swinging tail.
     """
 
     title = "How good are the tail's formulas, from straight to bent by a half turn and in the crawl?"
@@ -102,12 +102,12 @@ class TailBending(Experiment):
             time = record.time.values
             angles = record.joint_angle.sel(joint=joints).transpose("run", "time", "joint").values
             bend = record.joint_angle.sel(joint=passive).sum("joint").transpose("run", "time").values
-        about = {"units": "rad", "long_name": "angle of a tail joint, tip right positive"}
-        behind = {"units": "rad", "long_name": "bend of the tail's passive end, tip right positive"}
+        angle_attrs = {"units": "rad", "long_name": "angle of a tail joint, tip right positive"}
+        bend_attrs = {"units": "rad", "long_name": "bend of the tail's passive end, tip right positive"}
         return xr.Dataset(
             {
-                "crawl_angle": (("crawl", "time", "joint"), angles, about),
-                "end_bend": (("crawl", "time"), bend, behind),
+                "crawl_angle": (("crawl", "time", "joint"), angles, angle_attrs),
+                "end_bend": (("crawl", "time"), bend, bend_attrs),
             },
             coords={"crawl": ["gait", "straight"], "time": ("time", time, {"units": "s"}), "joint": joints},
         )
@@ -118,17 +118,17 @@ class TailBending(Experiment):
         cases = product(ranges["tail.gap"], ranges["tail.cord_spacing"])
         plates = self.robot.tail
         designs = (plates._replace(gap=gap, pitch=plates.plate + gap, cord_spacing=spacing) for gap, spacing in cases)
-        worst = [
+        max_errors = [
             _errors(plates_varied, min(furthest, tail.bend_limit(plates_varied))).error_at_end.max()
             for plates_varied in designs
         ]
-        return float(max(worst))
+        return float(max(max_errors))
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return errors of the formulas, what the cords do, counts, and how equally the joints turn."""
         facts = record.attrs
-        bent = record.isel(bend=slice(1, None))
-        opposed = (bent.toward < 0) & (bent.away > 0)
+        bent_record = record.isel(bend=slice(1, None))
+        opposed = (bent_record.toward < 0) & (bent_record.away > 0)
         measures = Measures(
             {
                 "error_of_eq_17_max": Measure(float(np.nanmax(np.abs([record.error_toward, record.error_away]))), "-"),
@@ -173,58 +173,85 @@ class TailBending(Experiment):
 
 
 def _cords(plates: TailMeasures, bend: np.ndarray, linear: bool) -> xr.Dataset:
-    """Return cords, drive and errors of the formulas over the bend; the straight tail has no relative error of (17)."""
-    toward, away = tail.cable_changes(plates, bend)
-    kept_toward, kept_away = (plates.joints * c for c in printed.cable_changes_shortened(plates, bend))
-    last = (tail.joint_positions(plates, bend) - printed.joint_positions(plates, bend))[:, -1]
+    """Return cords, drive and errors of the formulas over the bend; the straight tail has no relative error of (17).
+
+    Args:
+        plates: measures of the tail.
+        bend: of the whole tail [rad].
+        linear: whether a linear actuator moves the cords.
+    """
+    toward_change, away_change = tail.cable_changes(plates, bend)
+    shortened_toward, shortened_away = (plates.joints * c for c in printed.cable_changes_shortened(plates, bend))
+    last_joint_error = (tail.joint_positions(plates, bend) - printed.joint_positions(plates, bend))[:, -1]
     with np.errstate(invalid="ignore"):
-        errors = [(kept - exact) / np.abs(exact) for kept, exact in ((kept_toward, toward), (kept_away, away))]
-    long, part = {"units": "m"}, {"units": "-"}
+        errors = [
+            (shortened - exact) / np.abs(exact)
+            for shortened, exact in ((shortened_toward, toward_change), (shortened_away, away_change))
+        ]
+    length_attrs, ratio_attrs = {"units": "m"}, {"units": "-"}
     return xr.Dataset(
         {
-            "toward": ("bend", toward, long | {"long_name": "cord towards the bend, exact"}),
-            "away": ("bend", away, long | {"long_name": "cord away from the bend, exact"}),
-            "shortened": ("bend", kept_away, long | {"long_name": "both cords by (17), without sign"}),
-            "slack": ("bend", tail.slack(plates, bend), long | {"long_name": "slack"}),
-            "error_toward": ("bend", -errors[0], part | {"long_name": "length pulled by (17), less the exact one"}),
-            "error_away": ("bend", errors[1], part | {"long_name": "length given by (17), less the exact one"}),
+            "toward": ("bend", toward_change, length_attrs | {"long_name": "cord towards the bend, exact"}),
+            "away": ("bend", away_change, length_attrs | {"long_name": "cord away from the bend, exact"}),
+            "shortened": ("bend", shortened_away, length_attrs | {"long_name": "both cords by (17), without sign"}),
+            "slack": ("bend", tail.slack(plates, bend), length_attrs | {"long_name": "slack"}),
+            "error_toward": (
+                "bend",
+                -errors[0],
+                ratio_attrs | {"long_name": "length pulled by (17), less the exact one"},
+            ),
+            "error_away": ("bend", errors[1], ratio_attrs | {"long_name": "length given by (17), less the exact one"}),
             "neglected": (
                 "bend",
                 plates.gap / plates.cord_spacing * np.tan(bend / (4 * plates.joints)),
-                part | {"long_name": "h/d tan(theta / 4N)"},
+                ratio_attrs | {"long_name": "h/d tan(theta / 4N)"},
             ),
-            "deficit": ("bend", bend - _reached(plates, kept_away), {"units": "rad", "long_name": "bend missing"}),
+            "deficit": (
+                "bend",
+                bend - _bend_of_cord(plates, shortened_away),
+                {"units": "rad", "long_name": "bend missing"},
+            ),
             "servo": (
-                ("bend", plates.pulley * tail.servo_angle(plates, bend), long | {"long_name": "actuator's travel"})
+                (
+                    "bend",
+                    plates.pulley * tail.servo_angle(plates, bend),
+                    length_attrs | {"long_name": "actuator's travel"},
+                )
                 if linear
                 else ("bend", tail.servo_angle(plates, bend), {"units": "rad", "long_name": "pulley angle"})
             ),
             "printed_miss": (
                 "bend",
-                np.linalg.norm(last, axis=-1),
-                long | {"long_name": "last joint by (19), its miss"},
+                np.linalg.norm(last_joint_error, axis=-1),
+                length_attrs | {"long_name": "last joint by (19), its miss"},
             ),
         },
         coords={"bend": ("bend", bend, {"units": "rad", "long_name": "bend of the tail"})},
     )
 
 
-def _reached(plates: TailMeasures, pulled: np.ndarray) -> np.ndarray:
-    """Return the bend at which the cord towards it is shorter by ``pulled`` [rad]: (16), solved for theta."""
-    far = np.hypot(plates.cord_spacing, plates.gap)
+def _bend_of_cord(plates: TailMeasures, cord_change: np.ndarray) -> np.ndarray:
+    """Return the bend at which the cord towards it is shorter by ``cord_change`` [rad]: (16), solved for theta.
+
+    Args:
+        plates: measures of the tail.
+        cord_change: length by which the cord is shorter [m].
+    """
+    diagonal = np.hypot(plates.cord_spacing, plates.gap)
     tilt = np.arctan2(plates.gap, plates.cord_spacing)
-    half = tilt + np.arcsin((pulled / plates.joints - plates.gap) / far)
+    half = tilt + np.arcsin((cord_change / plates.joints - plates.gap) / diagonal)
     return np.asarray(2 * plates.joints * half)
 
 
 def _shapes(plates: TailMeasures, furthest: float) -> xr.Dataset:
+    """Return positions of joints and end of the tail at the bends of ``SHAPES``, exact and as printed [m]."""
     bend = np.array([b for b in SHAPES if b <= furthest + 1e-9])
-    place = {"units": "m"}
+    length_attrs = {"units": "m"}
     return xr.Dataset(
         {
-            "joints_ours": (("shape", "pivot", "axis"), tail.joint_positions(plates, bend), place),
-            "joints_printed": (("shape", "pivot", "axis"), printed.joint_positions(plates, bend), place),
-            "end": (("shape", "axis"), tail.end_position(plates, bend), place),
+            "joints_ours": (("shape", "pivot", "axis"), tail.joint_positions(plates, bend), length_attrs),
+            "joints_printed": (("shape", "pivot", "axis"), printed.joint_positions(plates, bend), length_attrs),
+            "end": (("shape", "axis"), tail.end_position(plates, bend), length_attrs),
         },
         coords={
             "shape": ("shape", bend, {"units": "rad", "long_name": "bend of the tail"}),
@@ -235,20 +262,25 @@ def _shapes(plates: TailMeasures, furthest: float) -> xr.Dataset:
 
 
 def _errors(plates: TailMeasures, furthest: float) -> xr.Dataset:
-    """Return cords and errors of (17) at a few bends, and the greater error at the greatest bend."""
+    """Return changes of the cords [m] and errors of (17) [-] at a few bends, and the errors at the greatest bend.
+
+    Args:
+        plates: measures of the tail.
+        furthest: greatest bend [rad].
+    """
     degrees = [d for d in (30, 90, 180) if np.radians(d) <= furthest + 1e-9]
     bend = np.append(np.radians(degrees), furthest)
-    toward, away = tail.cable_changes(plates, bend)
-    kept = plates.joints * printed.cable_changes_shortened(plates, bend)[1]
-    wrong = np.stack([kept / -toward - 1, kept / away - 1])
-    part = {"units": "-", "long_name": "relative error of (17)"}
+    toward_change, away_change = tail.cable_changes(plates, bend)
+    shortened = plates.joints * printed.cable_changes_shortened(plates, bend)[1]
+    errors = np.stack([shortened / -toward_change - 1, shortened / away_change - 1])
+    error_attrs = {"units": "-", "long_name": "relative error of (17)"}
     return xr.Dataset(
         {
-            "cord_toward": ("at", toward[:-1], {"units": "m"}),
-            "cord_away": ("at", away[:-1], {"units": "m"}),
-            "error_17_toward": ("at", wrong[0, :-1], part),
-            "error_17_away": ("at", wrong[1, :-1], part),
-            "error_at_end": ("cord", np.abs(wrong[:, -1]), part),
+            "cord_toward": ("at", toward_change[:-1], {"units": "m"}),
+            "cord_away": ("at", away_change[:-1], {"units": "m"}),
+            "error_17_toward": ("at", errors[0, :-1], error_attrs),
+            "error_17_away": ("at", errors[1, :-1], error_attrs),
+            "error_at_end": ("cord", np.abs(errors[:, -1]), error_attrs),
         },
         coords={"at": ("at", degrees, {"units": "deg", "long_name": "bend of the tail"}), "cord": ["toward", "away"]},
     )

@@ -6,9 +6,9 @@ from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import Clause, Rule, Varied
 
 SMALL = 0.05
-"""A neglected term below this share of what is kept counts as small [-]."""
+"""Greatest ratio of a neglected term to the retained one that counts as small [-]."""
 ALIKE = radians(10)
-"""Joints that differ by no more than this count as turned alike [rad].
+"""Greatest difference of joint angles that counts as equal [rad].
 
 It is what the stiffness of the robot's tail joints was chosen to keep to, and two thirds of what each of six joints
 turns when the tail bends by 90 degrees.
@@ -17,7 +17,7 @@ SEEN = radians(1)
 """Least angle that a screenshot shows [rad]."""
 EXACT = 1e-9
 """Greatest error that counts as rounding, as a share of the length [-]."""
-_BUILT = "A count of the robot that was built so; nothing is simulated."
+_CONSTRUCTION_NOTE = "A count of the robot that was built so; nothing is simulated."
 _FORMULA = "A comparison of formulas; what is free in them is varied within the verdict's own measures."
 
 RULES = (
@@ -74,16 +74,16 @@ RULES = (
         experiment="tail_bending",
         measure="tail_joints",
         kind="construction",
-        why=f"{_BUILT} Its hinges share one input.",
-        unswept=_BUILT,
+        why=f"{_CONSTRUCTION_NOTE} Its hinges share one input.",
+        unswept=_CONSTRUCTION_NOTE,
     ),
     Rule(
         claim="tail_actuators",
         experiment="tail_bending",
         measure="tail_actuators",
         kind="construction",
-        why=f"{_BUILT} A pitch servo and a servo for the cable.",
-        unswept=_BUILT,
+        why=f"{_CONSTRUCTION_NOTE} A pitch servo and a servo for the cable.",
+        unswept=_CONSTRUCTION_NOTE,
     ),
     Rule(
         claim="tail_end_flexible",
@@ -114,7 +114,7 @@ _POSITIONS = {
     "printed_last_joint_error_straight": 0.0,
     "printed_last_joint_error_max": 2e-10,
 }
-_ALIKE = {
+_EQUAL_BEND_MEASURES = {
     "tail_joint_spread": radians(9.9),
     "tail_joint_spread_share": 0.0,
     "tail_joint_spread_straight": radians(34),
@@ -137,10 +137,10 @@ EXAMPLES: Examples = {
         (_POSITIONS | {"printed_last_joint_error_share": 1.72}, "contradicted"),
     ],
     "tail_equal_bends": [
-        (_ALIKE, "reproduced"),
-        (_ALIKE | {"tail_joint_spread": radians(10.1)}, "contradicted"),
-        (_ALIKE | {"tail_joint_spread": radians(25), "tail_joint_spread_share": 0.31}, "contradicted"),
-        (_ALIKE | {"tail_joint_spread": float("nan")}, "not testable"),
+        (_EQUAL_BEND_MEASURES, "reproduced"),
+        (_EQUAL_BEND_MEASURES | {"tail_joint_spread": radians(10.1)}, "contradicted"),
+        (_EQUAL_BEND_MEASURES | {"tail_joint_spread": radians(25), "tail_joint_spread_share": 0.31}, "contradicted"),
+        (_EQUAL_BEND_MEASURES | {"tail_joint_spread": float("nan")}, "not testable"),
     ],
     "tail_end_flexible": [
         ({"end_bend": radians(1.01)}, "by construction"),

@@ -36,29 +36,31 @@ from suchus.sim.land import Ground, Run, Tolerances, simulate
 from suchus.sim.metrics import between, cost_of_transport, displacement, heading_change, tilt
 from suchus.visual.figures.gait_diagram import GAIT_LINES
 
-_TOUCH = 0.5 / (ROBOTS["caiman"].mass * GRAVITY)  # of the weight on the belly, half a newton of that robot
-_AT = 0.00495  # [body length]; so near to an obstacle a foot is stopped by it
+_TOUCH = 0.5 / (
+    ROBOTS["caiman"].mass * GRAVITY
+)  # belly load that counts as contact [body weight]; half a newton of the caiman
+_CONTACT_DISTANCE = 0.00495  # distance at which a foot counts as stopped by an obstacle [body length]
 _LADDER = {"crawl": 0.85, "semi_erect": 1.0, "high_walk": 1.12}
-"""Heights of the three postures of a body of its own, over that of its gait [-]."""
-_STEPS = 1.75  # by which a body of its own walks more cycles: they are shorter
+"""Heights of the three postures of another body, over the height of its gait [-]."""
+_STEPS = 1.75  # factor on the cycles of another body, whose steps are shorter [-]
 Surface = Literal["even", "bumps"]
 FALLEN = np.radians(60)
-"""Roll or pitch beyond which nothing on the robot brings it back [rad]."""
+"""Roll or pitch above which the robot has fallen [rad]."""
 ROUGH = 0.03
 """Least height of what counts as rough ground for the article's robot [m]: a third of the legs' hip height in the
 sprawled crawl is less. For others it is in proportion to their length."""
-_EVEN = 1e-9  # [m]; heights that differ by less are equal
+_HEIGHT_TOLERANCE = 1e-9  # heights that differ by less are equal [m]
 SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 """Arms that keep one posture."""
-_COMPARED = ("low_crawl", "high_walk_level")
-_TWO = ("low_crawl", "high_walk", "high_walk_level")
+_COMPARED_ARMS = ("low_crawl", "high_walk_level")
+_STRUCTURE_ARMS = ("low_crawl", "high_walk", "high_walk_level")
 """Arms of the two structures that the article compares."""
-_OF_ROUGH = (
+_ROUGH_MEASURES = (
     "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_ahead_share",
-    *(f"falls_rough_{name}" for name in _TWO),
+    *(f"falls_rough_{name}" for name in _STRUCTURE_ARMS),
 )  # fmt: skip
-"""Measures of these alone, on rough grounds."""
-_OF_TWO = ("flat_cost_ratio", *_OF_ROUGH)
+"""Measures of the two structures on rough grounds."""
+_STRUCTURE_MEASURES = ("flat_cost_ratio", *_ROUGH_MEASURES)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,6 +116,7 @@ class Terrain(Experiment):
     """Time step of the physics [s], at most 0.01."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and empty lists of surfaces and correlation lengths."""
         with Checks(self.name(), self) as check:
             for heights in ("bumps", "steps", "stones"):
                 if getattr(self, heights):
@@ -139,39 +142,41 @@ class Terrain(Experiment):
         Raises:
             UnsuitedRobot: its own gait puts no feet at a height.
         """
-        usual = own_gait(robot)
-        if not usual.has("foot paths"):
-            raise UnsuitedRobot(f"{self.name()} needs a gait of foot paths; robot {robot.name!r} has {usual.name!r}.")
-        more = usual.period / self.semi_erect.period * _STEPS
-        found: dict[str, Any] = {"walked": round(self.walked * more, 2)}
+        base_gait = own_gait(robot)
+        if not base_gait.has("foot paths"):
+            raise UnsuitedRobot(
+                f"{self.name()} needs a gait of foot paths; robot {robot.name!r} has {base_gait.name!r}."
+            )
+        duration_factor = base_gait.period / self.semi_erect.period * _STEPS
+        settings: dict[str, Any] = {"walked": round(self.walked * duration_factor, 2)}
         for name, share in _LADDER.items():
-            heights = [usual.height * (1.0 + part * (share - 1.0)) for part in (1.0, 0.5, 0.25, 0.0)]
-            tried = [replace(usual, name=f"{usual.name}_{name}", height=height) for height in heights]
-            found[name] = usual if share == 1.0 else next(gait for gait in tried if suits(robot, gait))
-        return found
+            heights = [base_gait.height * (1.0 + fraction * (share - 1.0)) for fraction in (1.0, 0.5, 0.25, 0.0)]
+            candidates = [replace(base_gait, name=f"{base_gait.name}_{name}", height=height) for height in heights]
+            settings[name] = base_gait if share == 1.0 else next(gait for gait in candidates if suits(robot, gait))
+        return settings
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Walk on every ground, and turn every posture into every other."""
-        rough = self._rough(staged(progress, "grounds", 0.0, 0.9))
-        changed = self._changes(staged(progress, "transitions", 0.9, 0.97))
-        record = self._example(staged(progress, "example", 0.97, 1.0)).merge(rough).merge(changed)
+        ground_record = self._ground_record(staged(progress, "grounds", 0.0, 0.9))
+        change_record = self._changes(staged(progress, "transitions", 0.9, 0.97))
+        record = self._example(staged(progress, "example", 0.97, 1.0)).merge(ground_record).merge(change_record)
         return Simulated(record=record, replays=self._replays(record))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; for those of crawl and high walk nobody else walks."""
+        """Return at least the wanted measures; for those of crawl and high walk only these conditions are simulated."""
         names = {name.removesuffix("_low").removesuffix("_high") for name in wanted}
-        if not all(name in _OF_TWO or name.startswith("transition") for name in names):
+        if not all(name in _STRUCTURE_MEASURES or name.startswith("transition") for name in names):
             return super(Terrain, self).measured(wanted, progress)
-        on_rough = any(name in _OF_ROUGH for name in names)
-        asked = self if on_rough else replace(self, bumps=(), steps=(), stones=())
-        walked = asked._rough(staged(progress, "grounds", 0.0, 0.9), _TWO)
-        changed = self._changes(staged(progress, "transitions", 0.9, 1.0))
-        found, rough = _flat(walked) | _transitions(changed), _from_rough(walked)
-        return found | _rough(rough) | _falls(rough) if on_rough else found
+        needs_rough = any(name in _ROUGH_MEASURES for name in names)
+        variant = self if needs_rough else replace(self, bumps=(), steps=(), stones=())
+        ground_record = variant._ground_record(staged(progress, "grounds", 0.0, 0.9), _STRUCTURE_ARMS)
+        change_record = self._changes(staged(progress, "transitions", 0.9, 1.0))
+        measures, rough_record = _flat(ground_record) | _transitions(change_record), _rough_grounds(ground_record)
+        return measures | _rough_measures(rough_record) | _falls(rough_record) if needs_rough else measures
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
-        rough = _from_rough(record)
+        rough_record = _rough_grounds(record)
         measures = Measures()
         for arm in record.arm.values:
             of_arm = record.sel(arm=arm)
@@ -184,20 +189,24 @@ class Terrain(Experiment):
                 f"aside_{arm}": Measure(float(abs(of_arm.aside).mean()), "m"),
             }
             for kind in dict.fromkeys(record.kind.values):
-                covered = of_arm.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
-                measures[f"kept_{kind}_{arm}"] = Measure(float(covered.forward.mean() / flat.forward), "-")
-                measures[f"met_{kind}_{arm}"] = Measure(float(covered.met.mean()), "-")
-        low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _EVEN))
+                kind_record = of_arm.isel(
+                    ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0))
+                )
+                measures[f"kept_{kind}_{arm}"] = Measure(float(kind_record.forward.mean() / flat.forward), "-")
+                measures[f"met_{kind}_{arm}"] = Measure(float(kind_record.met.mean()), "-")
+        low_grounds = record.isel(
+            ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _HEIGHT_TOLERANCE)
+        )
         share = _share_of_best(record)
         return measures | {
             **_flat(record),
-            **_rough(rough),
-            **_falls(rough),
+            **_rough_measures(rough_record),
+            **_falls(rough_record),
             "switching_share_of_best_worst": Measure(float(share.min()), "-"),
             "switching_worst_height": Measure(float(record.height[int(share.argmin("ground"))]), "m"),
             "switching_grounds_within_5_percent": Measure(float((share >= 0.95).sum()), "-"),
             "grounds": Measure(float(record.sizes["ground"]), "-"),
-            "switching_falls_up_to_40_mm": Measure(float(low.fell.sel(arm="switching").sum()), "-"),
+            "switching_falls_up_to_40_mm": Measure(float(low_grounds.fell.sel(arm="switching").sum()), "-"),
             **_transitions(record),
         }
 
@@ -207,6 +216,7 @@ class Terrain(Experiment):
         return self.told(measures, kinds=[kind for kind, share in shares.items() if isfinite(share)])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the semi-erect walk over bumps, with the low crawl half transparent, by file name."""
         height = f"{1000 * self._shown_height:.3g}"
         return replayed(
             "terrain_replay.html",
@@ -227,7 +237,7 @@ class Terrain(Experiment):
 
     @property
     def _size(self) -> float:
-        """How long the robot is beside the article's [-]."""
+        """Length of the robot over that of the article's robot [-]."""
         return round(self.robot.length / ROBOTS["caiman"].length, 9)
 
     def _bumps(self, height: float, correlation: float, seed: int) -> Bumps:
@@ -274,8 +284,13 @@ class Terrain(Experiment):
             rows.append(("stone", height, list(stones)))
         return rows
 
-    def _rough(self, progress: Progress, names: Collection[str] = ()) -> xr.Dataset:
-        """Return how all conditions, or those that are named, fare on every ground."""
+    def _ground_record(self, progress: Progress, names: Collection[str] = ()) -> xr.Dataset:
+        """Return the quantities of ``_UNITS`` by ground, condition and seed.
+
+        Args:
+            progress: called with the fraction that is done.
+            names: conditions that walk; all if empty.
+        """
         grounds, arms = self.grounds(), {name: arm for name, arm in self.arms().items() if name in names or not names}
         runs = [
             self.tolerances.built(
@@ -287,8 +302,8 @@ class Terrain(Experiment):
             for seed, relief in enumerate(reliefs)
         ]
         record = simulate(runs, duration=START + self.walked, timestep=self.timestep, every=5, progress=progress)
-        met = [_met(record.isel(run=j), run) for j, run in enumerate(runs)]
-        table = _look(record, met).reshape(len(grounds), len(arms), -1, len(_UNITS))
+        is_met = [_met(record.isel(run=j), run) for j, run in enumerate(runs)]
+        table = _run_quantities(record, is_met).reshape(len(grounds), len(arms), -1, len(_UNITS))
         data = xr.Dataset(
             {
                 name: (("ground", "arm", "seed"), table[..., i], {"units": unit})
@@ -303,36 +318,38 @@ class Terrain(Experiment):
 
     @property
     def _pace(self) -> float:
-        """How slow the robot is beside the article's, by the time that gravity needs [-]; a second of it [s]."""
+        """Time scale of the robot over that of the article's robot, by Froude scaling [-]."""
         return self._size**0.5
 
-    def _until(self, seconds: float) -> float:
+    def _sample_time(self, seconds: float) -> float:
         """Return a time after the start, scaled with the body, at a sample of the record [s]."""
         sample = 5 * control_period(self.robot)
         return START + float(np.ceil(round(seconds * self._pace / sample, 6)) * sample)
 
     def _changes(self, progress: Any) -> xr.Dataset:
-        """Return how far the body tilts while every posture turns into every other."""
+        """Return the tilt of the body during each transition between postures, and the distance walked afterwards."""
         pairs = list(permutations((self.crawl, self.semi_erect, self.high_walk), 2))[: self.transitions]
         bumps = self._bumps(0.03 * self._size, self.correlations[-1], 1)
         runs = [
             Run(
                 robot=self.robot,
-                gait=here,
-                control=Walking(attitude=AttitudeRule(), changes=(Change(at=START + self._pace, gait=there),)),
+                gait=start_gait,
+                control=Walking(attitude=AttitudeRule(), changes=(Change(at=START + self._pace, gait=end_gait),)),
                 ground=Ground(relief=bumps if surface == "bumps" else None),
-                label=f"{here.name} to {there.name}",
+                label=f"{start_gait.name} to {end_gait.name}",
             )
-            for here, there in pairs
+            for start_gait, end_gait in pairs
             for surface in self.surfaces
         ]
-        record = simulate(runs, duration=self._until(6.0), timestep=self.timestep, every=5, progress=progress)
-        tilted = _most_tilt(record).reshape(len(pairs), len(self.surfaces))
-        after = displacement(record, self._until(4.6)).sel(xyz="x").values.reshape(len(pairs), len(self.surfaces))
+        record = simulate(runs, duration=self._sample_time(6.0), timestep=self.timestep, every=5, progress=progress)
+        max_tilts = _most_tilt(record).reshape(len(pairs), len(self.surfaces))
+        final_distance = (
+            displacement(record, self._sample_time(4.6)).sel(xyz="x").values.reshape(len(pairs), len(self.surfaces))
+        )
         return xr.Dataset(
             {
-                "change_tilt": (("change", "surface"), tilted, {"units": "rad"}),
-                "change_after": (("change", "surface"), after, {"units": "m"}),
+                "change_tilt": (("change", "surface"), max_tilts, {"units": "rad"}),
+                "change_after": (("change", "surface"), final_distance, {"units": "m"}),
             },
             coords={"change": [f"{a.name} to {b.name}" for a, b in pairs], "surface": list(self.surfaces)},
         )
@@ -346,54 +363,71 @@ class Terrain(Experiment):
             for arm in ("low_crawl", "semi_erect", "high_walk_level")
         ]
         record = simulate(runs, duration=START + self.walked / 2, timestep=self.timestep, every=5, progress=progress)
-        along = np.arange(-1.2, 2.4, 0.01) * self._size
-        shown = xr.Dataset(
-            {"ground_height": ("along", profile(relief, along), {"units": "m"})}, coords={"along": along}
+        positions = np.arange(-1.2, 2.4, 0.01) * self._size
+        profile_record = xr.Dataset(
+            {"ground_height": ("along", profile(relief, positions), {"units": "m"})}, coords={"along": positions}
         )
-        shown.along.attrs["units"] = "m"
-        shown["shown_height"] = ((), self._shown_height, {"units": "m", "long_name": "of the bumps that are shown"})
-        return record.merge(shown)
+        profile_record.along.attrs["units"] = "m"
+        profile_record["shown_height"] = (
+            (),
+            self._shown_height,
+            {"units": "m", "long_name": "of the bumps that are shown"},
+        )
+        return record.merge(profile_record)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the postures on bumps, and the distance on every ground."""
         record = outcome.record
-        said = "the sprawled crawl, semi-erect legs, and erect legs with elbows behind and knees ahead"
+        posture_text = "the sprawled crawl, semi-erect legs, and erect legs with elbows behind and knees ahead"
         if not self.high_walk.erect:
-            said = "the robot's own gait low, as usual and high"
-        return {"postures": draw_on_bumps(self.robot, record, said), "rough_ground": draw_rough(record, GAIT_LINES)}
+            posture_text = "the robot's own gait low, as usual and high"
+        return {
+            "postures": draw_on_bumps(self.robot, record, posture_text),
+            "rough_ground": draw_rough(record, GAIT_LINES),
+        }
 
 
 _UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1", "belly": "1", "met": "1"}
 
 
-def _look(record: xr.Dataset, met: Sequence[bool]) -> np.ndarray:
-    """Return what ``_UNITS`` names, shape (run, 7)."""
-    part, displaced = between(record), displacement(record)
+def _run_quantities(record: xr.Dataset, is_met: Sequence[bool]) -> np.ndarray:
+    """Return the quantities of ``_UNITS``, shape (run, quantity).
+
+    Args:
+        record: of the runs.
+        is_met: whether each robot reached the obstacle.
+    """
+    excerpt, displacements = between(record), displacement(record)
     columns: Sequence[Any] = (
-        displaced.sel(xyz="x"),
-        displaced.sel(xyz="y"),
+        displacements.sel(xyz="x"),
+        displacements.sel(xyz="y"),
         heading_change(record),
         _most_tilt(record) > FALLEN,
         cost_of_transport(record),
-        (part.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * record.mass).mean("time"),
-        met,
+        (excerpt.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * record.mass).mean("time"),
+        is_met,
     )
     return np.stack([np.asarray(column, dtype=float) for column in columns], axis=-1)
 
 
-def _met(one: xr.Dataset, run: Run) -> bool:
-    """Return whether a robot met what stands in its path; on even ground there is nothing to be met."""
-    place = layout(run.robot)
-    relief, feet = run.ground.relief, one.foot_position.isel(leg=[0, 1]).sel(xyz="x")
-    head, foot = place.robot.axis[0], place.limbs[0].girdle.limb.foot.radius
+def _met(record: xr.Dataset, run: Run) -> bool:
+    """Return whether a robot reached the obstacle in its path; True on even ground, which has none.
+
+    Args:
+        record: of one run.
+        run: the run.
+    """
+    robot_layout = layout(run.robot)
+    relief, feet = run.ground.relief, record.foot_position.isel(leg=[0, 1]).sel(xyz="x")
+    head, foot = robot_layout.robot.axis[0], robot_layout.limbs[0].girdle.limb.foot.radius
     match relief:
         case Bumps():
             return bool(feet.max() >= relief.start)
         case Step():
-            return bool(feet.max() >= relief.at - foot - _AT * run.robot.length)
+            return bool(feet.max() >= relief.at - foot - _CONTACT_DISTANCE * run.robot.length)
         case Stone():
-            chest = float(one.snout.sel(xyz="x").max()) - (head.front + head.rear)
-            pressed = bool((one.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * run.robot.mass).any())
+            chest = float(record.snout.sel(xyz="x").max()) - (head.front + head.rear)
+            pressed = bool((record.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * run.robot.mass).any())
             return pressed or chest >= relief.at - 0.5 * relief.length
     return True
 
@@ -410,47 +444,53 @@ def _flat(record: xr.Dataset) -> Measures:
     return estimated("flat_cost_ratio", ratio, "-")
 
 
-def _rough(rough: xr.Dataset) -> Measures:
-    """Return on which share of the rough grounds erect legs get farther; no number where anybody met too little.
+def _rough_measures(rough_record: xr.Dataset) -> Measures:
+    """Return the fraction of rough grounds on which erect legs get farther; NaN if a robot did not reach its obstacle.
 
     Each seed of each kind and height is a ground of its own, and a robot of its own.
     """
-    met = float(rough.met.sel(arm=list(_COMPARED)).mean("seed").min()) if rough.sizes["ground"] else 0.0
-    walked = rough.forward.stack(one=("ground", "seed"))
-    crawl, erect, level = (walked.sel(arm=arm, drop=True) for arm in _TWO)
-    met_enough = met >= 1.0
-    ahead_of_both = Measures()
+    met_fraction = (
+        float(rough_record.met.sel(arm=list(_COMPARED_ARMS)).mean("seed").min())
+        if rough_record.sizes["ground"]
+        else 0.0
+    )
+    distances = rough_record.forward.stack(one=("ground", "seed"))
+    crawl, erect, level = (distances.sel(arm=arm, drop=True) for arm in _STRUCTURE_ARMS)
+    is_judged = met_fraction >= 1.0
+    semi_erect_measures = Measures()
 
-    def share(name: str, ahead: xr.DataArray) -> Measures:
-        return estimated(name, ahead.astype(float) if met_enough else [float("nan")], "-", middle=np.mean)
+    def share(name: str, is_ahead: xr.DataArray) -> Measures:
+        return estimated(name, is_ahead.astype(float) if is_judged else [float("nan")], "-", middle=np.mean)
 
-    if "semi_erect" in rough.arm.values:
-        semi = walked.sel(arm="semi_erect", drop=True)
-        ahead_of_both = share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl))
+    if "semi_erect" in rough_record.arm.values:
+        semi = distances.sel(arm="semi_erect", drop=True)
+        semi_erect_measures = share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl))
     return Measures(
         {
-            "met_judged": Measure(met, "-"),
-            "rough_grounds": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
+            "met_judged": Measure(met_fraction, "-"),
+            "rough_grounds": Measure(float(rough_record.sizes["ground"] * rough_record.sizes["seed"]), "-"),
         },
         share("erect_open_loop_ahead_share", erect > crawl),
         share("erect_ahead_share", level > crawl),
-        ahead_of_both,
+        semi_erect_measures,
     )
 
 
-def _from_rough(record: xr.Dataset) -> xr.Dataset:
-    """Return what happened on rough grounds."""
-    return record.isel(ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _EVEN))
+def _rough_grounds(record: xr.Dataset) -> xr.Dataset:
+    """Return the part of a record on grounds of at least ``ROUGH`` height."""
+    return record.isel(
+        ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _HEIGHT_TOLERANCE)
+    )
 
 
-def _falls(rough: xr.Dataset) -> Measures:
-    """Return how often each condition fell on rough grounds."""
-    fell = rough.fell.sum(("ground", "seed"))
-    return Measures((f"falls_rough_{arm}", Measure(float(fell.sel(arm=arm)), "-")) for arm in rough.arm.values)
+def _falls(rough_record: xr.Dataset) -> Measures:
+    """Return the number of falls of each condition on rough grounds."""
+    fell = rough_record.fell.sum(("ground", "seed"))
+    return Measures((f"falls_rough_{arm}", Measure(float(fell.sel(arm=arm)), "-")) for arm in rough_record.arm.values)
 
 
 def _transitions(record: xr.Dataset) -> Measures:
-    """Return how many transitions stay upright, and how far the robot walks after them at least."""
+    """Return the fraction of upright transitions, their greatest tilt, and the least distance walked after them."""
     return Measures(
         {
             "transitions": Measure(float(record.change_tilt.size), "-"),

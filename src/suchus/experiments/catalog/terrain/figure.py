@@ -15,14 +15,19 @@ from suchus.visual.figures.posture import draw_posture
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
-_USUAL = ROBOTS["caiman"].length
+_REFERENCE_LENGTH = ROBOTS["caiman"].length
 """Length of the robot for which the pictures' sizes are [m]."""
 _FELL: Mapping[str, Any] = {"marker": "x", "linestyle": "none", "color": COLOURS["alarm"], "markersize": 11,
          "markeredgewidth": 2}  # fmt: skip
 
 
 def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw the distance on bumps, steps and stones over height, or as bars where they are few; falls as crosses."""
+    """Draw the distance on bumps, steps and stones over height, or as bars where they are few; falls as crosses.
+
+    Args:
+        record: of the experiment ``terrain``.
+        lines: style of each condition.
+    """
     kinds = [str(kind) for kind in dict.fromkeys(record.kind.values)]
     if record.sizes["ground"] <= 1 + len(kinds):
         return _rough_bars(record, lines)
@@ -33,10 +38,10 @@ def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Fi
             order = np.argsort(grounds.height.values)
             grounds = grounds.isel(ground=order)
             for arm in record.arm.values:
-                one = grounds.sel(arm=arm)
-                x, y = 1000 * grounds.height.values, one.forward.mean("seed").values
+                arm_record = grounds.sel(arm=arm)
+                x, y = 1000 * grounds.height.values, arm_record.forward.mean("seed").values
                 ax.plot(x, y, **(dict(lines[str(arm)]) | {"markersize": 6}))
-                fell = one.fell.mean("seed").values
+                fell = arm_record.fell.mean("seed").values
                 ax.plot(x[fell > 0], y[fell > 0], **_FELL)
             ax.set_title(_KINDS[kind])
             ax.set_xlabel("height [mm]")
@@ -57,8 +62,8 @@ def _farthest(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> str
     single = [arm for arm in record.arm.values if str(arm) not in ("switching", "thrifty")]
     best = record.forward.mean("seed").sel(arm=single).idxmax("arm").values
     counts = {str(arm): int((best == arm).sum()) for arm in single}
-    counted = [f"{lines[arm]['label']} on {count}" for arm, count in counts.items() if count]
-    return f"{', '.join(counted)} of {len(best)} grounds"
+    phrases = [f"{lines[arm]['label']} on {count}" for arm, count in counts.items() if count]
+    return f"{', '.join(phrases)} of {len(best)} grounds"
 
 
 def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
@@ -67,16 +72,16 @@ def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> F
     with styled(axes__grid=False):
         figure, axes = panels(1, record.sizes["ground"], width=11.5, height=3.6, sharex=True, sharey=True)
         for ax, ground in zip(axes[0], range(record.sizes["ground"]), strict=True):
-            one = record.isel(ground=ground)
-            distances, height = one.forward.mean("seed").values, 1000 * float(one.height)
+            ground_record = record.isel(ground=ground)
+            distances, height = ground_record.forward.mean("seed").values, 1000 * float(ground_record.height)
             ax.barh(range(len(arms)), distances, color=[lines[arm]["color"] for arm in arms], height=0.65)
-            for row, (distance, fell) in enumerate(zip(distances, one.fell.mean("seed").values, strict=True)):
+            for row, (distance, fell) in enumerate(zip(distances, ground_record.fell.mean("seed").values, strict=True)):
                 ax.annotate(
                     f"{distance:.2f}", (max(distance, 0.0), row), (4, 0), textcoords="offset points", va="center"
                 )
                 if fell > 0:
                     ax.plot(distance, row, **_FELL)
-            ax.set_title(f"{_KINDS[str(one.kind.item())]}, {height:.0f} mm" if height else "even ground")
+            ax.set_title(f"{_KINDS[str(ground_record.kind.item())]}, {height:.0f} mm" if height else "even ground")
             ax.set_xlabel(f"displacement in {float(record.walked):g} s [m]")
         axes[0, 0].set_yticks(range(len(arms)), [str(lines[arm]["label"]) for arm in arms])
         axes[0, 0].invert_yaxis()
@@ -92,22 +97,22 @@ def draw_ground(ax: Axes, x: np.ndarray, height: Sequence[float] | np.ndarray) -
     ax.plot(x, height, color=COLOURS["ground"], linewidth=1.4, zorder=0.3)
 
 
-def draw_on_bumps(robot: Robot, record: xr.Dataset, said: str) -> Figure:
+def draw_on_bumps(robot: Robot, record: xr.Dataset, posture_text: str) -> Figure:
     """Draw every run of a record from the side at its end, on the ground under it.
 
     Args:
         robot: who walked.
         record: of the experiment.
-        said: what the postures are, from above to below.
+        posture_text: what the postures are, from above to below.
     """
     with styled(axes__grid=False):
         figure, axes = panels(3, 1, width=8.6, height=6.6)
         for ax, run in zip(axes[:, 0], record.run.values, strict=True):
-            one = record.sel(run=run)
-            draw_posture(ax, robot, one, float(one.time[-1]), view="side", support=False, ground=False)
+            run_record = record.sel(run=run)
+            draw_posture(ax, robot, run_record, float(run_record.time[-1]), view="side", support=False, ground=False)
             draw_ground(ax, record.along.values, record.ground_height.values)
-            ax.set_title(str(GAIT_LINES[str(one.label.item())]["label"]))
-            middle, size = float(one.centre_of_mass.sel(xyz="x")[-1]), robot.length / _USUAL
+            ax.set_title(str(GAIT_LINES[str(run_record.label.item())]["label"]))
+            middle, size = float(run_record.centre_of_mass.sel(xyz="x")[-1]), robot.length / _REFERENCE_LENGTH
             ax.set_xlim(middle - 0.68 * size, middle + 0.62 * size)
             ax.set_ylim(-0.06 * size, 0.26 * size)
             ax.set_ylabel("height [m]")
@@ -115,5 +120,5 @@ def draw_on_bumps(robot: Robot, record: xr.Dataset, said: str) -> Figure:
     return captioned(
         figure,
         f"Three postures on the same bumps of {1000 * float(record.shown_height):.3g} mm, halfway through the walk: "
-        f"{said}. Filled feet stand.",
+        f"{posture_text}. Filled feet stand.",
     )

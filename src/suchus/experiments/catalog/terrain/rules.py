@@ -53,7 +53,7 @@ VARIED = Varied(
     claims=("crawl_structure_flat", "erect_structure_rough", "switches_structure"), designs=("robot",), samples=16
 )
 
-_WHY = {
+_REASON_MEASURES = {
     "flat_cost_ratio": 0.5,
     "flat_cost_ratio_low": 0.4,
     "flat_cost_ratio_high": 0.6,
@@ -76,27 +76,30 @@ _WHY = {
 
 EXAMPLES: Examples = {
     "crawl_structure_flat": [
-        (_WHY | {"flat_cost_ratio_high": 0.999}, "reproduced"),
-        (_WHY | {"flat_cost_ratio_high": 1.001}, "undecided"),
-        (_WHY | between("flat_cost_ratio", 1.001, 1.1), "contradicted"),
-        (_WHY | {"flat_cost_ratio": nan}, "not testable"),
+        (_REASON_MEASURES | {"flat_cost_ratio_high": 0.999}, "reproduced"),
+        (_REASON_MEASURES | {"flat_cost_ratio_high": 1.001}, "undecided"),
+        (_REASON_MEASURES | between("flat_cost_ratio", 1.001, 1.1), "contradicted"),
+        (_REASON_MEASURES | {"flat_cost_ratio": nan}, "not testable"),
     ],
     "erect_structure_rough": [
-        (_WHY, "reproduced"),
-        (_WHY | between("erect_open_loop_ahead_share", 0.501, 0.9), "reproduced"),
-        (_WHY | between("erect_open_loop_ahead_share", 0.5, 0.9), "undecided"),
-        (_WHY | between("erect_open_loop_ahead_share", 0.2, 0.501), "undecided"),
-        (_WHY | between("erect_open_loop_ahead_share", 0.2, 0.5), "contradicted"),
-        (_WHY | {"falls_rough_high_walk": 20.0}, "reproduced"),
-        (_WHY | {"falls_rough_high_walk": 19.8}, "reproduced"),
-        (_WHY | {"falls_rough_high_walk": 20.2}, "contradicted"),
-        (_WHY | {"erect_open_loop_ahead_share": nan}, "not testable"),  # somebody did not meet what stands in the path
+        (_REASON_MEASURES, "reproduced"),
+        (_REASON_MEASURES | between("erect_open_loop_ahead_share", 0.501, 0.9), "reproduced"),
+        (_REASON_MEASURES | between("erect_open_loop_ahead_share", 0.5, 0.9), "undecided"),
+        (_REASON_MEASURES | between("erect_open_loop_ahead_share", 0.2, 0.501), "undecided"),
+        (_REASON_MEASURES | between("erect_open_loop_ahead_share", 0.2, 0.5), "contradicted"),
+        (_REASON_MEASURES | {"falls_rough_high_walk": 20.0}, "reproduced"),
+        (_REASON_MEASURES | {"falls_rough_high_walk": 19.8}, "reproduced"),
+        (_REASON_MEASURES | {"falls_rough_high_walk": 20.2}, "contradicted"),
+        (
+            _REASON_MEASURES | {"erect_open_loop_ahead_share": nan},
+            "not testable",
+        ),  # somebody did not meet what stands in the path
     ],
     "switches_structure": [
-        (_WHY, "reproduced"),
-        (_WHY | {"transitions_upright": 0.999}, "contradicted"),
-        (_WHY | {"transition_after_least": 1e-4}, "reproduced"),
-        (_WHY | {"transition_after_least": -1e-4}, "contradicted"),
-        (_WHY | {"transitions_upright": nan}, "not testable"),
+        (_REASON_MEASURES, "reproduced"),
+        (_REASON_MEASURES | {"transitions_upright": 0.999}, "contradicted"),
+        (_REASON_MEASURES | {"transition_after_least": 1e-4}, "reproduced"),
+        (_REASON_MEASURES | {"transition_after_least": -1e-4}, "contradicted"),
+        (_REASON_MEASURES | {"transitions_upright": nan}, "not testable"),
     ],
 }

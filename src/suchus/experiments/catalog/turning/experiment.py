@@ -73,6 +73,7 @@ class Turning(Experiment):
     """Time step of the physics [s], at most 0.01."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and an empty list of gaits."""
         with Checks(self.name(), self) as check:
             check.rising("bends", 0.0, 2.0, "rad")
             check.rising("asymmetries", 0.0, 1.0, "")
@@ -96,19 +97,19 @@ class Turning(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Turn in every gait, and walk circles on command."""
-        rows, shown = [], []
+        rows, record_pairs = [], []
         for i, gait in enumerate(self.gaits):
             share = i / len(self.gaits), (i + 1) / len(self.gaits)
-            row, pair = self._of(gait, staged(progress, gait.name, *share))
+            row, pair = self._gait_curvatures(gait, staged(progress, gait.name, *share))
             rows.append(row)
-            shown.append(pair)
+            record_pairs.append(pair)
         record = xr.concat(rows, "gait").assign_coords(gait=[gait.name for gait in self.gaits])
         tightest = int(record.curvature_mixture.max("mixture").values.argmax())
-        return Simulated(record=record, replays=self._replays(shown[tightest]))
+        return Simulated(record=record, replays=self._replays(record_pairs[tightest]))
 
     def _replays(self, pair: tuple[xr.Dataset, xr.Dataset]) -> Mapping[str, Replay]:
         """Return the replay of the gait that turns tightest, and of its first circle."""
-        asked = f"on a circle of {self.asked[0]:.3g} m, or the tightest it can walk on command"
+        circle_text = f"on a circle of {self.asked[0]:.3g} m, or the tightest it can walk on command"
         return replayed(
             "turning_replay.html",
             pair[0],
@@ -117,32 +118,45 @@ class Turning(Experiment):
             labels=("as tightly as it can", "on a circle"),
             title=f"Turning, {str(pair[0].gait.item()).replace('_', ' ')}",
             overlaid=True,
-            caption=f"Turning as tightly as it can, and, half transparent, {asked}.",
+            caption=f"Turning as tightly as it can, and, half transparent, {circle_text}.",
         )
 
-    def _of(self, gait: Gait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
-        """Return the curvatures of one gait, and its tightest turn and first circle as records."""
-        room = self._room(gait)
-        bent = [Walking(bend=min(bend, room)) for bend in self.bends]
-        uneven = [Walking(asymmetry=share) for share in self.asymmetries]
-        most = min(self.bends[-1], room), self.asymmetries[-1] if gait.has("strokes") and not gait.erect else 0.0
-        mixed = [Walking(bend=m * most[0], asymmetry=m * most[1]) for m in self.mixtures]
-        record = self._walk(gait, [*bent, *uneven, *mixed], staged(progress, "", 0.0, 0.7))
-        found = self._curvatures(gait, record)
-        a, b = len(bent), len(bent) + len(uneven)
-        curve = _curve(most, self.mixtures, found[b:])
+    def _gait_curvatures(self, gait: Gait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
+        """Return the curvatures of one gait, and its tightest turn and first circle as records.
+
+        Args:
+            gait: the gait.
+            progress: called with the fraction that is done.
+        """
+        bend_margin = self._bend_margin(gait)
+        bend_controls = [Walking(bend=min(bend, bend_margin)) for bend in self.bends]
+        asymmetry_controls = [Walking(asymmetry=share) for share in self.asymmetries]
+        max_mixture = (
+            min(self.bends[-1], bend_margin),
+            self.asymmetries[-1] if gait.has("strokes") and not gait.erect else 0.0,
+        )
+        mixture_controls = [Walking(bend=m * max_mixture[0], asymmetry=m * max_mixture[1]) for m in self.mixtures]
+        record = self._walk(
+            gait, [*bend_controls, *asymmetry_controls, *mixture_controls], staged(progress, "", 0.0, 0.7)
+        )
+        curvatures = self._curvatures(gait, record)
+        a, b = len(bend_controls), len(bend_controls) + len(asymmetry_controls)
+        curve = _curve(max_mixture, self.mixtures, curvatures[b:])
         tightest = np.inf if curve is None else curve.tightest
-        circles = [mixed[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest)) for radius in self.asked]
-        circled = self._walk(gait, circles, staged(progress, "", 0.7, 1.0))
-        walked = self._curvatures(gait, circled)
+        circles = [
+            mixture_controls[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest))
+            for radius in self.asked
+        ]
+        circle_record = self._walk(gait, circles, staged(progress, "", 0.7, 1.0))
+        circle_curvatures = self._curvatures(gait, circle_record)
         data = xr.Dataset(
             {
-                "curvature_bend": ("bend", found[:a], {"units": "1/m"}),
-                "curvature_asymmetry": ("asymmetry", found[a:b], {"units": "1/m"}),
-                "curvature_mixture": ("mixture", found[b:], {"units": "1/m"}),
+                "curvature_bend": ("bend", curvatures[:a], {"units": "1/m"}),
+                "curvature_asymmetry": ("asymmetry", curvatures[a:b], {"units": "1/m"}),
+                "curvature_mixture": ("mixture", curvatures[b:], {"units": "1/m"}),
                 "radius": (
                     "asked",
-                    np.where(np.array(self.asked) >= tightest, 1.0 / np.maximum(walked, _STRAIGHT), np.nan),
+                    np.where(np.array(self.asked) >= tightest, 1.0 / np.maximum(circle_curvatures, _STRAIGHT), np.nan),
                     {"units": "m"},
                 ),
             },
@@ -155,14 +169,14 @@ class Turning(Experiment):
         )
         for name, unit in (("bend", "rad"), ("asymmetry", "1"), ("mixture", "1"), ("asked", "m")):
             data[name].attrs["units"] = unit
-        return data, (record.isel(run=b + int(found[b:].argmax())), circled.isel(run=0))
+        return data, (record.isel(run=b + int(curvatures[b:].argmax())), circle_record.isel(run=0))
 
-    def _room(self, gait: Gait) -> float:
-        """Return how far the trunk can bend besides what the gait asks of it [rad]."""
+    def _bend_margin(self, gait: Gait) -> float:
+        """Return the bend of the trunk that its joints allow beyond the amplitude of the gait [rad]."""
         yaw = list(layout(self.robot).trunk_yaw)
         gait.needs_steering(self.name())
-        bent = trunk_amplitude(self.robot, gait)
-        return max(float(np.abs(servo_ranges(self.robot)[yaw]).min(axis=1, initial=np.inf).sum()) - bent, 0.0)
+        gait_bend = trunk_amplitude(self.robot, gait)
+        return max(float(np.abs(servo_ranges(self.robot)[yaw]).min(axis=1, initial=np.inf).sum()) - gait_bend, 0.0)
 
     def _end(self, gait: Gait) -> float:
         return START + (self.cycles + 1) * gait.period
@@ -184,13 +198,13 @@ class Turning(Experiment):
         measures = Measures()
         for name in record.gait.values:
             of_gait = record.sel(gait=name)
-            off = abs(of_gait.radius / of_gait.asked - 1.0)
+            radius_errors = abs(of_gait.radius / of_gait.asked - 1.0)
             measures |= {
                 f"tightest_bend_{name}": Measure(_radius(of_gait.curvature_bend), "m"),
                 f"tightest_asymmetry_{name}": Measure(_radius(of_gait.curvature_asymmetry), "m"),
                 f"tightest_both_{name}": Measure(_radius(of_gait.curvature_mixture), "m"),
                 f"circles_walked_{name}": Measure(float(of_gait.radius.notnull().sum()), "-"),
-                f"radius_off_{name}": Measure(float(off.max()), "-"),
+                f"radius_off_{name}": Measure(float(radius_errors.max()), "-"),
                 f"bend_times_radius_{name}": Measure(
                     float(of_gait.bend[-1] * _radius(of_gait.curvature_bend[-1:])), "m"
                 ),
@@ -198,7 +212,7 @@ class Turning(Experiment):
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say by what each gait turns tightest, and how far commanded circles are off."""
+        """Return by which means each gait turns tightest, and the errors of commanded circles, in words."""
         names = [gait.name for gait in self.gaits]
         return self.told(
             measures,
@@ -212,16 +226,22 @@ class Turning(Experiment):
         return {"turning": draw_turning(outcome.record, gait_lines(outcome.record.gait.values))}
 
 
-def _curve(most: tuple[float, float], mixtures: Sequence[float], curvatures: np.ndarray) -> TurningCurve | None:
-    """Return the part of a measured curve that rises; None where nothing does."""
+def _curve(max_mixture: tuple[float, float], mixtures: Sequence[float], curvatures: np.ndarray) -> TurningCurve | None:
+    """Return the rising part of a measured turning curve; None if it does not rise.
+
+    Args:
+        max_mixture: bend [rad] and asymmetry [-] at mixture 1.
+        mixtures: fractions of ``max_mixture`` [-].
+        curvatures: measured, of each mixture [1/m].
+    """
     level, rising = curvatures, 1
     while rising < len(level) and level[rising] > level[rising - 1] + _STRAIGHT:
         rising += 1
     if rising < 2:
         return None
     return TurningCurve(
-        bend=most[0],
-        asymmetry=most[1],
+        bend=max_mixture[0],
+        asymmetry=max_mixture[1],
         mixtures=tuple(float(m) for m in mixtures[:rising]),
         curvatures=tuple(float(c) for c in level[:rising]),
     )
@@ -232,7 +252,12 @@ def _radius(curvature: xr.DataArray) -> float:
 
 
 def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw curvature against bend and asymmetry, and asked against measured radius."""
+    """Draw curvature over bend and asymmetry, and the measured over the commanded radius.
+
+    Args:
+        record: of the experiment ``turning``.
+        lines: style of each gait.
+    """
     with styled():
         figure, axes = panels(1, 3, width=11.5, height=4.0)
         for ax, name, label, scale in (
@@ -246,12 +271,12 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
             ax.set_ylim(-0.1, max(2.8, 1.05 * float(record.curvature_mixture.max())))
         axes[0, 0].legend(loc="upper left")
         ax = axes[0, 2]
-        asked = record.asked.values
-        ax.fill_between(asked, 0.9 * asked, 1.1 * asked, color="#E3E3E3", zorder=0, label="within 10 %")
-        ax.plot(asked, asked, color=COLOURS["neutral"], linewidth=0.9)
+        radii = record.asked.values
+        ax.fill_between(radii, 0.9 * radii, 1.1 * radii, color="#E3E3E3", zorder=0, label="within 10 %")
+        ax.plot(radii, radii, color=COLOURS["neutral"], linewidth=0.9)
         for gait in record.gait.values:
             style = dict(lines[str(gait)]) | {"linestyle": "none", "label": None}
-            ax.plot(asked, record.radius.sel(gait=gait), **style)
+            ax.plot(radii, record.radius.sel(gait=gait), **style)
         ax.set_xlabel("commanded radius [m]")
         ax.set_ylabel("measured radius [m]")
         ax.legend(loc="upper left")

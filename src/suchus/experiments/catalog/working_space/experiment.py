@@ -53,6 +53,7 @@ class WorkingSpace(Experiment):
     """Seed of the drawing [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
         with Checks(self.name(), self) as check:
             check.whole("crawling", 1, 2**24)
             check.whole("standing", 1, 2**24)
@@ -68,40 +69,47 @@ class WorkingSpace(Experiment):
         record = xr.Dataset(attrs={"cell": self.cell}, coords={"xyz": ["x", "y", "z"], "leg": ["LF", "LH"]})
         for state, share in zip(STATES, (0.0, 0.6), strict=True):
             progress(state, share)
-            found = reached(
+            samples = reached(
                 self.robot, self.gait, standing=state == "standing", count=getattr(self, state), seed=self.seed
             )
-            record[f"snout_{state}"] = ((f"kept_{state}", "xyz"), found.snout, {"units": "m"})
-            record[f"tried_{state}"] = ((), found.tried, {"units": "1"})
-            record = record.merge(_highest(self.robot, found, state))
+            record[f"snout_{state}"] = ((f"kept_{state}", "xyz"), samples.snout, {"units": "m"})
+            record[f"tried_{state}"] = ((), samples.tried, {"units": "1"})
+            record = record.merge(_highest_posture(self.robot, samples, state))
         return Simulated(record=record)
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return volumes, areas and heights of both states with what the counting leaves open."""
-        cell, rooms = record.attrs["cell"], {}
+        cell, extents = record.attrs["cell"], {}
         measures = Measures()
         for state in STATES:
             snout = record[f"snout_{state}"].values
-            both = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])  # what a robot can do, its mirror image can
-            rooms[state] = {"volume": (extent(both, cell), "m3"), "area": (extent(snout[:, [0, 2]], cell), "m2")}
-            for name, (room, unit) in rooms[state].items():
+            mirrored_snout = np.concatenate(
+                [snout, snout * [1.0, -1.0, 1.0]]
+            )  # what a robot can do, its mirror image can
+            extents[state] = {
+                "volume": (extent(mirrored_snout, cell), "m3"),
+                "area": (extent(snout[:, [0, 2]], cell), "m2"),
+            }
+            for name, (size, unit) in extents[state].items():
                 measures |= {
-                    f"{name}_{state}": Measure(room.value, unit),
-                    f"{name}_{state}_low": Measure(room.low, unit),
-                    f"{name}_{state}_high": Measure(room.high, unit),
+                    f"{name}_{state}": Measure(size.value, unit),
+                    f"{name}_{state}_low": Measure(size.low, unit),
+                    f"{name}_{state}_high": Measure(size.high, unit),
                 }
             measures[f"highest_{state}"] = Measure(float(snout[:, 2].max()) if len(snout) else float("nan"), "m")
             measures[f"possible_{state}"] = Measure(len(snout) / float(record[f"tried_{state}"]), "-")
         for name in ("volume", "area"):
-            low, high = (rooms[state][name][0] for state in STATES)
-            measures |= {f"{name}_ratio{end}": Measure(v, "-") for end, v in _quotient(high, low).items()}
+            crawling_extent, standing_extent = (extents[state][name][0] for state in STATES)
+            measures |= {
+                f"{name}_ratio{end}": Measure(v, "-") for end, v in _quotient(standing_extent, crawling_extent).items()
+            }
         return measures
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the room from the side and from above."""
         return {
             "working_space": captioned(
-                room(outcome.record, STATES),
+                draw_room(outcome.record, STATES),
                 "Where the tip of the snout can be without a step: on four feet (orange) and on hind feet and tail "
                 "(blue), from the side and from above, with the configuration of each that reaches highest. Feet stand "
                 f"as in the gait; cells of {1000 * self.cell:g} mm.",
@@ -109,29 +117,39 @@ class WorkingSpace(Experiment):
         }
 
 
-def _quotient(over: Extent, under: Extent) -> dict[str, float]:
-    """Return the ratio of two extents by end; NaN where there is nothing to compare with."""
-    pairs = {"": (over.value, under.value), "_low": (over.low, under.high), "_high": (over.high, under.low)}
+def _quotient(numerator: Extent, denominator: Extent) -> dict[str, float]:
+    """Return the ratio of two extents with its bounds; NaN where the denominator is 0."""
+    pairs = {
+        "": (numerator.value, denominator.value),
+        "_low": (numerator.low, denominator.high),
+        "_high": (numerator.high, denominator.low),
+    }
     return {end: a / b if b > 0 else float("nan") for end, (a, b) in pairs.items()}
 
 
-def _highest(robot: Robot, room: Reached, state: str) -> xr.Dataset:
-    """Return the body's line and the left legs of the configuration that reaches highest [m]."""
-    if not len(room.snout):
+def _highest_posture(robot: Robot, samples: Reached, state: str) -> xr.Dataset:
+    """Return midline and left legs of the posture in which the snout is highest [m].
+
+    Args:
+        robot: the robot.
+        samples: possible postures.
+        state: one of ``STATES``.
+    """
+    if not len(samples.snout):
         return xr.Dataset()
-    best = int(np.argmax(room.snout[:, 2]))
-    line, legs = outline(robot, room.angles[best : best + 1], room.pelvis[best : best + 1])
+    best = int(np.argmax(samples.snout[:, 2]))
+    line, legs = outline(robot, samples.angles[best : best + 1], samples.pelvis[best : best + 1])
     metres = {"units": "m"}
-    left = [LEGS.index("LF"), LEGS.index("LH")]
+    left_legs = [LEGS.index("LF"), LEGS.index("LH")]
     return xr.Dataset(
         {
             f"body_{state}": (("point", "xyz"), line[0], metres),
-            f"legs_{state}": (("leg", "end", "xyz"), legs[0, left], metres),
+            f"legs_{state}": (("leg", "end", "xyz"), legs[0, left_legs], metres),
         }
     )
 
 
-def room(record: xr.Dataset, states: Sequence[str]) -> Figure:
+def draw_room(record: xr.Dataset, states: Sequence[str]) -> Figure:
     """Draw the cells that the snout reaches in two states, and the highest configuration of each.
 
     Args:
@@ -140,16 +158,16 @@ def room(record: xr.Dataset, states: Sequence[str]) -> Figure:
     """
     with styled():
         figure, axes = panels(1, 2, width=12.0, height=5.6)
-        for ax, (title, (across, up), label) in zip(axes[0], _VIEWS, strict=True):
+        for ax, (title, (horizontal_axis, vertical_axis), label) in zip(axes[0], _VIEWS, strict=True):
             for state, role in reversed(tuple(zip(states, _ROLES, strict=True))):
                 snout, colour = record[f"snout_{state}"].values, COLOURS[role]
-                if up == 1:
+                if vertical_axis == 1:
                     snout = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])
-                _cells(ax, snout[:, [across, up]], record.attrs["cell"], colour)
+                _cells(ax, snout[:, [horizontal_axis, vertical_axis]], record.attrs["cell"], colour)
                 ax.plot([], [], "s", color=colour, alpha=0.55, markersize=10, label=state)
             for state, role in zip(states, _ROLES, strict=True):
                 if f"body_{state}" in record:
-                    _posture(ax, record, state, (across, up), COLOURS[role])
+                    _posture(ax, record, state, (horizontal_axis, vertical_axis), COLOURS[role])
             ax.set_aspect("equal")
             ax.set(title=title, xlabel="ahead of the hind feet [m]", ylabel=label)
         axes[0, 0].axhline(0.0, color=COLOURS["ground"], linewidth=2.0, zorder=1)
@@ -163,11 +181,20 @@ def _cells(ax: Any, points: np.ndarray, cell: float, colour: str) -> None:
         return
     edges = [np.arange(p.min(), p.max() + 2 * cell, cell) for p in points.T]
     counts, _ = np.histogramdd(points, bins=edges)
-    there = np.ma.masked_equal(counts.T > 0, False)
-    ax.pcolormesh(*edges, there, cmap=ListedColormap([colour]), alpha=0.38, antialiased=False, linewidth=0, zorder=1)
+    occupied = np.ma.masked_equal(counts.T > 0, False)
+    ax.pcolormesh(*edges, occupied, cmap=ListedColormap([colour]), alpha=0.38, antialiased=False, linewidth=0, zorder=1)
 
 
 def _posture(ax: Any, record: xr.Dataset, state: str, axes: tuple[int, int], colour: str) -> None:
+    """Draw trunk, left legs and snout of the highest posture of a state.
+
+    Args:
+        ax: axes to draw on.
+        record: with ``body_STATE`` and ``legs_STATE`` [m].
+        state: one of ``STATES``.
+        axes: indices of the horizontal and the vertical coordinate in ``xyz``.
+        colour: of the lines.
+    """
     body, legs = record[f"body_{state}"].values[:, list(axes)], record[f"legs_{state}"].values[..., list(axes)]
     ax.plot(*body.T, color=colour, linewidth=4.0, solid_capstyle="round", solid_joinstyle="round", zorder=3)
     for leg in legs:

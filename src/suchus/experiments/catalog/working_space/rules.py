@@ -22,7 +22,7 @@ RULES = (
 
 VARIED = Varied(claims=("working_space",), designs=("robot",), samples=32)
 
-_ROOM = {
+_SPACE_MEASURES = {
     "volume_ratio": 5.0,
     "volume_ratio_low": 2.02,
     "volume_ratio_high": 9.0,
@@ -33,11 +33,11 @@ _ROOM = {
 
 EXAMPLES: Examples = {
     "working_space": [
-        (_ROOM, "reproduced"),
-        (_ROOM | {"volume_ratio_low": 1.98}, "undecided"),
-        (_ROOM | between("volume_ratio", 1.5, 1.98), "contradicted"),
-        (_ROOM | {"area_ratio_low": 0.99}, "undecided"),
-        (_ROOM | between("area_ratio", 0.9, 0.99), "contradicted"),
-        (_ROOM | {"volume_ratio": float("nan")}, "not testable"),
+        (_SPACE_MEASURES, "reproduced"),
+        (_SPACE_MEASURES | {"volume_ratio_low": 1.98}, "undecided"),
+        (_SPACE_MEASURES | between("volume_ratio", 1.5, 1.98), "contradicted"),
+        (_SPACE_MEASURES | {"area_ratio_low": 0.99}, "undecided"),
+        (_SPACE_MEASURES | between("area_ratio", 0.9, 0.99), "contradicted"),
+        (_SPACE_MEASURES | {"volume_ratio": float("nan")}, "not testable"),
     ],
 }
