@@ -44,12 +44,12 @@ def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait
     """
     path = Path(path)
     data = read_toml(path)
-    named = data.pop("base", None)
+    base_name = data.pop("base", None)
     mistakes: dict[Place, str] = {}
-    base = shelf[named] if isinstance(named, str) and named in shelf else None
-    if named is not None and base is None:
-        mistakes["base",] = f"is {named!r}; there is {', '.join(shelf)}"
-        base = _any(shelf)  # to look for further mistakes with
+    base = shelf[base_name] if isinstance(base_name, str) and base_name in shelf else None
+    if base_name is not None and base is None:
+        mistakes["base",] = f"is {base_name!r}; there is {', '.join(shelf)}"
+        base = _metric_gait(shelf)  # to look for further mistakes with
     form = form_of(data)
     # where limbs alone change their phases, the axis goes on as the article's law of a gait in metres says
     if form is None and base is not None and in_metres(base) and "limb_phases" in data and "coupling" not in data:
@@ -66,11 +66,11 @@ def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait
         raise MistakenFile(path.name, {(): f"on robot {robot.name!r} {str(error).rstrip('.')}"}) from error
     except OutsideLimits as error:
         raise UnreadableFile(f"{path.name}: {error}") from error
-    spare, data = plain(asdict(base or _any(shelf))), _with_parts(data, robot)
+    spare, data = plain(asdict(base or _metric_gait(shelf))), _with_parts(data, robot)
     return validated(data if base is None else merged(spare, data), Gait, spare, path.name, mistakes)
 
 
-def _any(shelf: Mapping[str, Gait]) -> Gait:
+def _metric_gait(shelf: Mapping[str, Gait]) -> Gait:
     """Return a gait that can be written in every form."""
     return next(gait for gait in shelf.values() if in_metres(gait))
 
@@ -96,9 +96,9 @@ def _in_metres(
     mistakes: dict[Place, str],
 ) -> Gait:
     reaches, keys = limb_reaches(robot), frozenset(data)
-    spare = plain(asdict(GaitInMetres.near(base or _any(shelf), reaches)))
-    whole = data if base is None else merged(spare, data)
-    metres = validated(whole, GaitInMetres, spare, name, mistakes)
+    spare = plain(asdict(GaitInMetres.near(base or _metric_gait(shelf), reaches)))
+    table = data if base is None else merged(spare, data)
+    metres = validated(table, GaitInMetres, spare, name, mistakes)
     return metres.gait(reaches) if base is None else metres.onto(base, keys, reaches)
 
 
@@ -111,13 +111,16 @@ def _by_places(
     mistakes: dict[Place, str],
 ) -> Gait:
     wave = data.get("wave")
-    still = AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0)
-    partly = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)
+    straight_wave = AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0)
+    is_partial = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)
     spare = plain(
         asdict(
-            GaitByPlaces.of(base or _any(shelf), AxialWave.of(base, robot) if base is not None and partly else still)
+            GaitByPlaces.of(
+                base or _metric_gait(shelf),
+                AxialWave.of(base, robot) if base is not None and is_partial else straight_wave,
+            )
         )
     )
-    whole = data if base is None else merged(spare, data)
-    gait = validated(whole, GaitByPlaces, spare, name, mistakes).gait(robot)
+    table = data if base is None else merged(spare, data)
+    gait = validated(table, GaitByPlaces, spare, name, mistakes).gait(robot)
     return gait if base is None or wave is not None else replace(gait, axis=base.axis)

@@ -14,7 +14,7 @@ Place = tuple[str | int, ...]
 """Keys from the top of a file down to a value."""
 
 _HOMES = 2  # of a field that stands in the wrong part; one that many parts have, as a mass, is not said
-_NEEDED: Mapping[str, str] = {
+_REQUIREMENTS: Mapping[str, str] = {
     "float_type": "a number is needed",
     "finite_number": "a finite number is needed",
     "int_type": "a whole number is needed",
@@ -39,12 +39,12 @@ class MistakenFile(UnreadableFile, InvalidDesign):
 
     def __init__(self, name: str, mistakes: Mapping[Place, str]) -> None:
         self.mistakes = {dotted(place): text for place, text in mistakes.items()}
-        listed = [f"{place} {text}".lstrip() for place, text in self.mistakes.items()]
-        if len(listed) == 1:
-            super().__init__(f"{name} has a mistake: {listed[0]}.")
+        descriptions = [f"{place} {text}".lstrip() for place, text in self.mistakes.items()]
+        if len(descriptions) == 1:
+            super().__init__(f"{name} has a mistake: {descriptions[0]}.")
         else:
-            numbered = "; ".join(f"({i}) {one}" for i, one in enumerate(listed, 1))
-            super().__init__(f"{name} has {len(listed)} mistakes: {numbered}.")
+            numbered_list = "; ".join(f"({i}) {description}" for i, description in enumerate(descriptions, 1))
+            super().__init__(f"{name} has {len(descriptions)} mistakes: {numbered_list}.")
 
 
 def dotted(place: Place) -> str:
@@ -63,10 +63,10 @@ def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]
         kind: of the whole.
         data: what was validated.
     """
-    meant = _meant(tuple(error["loc"]), kind, data)
-    if meant is None:
+    location = _locate(tuple(error["loc"]), kind, data)
+    if location is None:
         return {}
-    place, owner = meant
+    place, owner = location
     cause = error.get("ctx", {}).get("error")
     if isinstance(cause, InvalidFields):
         return {(*place, *_keys(c.field)): c.text for c in cause.complaints}
@@ -74,16 +74,20 @@ def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]
         return {place: "is missing"}
     if error["type"] == "unexpected_keyword_argument":
         return {place: _unknown(place, owner, kind)}
-    return {place: f"is {_show(error['input'])}; {_needed(error, cause)}"}
+    return {place: f"is {_show(error['input'])}; {_requirement(error, cause)}"}
 
 
-def _meant(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
+def _locate(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
     """Return the place of an error and the kind of the part that it stands in; None for a kind that was not meant."""
     place: list[str | int] = []
     owner = kind
     for key in loc:
-        kinds = [one for one in get_args(kind) if is_dataclass(one)] if isinstance(kind, UnionType) else []
-        if len(kinds) > 1 and key in [one.__name__ for one in kinds]:  # type: ignore[union-attr]
+        kinds = (
+            [candidate for candidate in get_args(kind) if is_dataclass(candidate)]
+            if isinstance(kind, UnionType)
+            else []
+        )
+        if len(kinds) > 1 and key in [candidate.__name__ for candidate in kinds]:  # type: ignore[union-attr]
             kind = closest(data, kinds)
             if kind.__name__ != key:
                 return None
@@ -116,27 +120,27 @@ def _keys(field: str) -> Place:
     return () if not name else (name, int(index)) if index else (name,)
 
 
-def _needed(error: Mapping[str, Any], cause: Exception | None) -> str:
+def _requirement(error: Mapping[str, Any], cause: Exception | None) -> str:
     context = error.get("ctx", {})
     if error["type"] in ("too_long", "too_short"):
-        wanted = context.get("max_length", context.get("min_length"))
-        return f"{wanted} values are needed"
+        length = context.get("max_length", context.get("min_length"))
+        return f"{length} values are needed"
     if error["type"] == "literal_error":
         return f"{context['expected']} is allowed"
     if cause is not None:
         return str(cause).rstrip(".")
-    return _NEEDED.get(error["type"], "something else is needed")
+    return _REQUIREMENTS.get(error["type"], "something else is needed")
 
 
 def _unknown(place: Place, owner: Any, kind: type) -> str:
-    known = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
+    field_names = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
     homes = list(islice(_homes(str(place[-1]), kind), _HOMES + 1))
     if 0 < len(homes) <= _HOMES:
         return f"is not known there; it stands at {' and '.join(homes)}: move it"
-    near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
-    if near:
-        return f"is not known (did you mean {dotted((*place[:-1], near[0]))}?)"
-    return f"is not known; there is {', '.join(known)}" if known else "is not known"
+    suggestions = get_close_matches(str(place[-1]), field_names, n=1, cutoff=0.5)
+    if suggestions:
+        return f"is not known (did you mean {dotted((*place[:-1], suggestions[0]))}?)"
+    return f"is not known; there is {', '.join(field_names)}" if field_names else "is not known"
 
 
 def _homes(name: str, kind: Any, place: str = "") -> Iterator[str]:

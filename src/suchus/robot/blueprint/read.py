@@ -48,25 +48,28 @@ def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     path = Path(path)
     data = read_toml(path)
     base = data.pop("base", None)
-    known = base is None or (isinstance(base, str) and base in shelf)
-    kinds = tuple(one for one in get_args(kind) or (kind,) if one is not NoneType)
-    described: tuple[Any, ...] = (*kinds, Tables) if Robot in kinds else kinds
-    if base is not None and known:
+    is_known_base = base is None or (isinstance(base, str) and base in shelf)
+    kinds = tuple(candidate for candidate in get_args(kind) or (kind,) if candidate is not NoneType)
+    allowed_kinds: tuple[Any, ...] = (*kinds, Tables) if Robot in kinds else kinds
+    if base is not None and is_known_base:
         model = shelf[base]
         if isinstance(model, Robot) and model.tables is not None and closest(data, (Tables, Robot)) is Tables:
             model = model.tables
     else:
-        meant = closest(data, described)
-        things = (getattr(thing, "tables", None) if meant is Tables else thing for thing in shelf.values())
-        model = next(thing for thing in things if isinstance(thing, meant))
-    if not isinstance(model, described):
+        best_kind = closest(data, allowed_kinds)
+        shelf_models = (
+            getattr(shelf_model, "tables", None) if best_kind is Tables else shelf_model
+            for shelf_model in shelf.values()
+        )
+        model = next(shelf_model for shelf_model in shelf_models if isinstance(shelf_model, best_kind))
+    if not isinstance(model, allowed_kinds):
         raise UnreadableFile(
             f"{path.name} starts from {base!r}, which is a {type(model).__name__}; a "
-            f"{' or '.join(one.__name__ for one in kinds)} is needed here."
+            f"{' or '.join(candidate.__name__ for candidate in kinds)} is needed here."
         )
-    spare = plain({name: value for name, value in asdict(model).items() if name in _said(model)})
+    spare = plain({name: value for name, value in asdict(model).items() if name in _settable_fields(model)})
     mistakes: dict[Place, str] = {}
-    if not known:
+    if not is_known_base:
         mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
     if base is not None:
         data = merged({**spare, "name": path.stem}, data)
@@ -90,21 +93,21 @@ def described_robot(values: Mapping[str, Any]) -> Robot:
     return TypeAdapter(Robot).validate_python(values)
 
 
-def described(data: Mapping[str, Any], kind: type[T], about: str) -> T:
+def described(data: Mapping[str, Any], kind: type[T], label: str) -> T:
     """Return the frozen value that a table of a file describes.
 
     Args:
         data: the table.
         kind: the frozen dataclass.
-        about: what it is, for messages.
+        label: what it is, for messages.
 
     Raises:
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
-    return validated(dict(data), kind, {}, about, {})
+    return validated(dict(data), kind, {}, label, {})
 
 
-def _said(model: Any) -> set[str]:
+def _settable_fields(model: Any) -> set[str]:
     """Return the fields that a file can say."""
     return {field.name for field in fields(model) if field.init}
 
@@ -132,37 +135,41 @@ def validated(
         MistakenFile: it describes none; all mistakes are named.
     """
     adapter = TypeAdapter(kind)
-    mended: set[Place] = set()
+    repaired: set[Place] = set()
     while True:
         try:
             value = adapter.validate_json(json.dumps(data, default=str), strict=True, extra="forbid")
         except ValidationError as error:
-            found: dict[Place, str] = {}
-            for one in error.errors(include_url=False):
-                found |= explain(one, kind, data)
+            complaints: dict[Place, str] = {}
+            for detail in error.errors(include_url=False):
+                complaints |= explain(detail, kind, data)
         else:
             break
-        fresh = {p: text for p, text in found.items() if _whole(p) not in mended and not _follows(p, mended)}
+        fresh = {
+            p: text
+            for p, text in complaints.items()
+            if _container_place(p) not in repaired and not _follows(p, repaired)
+        }
         mistakes |= fresh
-        mendable = [_mend(data, _whole(place), spare) for place in fresh]
+        mendable = [_mend(data, _container_place(place), spare) for place in fresh]
         if not mendable or not all(mendable):
             break
-        mended |= {_whole(place) for place in fresh}
+        repaired |= {_container_place(place) for place in fresh}
     if mistakes:
         raise MistakenFile(name, mistakes)
     return value
 
 
-def _whole(place: Place) -> Place:
+def _container_place(place: Place) -> Place:
     """The place of the list that an element stands in, else the place itself."""
     while place and isinstance(place[-1], int):
         place = place[:-1]
     return place
 
 
-def _follows(place: Place, mended: set[Place]) -> bool:
+def _follows(place: Place, repaired: set[Place]) -> bool:
     """Whether a complaint about a whole part may stem from a value that we put into it."""
-    return any(m[: len(place)] == place for m in mended)
+    return any(m[: len(place)] == place for m in repaired)
 
 
 def _mend(data: Any, place: Place, spare: Any) -> bool:
@@ -179,10 +186,10 @@ def _mend(data: Any, place: Place, spare: Any) -> bool:
     return True
 
 
-def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+def merged(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
     """Return a table with what another one says in the place of its own."""
-    whole = dict(deepcopy(base))
-    for key, value in over.items():
-        there = whole.get(key)
-        whole[key] = merged(there, value) if isinstance(there, dict) and isinstance(value, dict) else value
-    return whole
+    table = dict(deepcopy(base))
+    for key, value in overrides.items():
+        current = table.get(key)
+        table[key] = merged(current, value) if isinstance(current, dict) and isinstance(value, dict) else value
+    return table
