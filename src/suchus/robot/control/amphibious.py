@@ -141,11 +141,11 @@ class Amphibian:
         period: float,
     ) -> None:
         self._period, self._swims = period, swims
-        self._touch, self._afloat, self._aground, self._change, self._patience, self._out, self._pump = (
+        self._touch, self._afloat_load, self._aground, self._change, self._patience, self._air_released, self._pump = (
             np.array([getattr(control, name) for control in controls])
             for name in ("touch", "afloat", "aground", "change", "patience", "air_released", "pump")
         )
-        self._kept = np.array([keep(control.memory, period) for control in controls])
+        self._decay = np.array([keep(control.memory, period) for control in controls])
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
         n, limbs = len(robots), len(layout(robots[0]).limbs)
         self.walking: Bool[np.ndarray, " run"] = np.array([control.begins == "walking" for control in controls])
@@ -159,11 +159,15 @@ class Amphibian:
         self._lifted = np.zeros(n)  # how long the feet have carried next to nothing [s]
         self._since = np.where(self.walking, np.inf, 0.0)  # the last change [s]
         self._cycles = np.zeros(n)  # walked so far [cycle]
-        self._grown = np.zeros(n)  # walked without a break [cycle]
+        self._unbroken_cycles = np.zeros(n)  # walked without a break [cycle]
         self._air_fraction = np.ones(n)
-        self._cycle, self._wade_cycle = (np.array([gait.period for gait in each]) for each in (gaits, wades))
-        self._phases, self._wade_phases = (np.array([gait.limb_phases for gait in each]) for each in (gaits, wades))
-        self._heading = Heading([one.heading for one in controls], robots, gaits, period)
+        self._cycle, self._wade_cycle = (
+            np.array([gait.period for gait in batch_gaits]) for batch_gaits in (gaits, wades)
+        )
+        self._phases, self._wade_phases = (
+            np.array([gait.limb_phases for gait in batch_gaits]) for batch_gaits in (gaits, wades)
+        )
+        self._heading = Heading([control.heading for control in controls], robots, gaits, period)
         self._batch, self._wade_batch = Batch(robots, gaits), Batch(robots, wades)
         self._stroke, self._trunk = np.ones((n, limbs)), np.zeros(n)
 
@@ -183,8 +187,8 @@ class Amphibian:
             self._feel(sensed)
             if time >= START - _SLACK:
                 self._decide()
-        swum = self._swims.command(tick, sensed).targets
-        targets = self._mixed(swum)
+        swim_targets = self._swims.command(tick, sensed).targets
+        targets = self._mixed(swim_targets)
         phase = self._phase
         if time >= START - _SLACK:
             self._advance()
@@ -198,19 +202,19 @@ class Amphibian:
         feet, belly = finite(sensed.foot_pressure), finite(sensed.belly_pressure)
         stands = feet.sum(axis=1) / self._weight
         load = stands + (belly.sum(axis=1) + finite(sensed.tail_pressure)) / self._weight
-        self._load = load + self._kept * (self._load - load)
-        self._feet = stands + self._kept * (self._feet - stands)
+        self._load = load + self._decay * (self._load - load)
+        self._feet = stands + self._decay * (self._feet - stands)
         walks = self._blend >= 1.0
         steer = self._heading.step(sensed, walking=walks)
         self._stroke, self._trunk = 1.0 + steer.stroke, steer.trunk
 
     def _decide(self) -> None:
-        self._lifted = np.where(self._feet < self._afloat, self._lifted + self._period, 0.0)
-        other = np.where(self.walking, self._lifted >= 1.0 / self._rate, self._load > self._touch)
-        turns = other & (self._since >= self._change + self._patience)
-        self.landing = np.where(turns, ~self.walking, self.landing & (self._load < self._aground))
-        self.walking = self.walking ^ turns
-        self._since = np.where(turns, 0.0, self._since + self._period)
+        self._lifted = np.where(self._feet < self._afloat_load, self._lifted + self._period, 0.0)
+        is_change_due = np.where(self.walking, self._lifted >= 1.0 / self._rate, self._load > self._touch)
+        is_changing = is_change_due & (self._since >= self._change + self._patience)
+        self.landing = np.where(is_changing, ~self.walking, self.landing & (self._load < self._aground))
+        self.walking = self.walking ^ is_changing
+        self._since = np.where(is_changing, 0.0, self._since + self._period)
 
     @property
     def _rate(self) -> np.ndarray:
@@ -222,27 +226,27 @@ class Amphibian:
         step = self._period / self._change
         walks = self._blend >= 1.0
         self._cycles = self._cycles + walks * self._rate * self._period
-        self._grown = np.where(walks, self._grown + self._rate * self._period, 0.0)
+        self._unbroken_cycles = np.where(walks, self._unbroken_cycles + self._rate * self._period, 0.0)
         self._blend = np.clip(self._blend + np.where(self.walking, step, -step), 0.0, 1.0)
         landed = np.clip(self._landed + np.where(self.landing, -step, step), 0.0, 1.0)
         self._landed = np.where(walks | ~self.walking, landed, 1.0 - self.landing)  # it stands up to wade
-        asked = 1.0 - self._out * self.landing
-        most = self._pump * self._period
-        self._air_fraction = self._air_fraction + np.clip(asked - self._air_fraction, -most, most)
+        air_target = 1.0 - self._air_released * self.landing
+        max_step = self._pump * self._period
+        self._air_fraction = self._air_fraction + np.clip(air_target - self._air_fraction, -max_step, max_step)
 
-    def _mixed(self, swum: np.ndarray) -> np.ndarray:
+    def _mixed(self, swim_targets: np.ndarray) -> np.ndarray:
         """Return the posture between that of the swim and that of the walk, shape (run, servo) [rad]."""
         if not self._blend.any():
-            return swum
-        walked = self._walked(self._batch)
+            return swim_targets
+        walk_targets = self._walk_posture(self._batch)
         if (self._landed < 1.0).any():
-            waded = self._walked(self._wade_batch)
-            walked = waded + _eased(self._landed) * (walked - waded)
-        return np.asarray(swum + _eased(self._blend) * (walked - swum))
+            wade_targets = self._walk_posture(self._wade_batch)
+            walk_targets = wade_targets + _eased(self._landed) * (walk_targets - wade_targets)
+        return np.asarray(swim_targets + _eased(self._blend) * (walk_targets - swim_targets))
 
-    def _walked(self, gaits: Batch) -> np.ndarray:
+    def _walk_posture(self, gaits: Batch) -> np.ndarray:
         """Return the postures of gaits at the present phases, shape (run, servo) [rad]."""
-        steer = Steer(size=np.clip(self._grown / _GROWS, 0.0, 1.0), stroke=self._stroke, bend=self._trunk)
+        steer = Steer(size=np.clip(self._unbroken_cycles / _GROWS, 0.0, 1.0), stroke=self._stroke, bend=self._trunk)
         return gaits.targets(self._phase, gaits.axis_phase(self._phase, self._cycles), steer)
 
 

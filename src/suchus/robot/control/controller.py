@@ -38,9 +38,9 @@ SENSED = tuple(field.name for field in fields(Sensed) if field.name != "time")
 """What a robot can sense: the fields of ``Sensed``, the time aside."""
 
 
-def united(*felt: tuple[str, ...]) -> tuple[str, ...]:
+def united(*rule_needs: tuple[str, ...]) -> tuple[str, ...]:
     """Return what several rules feel together, each once, in the order of ``Sensed``."""
-    return tuple(name for name in SENSED if any(name in one for one in felt))
+    return tuple(name for name in SENSED if any(name in names for names in rule_needs))
 
 
 def needs(control: "Control") -> tuple[str, ...]:

@@ -113,18 +113,18 @@ class Coordinator:
         self._period = period
         self._table = OpenLoop.start(runs._replace(controls=(OpenLoop(),) * len(robots)), period)
         self._gaits = Batch(robots, gaits)
-        ahead = np.zeros((len(robots), limbs))
+        phase_lead = np.zeros((len(robots), limbs))
         self._noise: list[tuple[int, float, np.random.Generator]] = []
         self._kicks: dict[int, list[tuple[int, np.ndarray]]] = {}
         for run, (control, gait, seed) in enumerate(zip(controls, gaits, seeds, strict=True)):
             if control.random_start:
-                ahead[run] = np.random.default_rng([seed, 0]).random(limbs) - gait.limb_phases
+                phase_lead[run] = np.random.default_rng([seed, 0]).random(limbs) - gait.limb_phases
             if control.load_noise > 0.0:
                 self._noise.append((run, control.load_noise, np.random.default_rng([seed, 1])))
             for kick in control.kicks:
                 self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
         self._hears = np.array([control.sharing for control in controls])[:, None]
-        self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
+        self._limbs = Limbs([control.limbs for control in controls], robots, gaits, phase_lead, period)
         self._spine = SpineController([control.spine for control in controls], robots, period)
         self._tail = TailController([control.tail for control in controls], robots, gaits, period)
         steers = any(control.heading is not None for control in controls)
@@ -132,14 +132,14 @@ class Coordinator:
         self._shared = silence(len(robots), limbs)
         self._steering = Steering.none(len(robots), limbs)
 
-    def take_over(self, before: "Coordinator") -> None:
+    def take_over(self, predecessor: "Coordinator") -> None:
         """Go on from where another coordinator of the same runs stands, with other gaits or rules."""
-        self._limbs.take_over(before._limbs)
-        self._spine.take_over(before._spine)
-        self._tail.take_over(before._tail)
-        self._shared = before._shared
-        if self._heading is not None and before._heading is not None:
-            self._heading.take_over(before._heading)
+        self._limbs.take_over(predecessor._limbs)
+        self._spine.take_over(predecessor._spine)
+        self._tail.take_over(predecessor._tail)
+        self._shared = predecessor._shared
+        if self._heading is not None and predecessor._heading is not None:
+            self._heading.take_over(predecessor._heading)
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
@@ -149,8 +149,8 @@ class Coordinator:
     def command(self, tick: int, sensed: Sensed | None) -> Command:
         """Let every controller read the shared variables and what it feels, and say what the servos do."""
         walking = tick * self._period >= START - _SLACK
-        for run, ahead in self._kicks.get(tick, ()):
-            self._limbs.kick(run, ahead)
+        for run, phase_lead in self._kicks.get(tick, ()):
+            self._limbs.kick(run, phase_lead)
         if sensed is not None and self._noise:
             sensed = self._noisy(sensed)
         self._share(tick, sensed, walking=walking)
@@ -169,19 +169,19 @@ class Coordinator:
     def _share(self, tick: int, sensed: Sensed | None, *, walking: bool) -> None:
         phases, clock = self._table.command(tick, None).phase, self._clock(tick)
         limbs = self._limbs.step(self._shared, sensed, phases, walking=walking)
-        heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
-        self._axis = self._gaits.axis_phase(heard.limb_phase, clock)
-        bent = self._tail.step(self._spine.step(heard, self._gaits, clock), self._gaits, clock)
-        self._shared = replace(bent, limb_phase=limbs.limb_phase)
+        limb_state = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
+        self._axis = self._gaits.axis_phase(limb_state.limb_phase, clock)
+        axis_state = self._tail.step(self._spine.step(limb_state, self._gaits, clock), self._gaits, clock)
+        self._shared = replace(axis_state, limb_phase=limbs.limb_phase)
 
     def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles; where nothing is ahead of the clock and nobody steers, those of the table."""
         table = self._table.command(tick, None).targets
-        moved = self._limbs.ahead.any(axis=1) | self._steering.any()
-        if not moved.any():
+        is_adjusted = self._limbs.ahead.any(axis=1) | self._steering.any()
+        if not is_adjusted.any():
             return table
         steer = Steer(stroke=1.0 + self._steering.stroke, bend=self._steering.trunk)
-        return np.where(moved[:, None], self._gaits.targets(self._shared.limb_phase, self._axis, steer), table)
+        return np.where(is_adjusted[:, None], self._gaits.targets(self._shared.limb_phase, self._axis, steer), table)
 
     def _noisy(self, sensed: Sensed) -> Sensed:
         pressure = sensed.foot_pressure.copy()

@@ -118,9 +118,9 @@ class Loads:
         self._load: np.ndarray | None = None
         self._twist: np.ndarray | None = None
 
-    def take_over(self, before: "Loads") -> None:
+    def take_over(self, predecessor: "Loads") -> None:
         """Go on with the filtered loads of the same runs."""
-        self._load, self._twist = before._load, before._twist
+        self._load, self._twist = predecessor._load, predecessor._twist
 
     def feel(self, sensed: Sensed) -> None:
         """Pass what is sensed through the filters."""
@@ -138,8 +138,10 @@ class Loads:
         if self._load is None or self._twist is None:
             return np.zeros_like(phase)
         angle = 2 * pi * (phase + self._middle)
-        heard = (self._weights * self._load[:, None, :]).sum(axis=-1)
-        return np.asarray(np.cos(angle - self._shift) * heard + self._trunk * np.cos(angle) * self._sides * self._twist)
+        load_feedback = (self._weights * self._load[:, None, :]).sum(axis=-1)
+        return np.asarray(
+            np.cos(angle - self._shift) * load_feedback + self._trunk * np.cos(angle) * self._sides * self._twist
+        )
 
 
 class Limbs:
@@ -150,13 +152,13 @@ class Limbs:
         laws: Sequence[LimbLaw],
         robots: Sequence[Robot],
         gaits: Sequence[Gait],
-        ahead: Float[np.ndarray, "run limb"],
+        phase_lead: Float[np.ndarray, "run limb"],
         period: float,
     ) -> None:
         for law, gait in set(zip(laws, gaits, strict=True)):
             if law.pairs:
                 _refuse_others(gait, layout(robots[0]))
-        self.ahead = ahead
+        self.ahead = phase_lead
         self._loads = Loads(laws, robots, gaits, period)
         self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
 
@@ -177,16 +179,16 @@ class Limbs:
                 self.ahead = self.ahead - self._cycles_per_tick * self._loads.brake(shared.limb_phase)
         return shared.written_by("limbs", limb_phase=clock + self.ahead)
 
-    def take_over(self, before: "Limbs") -> None:
+    def take_over(self, predecessor: "Limbs") -> None:
         """Go on from where the oscillators of the same runs stand; limbs that nothing coordinates fall in step."""
         if self._loads.felt:
-            self.ahead = before.ahead
-            self._loads.take_over(before._loads)
+            self.ahead = predecessor.ahead
+            self._loads.take_over(predecessor._loads)
 
-    def kick(self, run: int, ahead: Float[np.ndarray, " limb"]) -> None:
+    def kick(self, run: int, phase_lead: Float[np.ndarray, " limb"]) -> None:
         """Let the limbs of one run jump ahead [cycle]."""
         self.ahead = self.ahead.copy()
-        self.ahead[run] += ahead
+        self.ahead[run] += phase_lead
 
 
 def _trunk_torque(robot: Robot) -> float:
@@ -204,26 +206,27 @@ def _off_pairs(place: Layout, gait: Gait) -> float:
     phases = gait.limb_phases
     pairs = [(i, j, 0.0) for i, limb in enumerate(place.limbs) for j in limb.diagonal]
     pairs += [(i, limb.contralateral, 0.5) for i, limb in enumerate(place.limbs)]
-    return max(abs((phases[i] - phases[j] + apart + 0.5) % 1.0 - 0.5) for i, j, apart in pairs)
+    return max(abs((phases[i] - phases[j] + phase_offset + 0.5) % 1.0 - 0.5) for i, j, phase_offset in pairs)
 
 
 def _refuse_others(gait: Gait, place: Layout) -> None:
-    worst = _off_pairs(place, gait)
-    if worst > _DIAGONAL:
+    deviation = _off_pairs(place, gait)
+    if deviation > _DIAGONAL:
         raise OutsideLimits(
-            f"gait {gait.name!r} has limb phases {gait.limb_phases}, {worst:.2f} cycle away from diagonal pairs; this "
+            f"gait {gait.name!r} has limb phases {gait.limb_phases}, {deviation:.2f} cycle away from diagonal "
+            "pairs; this "
             "limb law would turn it into a trot: use the law 'off' or 'own_load'."
         )
 
 
 def _weights(law: LimbLaw, place: Layout) -> list[list[float]]:
     """Return how much each limb (row) listens to each foot (column); limbs with two neighbours hear half of each."""
-    found = np.zeros((len(place.limbs), len(place.limbs)))
+    weights = np.zeros((len(place.limbs), len(place.limbs)))
     for i, limb in enumerate(place.limbs):
-        found[i, i] = law.own
-        found[i, limb.contralateral] = law.contralateral
-        for near, weight in ((limb.ipsilateral, law.ipsilateral), (limb.diagonal, law.diagonal)):
-            for other in near:
-                found[i, other] = weight / len(near)
-    rows: list[list[float]] = found.tolist()
+        weights[i, i] = law.own
+        weights[i, limb.contralateral] = law.contralateral
+        for neighbours, weight in ((limb.ipsilateral, law.ipsilateral), (limb.diagonal, law.diagonal)):
+            for neighbour in neighbours:
+                weights[i, neighbour] = weight / len(neighbours)
+    rows: list[list[float]] = weights.tolist()
     return rows

@@ -28,24 +28,24 @@ class Courses:
     """What changes over time, for a batch; most of it is constant."""
 
     def __init__(self, values: Sequence[Course]) -> None:
-        self._steady = np.array([0.0 if isinstance(one, tuple) else one for one in values], dtype=float)
-        tables = members([one if isinstance(one, tuple) else None for one in values])
+        self._steady = np.array([0.0 if isinstance(value, tuple) else value for value in values], dtype=float)
+        tables = members([value if isinstance(value, tuple) else None for value in values])
         self._tables = [(np.array(table).T, runs) for table, runs in tables if table is not None]
 
     def at(self, time: float) -> Float[np.ndarray, " run"]:
         """Return the values at a time [s]."""
-        found = self._steady.copy()
+        current = self._steady.copy()
         for (times, values), runs in self._tables:
-            found[runs] = np.interp(time, times, values)
-        return found
+            current[runs] = np.interp(time, times, values)
+        return current
 
 
 def members(keys: Sequence[Any]) -> list[tuple[Any, np.ndarray]]:
     """Return each different key with the numbers of those that have it."""
-    found: dict[Any, list[int]] = {}
+    indices: dict[Any, list[int]] = {}
     for i, key in enumerate(keys):
-        found.setdefault(key, []).append(i)
-    return [(key, np.array(runs)) for key, runs in found.items()]
+        indices.setdefault(key, []).append(i)
+    return [(key, np.array(runs)) for key, runs in indices.items()]
 
 
 class Rules:
@@ -60,8 +60,8 @@ class Rules:
         period: float,
     ) -> None:
         self._yaw = list(layout(robots[0]).trunk_yaw)
-        self._spined = [i for i, one in enumerate(spines) if one is not None]
-        self._tailed = [i for i, one in enumerate(tails) if one is not None]
+        self._spined = [i for i, rule in enumerate(spines) if rule is not None]
+        self._tailed = [i for i, rule in enumerate(tails) if rule is not None]
         self._spine: SpineController | None = None
         self._tail: TailController | None = None
         if self._spined:
@@ -82,11 +82,13 @@ class Rules:
     def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
         """Return the targets as the rules change them."""
         if self._spine is not None:
-            mine = targets[self._spined]
-            asked = mine[:, self._yaw].sum(axis=1)
-            targets[self._spined] = self._spine.correct(mine, asked, _felt(sensed, self._spined))
+            spine_targets = targets[self._spined]
+            target_bend = spine_targets[:, self._yaw].sum(axis=1)
+            targets[self._spined] = self._spine.correct(
+                spine_targets, target_bend, _sensed_of_runs(sensed, self._spined)
+            )
         if self._tail is not None:
-            targets[self._tailed] = self._tail.correct(targets[self._tailed], _felt(sensed, self._tailed))
+            targets[self._tailed] = self._tail.correct(targets[self._tailed], _sensed_of_runs(sensed, self._tailed))
         return targets
 
 
@@ -99,13 +101,13 @@ def _with_tail(robot: Robot, gait: Gait) -> Gait:
     return gait
 
 
-def _felt(sensed: Sensed, runs: list[int]) -> Sensed:
+def _sensed_of_runs(sensed: Sensed, runs: list[int]) -> Sensed:
     """Return the readings of some runs, as far as spine and tail read them."""
     return replace(sensed, servo_position=sensed.servo_position[runs], servo_torque=sensed.servo_torque[runs])
 
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
-_LEAST = 1e-9  # [-]; an amplitude below this is none
+_AMPLITUDE_TOLERANCE = 1e-9  # [-]; an amplitude below this is none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,9 +169,9 @@ class PatternGenerator:
                 check.number("lag", -0.5, 0.5, "cycle")
             if self.pace is not None:
                 check.number("pace", 1e-3, 1e3, "")
-            given = isinstance(self.initial, tuple) and all(abs(phase) <= 1e6 for phase in self.initial)
+            has_phases = isinstance(self.initial, tuple) and all(abs(phase) <= 1e6 for phase in self.initial)
             check.that(
-                given or self.initial in ("gait", "random"),
+                has_phases or self.initial in ("gait", "random"),
                 f"pattern_generator.initial is {str(self.initial)[:80]!r}; gait, random or a phase for each oscillator "
                 "is allowed",
             )
@@ -211,7 +213,7 @@ class Generator:
     ) -> None:
         self._period = period
         self._groups = _grouped(controls, robots, gaits)
-        self._posture = [one for i in range(len(controls)) for one, runs in self._groups if i in runs]
+        self._posture = [posture for i in range(len(controls)) for posture, runs in self._groups if i in runs]
         limbs = layout(robots[0]).limb_names
         self._limbs = slice(2 * len(self._posture[0].segments), None)
         n = self._limbs.start // 2
@@ -220,30 +222,38 @@ class Generator:
         self._drive, self._asymmetry, self._steering = (
             Courses([getattr(control, name) for control in controls]) for name in ("drive", "asymmetry", "steering")
         )
-        self._shift = np.array([one.shift for one in self._posture])[:, None]
+        self._shift = np.array([posture.shift for posture in self._posture])[:, None]
         self._gradient = np.array([_graded(*pair) for pair in zip(controls, self._posture, strict=True)])
         gains = zip(controls, self._posture, strict=True)
-        self._gain = np.array([[c.steering_gain * one.steers for one in p.segments] for c, p in gains])
-        self._full = [max(float(c.oscillators.axis(np.array(c.oscillators.reference))[1]), _LEAST) for c in controls]
-        self._least = np.array([max(_least(c.oscillators), _LEAST) for c in controls])[:, None]
+        self._gain = np.array([[c.steering_gain * segment.steers for segment in p.segments] for c, p in gains])
+        self._full = [
+            max(float(c.oscillators.axis(np.array(c.oscillators.reference))[1]), _AMPLITUDE_TOLERANCE) for c in controls
+        ]
+        self._min_amplitude = np.array(
+            [max(_min_limb_amplitude(c.oscillators), _AMPLITUDE_TOLERANCE) for c in controls]
+        )[:, None]
         self.couplings = []
         """Of each run; see ``oscillators.Couplings``."""
         phases = []
-        self._felt = FeltDrive([one.load for one in controls], robots, period)
-        _, amplitude = self._own(START)
+        self._sensed_drive = FeltDrive([control.load for control in controls], robots, period)
+        _, amplitude = self._natural_rhythm(START)
         for i, (control, robot, gait, seed) in enumerate(zip(controls, robots, gaits, seeds, strict=True)):
-            parts = [one.part for one in self._posture[i].segments]
+            parts = [segment.part for segment in self._posture[i].segments]
             lag = 1.0 / n if control.lag is None else control.lag
-            whole = couple(control.oscillators, parts, limbs, gait.limb_phases, lag)
-            self.couplings.append(cut(whole, control.lesions))
-            driven = bool(amplitude[i, self._limbs].any())
-            phases.append(_initial(control, robot, gait, seed, self._posture[i], lag, driven=driven))
-        pace = np.array([_pace(*one) for one in zip(controls, robots, gaits, strict=True)])
+            couplings = couple(control.oscillators, parts, limbs, gait.limb_phases, lag)
+            self.couplings.append(cut(couplings, control.lesions))
+            has_active_limbs = bool(amplitude[i, self._limbs].any())
+            phases.append(
+                _initial(control, robot, gait, seed, self._posture[i], lag, has_active_limbs=has_active_limbs)
+            )
+        pace = np.array([_pace(*setup) for setup in zip(controls, robots, gaits, strict=True)])
         self._rhythm = Rhythm(
-            self.couplings, [one.oscillators for one in controls], pace, np.array(phases), amplitude, period
+            self.couplings, [control.oscillators for control in controls], pace, np.array(phases), amplitude, period
         )
-        self._loads = Loads([one.limbs for one in controls], robots, gaits, period)
-        self._rules = Rules([one.spine for one in controls], [one.tail for one in controls], robots, gaits, period)
+        self._loads = Loads([control.limbs for control in controls], robots, gaits, period)
+        self._rules = Rules(
+            [control.spine for control in controls], [control.tail for control in controls], robots, gaits, period
+        )
 
     @property
     def phase(self) -> Float[np.ndarray, "run oscillator"]:
@@ -263,9 +273,9 @@ class Generator:
     @property
     def wave(self) -> Float[np.ndarray, "run segment"]:
         """Bend of each segment of the axis to the left, in amplitudes of the gait [-]."""
-        out = self.amplitude * (1.0 + np.cos(self._rhythm.phase))
+        outputs = self.amplitude * (1.0 + np.cos(self._rhythm.phase))
         n = self._limbs.start // 2
-        return waves(out[:, :n], out[:, n : 2 * n], self._full) * self._gradient
+        return waves(outputs[:, :n], outputs[:, n : 2 * n], self._full) * self._gradient
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
@@ -273,9 +283,9 @@ class Generator:
 
     def advance(self, tick: int) -> None:
         """Let the oscillators turn from the last control period to this one, if the walk has begun by then."""
-        before = (tick - 1) * self._period
-        if before >= START - _SLACK:
-            frequency, amplitude = self._own(before)
+        previous_time = (tick - 1) * self._period
+        if previous_time >= START - _SLACK:
+            frequency, amplitude = self._natural_rhythm(previous_time)
             if self._loads.felt:
                 frequency[:, self._limbs] *= 1.0 - self._loads.brake(self.limb_phase)
             self._rhythm.advance(frequency, amplitude)
@@ -284,32 +294,37 @@ class Generator:
         """Let the oscillators turn, and say what the servos do."""
         if sensed is not None and self._loads.felt:
             self._loads.feel(sensed)
-        if sensed is not None and self._felt.felt:
-            self._felt.feel(sensed)
+        if sensed is not None and self._sensed_drive.felt:
+            self._sensed_drive.feel(sensed)
         self.advance(tick)
         targets = self._targets(tick * self._period)
         if sensed is not None and tick * self._period >= START - _SLACK:
             targets = self._rules.correct(targets, sensed)
         return Command(targets, self.limb_phase)
 
-    def _own(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+    def _natural_rhythm(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return own frequencies [Hz] and amplitudes [-] of all oscillators at a time."""
-        whole = self._drive.at(time) + self._felt.drive if self._felt.felt else self._drive.at(time)
-        drive = whole[:, None] + self._asymmetry.at(time)[:, None] * self._sides
+        common_drive = (
+            self._drive.at(time) + self._sensed_drive.drive if self._sensed_drive.felt else self._drive.at(time)
+        )
+        drive = common_drive[:, None] + self._asymmetry.at(time)[:, None] * self._sides
         frequency, amplitude = np.empty_like(drive), np.empty_like(drive)
         axis = slice(0, self._limbs.start)
         for numbers, runs in self._numbers:
-            for part, law in ((axis, numbers.axis), (self._limbs, numbers.limbs)):
-                frequency[runs, part], amplitude[runs, part] = law(drive[runs, part])
+            for group, law in ((axis, numbers.axis), (self._limbs, numbers.limbs)):
+                frequency[runs, group], amplitude[runs, group] = law(drive[runs, group])
         return frequency, amplitude
 
     def _targets(self, time: float) -> Float[np.ndarray, "run servo"]:
-        share = np.clip(self.amplitude[:, self._limbs] / self._least, 0.0, 1.0)
+        share = np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0)
         wave, phase = self.wave, self.limb_phase
         offset = self._steering.at(time)[:, None] * self._gain
-        found = [(runs, one.targets(phase[runs], share[runs], wave[runs], offset[runs])) for one, runs in self._groups]
-        targets = np.empty((len(phase), found[0][1].shape[1]))
-        for runs, angles in found:
+        group_targets = [
+            (runs, posture.targets(phase[runs], share[runs], wave[runs], offset[runs]))
+            for posture, runs in self._groups
+        ]
+        targets = np.empty((len(phase), group_targets[0][1].shape[1]))
+        for runs, angles in group_targets:
             targets[runs] = angles
         return targets
 
@@ -319,16 +334,16 @@ def _grouped(
 ) -> list[tuple[PatternPosture, np.ndarray]]:
     for robot, gait in set(zip(robots, gaits, strict=True)):
         check_limits(robot, gait)
-    keys = list(zip(robots, gaits, (one.silent == "standing" for one in controls), strict=True))
+    keys = list(zip(robots, gaits, (control.silent == "standing" for control in controls), strict=True))
     return [(PatternPosture(robot, gait, standing=standing), runs) for (robot, gait, standing), runs in members(keys)]
 
 
 def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
     places, factors = zip(*control.gradient, strict=True)
-    return [float(np.interp(one.place, places, factors)) for one in posture.segments]
+    return [float(np.interp(segment.place, places, factors)) for segment in posture.segments]
 
 
-def _least(numbers: Oscillators) -> float:
+def _min_limb_amplitude(numbers: Oscillators) -> float:
     """Return the amplitude of limbs at the lowest drive that moves them [-]."""
     return float(numbers.limbs(np.array(numbers.limb_drives[0]))[1])
 
@@ -355,7 +370,7 @@ def _initial(
     posture: PatternPosture,
     lag: float,
     *,
-    driven: bool,
+    has_active_limbs: bool,
 ) -> np.ndarray:
     count = 2 * len(posture.segments) + len(gait.limb_phases)
     if control.initial == "random":
@@ -368,7 +383,7 @@ def _initial(
             )
         return 2 * np.pi * np.array(control.initial, dtype=float)
     limbs = [phase - posture.shift for phase in gait.limb_phases]
-    return initial_phases(posture.segments, limbs, lag, driven=driven)
+    return initial_phases(posture.segments, limbs, lag, driven=has_active_limbs)
 
 
 class OscillatorStates(NamedTuple):
@@ -409,15 +424,15 @@ def oscillate(
     """
     require("oscillate", "duration", duration, 0.0, 86400.0, "s")
     period, runs = control_period(robot), len(controls)
-    first, ticks = round(START / period), round(duration / period)
+    first_tick, ticks = round(START / period), round(duration / period)
     generator = Generator(controls, [robot] * runs, [gait] * runs, [0] * runs if seeds is None else seeds, period)
-    found = []
-    for tick in range(first, first + ticks + 1):
+    samples = []
+    for tick in range(first_tick, first_tick + ticks + 1):
         generator.advance(tick)
-        if (tick - first) % every == 0:
-            found.append((tick * period, generator.phase, generator.amplitude, generator.wave))
-            progress("oscillating", (tick - first) / max(ticks, 1))
-    time, phase, amplitude, wave = zip(*found, strict=True)
+        if (tick - first_tick) % every == 0:
+            samples.append((tick * period, generator.phase, generator.amplitude, generator.wave))
+            progress("oscillating", (tick - first_tick) / max(ticks, 1))
+    time, phase, amplitude, wave = zip(*samples, strict=True)
     return OscillatorStates(
         time=np.array(time),
         phase=np.stack(phase, axis=1),

@@ -42,20 +42,22 @@ class FeltDrive:
     def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[Robot], period: float) -> None:
         self.felt = any(rule is not None for rule in rules)
         """Whether any run has such a rule."""
-        given = [rule or LoadRule(afloat=0.0) for rule in rules]
-        self._afloat, self._touch = (np.array([getattr(rule, name) for rule in given]) for name in ("afloat", "touch"))
-        self._kept = np.array([keep(rule.memory, period) for rule in given])
+        active_rules = [rule or LoadRule(afloat=0.0) for rule in rules]
+        self._afloat_drive, self._touch = (
+            np.array([getattr(rule, name) for rule in active_rules]) for name in ("afloat", "touch")
+        )
+        self._decay = np.array([keep(rule.memory, period) for rule in active_rules])
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
-        self.load: Float[np.ndarray, " run"] = np.ones(len(given))
+        self.load: Float[np.ndarray, " run"] = np.ones(len(active_rules))
         """Share of the weight that the ground carries, through the low pass; as on land before anything is felt [-]."""
 
     def feel(self, sensed: Sensed) -> None:
         """Take in what the robots feel now."""
         ground = finite(sensed.foot_pressure).sum(axis=1) + finite(sensed.belly_pressure).sum(axis=1)
         load = (ground + finite(sensed.tail_pressure)) / self._weight
-        self.load = load + self._kept * (self.load - load)
+        self.load = load + self._decay * (self.load - load)
 
     @property
     def drive(self) -> Float[np.ndarray, " run"]:
         """What the oscillators get beside the descending drive [-]."""
-        return np.asarray(self._afloat * np.clip(1.0 - self.load / self._touch, 0.0, 1.0))
+        return np.asarray(self._afloat_drive * np.clip(1.0 - self.load / self._touch, 0.0, 1.0))

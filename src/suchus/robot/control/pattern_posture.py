@@ -55,18 +55,20 @@ def axis_segments(robot: Robot, gait: Gait) -> tuple[AxisSegment, ...]:
         )
     steady, amplitude = (yaw.offset / yaw.share)[0], yaw.amplitude()[0]
     segments = []
-    for k, (servo, left, along) in enumerate(zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)):
-        behind = [number for number, hip in enumerate(hips) if hip <= along]
-        girdle = -1 if not hips else behind[-1] if behind else 0
+    for k, (servo, sign, position) in enumerate(
+        zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)
+    ):
+        girdles_ahead = [number for number, hip in enumerate(hips) if hip <= position]
+        girdle = -1 if not hips else girdles_ahead[-1] if girdles_ahead else 0
         segments.append(
             AxisSegment(
-                place=along,
+                place=position,
                 servo=servo,
-                left=left,
+                left=sign,
                 amplitude=float(amplitude[k]),
                 offset=float(steady[k]),
                 part=AxisPart(girdle, _lag(gait, complex(yaw.swing[0, k]), girdle)),
-                steers=not hips or along < hips[-1],
+                steers=not hips or position < hips[-1],
             )
         )
     return tuple(segments)
@@ -90,9 +92,9 @@ class PatternPosture:
         owner = [n for n, limb in enumerate(self._place.limbs) for _ in range(limb.servos.start, limb.servos.stop)]
         self._owner = np.array(owner, dtype=int)
         middle = middle_stance(robot, gait)
-        self._rest = (middle if standing else _folded(self._place, gait, middle))[self._limb_servos]
+        self._silent_angles = (middle if standing else _folded(self._place, gait, middle))[self._limb_servos]
         self._turns = np.array([_cranked(self._place, gait, limb) for limb in owner], dtype=bool)
-        self._low, self._high = servo_ranges(robot).T
+        self._lower_bound, self._upper_bound = servo_ranges(robot).T
         self._steady = middle
 
     def targets(
@@ -114,16 +116,16 @@ class PatternPosture:
         if self._limb_servos:
             path = self._limbs.targets(phase, np.zeros(len(phase), dtype=complex))[:, self._limb_servos]
             follows = np.where(self._turns, 1.0, share[:, self._owner])
-            targets[:, self._limb_servos] = self._rest + follows * (path - self._rest)
+            targets[:, self._limb_servos] = self._silent_angles + follows * (path - self._silent_angles)
         amplitude, steady = np.array([(segment.amplitude, segment.offset) for segment in self.segments]).T
         bend = amplitude * wave + steady + offset
-        for servo in {one.servo for one in self.segments}:
-            mine = [i for i, one in enumerate(self.segments) if one.servo == servo]
-            whole = self.segments[mine[0]].left * bend[:, mine].sum(axis=1)
+        for servo in {segment.servo for segment in self.segments}:
+            segment_indices = [i for i, segment in enumerate(self.segments) if segment.servo == servo]
+            angle = self.segments[segment_indices[0]].left * bend[:, segment_indices].sum(axis=1)
             if servo in self._place.cables:
                 cable = self._place.cable(servo)
-                whole = tail_kinematics.servo_angle(cable, np.clip(whole, -cable.bend_limit, cable.bend_limit))
-            targets[:, servo] = np.clip(whole, self._low[servo], self._high[servo])
+                angle = tail_kinematics.servo_angle(cable, np.clip(angle, -cable.bend_limit, cable.bend_limit))
+            targets[:, servo] = np.clip(angle, self._lower_bound[servo], self._upper_bound[servo])
         return targets
 
 
@@ -143,9 +145,9 @@ def _folded(place: Layout, gait: Gait, middle: np.ndarray) -> np.ndarray:
     for limb in place.limbs:
         if isinstance(gait.limbs[limb.number], Held):
             continue
-        driven = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
-        yaws = [i for i, hinge in enumerate(driven) if hinge.turn == "yaw"]
-        for i, hinge in enumerate(driven):
+        driven_hinges = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
+        yaws = [i for i, hinge in enumerate(driven_hinges) if hinge.turn == "yaw"]
+        for i, hinge in enumerate(driven_hinges):
             if not isinstance(hinge.drive, Crank):
                 servo = limb.servos.start + i
                 folded[servo] = np.clip(_FOLDED if yaws and i == yaws[0] else 0.0, *ranges[servo])
@@ -158,16 +160,16 @@ def _cranked(place: Layout, gait: Gait, limb: int) -> bool:
 
 
 def waves(
-    left: Float[np.ndarray, "run segment"], right: Float[np.ndarray, "run segment"], full: Sequence[float]
+    left_output: Float[np.ndarray, "run segment"], right_output: Float[np.ndarray, "run segment"], full: Sequence[float]
 ) -> Float[np.ndarray, "run segment"]:
     """Return how far each segment bends to the left, from the outputs of its two sides [-].
 
     Args:
-        left: outputs of the left oscillators [-].
-        right: outputs of the right oscillators [-].
+        left_output: outputs of the left oscillators [-].
+        right_output: outputs of the right oscillators [-].
         full: of each run, the amplitude at which a gait's own bend is reached [-].
     """
-    return np.asarray((left - right) / (2.0 * np.asarray(full)[:, None]))
+    return np.asarray((left_output - right_output) / (2.0 * np.asarray(full)[:, None]))
 
 
 def initial_phases(
@@ -182,8 +184,10 @@ def initial_phases(
         driven: whether the limbs are active.
     """
     if driven and limbs:
-        sides = [[limbs[2 * one.part.girdle + side] - one.part.phase_lag for one in segments] for side in (0, 1)]
+        sides = [
+            [limbs[2 * segment.part.girdle + side] - segment.part.phase_lag for segment in segments] for side in (0, 1)
+        ]
     else:
-        first = limbs[0] if limbs else 0.0
-        sides = [[first - lag * k + 0.5 * side for k in range(len(segments))] for side in (0, 1)]
+        first_phase = limbs[0] if limbs else 0.0
+        sides = [[first_phase - lag * k + 0.5 * side for k in range(len(segments))] for side in (0, 1)]
     return 2 * pi * np.array([*sides[0], *sides[1], *limbs])

@@ -60,7 +60,11 @@ class Shared:
 
 def silence(runs: int, limbs: int) -> Shared:
     """Return the shared variables before anybody has written."""
-    none = np.zeros(runs)
+    zeros = np.zeros(runs)
     return Shared(
-        limb_phase=np.zeros((runs, limbs)), trunk_bend=none, trunk_direction=none, tail_bend=none, tail_direction=none
+        limb_phase=np.zeros((runs, limbs)),
+        trunk_bend=zeros,
+        trunk_direction=zeros,
+        tail_bend=zeros,
+        tail_direction=zeros,
     )

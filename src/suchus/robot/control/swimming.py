@@ -68,11 +68,11 @@ class Swimming:
                 gait.needs_steering("a swim that grows from rest or is held")
             check_speeds(robot, gait)
             for side in (-1.0, 1.0) if control.heading is not None else ():
-                check_limits(robot, _steered(gait, side * control.heading.trunk_turn))
+                check_limits(robot, _with_trunk_bend(gait, side * control.heading.trunk_turn))
         return SwimmingController(runs.controls, runs.robots, runs.gaits, period)
 
 
-def _steered(gait: Gait, bend: float) -> Gait:
+def _with_trunk_bend(gait: Gait, bend: float) -> Gait:
     """Return a gait whose trunk bends more to the left [rad]."""
     return replace(gait, axis=(*gait.axis, Bend(part="trunk", offset=bend)))
 
@@ -89,21 +89,21 @@ class SwimmingController:
         cycle = [max(1, round(gait.period / period)) for gait in gaits]
         self._headings = Headings([control.heading for control in controls], robots, cycle, period)
         self._depths = Depths([control.depth for control in controls], robots, period)
-        asked = [np.nan if control.depth is None else control.depth.depth for control in controls]
-        self._pitches = Pitches([control.pitch for control in controls], asked, robots, period)
-        self._still = np.zeros(len(controls))
+        target_depths = [np.nan if control.depth is None else control.depth.depth for control in controls]
+        self._pitches = Pitches([control.pitch for control in controls], target_depths, robots, period)
+        self._zeros = np.zeros(len(controls))
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The first posture."""
-        return self._posture(0.0, self._still, self._still)[0]
+        return self._posture(0.0, self._zeros, self._zeros)[0]
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
         """Go on in the gait, and add what is felt."""
-        tail, trunk, air = self._still, self._still, None
+        tail, trunk, air = self._zeros, self._zeros, None
         if sensed is not None and self._feels:
             tail, trunk = self._headings.bend(sensed)
-            kept = self._depths.air_fraction(sensed)
-            air = None if kept is None else self._pitches.split(kept, sensed)
+            air_fraction = self._depths.air_fraction(sensed)
+            air = None if air_fraction is None else self._pitches.split(air_fraction, sensed)
         return Command(*self._posture(tick * self._period, tail, trunk), air)
 
     def _posture(self, time: float, tail: np.ndarray, trunk: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -83,16 +83,16 @@ class Switcher:
             return []
         free = np.array([run not in busy for run in range(len(self._rules))])
         self._feel(sensed, phase, gaits, free)
-        asked = []
+        requests = []
         for run, rule in enumerate(self._rules):
             if rule is not None and free[run]:
                 rung = rule.ladder.index(gaits[run])
                 step = self._step(run, rule, rung)
                 if step:
-                    asked.append((run, rule.ladder[rung + step]))
+                    requests.append((run, rule.ladder[rung + step]))
                     self._since[run] = self._calm[run] = 0.0
                     self._belly[run] = self._stumbling[run] = self._tilt[run] = 0.0
-        return asked
+        return requests
 
     def _step(self, run: int, rule: SwitchRule, rung: int) -> int:
         """Return how many rungs a run goes up."""
@@ -112,11 +112,11 @@ class Switcher:
         contradicts = (feet > _FOOT_LOADED * self._weight[:, None]) != (np.mod(phase, 1.0) >= 1.0 - duty)
         tilt = np.nan_to_num(np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)]))
         self._mean = tilt if self._mean is None else self._mean + self._period / _WASHOUT * (tilt - self._mean)
-        off = np.hypot(*(tilt - self._mean))
-        for mean, now in (
+        deviation = np.hypot(*(tilt - self._mean))
+        for mean, reading in (
             (self._belly, belly / np.maximum(total, _FOOT_LOADED * self._weight)),
             (self._stumbling, contradicts.mean(axis=1)),
-            (self._tilt, off),
+            (self._tilt, deviation),
         ):
-            mean[free] = (now + self._keep * (mean - now))[free]
+            mean[free] = (reading + self._keep * (mean - reading))[free]
         self._since[free] += self._period

@@ -83,9 +83,9 @@ class Walking:
         """
         for control, robot, gait in set(zip(runs.controls, runs.robots, runs.gaits, strict=True)):
             ladder = () if control.switching is None else control.switching.ladder
-            others = (*(change.gait for change in control.changes), *ladder)
-            for steered in (gait, *others) if control != Walking() else ():
-                steered.needs_steering("a walk that is steered and changes its gait")
+            later_gaits = (*(change.gait for change in control.changes), *ladder)
+            for walk_gait in (gait, *later_gaits) if control != Walking() else ():
+                walk_gait.needs_steering("a walk that is steered and changes its gait")
             _check_bend(control, robot, gait)
         return Walker(runs, period)
 
@@ -97,12 +97,12 @@ def _check_bend(control: Walking, robot: Robot, gait: Gait) -> None:
             f"walking.bend is {control.bend:.3f} rad; robot {robot.name!r} has no servo that bends its trunk "
             "sideways: set it to 0, and steer by walking.asymmetry."
         )
-    bent = trunk_amplitude(robot, gait)
-    most = float(np.abs(servo_ranges(robot)[list(place.trunk_yaw)]).min(axis=1, initial=np.inf).sum())
-    if abs(control.bend) + bent > most + 1e-9:
+    gait_bend = trunk_amplitude(robot, gait)
+    max_bend = float(np.abs(servo_ranges(robot)[list(place.trunk_yaw)]).min(axis=1, initial=np.inf).sum())
+    if abs(control.bend) + gait_bend > max_bend + 1e-9:
         raise OutsideLimits(
-            f"gait {gait.name!r} bends the trunk by {bent:.3f} rad and steering by "
-            f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {most:.3f} rad in all: "
+            f"gait {gait.name!r} bends the trunk by {gait_bend:.3f} rad and steering by "
+            f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {max_bend:.3f} rad in all: "
             "lower walking.bend."
         )
 
@@ -128,11 +128,11 @@ class Walker:
         self._switcher = Switcher([control.switching for control in controls], robots, gaits, period)
         self._lower = np.zeros((n, len(place.limbs)))
         self._batch = Batch(self._robots, self._gaits)
-        self._last = self._walk(0.0)
+        self._previous_command = self._walk(0.0)
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
-        return self._last.targets
+        return self._previous_command.targets
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
         """Walk on, or take another step of a change of gait."""
@@ -140,38 +140,38 @@ class Walker:
         if sensed is not None:
             self._lower = self._attitude.lower(sensed) if time >= START - _SLACK else np.zeros_like(self._lower)
         self._finish(time)
-        now = self._walk(time)
-        for run, asked in self._asked(time, sensed, now.phase):
-            course = transition(self._robots[run], self._gaits[run], asked)
-            self._script[run] = (time, course, self._last.targets[run].copy())
+        current = self._walk(time)
+        for run, target_gait in self._requested_gaits(time, sensed, current.phase):
+            course = transition(self._robots[run], self._gaits[run], target_gait)
+            self._script[run] = (time, course, self._previous_command.targets[run].copy())
             self._cycles[run] += np.ceil((time - self._began[run]) / self._gaits[run].period)
-            self._gaits[run] = asked
+            self._gaits[run] = target_gait
             self._batch = Batch(self._robots, self._gaits)
-        for run, (begun, course, start) in self._script.items():
-            now.targets[run] = course.at(time - begun, start)
-            now.phase[run] = self._last.phase[run]
-        self._last = now
-        return Command(now.targets.copy(), now.phase.copy())
+        for run, (start_time, course, start) in self._script.items():
+            current.targets[run] = course.at(time - start_time, start)
+            current.phase[run] = self._previous_command.phase[run]
+        self._previous_command = current
+        return Command(current.targets.copy(), current.phase.copy())
 
     def gait_of(self, run: int) -> Gait:
         """Return the gait in which a run walks, or to which it is changing."""
         return self._gaits[run]
 
-    def _asked(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
+    def _requested_gaits(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
         """Return who begins another gait now."""
         busy = set(self._script)
-        asked = []
+        requests = []
         for run, control in enumerate(self._controls):
             due = [change.gait for change in control.changes if change.at <= time + _SLACK]
             if run not in busy and due and due[-1] != self._gaits[run]:
-                asked.append((run, due[-1]))
+                requests.append((run, due[-1]))
         if sensed is not None and time >= START - _SLACK:
-            asked += self._switcher.decide(sensed, phase, self._gaits, busy)
-        return asked
+            requests += self._switcher.decide(sensed, phase, self._gaits, busy)
+        return requests
 
     def _finish(self, time: float) -> None:
-        for run, (begun, course, _) in list(self._script.items()):
-            if time >= begun + course.duration - _SLACK:
+        for run, (start_time, course, _) in list(self._script.items()):
+            if time >= start_time + course.duration - _SLACK:
                 del self._script[run]
                 self._began[run] = time
                 self._full[run] = _GROWS * self._gaits[run].period
