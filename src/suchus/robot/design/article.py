@@ -35,7 +35,7 @@ def crocodile(tables: Tables) -> Robot:
     robot = Robot(
         name=tables.name,
         root="pelvis",
-        axis=(*_ahead(tables), _pelvis(tables), *_tail(tail)),
+        axis=(*_front_segments(tables), _pelvis(tables), *_tail(tail)),
         girdles=(
             _girdle("F", "thorax", tables.thorax.shoulder, tables.front_leg),
             _girdle("H", "pelvis", 0.0, tables.hind_leg),
@@ -56,8 +56,8 @@ def remade(robot: Robot, change: Callable[[Any], Any]) -> Robot:
         change: takes ``Tables`` or a ``Robot`` and returns the same.
     """
     tables = tables_of(robot)
-    changed: Robot = change(robot) if tables is None else crocodile(change(tables))
-    return changed
+    remade_robot: Robot = change(robot) if tables is None else crocodile(change(tables))
+    return remade_robot
 
 
 @lru_cache(maxsize=256)
@@ -78,13 +78,13 @@ def tables_of(robot: Robot) -> Tables | None:
     try:
         tables = Tables(
             name=robot.name,
-            hind_leg=_read(Leg, legs[1]),
-            front_leg=_read(Leg, legs[0]),
-            pelvis=_read(Pelvis, pelvis),
-            spine=_read(Spine, spine, link_mass=spine.link_masses[0]),
-            thorax=_read(Thorax, thorax),
-            head=_read(Head, head),
-            tail=_read(Tail, tail, plate=tail.plate, **_moved(robot)),
+            hind_leg=_from_measures(Leg, legs[1]),
+            front_leg=_from_measures(Leg, legs[0]),
+            pelvis=_from_measures(Pelvis, pelvis),
+            spine=_from_measures(Spine, spine, link_mass=spine.link_masses[0]),
+            thorax=_from_measures(Thorax, thorax),
+            head=_from_measures(Head, head),
+            tail=_from_measures(Tail, tail, plate=tail.plate, **_cord_drive(robot)),
             contact=robot.contact,
             hull=robot.hull,
         )
@@ -93,16 +93,16 @@ def tables_of(robot: Robot) -> Tables | None:
         return None
 
 
-def _moved(robot: Robot) -> dict[str, object]:
+def _cord_drive(robot: Robot) -> dict[str, object]:
     """Return what of the tables says how the tail's cords are moved."""
     linear = robot.cables[0].linear
     return {"drive": "cable"} if linear is None else {"drive": "linear_actuator", "actuator": linear}
 
 
-def _read(kind: type[T], measures: NamedTuple, **more: object) -> T:
+def _from_measures(kind: type[T], measures: NamedTuple, **extra_fields: object) -> T:
     """Return a part of the tables with the measures that carry the names of its fields."""
     names = {field.name for field in fields(kind)}  # type: ignore[arg-type]
-    return kind(**{name: value for name, value in measures._asdict().items() if name in names}, **more)
+    return kind(**{name: value for name, value in measures._asdict().items() if name in names}, **extra_fields)
 
 
 def cable_names(tail: Tail) -> tuple[str, ...]:
@@ -115,7 +115,7 @@ def fin_names(tail: Tail) -> tuple[str, ...]:
     return tuple(f"fin_{turn}_{i + 1}" for i in range(tail.fin_segments) for turn in ("yaw", "pitch"))
 
 
-def _ahead(tables: Tables) -> list[Segment]:
+def _front_segments(tables: Tables) -> list[Segment]:
     """Return head with thorax, then the links of the spine back to the pelvis."""
     spine, thorax, head = tables.spine, tables.thorax, tables.head
     hinges = [_spine_hinge(tables, name) for name in spine.names]
@@ -176,17 +176,17 @@ def _pelvis(tables: Tables) -> Segment:
 
 
 def _tail(tail: Tail) -> list[Segment]:
-    joints = [(hinge,) for hinge in _driven(tail)] + [_passive(tail, i) for i in range(tail.fin_segments)]
-    found = []
+    joints = [(hinge,) for hinge in _driven_hinges(tail)] + [_passive(tail, i) for i in range(tail.fin_segments)]
+    segments = []
     for i, (length, radius, mass) in enumerate(zip(*tail_segments(tail), strict=True)):
         name = f"tail_{i}" if i else "tail_root"
         rod = Rod(name=name, start=(0, 0, 0), end=(-length, 0, 0), radius=radius, mass=mass)
         hinges = joints[i] if i < len(joints) else ()
-        found.append(Segment(name=name, front=0.0, rear=length, shapes=(rod,), hinges=hinges))
-    return found
+        segments.append(Segment(name=name, front=0.0, rear=length, shapes=(rod,), hinges=hinges))
+    return segments
 
 
-def _driven(tail: Tail) -> list[Hinge]:
+def _driven_hinges(tail: Tail) -> list[Hinge]:
     limit = _SPARE * tail.bend_limit / tail.joints
     drive: Servo | Spring = tail.cable_servo
     if tail.drive != "servos":
@@ -223,7 +223,7 @@ def _cable(tail: Tail) -> Cable:
     return replace(cable, servo=tail.actuator or ideal, pulley=0.0)
 
 
-def _girdle(name: str, segment: str, at: float, leg: Leg) -> Girdle:
+def _girdle(name: str, segment: str, position: float, leg: Leg) -> Girdle:
     def hinge(word: str, turn: str, limits: tuple[float, float]) -> Hinge:
         return Hinge(name=word, turn=turn, range=limits, drive=leg.servo)  # type: ignore[arg-type]
 
@@ -243,5 +243,10 @@ def _girdle(name: str, segment: str, at: float, leg: Leg) -> Girdle:
     )
     foot = Foot(radius=leg.foot_radius, mass=LEG_SHARES[2] * leg.mass)
     return Girdle(
-        name=name, segment=segment, at=at, aside=leg.hip_offset, above=0.0, limb=Limb(links=(femur, tibia), foot=foot)
+        name=name,
+        segment=segment,
+        at=position,
+        aside=leg.hip_offset,
+        above=0.0,
+        limb=Limb(links=(femur, tibia), foot=foot),
     )

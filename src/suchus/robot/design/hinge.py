@@ -311,11 +311,12 @@ class Cable:
             if isinstance(self.servo, LinearActuator) and self.hinges:
                 if self.pulley == 0.0:
                     object.__setattr__(self, "pulley", self.cord_spacing / 2)
-                asked = self.cord_at(self.bend_limit)
+                required_travel = self.cord_at(self.bend_limit)
                 check.that(
-                    asked <= self.servo.travel * (1 + 1e-9),
+                    required_travel <= self.servo.travel * (1 + 1e-9),
                     f"cable {self.name} bends up to {self.bend_limit:.4g} rad, for which its linear actuator must move "
-                    f"{asked:.4g} m to either side, and its travel is {self.servo.travel:.4g} m: let it bend less, "
+                    f"{required_travel:.4g} m to either side, and its travel is {self.servo.travel:.4g} m: let it "
+                    "bend less, "
                     "give more travel, or cords that are closer together",
                 )
             check.number("pulley", 1e-5, 10.0, "m")

@@ -49,10 +49,10 @@ class Heat:
             loss: what it would turn into heat with its winding at ``ROOM`` [W].
         """
         cold = self.resistance * loss
-        left = 1.0 - COPPER * cold  # a warm winding resists more, which warms it further
-        if left <= 0.0:
+        margin = 1.0 - COPPER * cold  # a warm winding resists more, which warms it further
+        if margin <= 0.0:
             return float("inf")
-        return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM)) / left
+        return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM)) / margin
 
     def reached_after(self, loss: float) -> float:
         """Return how long a cold servo that turns so much into heat takes to its limit; infinite if never [s].
@@ -171,9 +171,10 @@ class Motor:
                 self.continuous_torque <= self.stall_torque,
                 f"continuous_torque is {self.continuous_torque:g} N m, above stall_torque, {self.stall_torque:g} N m",
             )
-            low, high = self.volts_range
+            min_volts, max_volts = self.volts_range
             check.that(
-                low <= self.volts <= high, f"volts is {self.volts:g} V, outside volts_range, {low:g} to {high:g} V"
+                min_volts <= self.volts <= max_volts,
+                f"volts is {self.volts:g} V, outside volts_range, {min_volts:g} to {max_volts:g} V",
             )
 
     def source(self, field: str) -> str:
@@ -200,9 +201,10 @@ class Motor:
             InvalidFields: the supply is not one that it bears.
         """
         with Checks(f"motor {self.name}", self) as check:
-            low, high = self.volts_range
+            min_volts, max_volts = self.volts_range
             check.that(
-                low <= volts <= high, f"{volts:g} V is no supply for {self.name}; {low:g} to {high:g} V is allowed"
+                min_volts <= volts <= max_volts,
+                f"{volts:g} V is no supply for {self.name}; {min_volts:g} to {max_volts:g} V is allowed",
             )
         share = volts / self.volts
         return Winding(
