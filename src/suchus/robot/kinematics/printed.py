@@ -125,7 +125,7 @@ def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batc
     theta = numbers(bend, "the bend", finite=False)[..., None]
     i = np.arange(1, tail.joints + 1)
     pitch = tail.plate + tail.gap
-    both = (i - 1) * pitch * np.cos(i * theta / tail.joints)
-    places = np.stack([both, both], axis=-1)
+    coordinate = (i - 1) * pitch * np.cos(i * theta / tail.joints)
+    places = np.stack([coordinate, coordinate], axis=-1)
     places[..., 0, 0] = pitch / 2
     return places

@@ -35,19 +35,21 @@ def level_chambers(
     for body in (front, rear):
         if body not in names:
             raise UnknownName("body", body, names)
-    ids, found = table[:, 0].astype(int), frames(robot, angles)
-    x = found.places[ids, 0] + np.einsum("nj,nj->n", found.turns[ids, 0], column(table, "at"))
-    ahead, behind = (np.average(x, weights=volume * (ids == names.index(body))) for body in (front, rear))
+    ids, body_frames = table[:, 0].astype(int), frames(robot, angles)
+    x = body_frames.places[ids, 0] + np.einsum("nj,nj->n", body_frames.turns[ids, 0], column(table, "at"))
+    front_center, rear_center = (np.average(x, weights=volume * (ids == names.index(body))) for body in (front, rear))
     mass, buoyancy = centre_of_mass(robot, angles)[0], np.average(x, weights=volume)
-    needed = mass + volume.sum() * (buoyancy - mass) / spare_volume(robot)
-    if not behind < needed < ahead:
+    target_center = mass + volume.sum() * (buoyancy - mass) / spare_volume(robot)
+    if not rear_center < target_center < front_center:
         raise InvalidDesign(
-            f"the air that robot {robot.name!r} lets out to hover must have its centre {needed:.3f} m ahead of the "
-            f"root for it to be level; {front} is at {ahead:.3f} m and {rear} at {behind:.3f} m: choose chambers "
+            f"the air that robot {robot.name!r} lets out to hover must have its centre {target_center:.3f} m "
+            "ahead of the "
+            f"root for it to be level; {front} is at {front_center:.3f} m and {rear} at {rear_center:.3f} m: "
+            "choose chambers "
             "before and behind that point."
         )
-    share = float((needed - behind) / (ahead - behind))
-    return Chamber(body=front, share=share), Chamber(body=rear, share=1.0 - share)
+    fraction = float((target_center - rear_center) / (front_center - rear_center))
+    return Chamber(body=front, share=fraction), Chamber(body=rear, share=1.0 - fraction)
 
 
 def spare_volume(robot: Robot) -> float:
