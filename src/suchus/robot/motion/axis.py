@@ -26,9 +26,9 @@ class Hinges(NamedTuple):
     places: tuple[float, ...]
     """Of each along the body, 0 at the snout and 1 at the tip of the tail [-]."""
 
-    def within(self, part: Part) -> list[int]:
+    def within(self, region: Part) -> list[int]:
         """Return which of them a part has."""
-        return [i for i, mine in enumerate(self.parts) if part in ("axis", mine)]
+        return [i for i, hinge_region in enumerate(self.parts) if region in ("axis", hinge_region)]
 
 
 @lru_cache(maxsize=256)
@@ -36,14 +36,14 @@ def yaw_hinges(robot: Robot) -> Hinges:
     """Return the driven hinges that bend a robot sideways; positive is concave to the left."""
     place = layout(robot)
     rows: list[tuple[float, str, int, float, Part]] = []
-    for servo, left, along in zip(place.axial_yaw, place.axial_left, place.axial_place, strict=True):
-        part: Part = "trunk" if servo in place.trunk_yaw else "tail" if servo in place.tail_yaw else "neck"
-        rows.append((along, place.servos[servo], servo, left, part))
+    for servo, sign, position in zip(place.axial_yaw, place.axial_left, place.axial_place, strict=True):
+        region: Part = "trunk" if servo in place.trunk_yaw else "tail" if servo in place.tail_yaw else "neck"
+        rows.append((position, place.servos[servo], servo, sign, region))
     for servo in place.cables:
         hinges = place.cable(servo).hinges
-        behind = place.hinges.index(hinges[0]) >= place.behind.start
-        for along, name in zip(place.cable_places(servo), hinges, strict=True):
-            rows.append((along, name, servo, -1.0, "tail" if behind else "trunk"))
+        is_tail = place.hinges.index(hinges[0]) >= place.behind.start
+        for position, name in zip(place.cable_places(servo), hinges, strict=True):
+            rows.append((position, name, servo, -1.0, "tail" if is_tail else "trunk"))
     rows.sort(key=lambda row: row[0])
     places, names, servos, signs, parts = tuple(zip(*rows, strict=True)) or ((), (), (), (), ())
     return Hinges(names, servos, signs, parts, places)
@@ -54,12 +54,14 @@ def pitch_hinges(robot: Robot) -> Hinges:
     """Return the driven hinges that bend a robot up and down; positive is concave below."""
     place = layout(robot)
 
-    def part(servo: int) -> Part:
+    def region_of(servo: int) -> Part:
         return "trunk" if servo in place.trunk_pitch else "tail" if servo in place.tail_pitch else "neck"
 
     servos = place.axial_pitch
     names = tuple(place.servos[servo] for servo in servos)
-    return Hinges(names, servos, (1.0,) * len(servos), tuple(part(servo) for servo in servos), (0.0,) * len(servos))
+    return Hinges(
+        names, servos, (1.0,) * len(servos), tuple(region_of(servo) for servo in servos), (0.0,) * len(servos)
+    )
 
 
 class Waves:
@@ -72,52 +74,54 @@ class Waves:
         for run, gait in enumerate(gaits):
             bends = [bend for bend in gait.axis if bend.turn == turn and hinges.within(bend.part)]
             for k in range(len(hinges.servos)):
-                mine = [bend for bend in bends if k in hinges.within(bend.part)]
-                counts = {len(hinges.within(bend.part)) for bend in mine}
-                whole = counts.pop() if len(counts) == 1 else 1
-                self.share[run, k] = whole
-                for bend in mine:
-                    among = hinges.within(bend.part)
-                    scale = whole / len(among)
-                    self.swing[run, k] += scale * _swing(bend, among.index(k), len(among))
+                hinge_bends = [bend for bend in bends if k in hinges.within(bend.part)]
+                counts = {len(hinges.within(bend.part)) for bend in hinge_bends}
+                hinge_count = counts.pop() if len(counts) == 1 else 1
+                self.share[run, k] = hinge_count
+                for bend in hinge_bends:
+                    indices = hinges.within(bend.part)
+                    scale = hinge_count / len(indices)
+                    self.swing[run, k] += scale * _swing(bend, indices.index(k), len(indices))
                     self.offset[run, k] += scale * bend.offset
         self._real = not self.swing.imag.any()
         self._steady = bool(self.offset.any())
         self.moves = bool(self.swing.any()) or self._steady
-        self._alike: dict[tuple[int, ...], np.ndarray] = {}
+        self._is_evenly_shared: dict[tuple[int, ...], np.ndarray] = {}
 
     def bends(
         self, z: Complex[np.ndarray, "*batch"], size: np.ndarray | float | None = None
     ) -> Float[np.ndarray, "*batch hinge"]:
         """Return the bend of the whole part, as each hinge takes its share of it [rad]."""
         z = np.asarray(z)[..., None]
-        swung = self.swing.real * z.real if self._real else self.swing.real * z.real - self.swing.imag * z.imag
+        swing_bend = self.swing.real * z.real if self._real else self.swing.real * z.real - self.swing.imag * z.imag
         if size is not None:
-            swung = np.asarray(size)[..., None] * swung
-        return np.asarray(swung + self.offset if self._steady else swung)
+            swing_bend = np.asarray(size)[..., None] * swing_bend
+        return np.asarray(swing_bend + self.offset if self._steady else swing_bend)
 
-    def whole(self, among: Sequence[int], bends: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch"]:
+    def whole(self, indices: Sequence[int], bends: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch"]:
         """Return the bend of some hinges together [rad]."""
-        if not len(among):
+        if not len(indices):
             return np.zeros(bends.shape[:-1])
-        alike, first = self._takes_the_same(tuple(among)), bends[..., among[0]]
-        if alike.all():  # n nths of a number are not the number
-            return np.asarray(first)
-        parts = (bends[..., among] / self.share[:, among]).sum(axis=-1)
-        return np.asarray(np.where(alike, first, parts))
+        is_shared_evenly, first_bend = self._takes_the_same(tuple(indices)), bends[..., indices[0]]
+        if is_shared_evenly.all():  # n nths of a number are not the number
+            return np.asarray(first_bend)
+        parts = (bends[..., indices] / self.share[:, indices]).sum(axis=-1)
+        return np.asarray(np.where(is_shared_evenly, first_bend, parts))
 
-    def _takes_the_same(self, among: tuple[int, ...]) -> Bool[np.ndarray, " run"]:
+    def _takes_the_same(self, indices: tuple[int, ...]) -> Bool[np.ndarray, " run"]:
         """Return of each run whether some hinges share the bend of one part evenly, and it is all of them."""
-        if among not in self._alike:
-            rows, first = list(among), [among[0]]
-            same = (self.swing[:, rows] == self.swing[:, first]) & (self.offset[:, rows] == self.offset[:, first])
-            self._alike[among] = (same & (self.share[:, rows] == len(among))).all(axis=1)
-        return self._alike[among]
+        if indices not in self._is_evenly_shared:
+            rows, first_row = list(indices), [indices[0]]
+            is_equal = (self.swing[:, rows] == self.swing[:, first_row]) & (
+                self.offset[:, rows] == self.offset[:, first_row]
+            )
+            self._is_evenly_shared[indices] = (is_equal & (self.share[:, rows] == len(indices))).all(axis=1)
+        return self._is_evenly_shared[indices]
 
-    def together(self, among: Sequence[int]) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+    def together(self, indices: Sequence[int]) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return swing and steady bend of some hinges together [rad]."""
-        share = self.share[:, among]
-        return (self.swing[:, among] / share).sum(axis=1), (self.offset[:, among] / share).sum(axis=1)
+        share = self.share[:, indices]
+        return (self.swing[:, indices] / share).sum(axis=1), (self.offset[:, indices] / share).sum(axis=1)
 
     def amplitude(self) -> Float[np.ndarray, "run hinge"]:
         """Return the most that each hinge turns to either side, its steady angle aside [rad]."""
@@ -128,14 +132,14 @@ def _swing(bend: Bend, place: int, count: int) -> complex:
     """Return the complex amplitude of a part's bend as its hinge number ``place`` sees it [rad]."""
     amplitude, lag = (at_knot(row, place, count) for row in (bend.amplitude, bend.lag))
     half = round(2.0 * lag)  # half cycles change the sign alone, and exactly
-    rest = 2 * np.pi * (lag - half / 2.0)
+    remainder = 2 * np.pi * (lag - half / 2.0)
     signed = amplitude if half % 2 else -amplitude
-    return complex(signed) if rest == 0.0 else complex(signed * np.cos(rest), -signed * np.sin(rest))
+    return complex(signed) if remainder == 0.0 else complex(signed * np.cos(remainder), -signed * np.sin(remainder))
 
 
 def at_knot(row: tuple[float, ...], place: int, count: int) -> float:
     """Return the value of knots, evenly spread over ``count`` hinges, at one of them."""
     if len(row) in (1, count):
         return row[place] if len(row) == count else row[0]
-    along = place / (count - 1) if count > 1 else 0.5
-    return float(np.interp(along, np.linspace(0.0, 1.0, len(row)), row))
+    position = place / (count - 1) if count > 1 else 0.5
+    return float(np.interp(position, np.linspace(0.0, 1.0, len(row)), row))

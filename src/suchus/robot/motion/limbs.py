@@ -18,8 +18,13 @@ from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.parts import FootPath, Held, Limbs, Sweep
 
 _PICOMETRE = 12  # digits of a metre to which lengths of a gait are rounded: a share of a reach of 0.175 m gives 0.027 m
-_INSIDE = 1e-6  # how far inside its reach a foot that is drawn into it stays: [m] for a leg, [reach] for other limbs
-_LEAST, _MOST = 0.02, 2 * np.pi - 0.02  # [rad]; of the angle that a crank turns through in stance
+_REACH_MARGIN = (
+    1e-6  # how far inside its reach a foot that is drawn into it stays: [m] for a leg, [reach] for other limbs
+)
+_MIN_STANCE_ANGLE, _MAX_STANCE_ANGLE = (
+    0.02,
+    2 * np.pi - 0.02,
+)  # [rad]; of the angle that a crank turns through in stance
 _SIDEWAYS = 2 / np.pi  # quarter turns of swivel a radian
 
 
@@ -47,9 +52,9 @@ class LimbMotion:
         among: the limbs, in the order of the robot's.
     """
 
-    def __init__(self, robot: Robot, gaits: Sequence[Gait], among: Sequence[int]) -> None:
-        self.robot, self.gaits, self.among = robot, tuple(gaits), tuple(among)
-        self.limb = layout(robot).limbs[among[0]]
+    def __init__(self, robot: Robot, gaits: Sequence[Gait], limb_indices: Sequence[int]) -> None:
+        self.robot, self.gaits, self.among = robot, tuple(gaits), tuple(limb_indices)
+        self.limb = layout(robot).limbs[limb_indices[0]]
         self._duty = np.array([gait.duty_factor for gait in gaits])
         self._numbers = _numbers(robot, gaits, self.limb.number)
 
@@ -79,10 +84,14 @@ class LimbMotion:
         if isinstance(numbers, _Crank):
             stance = numbers.stance
             if steer is not None:
-                stance = np.clip(np.asarray(steer.size) * _of_limbs(steer.stroke, self.among) * stance, _LEAST, _MOST)
-            return list(self._turned(phase, stance, numbers.down)[..., None])
+                stance = np.clip(
+                    np.asarray(steer.size) * _of_limbs(steer.stroke, self.among) * stance,
+                    _MIN_STANCE_ANGLE,
+                    _MAX_STANCE_ANGLE,
+                )
+            return list(self._crank_angle(phase, stance, numbers.down)[..., None])
         try:
-            return list(self._reached(numbers, *self._feet(numbers, phase, steer), draw=draw))
+            return list(self._angles_at(numbers, *self._feet(numbers, phase, steer), draw=draw))
         except Unreachable as error:
             if len(self.among) > 1:  # say it of the first limb that it is true of
                 for i in self.among:
@@ -113,28 +122,34 @@ class LimbMotion:
         self, numbers: "_Path", phase: np.ndarray, steer: Steer | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         forward, lifted = foot_path(phase, self._duty)
-        stroke, lower = numbers.stroke, np.zeros(())
+        stroke, lowering = numbers.stroke, np.zeros(())
         if steer is not None:
             stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, self.among)
-            lower = _of_limbs(steer.lower, self.among)
-        ahead = numbers.ahead + stroke * forward
-        return ahead, np.broadcast_to(numbers.outward, ahead.shape), numbers.down + lower - numbers.lift * lifted
+            lowering = _of_limbs(steer.lower, self.among)
+        forward_position = numbers.ahead + stroke * forward
+        return (
+            forward_position,
+            np.broadcast_to(numbers.outward, forward_position.shape),
+            numbers.down + lowering - numbers.lift * lifted,
+        )
 
-    def _reached(
-        self, numbers: "_Path", ahead: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
+    def _angles_at(
+        self, numbers: "_Path", forward: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
     ) -> np.ndarray:
         """Return the servo angles that bring feet to their places, shape (limb, *batch, servo) [rad]."""
         if numbers.leg is not None:
-            foot = np.stack([numbers.leg.hip_offset + outward, ahead, down], axis=-1)
+            foot = np.stack([numbers.leg.hip_offset + outward, forward, down], axis=-1)
             return _leg_angles(numbers.leg, numbers.side, foot, draw=draw)
-        foot = np.stack([ahead, outward, -down], axis=-1)
+        foot = np.stack([forward, outward, -down], axis=-1)
         limb = self.limb.girdle.limb
         if draw:
-            near, far = limb_kinematics.reach(limb)
-            foot = _drawn(foot, np.zeros(3), (near + _INSIDE * far, far - _INSIDE * far))
-        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(numbers.swivel, ahead.shape))
+            min_reach, max_reach = limb_kinematics.reach(limb)
+            foot = _clip_to_reach(
+                foot, np.zeros(3), (min_reach + _REACH_MARGIN * max_reach, max_reach - _REACH_MARGIN * max_reach)
+            )
+        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(numbers.swivel, forward.shape))
 
-    def _turned(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
+    def _crank_angle(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
         """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above."""
         swing = 1.0 - self._duty
         turns, cycle = np.floor(phase), np.mod(phase, 1.0)
@@ -171,8 +186,8 @@ def girdles(place: Layout) -> list[list[int]]:
     """Return the limbs that are worked out together: those of a girdle, where its chain has a closed form."""
     groups: dict[tuple[int, int], list[int]] = {}
     for i, limb in enumerate(place.limbs):
-        alone = i if limb_kinematics.kind(limb.girdle.limb) == "other" else -1
-        groups.setdefault((limb.number, alone), []).append(i)
+        separate_index = i if limb_kinematics.kind(limb.girdle.limb) == "other" else -1
+        groups.setdefault((limb.number, separate_index), []).append(i)
     return list(groups.values())
 
 
@@ -190,10 +205,10 @@ def check_limbs(robot: Robot, gait: Gait) -> None:
     """
     place = layout(robot)
     if len(gait.limb_phases) != len(place.limbs):
-        told = f" ({', '.join(place.limb_names)})" if place.limbs else ""
+        limb_list = f" ({', '.join(place.limb_names)})" if place.limbs else ""
         raise OutsideLimits(
             f"gait {gait.name!r} has phases for {len(gait.limb_phases)} limbs; robot {robot.name!r} has "
-            f"{len(place.limbs)}{told}: choose a gait made for it, or leave the gait out for the robot's own."
+            f"{len(place.limbs)}{limb_list}: choose a gait made for it, or leave the gait out for the robot's own."
         )
     for curve in gait.curves:
         if curve.servo not in place.servos:
@@ -215,17 +230,17 @@ def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> Non
             f"{'are' if cranks else 'are not'} cranks: choose a gait made for it, or leave the gait out for the "
             "robot's own."
         )
-    driven = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
-    if isinstance(limb, Held) and len(limb.angles) > driven:
+    servo_count = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
+    if isinstance(limb, Held) and len(limb.angles) > servo_count:
         raise OutsideLimits(
-            f"gait {gait.name!r} holds {len(limb.angles)} angles of girdle {girdle.name}; its limbs have {driven} "
+            f"gait {gait.name!r} holds {len(limb.angles)} angles of girdle {girdle.name}; its limbs have {servo_count} "
             "servos: give one for each."
         )
-    outside = isinstance(limb, FootPath) and quarter(limb.swivel) != 0 and limb.outward
-    if outside and limb_kinematics.kind(girdle.limb) == "leg":
+    outward = isinstance(limb, FootPath) and quarter(limb.swivel) != 0 and limb.outward
+    if outward and limb_kinematics.kind(girdle.limb) == "leg":
         raise OutsideLimits(
             f"gait {gait.name!r} stands the limbs of girdle {girdle.name} of robot {robot.name!r} erect and "
-            f"{outside:g} of their reach outside their hips; legs of yaw, pitch and knee that stand erect stand "
+            f"{outward:g} of their reach outside their hips; legs of yaw, pitch and knee that stand erect stand "
             "below their hips: set outward to 0, or swivel."
         )
 
@@ -275,36 +290,38 @@ def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Cran
     )
 
 
-def _limbs_first(values: Float[np.ndarray, "*batch limb"], among: Sequence[int]) -> np.ndarray:
+def _limbs_first(values: Float[np.ndarray, "*batch limb"], limb_indices: Sequence[int]) -> np.ndarray:
     """Return what is said of some limbs, shape (limb, *batch)."""
-    return np.stack([values[..., i] for i in among])
+    return np.stack([values[..., i] for i in limb_indices])
 
 
-def _of_limbs(field: np.ndarray | float, among: Sequence[int]) -> np.ndarray:
+def _of_limbs(field: np.ndarray | float, limb_indices: Sequence[int]) -> np.ndarray:
     """Return what a field of a ``Steer`` says of some limbs, shape (limb, *batch), or () where it is one number."""
-    return _limbs_first(np.asarray(field), among) if np.ndim(field) else np.asarray(field)
+    return _limbs_first(np.asarray(field), limb_indices) if np.ndim(field) else np.asarray(field)
 
 
 def _leg_angles(leg: PlainLeg, side: int, foot: np.ndarray, *, draw: bool) -> np.ndarray:
     """Return yaw, pitch and knee that bring a foot to its place, sprawled or erect [rad]."""
     if draw:
-        near, far = leg.reach
-        foot = _drawn(foot, np.array([leg.hip_offset, 0.0, 0.0]), (near + _INSIDE, far - _INSIDE))
+        min_reach, max_reach = leg.reach
+        foot = _clip_to_reach(
+            foot, np.array([leg.hip_offset, 0.0, 0.0]), (min_reach + _REACH_MARGIN, max_reach - _REACH_MARGIN)
+        )
     if side == 0:
         return leg_kinematics.inverse(leg, foot)
     # the plane of an erect leg faces back or forward; in it the foot may lie to either side of the hip
-    along = float(side) * foot[..., 1]
-    flat = np.stack([leg.hip_offset + along, np.zeros_like(along), foot[..., 2]], axis=-1)
+    in_plane = float(side) * foot[..., 1]
+    flat = np.stack([leg.hip_offset + in_plane, np.zeros_like(in_plane), foot[..., 2]], axis=-1)
     angles = np.where(
-        along[..., None] < 0.0, leg_kinematics.inverse(leg, flat, side=-1), leg_kinematics.inverse(leg, flat)
+        in_plane[..., None] < 0.0, leg_kinematics.inverse(leg, flat, side=-1), leg_kinematics.inverse(leg, flat)
     )
     angles[..., 0] = float(side) * np.pi / 2
     return angles
 
 
-def _drawn(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
+def _clip_to_reach(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
     """Return foot points drawn along the line to the hip into what a limb reaches; others stay as they are [m]."""
-    away, (near, far) = foot - hip, reach
-    length = np.linalg.norm(away, axis=-1, keepdims=True)
-    moved = hip + away * np.clip(length, near, far) / np.maximum(length, _INSIDE)
-    return np.asarray(np.where((length < near) | (length > far), moved, foot))
+    offset, (min_reach, max_reach) = foot - hip, reach
+    length = np.linalg.norm(offset, axis=-1, keepdims=True)
+    clipped = hip + offset * np.clip(length, min_reach, max_reach) / np.maximum(length, _REACH_MARGIN)
+    return np.asarray(np.where((length < min_reach) | (length > max_reach), clipped, foot))
