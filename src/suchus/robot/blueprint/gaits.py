@@ -95,6 +95,16 @@ def _in_metres(
     name: str,
     mistakes: dict[Place, str],
 ) -> Gait:
+    """Return the gait that a table in metres describes.
+
+    Args:
+        data: the table.
+        robot: for whose limbs the metres are.
+        base: gait that the table changes; None if the table gives every number.
+        shelf: gaits by name; one of them supplies values to go on with after a mistake.
+        name: of the file.
+        mistakes: those that are known already, by place.
+    """
     reaches, keys = limb_reaches(robot), frozenset(data)
     spare = plain(asdict(GaitInMetres.near(base or _metric_gait(shelf), reaches)))
     table = data if base is None else merged(spare, data)
@@ -110,6 +120,7 @@ def _by_places(
     name: str,
     mistakes: dict[Place, str],
 ) -> Gait:
+    """Return the gait that a table with a wave by places along the body describes; arguments as for ``_in_metres``."""
     wave = data.get("wave")
     straight_wave = AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0)
     is_partial = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)

@@ -38,6 +38,12 @@ class MistakenFile(UnreadableFile, InvalidDesign):
     """
 
     def __init__(self, name: str, mistakes: Mapping[Place, str]) -> None:
+        """Join the mistakes of a file to one message.
+
+        Args:
+            name: of the file.
+            mistakes: what is wrong, by place.
+        """
         self.mistakes = {dotted(place): text for place, text in mistakes.items()}
         descriptions = [f"{place} {text}".lstrip() for place, text in self.mistakes.items()]
         if len(descriptions) == 1:
@@ -121,6 +127,7 @@ def _keys(field: str) -> Place:
 
 
 def _requirement(error: Mapping[str, Any], cause: Exception | None) -> str:
+    """Return what a value must be instead, as the second half of a sentence."""
     context = error.get("ctx", {})
     if error["type"] in ("too_long", "too_short"):
         length = context.get("max_length", context.get("min_length"))
@@ -133,6 +140,13 @@ def _requirement(error: Mapping[str, Any], cause: Exception | None) -> str:
 
 
 def _unknown(place: Place, owner: Any, kind: type) -> str:
+    """Return what to say of a field that its table does not have: where it belongs, or which name is similar.
+
+    Args:
+        place: of the field in the file.
+        owner: kind of the table that the field stands in.
+        kind: of the whole file.
+    """
     field_names = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
     homes = list(islice(_homes(str(place[-1]), kind), _HOMES + 1))
     if 0 < len(homes) <= _HOMES:

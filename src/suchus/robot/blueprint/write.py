@@ -67,6 +67,11 @@ def _plain(text: str) -> str:
 
 
 def _inline(value: Any) -> str:
+    """Return a value as TOML on one line.
+
+    Raises:
+        TypeError: TOML cannot hold a value of this type.
+    """
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

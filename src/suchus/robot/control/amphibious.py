@@ -140,6 +140,16 @@ class Amphibian:
         swims: Controller,
         period: float,
     ) -> None:
+        """Start every run in the mode that its control begins with.
+
+        Args:
+            controls: settings, one for each run.
+            robots: one for each run.
+            gaits: of the walk on land, one for each run.
+            wades: gaits of the walk while a robot lands, one for each run.
+            swims: controller of the swims of the whole batch.
+            period: of control [s].
+        """
         self._period, self._swims = period, swims
         self._touch, self._afloat_load, self._aground, self._change, self._patience, self._air_released, self._pump = (
             np.array([getattr(control, name) for control in controls])
@@ -199,6 +209,7 @@ class Amphibian:
         return self._cycles[:, None] + self._wade_phases + self._landed[:, None] * (self._phases - self._wade_phases)
 
     def _feel(self, sensed: Sensed) -> None:
+        """Update the filtered loads of ground and feet, and the steering of the walk."""
         feet, belly = finite(sensed.foot_pressure), finite(sensed.belly_pressure)
         stands = feet.sum(axis=1) / self._weight
         load = stands + (belly.sum(axis=1) + finite(sensed.tail_pressure)) / self._weight
@@ -209,6 +220,7 @@ class Amphibian:
         self._stroke, self._trunk = 1.0 + steer.stroke, steer.trunk
 
     def _decide(self) -> None:
+        """Change between swimming and walking where the loads ask for it, and note who has landed."""
         self._lifted = np.where(self._feet < self._afloat_load, self._lifted + self._period, 0.0)
         is_change_due = np.where(self.walking, self._lifted >= 1.0 / self._rate, self._load > self._touch)
         is_changing = is_change_due & (self._since >= self._change + self._patience)

@@ -48,6 +48,13 @@ class Attitude:
     """The attitude of a batch, and what the feet do about it; each run has its own rule or none."""
 
     def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[Robot], period: float) -> None:
+        """Gather gains and hip positions of the batch.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            period: of control [s].
+        """
         active_rules = [rule if rule is not None else _INACTIVE_RULE for rule in rules]
         self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in active_rules]).T[
             ..., None

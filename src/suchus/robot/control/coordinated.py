@@ -104,6 +104,16 @@ class Coordinator:
     """The controllers of limbs, spine and tail of a batch, and the posture that they ask for together."""
 
     def __init__(self, runs: Runs, period: float) -> None:
+        """Start the oscillators and rules of a batch.
+
+        Args:
+            runs: controls, robots, gaits and seeds.
+            period: of control [s].
+
+        Raises:
+            InvalidDesign: a kick has not one phase for each limb.
+            UnsuitedRobot: a robot lacks the parts that one of its rules needs.
+        """
         controls, robots, gaits, seeds, _ = runs
         for gait in gaits:
             gait.needs_steering("the closed loop")
@@ -167,6 +177,7 @@ class Coordinator:
         return np.asarray(max(tick * self._period - START, 0.0) / self._gaits.periods)
 
     def _share(self, tick: int, sensed: Sensed | None, *, walking: bool) -> None:
+        """Let limbs, spine and tail write their shared variables, in this order."""
         phases, clock = self._table.command(tick, None).phase, self._clock(tick)
         limbs = self._limbs.step(self._shared, sensed, phases, walking=walking)
         limb_state = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
@@ -191,6 +202,12 @@ class Coordinator:
 
 
 def _refuse_others(control: Coordinated, robot: Robot, gait: Gait) -> None:
+    """Refuse a control whose kicks or rules do not fit the robot.
+
+    Raises:
+        InvalidDesign: a kick has not one phase for each limb.
+        UnsuitedRobot: the robot lacks the parts that a rule needs.
+    """
     place = layout(robot)
     for kick in control.kicks:
         if len(kick.ahead) != len(place.limbs):

@@ -72,6 +72,14 @@ class Heading:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
+        """Gather the gains of the batch, and the greatest steering that each robot's limbs allow.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            gaits: one for each run.
+            period: of control [s].
+        """
         neutral_rule = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
         settings = [rule or neutral_rule for rule in rules]
         self._direction, self._gain, self._integral_gain, self._trunk = (
@@ -112,6 +120,7 @@ class Heading:
 
 
 def _steering_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
+    """Return the greatest steering command u that the limbs can follow [-]; 0 in a gait without strokes."""
     if not gait.has("strokes"):
         return 0.0
     if rule.gain == rule.integral_gain == 0.0:  # nothing steers, and how far the limbs reach takes long to find

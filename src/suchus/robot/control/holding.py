@@ -90,6 +90,14 @@ class Headings:
     def __init__(
         self, rules: Sequence[HeadingHold | None], robots: Sequence[Robot], cycle: Sequence[int], period: float
     ) -> None:
+        """Gather the gains of the batch.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            cycle: length of each gait's cycle in control periods.
+            period: of control [s].
+        """
         neutral_rule = HeadingHold(gain=0.0, integral_gain=0.0, turn=0.0, trunk_turn=0.0)
         active_rules = [rule or neutral_rule for rule in rules]
         self._direction, self._gain, self._integral, self._turn, self._trunk = (
@@ -111,6 +119,13 @@ class Depths:
     """The depth holds of a batch."""
 
     def __init__(self, rules: Sequence[DepthHold | None], robots: Sequence[Robot], period: float) -> None:
+        """Gather the gains of the batch, and the air with which each robot is neutrally buoyant.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            period: of control [s].
+        """
         self._is_active = np.array([rule is not None for rule in rules])
         neutral_rule = DepthHold(depth=0.0)
         active_rules = [rule or neutral_rule for rule in rules]

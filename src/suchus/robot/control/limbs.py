@@ -155,6 +155,18 @@ class Limbs:
         phase_lead: Float[np.ndarray, "run limb"],
         period: float,
     ) -> None:
+        """Start the oscillators at a phase lead over the clock of the gait.
+
+        Args:
+            laws: one for each run.
+            robots: one for each run.
+            gaits: one for each run.
+            phase_lead: of each limb over the clock [cycle].
+            period: of control [s].
+
+        Raises:
+            OutsideLimits: a law makes diagonal pairs, and the gait has others.
+        """
         for law, gait in set(zip(laws, gaits, strict=True)):
             if law.pairs:
                 _refuse_others(gait, layout(robots[0]))
@@ -210,6 +222,7 @@ def _off_pairs(place: Layout, gait: Gait) -> float:
 
 
 def _refuse_others(gait: Gait, place: Layout) -> None:
+    """Refuse a gait whose limb phases are too far from diagonal pairs for a law that makes such pairs."""
     deviation = _off_pairs(place, gait)
     if deviation > _DIAGONAL:
         raise OutsideLimits(

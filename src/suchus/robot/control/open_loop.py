@@ -65,6 +65,13 @@ class GaitTable:
         phase: Float[np.ndarray, "gait tick limb"],
         row: np.ndarray,
     ) -> None:
+        """Hold the tables of a batch.
+
+        Args:
+            targets: servo angles of every distinct gait [rad].
+            phase: phases of the limbs in every distinct gait [cycle].
+            row: index of the gait of each run.
+        """
         self._targets = targets
         self._phase = phase
         self._row = row

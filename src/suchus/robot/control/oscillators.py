@@ -189,6 +189,7 @@ def cut(couplings: Couplings, lesions: Sequence[tuple[str, str]]) -> Couplings:
 
 
 def _select_oscillators(names: Sequence[str], name: str) -> list[int]:
+    """Return the indices of the oscillators that a name stands for; see ``cut``."""
     axis = [i for i, label in enumerate(names) if label.startswith("axis_")]
     sets = {"axis": axis, "limbs": [i for i in range(len(names)) if i not in axis]}
     sets |= {side: [i for i in axis if names[i].endswith(f"_{side}")] for side in ("left", "right")}
@@ -265,6 +266,15 @@ class Rhythm:
     def _slopes(
         self, natural_rate: np.ndarray, target: np.ndarray, phase: np.ndarray, amplitude: np.ndarray, rise: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the time derivatives of phase, amplitude and amplitude rate, each of shape (run, oscillator).
+
+        Args:
+            natural_rate: own angular frequency of each oscillator [rad/s].
+            target: own amplitude of each oscillator [-].
+            phase: present phases [rad].
+            amplitude: present amplitudes [-].
+            rise: present rates of the amplitudes [1/s].
+        """
         phase_difference = phase[:, self._sender] - phase[:, self._receiver] - self._bias
         pulls = amplitude[:, self._sender] * self._weight * np.sin(phase_difference)
         turning = natural_rate + np.add.reduceat(pulls, self._starts, axis=1)

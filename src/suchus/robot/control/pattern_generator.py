@@ -59,6 +59,18 @@ class Rules:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
+        """Start the rules of those runs that have one.
+
+        Args:
+            spines: rule of the spine, one for each run; None for a run without one.
+            tails: rule of the tail, one for each run; None for a run without one.
+            robots: one for each run.
+            gaits: one for each run.
+            period: of control [s].
+
+        Raises:
+            UnsuitedRobot: a robot lacks the servos that its rule needs.
+        """
         self._yaw = list(layout(robots[0]).trunk_yaw)
         self._spined = [i for i, rule in enumerate(spines) if rule is not None]
         self._tailed = [i for i, rule in enumerate(tails) if rule is not None]
@@ -93,6 +105,7 @@ class Rules:
 
 
 def _with_tail(robot: Robot, gait: Gait) -> Gait:
+    """Return the gait if it pitches the tail and the robot can; refuse both otherwise."""
     if not (gait.has("tail pitch") and layout(robot).tail_pitch):
         raise UnsuitedRobot(
             f"the rule tail to tail needs a servo that pitches the tail and a gait that lays it down, as "
@@ -211,6 +224,15 @@ class Generator:
         seeds: Sequence[int],
         period: float,
     ) -> None:
+        """Couple the oscillators of every run and set their first phases.
+
+        Args:
+            controls: settings, one for each run.
+            robots: one for each run, all with the same layout.
+            gaits: one for each run.
+            seeds: of random first phases, one for each run.
+            period: of control [s].
+        """
         self._period = period
         self._groups = _grouped(controls, robots, gaits)
         self._posture = [posture for i in range(len(controls)) for posture, runs in self._groups if i in runs]
@@ -316,6 +338,7 @@ class Generator:
         return frequency, amplitude
 
     def _targets(self, time: float) -> Float[np.ndarray, "run servo"]:
+        """Return the servo angles at a time [rad]."""
         share = np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0)
         wave, phase = self.wave, self.limb_phase
         offset = self._steering.at(time)[:, None] * self._gain
@@ -332,6 +355,7 @@ class Generator:
 def _grouped(
     controls: Sequence[PatternGenerator], robots: Sequence[Robot], gaits: Sequence[Gait]
 ) -> list[tuple[PatternPosture, np.ndarray]]:
+    """Return each distinct posture rule with the indices of its runs; refuse gaits that a robot cannot follow."""
     for robot, gait in set(zip(robots, gaits, strict=True)):
         check_limits(robot, gait)
     keys = list(zip(robots, gaits, (control.silent == "standing" for control in controls), strict=True))
@@ -349,6 +373,11 @@ def _min_limb_amplitude(numbers: Oscillators) -> float:
 
 
 def _pace(control: PatternGenerator, robot: Robot, gait: Gait) -> float:
+    """Return the factor on the published rates with which the oscillators keep the period of the gait [-].
+
+    Raises:
+        InvalidDesign: the oscillators do not turn at the reference drive.
+    """
     if control.pace is not None:
         return control.pace
     numbers = control.oscillators
@@ -372,6 +401,20 @@ def _initial(
     *,
     has_active_limbs: bool,
 ) -> np.ndarray:
+    """Return the first phases of a run's oscillators, shape (oscillator,) [rad].
+
+    Args:
+        control: its settings.
+        robot: the design.
+        gait: its gait.
+        seed: of random phases.
+        posture: segments of the axis, and the phase shift between limbs and oscillators.
+        lag: phase lag of each segment behind the one ahead of it [cycle].
+        has_active_limbs: whether the drive moves the limbs.
+
+    Raises:
+        InvalidDesign: phases are given, and not one for each oscillator.
+    """
     count = 2 * len(posture.segments) + len(gait.limb_phases)
     if control.initial == "random":
         return 2 * np.pi * np.random.default_rng([seed, 2]).random(count)

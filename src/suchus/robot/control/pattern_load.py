@@ -40,6 +40,13 @@ class FeltDrive:
     """The load that each run of a batch feels, and the drive that it adds."""
 
     def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[Robot], period: float) -> None:
+        """Gather the rules of the batch; a run without one gets no drive from its load.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            period: of control [s].
+        """
         self.felt = any(rule is not None for rule in rules)
         """Whether any run has such a rule."""
         active_rules = [rule or LoadRule(afloat=0.0) for rule in rules]

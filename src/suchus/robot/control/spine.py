@@ -42,6 +42,13 @@ class SpineController:
         robots: Sequence[Robot],
         period: float,
     ) -> None:
+        """Gather the gains of the batch and the ranges of the trunk's servos.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            period: of control [s].
+        """
         self._is_active = np.array([rule is not None for rule in rules])
         self._share = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
         self._keep = np.array([0.0 if rule is None else keep(rule.delay, period) for rule in rules])

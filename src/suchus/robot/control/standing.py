@@ -152,6 +152,13 @@ class Standing:
         return Stander(balances, course, rows, legs, layout(robots[0]), period)
 
     def _course(self, robot: Robot, gait: Gait, time: np.ndarray) -> "Course":
+        """Return the intended motion over time: crawl, rise, stand, lie down, crawl on.
+
+        Args:
+            robot: the design.
+            gait: of the crawl before and after.
+            time: since the beginning of the run, shape (tick,) [s].
+        """
         rise, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
         rise_time = np.minimum(time - self.at - self.blend, rise.duration)
         descent_time = rise.duration - (time - leave) / self.slower_down
@@ -196,6 +203,16 @@ class Stander:
         place: Layout,
         period: float,
     ) -> None:
+        """Prepare the corrections of the batch.
+
+        Args:
+            balances: rule of each run; None for a run that follows its course without feedback.
+            course: intended motion of every distinct robot, gait and control.
+            row: of the course, one for each run.
+            legs: hind leg of each run's robot.
+            place: layout that all robots share.
+            period: of control [s].
+        """
         self._gains = {f.name: np.array([getattr(b or BALANCE, f.name) for b in balances]) for f in fields(Balance)}
         self._answers = np.array([b is not None for b in balances])
         self._course = course

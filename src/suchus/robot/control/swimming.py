@@ -83,6 +83,14 @@ class SwimmingController:
     def __init__(
         self, controls: Sequence[Swimming], robots: Sequence[Robot], gaits: Sequence[Gait], period: float
     ) -> None:
+        """Start the rules of heading, depth and pitch.
+
+        Args:
+            controls: settings, one for each run.
+            robots: one for each run.
+            gaits: one for each run.
+            period: of control [s].
+        """
         self._gaits, self._period = Batch(robots, gaits), period
         self._ramp = np.array([control.ramp for control in controls])
         self._feels = any(control.feels for control in controls)

@@ -63,6 +63,17 @@ class Switcher:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
+        """Check the ladders and start with nothing felt.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            gaits: in which the runs begin.
+            period: of control [s].
+
+        Raises:
+            UnknownName: a run's gait is not on its ladder.
+        """
         self._rules, self._period = list(rules), period
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
         for rule, gait in zip(rules, gaits, strict=True):
@@ -106,6 +117,14 @@ class Switcher:
         return 0
 
     def _feel(self, sensed: Sensed, phase: np.ndarray, gaits: Sequence[Gait], free: np.ndarray) -> None:
+        """Update the filtered belly load, foot contradiction and tilt of those runs that are free.
+
+        Args:
+            sensed: what the robots feel.
+            phase: of the limbs, shape (run, limb) [cycle].
+            gaits: present gait of each run.
+            free: which runs are not changing their gait.
+        """
         feet, belly = np.nan_to_num(sensed.foot_pressure), np.nan_to_num(sensed.belly_pressure).sum(axis=1)
         total = feet.sum(axis=1) + belly + np.nan_to_num(sensed.tail_pressure)
         duty = np.array([[gait.duty_factor] for gait in gaits])

@@ -47,6 +47,14 @@ class TailController:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
+        """Gather the rates of the batch, and the range within which each tail may pitch.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            gaits: one for each run.
+            period: of control [s].
+        """
         share = max(len(layout(robots[0]).tail_pitch), 1)
         self._target_pitch = np.array([gait.number("tail_pitch") / share for gait in gaits])
         self._pitch = self._target_pitch

@@ -91,6 +91,7 @@ class Walking:
 
 
 def _check_bend(control: Walking, robot: Robot, gait: Gait) -> None:
+    """Refuse a steering bend for which the trunk has no servo or too little range."""
     place = layout(robot)
     if control.bend and not place.trunk_yaw:
         raise OutsideLimits(
@@ -111,6 +112,12 @@ class Walker:
     """The running controller of a batch of walks."""
 
     def __init__(self, runs: Runs, period: float) -> None:
+        """Start every run in its own gait.
+
+        Args:
+            runs: controls, robots and gaits.
+            period: of control [s].
+        """
         controls, robots, gaits = runs.controls, runs.robots, runs.gaits
         self._controls, self._robots, self._gaits = list(controls), list(robots), list(gaits)
         self._period = period
@@ -170,6 +177,7 @@ class Walker:
         return requests
 
     def _finish(self, time: float) -> None:
+        """End the transitions whose time has passed; their new gaits begin now."""
         for run, (start_time, course, _) in list(self._script.items()):
             if time >= start_time + course.duration - _SLACK:
                 del self._script[run]

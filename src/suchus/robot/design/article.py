@@ -164,6 +164,7 @@ def _spine_hinge(tables: Tables, name: str) -> Hinge:
 
 
 def _pelvis(tables: Tables) -> Segment:
+    """Return the segment of the hind girdle, whose hinge pitches the tail."""
     pelvis, tail = tables.pelvis, tables.tail
     half = (pelvis.length / 2, pelvis.width / 2, pelvis.height / 2)
     return Segment(
@@ -176,6 +177,7 @@ def _pelvis(tables: Tables) -> Segment:
 
 
 def _tail(tail: Tail) -> list[Segment]:
+    """Return the segments of the tail from its root to its tip."""
     joints = [(hinge,) for hinge in _driven_hinges(tail)] + [_passive(tail, i) for i in range(tail.fin_segments)]
     segments = []
     for i, (length, radius, mass) in enumerate(zip(*tail_segments(tail), strict=True)):
@@ -187,6 +189,7 @@ def _tail(tail: Tail) -> list[Segment]:
 
 
 def _driven_hinges(tail: Tail) -> list[Hinge]:
+    """Return the yaw hinges that the cable bends, or that have a servo each."""
     limit = _SPARE * tail.bend_limit / tail.joints
     drive: Servo | Spring = tail.cable_servo
     if tail.drive != "servos":
@@ -196,6 +199,12 @@ def _driven_hinges(tail: Tail) -> list[Hinge]:
 
 
 def _passive(tail: Tail, number: int) -> tuple[Hinge, Hinge]:
+    """Return the yaw and the pitch hinge of one passive segment; stiffness falls linearly to half at the last segment.
+
+    Args:
+        tail: the measures.
+        number: of the passive segment, from the root [-].
+    """
     softer = 1.0 - 0.5 * number / max(tail.fin_segments - 1, 1)
     names = fin_names(tail)[2 * number : 2 * number + 2]
 
@@ -208,6 +217,7 @@ def _passive(tail: Tail, number: int) -> tuple[Hinge, Hinge]:
 
 
 def _cable(tail: Tail) -> Cable:
+    """Return the cable of the tail with its servo or its linear actuator."""
     cable = Cable(
         name="tail_cable",
         hinges=cable_names(tail),
@@ -224,6 +234,15 @@ def _cable(tail: Tail) -> Cable:
 
 
 def _girdle(name: str, segment: str, position: float, leg: Leg) -> Girdle:
+    """Return a girdle with legs of yaw, pitch and knee.
+
+    Args:
+        name: ending of the limbs' names, ``F`` or ``H``.
+        segment: name of the segment that carries it.
+        position: from the segment's origin forward to the hips [m].
+        leg: the measures of the left leg.
+    """
+
     def hinge(word: str, turn: str, limits: tuple[float, float]) -> Hinge:
         return Hinge(name=word, turn=turn, range=limits, drive=leg.servo)  # type: ignore[arg-type]
 

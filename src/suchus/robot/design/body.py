@@ -77,6 +77,7 @@ class Robot(_Hashed):
             _check_drives(self, check)
 
     def __hash__(self) -> int:
+        """Return the hash of all compared fields, computed once."""
         try:
             return self._hash
         except AttributeError:
@@ -174,6 +175,7 @@ def bends_trunk(hinge: str) -> bool:
 
 
 def _check_names(robot: Robot, check: Checks) -> None:
+    """Report a root or girdle on a segment that does not exist, and names that are used twice."""
     check.that(len(robot.axis) > 0, "the axis has no segment; give it one")
     names = [segment.name for segment in robot.axis]
     check.that(robot.root in names, f"root is {show(robot.root)}, no segment of the axis; there is {', '.join(names)}")
@@ -199,6 +201,7 @@ def _check_names(robot: Robot, check: Checks) -> None:
 
 
 def _check_axis(robot: Robot, check: Checks) -> None:
+    """Report girdles out of order, a root in the wrong segment, and yaw hinges with the wrong kind of name."""
     last_segment = robot.axis[-1]
     check.that(
         not last_segment.hinges,
@@ -227,6 +230,7 @@ def _check_axis(robot: Robot, check: Checks) -> None:
 
 
 def _check_limbs(robot: Robot, check: Checks) -> None:
+    """Report girdles off their segment, and limbs that are too short to carry the belly."""
     segments = {segment.name: segment for segment in robot.axis}
     for girdle in robot.girdles:
         segment = segments[girdle.segment]
@@ -245,6 +249,7 @@ def _check_limbs(robot: Robot, check: Checks) -> None:
 
 
 def _check_drives(robot: Robot, check: Checks) -> None:
+    """Report cables over hinges that do not fit, hinges with two drives, and servos of the wrong size."""
     order = [hinge.name for hinge in robot.axis_hinges]
     by_name = {hinge.name: hinge for hinge in robot.axis_hinges}
     drive_of_hinge: dict[str, str] = {}

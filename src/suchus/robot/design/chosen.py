@@ -141,6 +141,11 @@ def _holder(design: Any, step: str | int) -> Any:
 
 
 def _step(design: Any, step: str | int) -> Any:
+    """Return what a field, an element or a number of a design holds.
+
+    Raises:
+        UnknownName: the design has nothing of that name.
+    """
     names: Sequence[str | int] = _field_names(design.__class__)
     if isinstance(step, int):
         names = range(len(design)) if isinstance(design, tuple) else ()

@@ -92,6 +92,12 @@ class Drawing:
         )
 
     def _robot(self, scale: float, servo: Servo | None) -> Robot:
+        """Return the robot with its sections scaled.
+
+        Args:
+            scale: factor on width and height of the drawn sections [-].
+            servo: in every joint; None for one that holds the water.
+        """
         ends = (0.0, *self.joints, 1.0)
         drive = servo or swim_servo_for(self.mass, self.length)
         root = len(ends) // 2 - 1 if len(ends) > 2 else 0
@@ -146,6 +152,15 @@ class Drawing:
         total: float,
         segment_length: float,
     ) -> tuple[Rod | Shell, ...]:
+        """Return the ellipsoids of one segment, and its keel if there is one.
+
+        Args:
+            number: of the segment, from the snout [-].
+            shells: place [body length], half axes [body length] and relative size of each ellipsoid.
+            center: of the segment, from the snout [body length].
+            total: sum of the relative sizes of all segments.
+            segment_length: length of the segment [body length].
+        """
         length = self.length
         shapes: list[Rod | Shell] = []
         weight = sum(size for _, _, size in shells) / total * self.mass

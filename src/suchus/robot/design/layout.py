@@ -250,6 +250,7 @@ def _with_parent(body: LayoutBody, parent: int) -> LayoutBody:
 
 
 def _ahead_body(robot: Robot, i: int) -> LayoutBody:
+    """Return the body of segment ``i`` of the axis, which lies ahead of the root; its parent is set later."""
     segment, parent = robot.axis[i], robot.axis[i + 1]
     shift = 0.0 if parent.name == robot.root else parent.rear
     offset = shift + parent.front
@@ -259,6 +260,7 @@ def _ahead_body(robot: Robot, i: int) -> LayoutBody:
 
 
 def _behind_body(robot: Robot, i: int) -> LayoutBody:
+    """Return the body of segment ``i`` of the axis, which lies behind the root; its parent is set later."""
     segment, parent = robot.axis[i], robot.axis[i - 1]
     shift = 0.0 if parent.name == robot.root else 0.0 - parent.front
     offset = shift - parent.rear
@@ -283,6 +285,16 @@ def mirrored(axis: Axis, side: float) -> Axis:
 def _limb_bodies(
     girdle: Girdle, name: str, side: float, parent: int, first_index: int, shift: float
 ) -> list[LayoutBody]:
+    """Return the bodies of one limb from the hip to the foot.
+
+    Args:
+        girdle: that carries the limb.
+        name: of the limb.
+        side: 1 left, -1 right [-].
+        parent: index of the body that carries the girdle.
+        first_index: index that the limb's first body will have.
+        shift: of the parent's frame against the origin of its segment [m].
+    """
     bodies, offset = [], (shift + girdle.at, side * girdle.aside, girdle.above)
     for i, link in enumerate(girdle.limb.links):
         hinges = tuple((h, f"{name}_{h.name}", mirrored(LIMB_AXES[h.turn], side)) for h in link.hinges)
@@ -299,6 +311,14 @@ def _driven_hinges(limb: Limb) -> slice | tuple[int, ...]:
 
 
 def _limbs(robot: Robot, hinges: tuple[str, ...], servos: tuple[str, ...], tips: list[int]) -> tuple[LimbPlace, ...]:
+    """Return the limbs in order, each with its hinges, servos and neighbours.
+
+    Args:
+        robot: the design.
+        hinges: names of all hinges.
+        servos: names of all servos.
+        tips: index of each limb's last body.
+    """
     pairs, limbs = _pairs(robot), []
     for i, (girdle, name, side) in enumerate(pairs):
         number, right = divmod(i, 2)

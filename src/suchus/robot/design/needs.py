@@ -41,6 +41,7 @@ def _legs(robot: Robot) -> bool:
 
 
 def _hind_legs(robot: Robot) -> bool:
+    """Return whether the root carries legs of yaw, pitch and knee with a servo at every hinge."""
     hind = robot.girdles[-1] if robot.girdles else None
     return (
         hind is not None

@@ -229,6 +229,12 @@ def scaled_fields(design: Any, names: Iterable[str], *, length_factor: float, ma
 
 
 def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
+    """Return a value with every number scaled by its unit.
+
+    Args:
+        design: a frozen value, a tuple of such values, or anything else, which stays as it is.
+        factors: on mass, length and time [-].
+    """
     if isinstance(design, tuple):
         return tuple(_scaled(item, factors) for item in design)
     if not is_dataclass(design):

@@ -60,6 +60,7 @@ def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
     """
 
     def with_servo(hinge: Hinge, names: Collection[str]) -> Hinge:
+        """Return a hinge with the strongest of the servos that are given for its names."""
         matching_servos = sorted((servos[name] for name in names if name in servos), key=lambda servo: servo.torque)
         if not matching_servos or hinge.servo is None:
             return hinge
@@ -71,6 +72,7 @@ def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
         )
 
     def limb(girdle: Girdle) -> Girdle:
+        """Return a girdle whose limbs have the new servos."""
         links = tuple(
             replace(
                 link,

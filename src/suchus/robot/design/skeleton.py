@@ -43,6 +43,7 @@ def _segment(segment: Segment) -> Segment:
 
 
 def _girdle(girdle: Girdle) -> Girdle:
+    """Return a girdle whose links and feet have unit mass and whose servos are all equal."""
     limb = girdle.limb
     links = tuple(
         replace(link, mass=_MASS, inertia=None, hinges=tuple(_hinge(hinge) for hinge in link.hinges))

@@ -17,6 +17,11 @@ from suchus.robot.robots import ROBOTS
 
 
 def _read_gait(path: Path) -> Gait:
+    """Return the gait that a file describes, for the robot that its base was made for.
+
+    Raises:
+        UnreadableFile: the file gives lengths in metres or places along the body, and its base belongs to no robot.
+    """
     from suchus.robot import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
     data = read_toml(path)

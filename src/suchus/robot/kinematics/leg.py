@@ -157,6 +157,7 @@ def _solve(leg: LegLinks, foot: np.ndarray, angles: np.ndarray, knee: int, side:
 
 
 def _unreachable(leg: LegLinks, points: np.ndarray) -> Unreachable:
+    """Return the error that names the first of the points that the foot cannot reach."""
     bad = points[~reachable(leg, points)]
     min_reach, max_reach = abs(leg.femur - leg.tibia), leg.femur + leg.tibia
     hip = np.array([leg.hip_offset, 0.0, 0.0])

@@ -113,6 +113,7 @@ def inverse(
 
 
 def _refuse_far(limb: Limb, points: np.ndarray) -> None:
+    """Refuse points that are nearer to the hip or farther from it than the limb can reach."""
     min_reach, max_reach = reach(limb)
     distance = np.linalg.norm(points, axis=-1)
     bad = ~((distance >= min_reach * (1 - 1e-9) - 1e-12 * max_reach) & (distance <= max_reach * (1 + 1e-9)))

@@ -269,6 +269,13 @@ def _wrapped(angle: Numbers) -> np.ndarray:
 
 
 def _unreachable(spine: SpineLinks, points: np.ndarray, condition: str) -> Unreachable:
+    """Return the error that names the first of some points.
+
+    Args:
+        spine: the lengths.
+        points: that cannot be reached [m].
+        condition: under which they cannot, as the end of a clause.
+    """
     max_reach = 4.0 * spine.link
     with np.errstate(invalid="ignore", over="ignore"):
         distance = float(np.linalg.norm(points[0] - [spine.base, 0.0, 0.0]))

@@ -68,6 +68,13 @@ class Waves:
     """What gaits ask of one row of hinges: of a part's bend b, ``offset + Re(swing z)``, each hinge turns an nth."""
 
     def __init__(self, hinges: Hinges, turn: str, gaits: Sequence[Gait]) -> None:
+        """Add up what the bends of each gait ask of each hinge.
+
+        Args:
+            hinges: one row of hinges of the axis.
+            turn: of these hinges, ``yaw`` or ``pitch``.
+            gaits: one for each run.
+        """
         self.hinges = hinges
         shape = (len(gaits), len(hinges.servos))
         self.swing, self.offset, self.share = np.zeros(shape, dtype=complex), np.zeros(shape), np.ones(shape)

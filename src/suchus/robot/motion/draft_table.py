@@ -82,6 +82,7 @@ def table_walk(
 
 
 def _check_hinges(robot: Robot, girdle: Girdle) -> None:
+    """Refuse limbs whose driven hinges cannot both lift a foot and bring it forward."""
     driven_hinges = [hinge for hinge in girdle.limb.hinges if hinge.servo is not None]
     limbs = f"limbs L{girdle.name} and R{girdle.name}"
     if len(driven_hinges) < _MIN_HINGES or any(isinstance(hinge.drive, Crank) for hinge in driven_hinges):

@@ -414,6 +414,7 @@ class GaitByPlaces:
 
 
 def _check_girdles(robot: Robot, name: str, count: int) -> None:
+    """Refuse a robot that has another number of girdles than the gait."""
     girdles = robot.girdles
     if len(girdles) != count:
         raise OutsideLimits(

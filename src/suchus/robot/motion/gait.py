@@ -297,6 +297,7 @@ def _of_limbs(kind: type[FootPath] | type[Sweep], name: str, unit: str, descript
         return float(getattr(matching_limbs(gait)[0], name)) if matching_limbs(gait) else 0.0
 
     def write(gait: Gait, value: float) -> Gait:
+        """Return the gait with another value at the foremost limbs; the other limbs keep their proportion."""
         current = current_number(gait)
 
         def scaled_limb(limb: Any) -> Any:
@@ -321,9 +322,11 @@ def _bend_of(region: Part, description: str) -> Number:
         return sum(sum(bend.amplitude) / len(bend.amplitude) for bend in _yaw_of(gait, region))
 
     def write(gait: Gait, value: float) -> Gait:
+        """Return the gait with another mean amplitude; the knots keep their proportion."""
         current = current_amplitude(gait)
 
         def scaled_bend(bend: Bend) -> Bend:
+            """Return a bend of the region with scaled amplitudes; other bends stay as they are."""
             if bend.turn != "yaw" or bend.part != region or current == value:
                 return bend
             if len(bend.amplitude) == 1 and bend.amplitude[0] == current:
@@ -376,6 +379,8 @@ def _waves(gait: Gait) -> float:
 
 
 def _with_waves(gait: Gait, value: float) -> Gait:
+    """Return a gait with another number of wavelengths along the axis; the lag at the snout stays."""
+
     def stretched_bend(bend: Bend) -> Bend:
         if bend.turn != "yaw" or bend.part != "axis":
             return bend

@@ -121,6 +121,7 @@ class LimbMotion:
     def _feet(
         self, numbers: "_Path", phase: np.ndarray, steer: Steer | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return how far feet are ahead of their hips, outside them and below them, each (limb, *batch) [m]."""
         forward, lifted = foot_path(phase, self._duty)
         stroke, lowering = numbers.stroke, np.zeros(())
         if steer is not None:
@@ -221,6 +222,14 @@ _MOVES: dict[type, str] = {FootPath: "leads feet along a path", Sweep: "turns li
 
 
 def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> None:
+    """Refuse a movement that the limbs of a girdle cannot do.
+
+    Args:
+        place: layout of the robot.
+        gait: to which the movement belongs.
+        girdle: that carries the limbs.
+        limb: the movement.
+    """
     robot = place.robot
     drives = [hinge.drive for hinge in girdle.limb.hinges]
     cranks = len(drives) == 1 and isinstance(drives[0], Crank)

@@ -158,6 +158,13 @@ class Movement:
         return np.stack([places[i] for i in range(len(places))], axis=-2)
 
     def _bend(self, targets: np.ndarray, axis: np.ndarray, steer: Steer | None) -> None:
+        """Write the servo angles of the axis that its bends ask for.
+
+        Args:
+            targets: servo angles, written to [rad].
+            axis: what the axis follows, as ``axis_phase`` returns it [-].
+            steer: what is asked besides.
+        """
         size = None if steer is None else steer.size
         tail = 0.0 if steer is None else steer.tail
         if self.yaw.moves or np.any(tail):
@@ -186,6 +193,13 @@ class Movement:
         return np.asarray(np.asarray(bend)[..., None] * weights * self.yaw.share)
 
     def _curve(self, targets: np.ndarray, limbs: np.ndarray, axis: np.ndarray) -> None:
+        """Write the servo angles of the measured curves.
+
+        Args:
+            targets: servo angles, written to [rad].
+            limbs: phases of the limbs [cycle].
+            axis: what the axis follows, as ``axis_phase`` returns it [-].
+        """
         if not self._curves:
             return
         first_phase = self._phases[:, 0] if self._phases.shape[1] else 0.0
@@ -215,6 +229,12 @@ class Batch:
     """
 
     def __init__(self, robots: Sequence[Robot], gaits: Sequence[Gait]) -> None:
+        """Work out each group of runs with one skeleton and one structure of gait.
+
+        Args:
+            robots: the design of each run.
+            gaits: the gait of each run.
+        """
         members: dict[Any, list[int]] = {}
         for run, (robot, gait) in enumerate(zip(robots, gaits, strict=True)):
             members.setdefault((skeleton(robot), structure(gait)), []).append(run)

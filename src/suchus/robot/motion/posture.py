@@ -267,6 +267,13 @@ def hind_leg(
 
 
 def _eased(times: np.ndarray, keys: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Return the numbers of a sequence at some times, half a cosine from each key to the next, shape (*batch, number).
+
+    Args:
+        times: of the keys [s].
+        keys: numbers of the posture at each key, shape (key, number).
+        time: since the beginning of the sequence [s].
+    """
     if len(times) == 1:
         return np.broadcast_to(keys[0], (*time.shape, keys.shape[1]))
     i = np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 2)
@@ -362,6 +369,7 @@ def _feet(leg: LegMeasures, parameters: dict[str, np.ndarray], feet_forward: np.
 
 
 def _check_ranges(robot: Robot, targets: np.ndarray) -> None:
+    """Refuse servo angles outside the range of a joint."""
     for i, (name, (lower_bound, upper_bound)) in enumerate(zip(layout(robot).servos, servo_ranges(robot), strict=True)):
         worst_angle = targets[..., i].ravel()[
             np.argmax(np.maximum(lower_bound - targets[..., i], targets[..., i] - upper_bound))

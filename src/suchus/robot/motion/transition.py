@@ -74,6 +74,12 @@ def transition(robot: Robot, old_gait: Gait, new_gait: Gait, *, slower: float = 
         return np.asarray(movement(robot, gait).targets(phase, np.zeros(1, dtype=complex), steer)[0])
 
     def mixed(is_turned: np.ndarray, lifted: np.ndarray) -> np.ndarray:
+        """Return the servo angles while some limbs have their new posture; the axis mixes both by their number.
+
+        Args:
+            is_turned: which limbs have their new posture.
+            lifted: which limbs are lifted.
+        """
         old_targets, new_targets = standing(old, lifted), standing(new, lifted)
         share = is_turned.mean() if is_turned.size else 1.0
         targets = (1.0 - share) * old_targets + share * new_targets

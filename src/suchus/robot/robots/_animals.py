@@ -54,6 +54,14 @@ def _with_stiff_hinges(segment: Segment, servo: Servo) -> Segment:
 
 
 def _floating_segment(segment: Segment, density: float, keel: float, factor: float) -> Segment:
+    """Return a segment with the volume of its mass, of which a part lies low.
+
+    Args:
+        segment: of one rod.
+        density: mass over volume [kg/m3].
+        keel: fraction of the mass that lies low [-].
+        factor: on the radius [-].
+    """
     (rod,) = (shape for shape in segment.shapes if isinstance(shape, Rod))
     length = segment.front + segment.rear
     radius = factor * sqrt(rod.mass / (density * pi * length))
@@ -123,6 +131,7 @@ def eel(length: float, mass: float, density: float, *, beat: float) -> Robot:
 
 
 def _eel_width(place: float) -> float:
+    """Return the half width of the eel at a place along the body, both [body length]."""
     head, tail, max_width, tail_width = 0.04, 0.95, 0.04, 0.01
     if place < head:
         return max(sqrt(max(2.0 * max_width * place - place**2, 0.0)), 0.006)

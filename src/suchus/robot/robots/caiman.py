@@ -106,6 +106,12 @@ _Row = tuple[str, float, float, str]
 
 
 def _servo_rows(path: str, demand: str) -> tuple[_Row, ...]:
+    """Return path, plausible range and reason of every number of a servo.
+
+    Args:
+        path: of the servo in the tables.
+        demand: torque that the robot's movements ask of it, as a clause.
+    """
     return (
         (f"{path}.torque", 2.4, 5.2, f"{_SERVO_CHOICE}; {demand}"),
         (f"{path}.speed", 3.9, 8.3, f"{_SERVO_CHOICE}, which turn slower by the same share"),
@@ -120,6 +126,7 @@ def _servo_rows(path: str, demand: str) -> tuple[_Row, ...]:
 
 
 def _leg_rows(path: str) -> tuple[_Row, ...]:
+    """Return path, plausible range and reason of every chosen number of the leg at a path."""
     return (
         (f"{path}.foot_radius", 0.008, 0.020, "a rubber ball that a pressure sensor fits into"),
         (f"{path}.radius", 0.008, 0.015, "a tube that carries the servos"),

@@ -18,6 +18,7 @@ _servo = servo_for(_MASS, _LENGTH)
 
 
 def _limb(upper_length: float, lower_length: float):  # type: ignore[no-untyped-def]
+    """Return a limb of yaw, pitch, roll and elbow with two lengths, above and below the elbow [m]."""
     return limb(
         upper_length,
         lower_length,
