@@ -76,7 +76,12 @@ def _metric_gait(shelf: Mapping[str, Gait]) -> Gait:
 
 
 def _with_parts(data: dict[str, Any], robot: Robot) -> dict[str, Any]:
-    """Return a table whose curves say which part of the body they move."""
+    """Return a table whose curves say which part of the body they move.
+
+    Args:
+        data: the table of a gait.
+        robot: whose servos the curves move.
+    """
     if not isinstance(data.get("curves"), list):
         return data
     parts = servo_parts(robot)

@@ -84,7 +84,13 @@ def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]
 
 
 def _locate(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
-    """Return the place of an error and the kind of the part that it stands in; None for a kind that was not meant."""
+    """Return the place of an error and the kind of the table that it stands in; None if the file means another kind.
+
+    Args:
+        loc: place of the error as pydantic gives it, names of kinds included.
+        kind: of the whole file.
+        data: what was validated.
+    """
     place: list[str | int] = []
     owner = kind
     for key in loc:
@@ -158,7 +164,13 @@ def _unknown(place: Place, owner: Any, kind: type) -> str:
 
 
 def _homes(name: str, kind: Any, place: str = "") -> Iterator[str]:
-    """Yield where a design has a field of a name; what is listed, as segments are, has no place that could be said."""
+    """Yield the places where a design has a field of a name; elements of lists, as segments, are left out.
+
+    Args:
+        name: of the field.
+        kind: of the design.
+        place: of the design in the file, with a dot at its end.
+    """
     if not is_dataclass(kind):
         return
     for field in fields(kind):

@@ -168,12 +168,18 @@ def _container_place(place: Place) -> Place:
 
 
 def _follows(place: Place, repaired: set[Place]) -> bool:
-    """Whether a complaint about a whole part may stem from a value that we put into it."""
+    """Return whether a complaint about a whole table may stem from a fallback value that was put into it."""
     return any(m[: len(place)] == place for m in repaired)
 
 
 def _mend(data: Any, place: Place, spare: Any) -> bool:
-    """Put the spare value at a place, or drop what should not be there; return whether that was possible."""
+    """Put the fallback value at a place, or remove a key that should not be there; return whether that was possible.
+
+    Args:
+        data: the table, changed in place.
+        place: keys from the top of the table down to the mistake.
+        spare: a table without mistakes.
+    """
     if not place:
         return False
     for key in place[:-1]:
@@ -187,7 +193,12 @@ def _mend(data: Any, place: Place, spare: Any) -> bool:
 
 
 def merged(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a table with what another one says in the place of its own."""
+    """Return a table in which the values of a second table replace those of the first, table by table.
+
+    Args:
+        base: the first table; it stays as it is.
+        overrides: the second table.
+    """
     table = dict(deepcopy(base))
     for key, value in overrides.items():
         current = table.get(key)

@@ -38,7 +38,15 @@ def render(value: object, *, notes: Mapping[str, str] | None = None, head: Seque
 def _table(
     value: Any, path: tuple[str, ...], notes: Mapping[str, str], place: str = "", *, row: bool = False
 ) -> list[str]:
-    """A table's own values first, then the tables below it, as TOML wants it; a row of tables has double brackets."""
+    """Return the lines of a table: its own values first, then the tables below it, as TOML needs it.
+
+    Args:
+        value: the frozen value.
+        path: keys from the top of the file down to the table.
+        notes: remarks by the place of a value.
+        place: of the table, with a dot at its end, as the notes name it.
+        row: whether the table is an element of a list, which has double brackets.
+    """
     field_meanings = meanings(type(value))
     items = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
     name = ".".join(path)

@@ -191,7 +191,12 @@ class Amphibian:
         return self._mixed(self._swims.rest())
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Feel, decide, and go on swimming, walking or changing."""
+        """Return the servo angles and the air fraction of every run for one control period.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings.
+        """
         time = tick * self._period
         if sensed is not None:
             self._feel(sensed)
@@ -247,7 +252,11 @@ class Amphibian:
         self._air_fraction = self._air_fraction + np.clip(air_target - self._air_fraction, -max_step, max_step)
 
     def _mixed(self, swim_targets: np.ndarray) -> np.ndarray:
-        """Return the posture between that of the swim and that of the walk, shape (run, servo) [rad]."""
+        """Return the posture between that of the swim and that of the walk, shape (run, servo) [rad].
+
+        Args:
+            swim_targets: servo angles of the swim, shape (run, servo) [rad].
+        """
         if not self._blend.any():
             return swim_targets
         walk_targets = self._walk_posture(self._batch)

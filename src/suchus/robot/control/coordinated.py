@@ -82,7 +82,7 @@ class Coordinated:
         )
 
     def suited(self, robot: Robot, gait: Gait) -> "Coordinated":
-        """Return it with those of its rules that a robot's parts make possible in a gait.
+        """Return the control with those of its rules that the robot's parts allow in a gait.
 
         A law that makes diagonal pairs is switched off in a gait without them.
         """
@@ -157,7 +157,12 @@ class Coordinator:
         return self._posture(0)
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Let every controller read the shared variables and what it feels, and say what the servos do."""
+        """Return the servo targets after every controller has read the shared variables and its sensors.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None if no rule is on.
+        """
         walking = tick * self._period >= START - _SLACK
         for run, phase_lead in self._kicks.get(tick, ()):
             self._limbs.kick(run, phase_lead)

@@ -29,7 +29,7 @@ class Facing:
         self._turned = np.zeros(len(cycle))
 
     def feel(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
-        """Return how far each robot has turned to the left since the first call, a mean over its last cycle [rad]."""
+        """Return the heading of each robot since the first call, left positive, averaged over its last cycle [rad]."""
         trunk = finite(sensed.servo_position[:, self._yaw]).sum(1)
         facing = rotation.yaw(finite(sensed.orientation)) + trunk / 2
         if self._walks:

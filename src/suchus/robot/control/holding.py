@@ -76,7 +76,7 @@ class DepthHold:
 
 
 def neutral_air_fraction(robot: Robot) -> float:
-    """Return the share of its hull's air with which a robot under fresh water neither sinks nor rises [-].
+    """Return the fraction of its hull's air with which a robot under fresh water neither sinks nor rises [-].
 
     Raises:
         InvalidDesign: its hull has no air, or not enough of it.
@@ -141,7 +141,7 @@ class Depths:
         self._air_fraction = np.ones(len(active_rules))
 
     def air_fraction(self, sensed: Sensed) -> Float[np.ndarray, " run"] | None:
-        """Return the share of the air that each robot keeps, NaN where none is asked for [-]."""
+        """Return the fraction of the air that each robot keeps, NaN for a run without a rule [-]."""
         if sensed.depth is None or not self._is_active.any():
             return None
         rule, depth = self._rule, finite(sensed.depth)

@@ -123,7 +123,7 @@ class Loads:
         self._load, self._twist = predecessor._load, predecessor._twist
 
     def feel(self, sensed: Sensed) -> None:
-        """Pass what is sensed through the filters."""
+        """Update the low-pass-filtered foot loads and trunk torque."""
         load = np.minimum(finite(sensed.foot_pressure) / self._share, self._clip)
         twist = finite(sensed.servo_torque[:, self._yaw]).sum(axis=1, keepdims=True) / self._torque
         self._load = load if self._load is None else load + self._keep * (self._load - load)
@@ -233,7 +233,7 @@ def _refuse_others(gait: Gait, place: Layout) -> None:
 
 
 def _weights(law: LimbLaw, place: Layout) -> list[list[float]]:
-    """Return how much each limb (row) listens to each foot (column); limbs with two neighbours hear half of each."""
+    """Return the weight of each foot's load (column) for each limb (row); two neighbours count half each [-]."""
     weights = np.zeros((len(place.limbs), len(place.limbs)))
     for i, limb in enumerate(place.limbs):
         weights[i, i] = law.own

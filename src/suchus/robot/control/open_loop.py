@@ -38,7 +38,7 @@ class OpenLoop:
 
     @staticmethod
     def start(runs: Runs, period: float) -> "GaitTable":
-        """Tabulate every gait; runs whose robots have one skeleton, with the same gait and control, share their rows.
+        """Tabulate every distinct gait; runs with one skeleton, gait and control share their table.
 
         Raises:
             OutsideLimits: a gait of measured curves is to grow over a ramp.

@@ -41,7 +41,7 @@ class Courses:
 
 
 def members(keys: Sequence[Any]) -> list[tuple[Any, np.ndarray]]:
-    """Return each different key with the numbers of those that have it."""
+    """Return each distinct key with the indices of its occurrences."""
     indices: dict[Any, list[int]] = {}
     for i, key in enumerate(keys):
         indices.setdefault(key, []).append(i)
@@ -304,7 +304,11 @@ class Generator:
         return self._targets(0.0)
 
     def advance(self, tick: int) -> None:
-        """Let the oscillators turn from the last control period to this one, if the walk has begun by then."""
+        """Advance the oscillators from the last control period to this one, once the walk has begun.
+
+        Args:
+            tick: number of the control period.
+        """
         previous_time = (tick - 1) * self._period
         if previous_time >= START - _SLACK:
             frequency, amplitude = self._natural_rhythm(previous_time)
@@ -313,7 +317,12 @@ class Generator:
             self._rhythm.advance(frequency, amplitude)
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Let the oscillators turn, and say what the servos do."""
+        """Advance the oscillators by one control period and return the servo targets.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None if no rule is on.
+        """
         if sensed is not None and self._loads.felt:
             self._loads.feel(sensed)
         if sensed is not None and self._sensed_drive.felt:

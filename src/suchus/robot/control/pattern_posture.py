@@ -130,7 +130,13 @@ class PatternPosture:
 
 
 def _lag(gait: Gait, swing: complex, girdle: int) -> float:
-    """Return the phase lag of a hinge behind the limbs of a girdle, -1/2 to 1/2; 0 where nothing drives it [cycle]."""
+    """Return the phase lag of a hinge behind the limbs of a girdle, -1/2 to 1/2; 0 where nothing drives it [cycle].
+
+    Args:
+        gait: whose limb phases count.
+        swing: complex amplitude of the hinge's bend [rad].
+        girdle: number of the girdle that drives the hinge; -1 for none.
+    """
     if girdle < 0 or not swing:
         return 0.0
     pulls = gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases)
@@ -140,7 +146,13 @@ def _lag(gait: Gait, swing: complex, girdle: int) -> float:
 
 
 def _folded(place: Layout, gait: Gait, middle: np.ndarray) -> np.ndarray:
-    """Return the angles with every limb straight back along the body, as far as its joints go; held limbs as held."""
+    """Return the servo angles with every limb straight back along the body, within its ranges; held limbs stay held.
+
+    Args:
+        place: layout of the robot.
+        gait: that says which limbs are held.
+        middle: servo angles in the middle of the stance, shape (servo,) [rad].
+    """
     folded, ranges = middle.copy(), servo_ranges(place.robot)
     for limb in place.limbs:
         if isinstance(gait.limbs[limb.number], Held):

@@ -229,7 +229,12 @@ class Stander:
         return np.asarray(self._course.targets[self._row, 0])
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Follow the course, and while upright correct it by what is felt."""
+        """Return the servo angles of the course, corrected for balance while the robot is upright.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None without feedback.
+        """
         planned = Course(*(quantity[self._row, tick] for quantity in self._course))
         if sensed is None:
             return Command(planned.targets, planned.phase)
@@ -248,7 +253,13 @@ class Stander:
         return Command(targets, planned.phase)
 
     def _answer(self, planned: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return how far the hips go back [m] and the trunk bends back [rad]."""
+        """Return how far the hips go back [m] and the trunk bends back [rad].
+
+        Args:
+            planned: intended motion of each run at this tick.
+            sensed: readings.
+            upright: which runs stand upright.
+        """
         g = self._gains
         pitch_error = planned.pitch + rotation.steep_pitch(
             sensed.orientation

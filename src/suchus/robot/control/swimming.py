@@ -106,7 +106,12 @@ class SwimmingController:
         return self._posture(0.0, self._zeros, self._zeros)[0]
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Go on in the gait, and add what is felt."""
+        """Return the servo angles of the gait with the corrections of heading, depth and pitch.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None if nothing is controlled.
+        """
         tail, trunk, air = self._zeros, self._zeros, None
         if sensed is not None and self._feels:
             tail, trunk = self._headings.bend(sensed)
@@ -115,7 +120,13 @@ class SwimmingController:
         return Command(*self._posture(tick * self._period, tail, trunk), air)
 
     def _posture(self, time: float, tail: np.ndarray, trunk: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return servo angles [rad] and phases of the limbs [cycle] at a time [s]."""
+        """Return servo angles [rad] and phases of the limbs [cycle] at a time [s].
+
+        Args:
+            time: since the beginning of the run [s].
+            tail: steady bend of the tail of each run, left positive [rad].
+            trunk: steady bend of the trunk of each run, left positive [rad].
+        """
         clock = time / self._gaits.periods
         phase = clock[:, None] + self._gaits.phases
         steer = Steer(size=grown(time, self._ramp), bend=trunk, tail=tail)

@@ -89,7 +89,14 @@ class Switcher:
     def decide(
         self, sensed: Sensed, phase: Float[np.ndarray, "run limb"], gaits: Sequence[Gait], busy: set[int]
     ) -> list[tuple[int, Gait]]:
-        """Feel, and return which runs begin which gait now; those that are busy feel nothing new."""
+        """Update the filtered readings and return the runs that begin another gait now, with that gait.
+
+        Args:
+            sensed: readings.
+            phase: of the limbs [cycle].
+            gaits: present gait of each run.
+            busy: runs that are changing their gait; their readings do not count.
+        """
         if all(rule is None for rule in self._rules):
             return []
         free = np.array([run not in busy for run in range(len(self._rules))])
@@ -106,7 +113,13 @@ class Switcher:
         return requests
 
     def _step(self, run: int, rule: SwitchRule, rung: int) -> int:
-        """Return how many rungs a run goes up."""
+        """Return by how many rungs of its ladder a run changes its posture: -1, 0 or 1.
+
+        Args:
+            run: index of the run.
+            rule: its rule.
+            rung: present index on the ladder.
+        """
         if self._since[run] < rule.memory:
             return 0
         if self._belly[run] > rule.belly and rung + 1 < len(rule.ladder):

@@ -94,7 +94,7 @@ class TailController:
         )
 
     def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
-        """Return the targets with the tail's pitch given way for one control period more."""
+        """Return the targets with the tail pitched by the torque feedback of one more control period."""
         if not self._is_active.any():
             return targets
         gives = self._step * finite(sensed.servo_torque[:, self._column])

@@ -74,7 +74,13 @@ def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tu
 
 
 def _observe_step(name: str, step: Callable[[Any, Any], Shared | None], place: Layout) -> ControlPart:
-    """Return what one step read and wrote."""
+    """Return the sensors and shared variables that one step of a controller read and wrote.
+
+    Args:
+        name: of the controller.
+        step: takes the shared variables and the readings.
+        place: layout of the robot.
+    """
     shared, shared_names, sensed_names = silence(1, len(place.limbs)), set[str](), set[str]()
     result = step(_watching(shared, shared_names), _watching(_quiet(place), sensed_names))
     written_names = [] if result is None else [v for v in OWNERS if getattr(result, v) is not getattr(shared, v)]
@@ -84,7 +90,12 @@ def _observe_step(name: str, step: Callable[[Any, Any], Shared | None], place: L
 
 
 def _watching(value: object, read_names: set[str]) -> Any:
-    """Return what stands for a value, of its own type, and notes which of its attributes are read."""
+    """Return a proxy of a value, of the same type, that records which attributes are read.
+
+    Args:
+        value: the value.
+        read_names: set to which the names are added.
+    """
 
     def noted(_: object, name: str) -> Any:
         read_names.add(name)

@@ -142,7 +142,12 @@ class Walker:
         return self._previous_command.targets
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Walk on, or take another step of a change of gait."""
+        """Return the servo angles of the gait, or of the transition to another gait.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None if no rule is on.
+        """
         time = tick * self._period
         if sensed is not None:
             self._lower = self._attitude.lower(sensed) if time >= START - _SLACK else np.zeros_like(self._lower)
@@ -165,7 +170,13 @@ class Walker:
         return self._gaits[run]
 
     def _requested_gaits(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
-        """Return who begins another gait now."""
+        """Return the runs that begin another gait now, with that gait.
+
+        Args:
+            time: since the beginning of the run [s].
+            sensed: readings; None if no rule is on.
+            phase: of the limbs, shape (run, limb) [cycle].
+        """
         busy = set(self._script)
         requests = []
         for run, control in enumerate(self._controls):
@@ -185,7 +196,11 @@ class Walker:
                 self._full[run] = _GROWS * self._gaits[run].period
 
     def _walk(self, time: float) -> Command:
-        """Return the intended posture of every run by its clock; those of runs that change their gait do not count."""
+        """Return the intended posture of every run by its clock; runs in a transition ignore it.
+
+        Args:
+            time: since the beginning of the run [s].
+        """
         since = np.maximum(time - self._began, 0.0)
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
         clock = since / self._batch.periods + self._cycles

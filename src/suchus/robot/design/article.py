@@ -62,7 +62,7 @@ def remade(robot: Robot, change: Callable[[Any], Any]) -> Robot:
 
 @lru_cache(maxsize=256)
 def tables_of(robot: Robot) -> Tables | None:
-    """Return the tables that make a robot: those it was made of, or those read from its measures, which must make it.
+    """Return the tables that make a robot, remembered or read back from its measures; None if no tables make it.
 
     None where no tables make it.
     """
@@ -100,7 +100,13 @@ def _cord_drive(robot: Robot) -> dict[str, object]:
 
 
 def _from_measures(kind: type[T], measures: NamedTuple, **extra_fields: object) -> T:
-    """Return a part of the tables with the measures that carry the names of its fields."""
+    """Return a part of the tables, filled with the measures of the same names.
+
+    Args:
+        kind: class of the part.
+        measures: read from a robot.
+        **extra_fields: fields that the measures do not have, by name.
+    """
     names = {field.name for field in fields(kind)}  # type: ignore[arg-type]
     return kind(**{name: value for name, value in measures._asdict().items() if name in names}, **extra_fields)
 

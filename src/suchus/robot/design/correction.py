@@ -68,7 +68,11 @@ class SectionCorrection:
         return {body: link for link in self.links for body in link.bodies}
 
     def outside(self, reynolds: float) -> str:
-        """Return what is to be said of a Reynolds number that it was not found for; nothing of one that it was."""
+        """Return a warning for a Reynolds number outside the range of the correction; an empty text inside it.
+
+        Args:
+            reynolds: frequency times length squared over viscosity [-].
+        """
         lower_bound, upper_bound = self.reynolds
         if lower_bound * (1 - 1e-6) <= reynolds <= upper_bound * (1 + 1e-6):
             return ""

@@ -121,7 +121,13 @@ class Drawing:
         return Hinge(name=f"{word}_yaw_{count}", turn="yaw", drive=drive, range=(-self.bend, self.bend))
 
     def _shells(self, number: int, ends: tuple[float, ...], scale: float) -> list[tuple[float, np.ndarray, float]]:
-        """Return place, half axes, both [body length], and size of the ellipsoids of a segment."""
+        """Return place and half axes, both [body length], and relative size of each ellipsoid of a segment.
+
+        Args:
+            number: of the segment, from the snout [-].
+            ends: places of the joints with both ends of the body [body length].
+            scale: factor on width and height [-].
+        """
         a, b = ends[number], ends[number + 1]
         count = max(2, round((b - a) * 24))
         step = (b - a) / count

@@ -260,7 +260,11 @@ class LinearActuator:
         )
 
     def on(self, radius: float) -> Servo:
-        """Return the servo that gives the cords the same by a pulley of a radius [m]."""
+        """Return the servo that moves the cords in the same way by a pulley.
+
+        Args:
+            radius: of the pulley [m].
+        """
         return Servo(
             kp=self.kp * radius**2,
             ki=self.ki * radius**2,

@@ -217,7 +217,12 @@ def front_segment(robot: Robot) -> str:
 
 
 def hips_behind_snout(robot: Robot, girdle: int) -> float:
-    """Return how far a girdle's hips are behind the tip of the snout with a straight axis [m]."""
+    """Return the distance from a girdle's hips forward to the tip of the snout with a straight axis [m].
+
+    Args:
+        robot: the design.
+        girdle: number of the girdle, from the front [-].
+    """
     distance = 0.0
     for segment in robot.axis:
         if segment.name == robot.girdles[girdle].segment:
@@ -232,7 +237,12 @@ def behind_hips(robot: Robot) -> float:
 
 
 def hips_ahead(robot: Robot, girdle: int) -> float:
-    """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m]."""
+    """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m].
+
+    Args:
+        robot: the design.
+        girdle: number of the girdle, from the front [-].
+    """
     if girdle == len(robot.girdles) - 1:
         return 0.0
     names, distance = [segment.name for segment in robot.axis], -robot.girdles[-1].at
@@ -270,7 +280,13 @@ def _behind_body(robot: Robot, i: int) -> LayoutBody:
 
 
 def _framed(inertia: Inertia | None, shift: float, side: float) -> Inertia | None:
-    """Return where a body's mass lies in the frame at its hinges; on the right side, its mirror image."""
+    """Return the inertia of a body in the frame at its hinges; on the right side, the mirror image.
+
+    Args:
+        inertia: of the left body; None if its design has none.
+        shift: of the frame against the origin of the segment [m].
+        side: 1 left, -1 right [-].
+    """
     if inertia is None:
         return None
     (x, y, z), (xy, xz, yz) = inertia.centre, inertia.products

@@ -28,7 +28,7 @@ def _is_text(node: ast.stmt) -> bool:
 
 @cache
 def _own_meanings(kind: type) -> dict[str, str]:
-    """Return what a class's own body says; to find it in the source takes 10 ms."""
+    """Return the docstrings of the fields that a class itself defines; cached, since parsing takes 10 ms."""
     try:
         source = textwrap.dedent(inspect.getsource(kind))
     except (OSError, TypeError):

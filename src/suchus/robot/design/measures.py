@@ -310,7 +310,16 @@ def _plates(
     servo: Servo,
     rods: list[Rod],
 ) -> TailMeasures | None:
-    """Return the measures of a tail whose hinges fit; None where its segments are not equal."""
+    """Return the measures of a tail whose hinges fit; None where its segments are not equal.
+
+    Args:
+        segments: behind the root.
+        root: segment whose hinge pitches the tail.
+        driven_hinges: yaw hinges under the cable or with servos.
+        cable: over these hinges; None if each has a servo.
+        servo: that drives them.
+        rods: shape of each segment.
+    """
     count, lengths = len(driven_hinges), [segment.front + segment.rear for segment in segments]
     # the last driven joint is followed by half a joint's distance, then the passive end begins
     pitch = lengths[1] if count > 1 else _tidy(2 * lengths[count])

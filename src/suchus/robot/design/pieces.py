@@ -96,7 +96,14 @@ def _strips(place: Layout) -> list[np.ndarray]:
 
 
 def _strip(body: int, x: float, length: float, section: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Return an elliptic section with the mean area, and the proportions of the mean width and height."""
+    """Return one strip of the axis as an elliptic section of the mean area and the mean proportions.
+
+    Args:
+        body: index of the body that carries it.
+        x: of its centre in the frame of the body, forward [m].
+        length: along the axis [m].
+        section: half widths, half heights, areas and centre heights at its stations [m], [m2].
+    """
     half_width, half_height, area, middle = section
     volume = float(area.mean()) * length
     scale = sqrt(float(area.mean()) / (pi * float(half_width.mean()) * float(half_height.mean())))
@@ -112,7 +119,15 @@ def _disc(
     half: tuple[float, float, float],
     volume: float,
 ) -> np.ndarray:
-    """Return an elliptic section: added mass of potential flow, girth of an ellipse after Ramanujan."""
+    """Return an elliptic section with the added mass of potential flow and the girth of an ellipse (Ramanujan).
+
+    Args:
+        body: index of the body that carries it.
+        center: in the frame of the body [m].
+        axes: unit vectors across, upward and forward.
+        half: half axes along them [m].
+        volume: [m3].
+    """
     a, b, c = half
     girth = pi * (3 * (a + b) - sqrt((3 * a + b) * (a + 3 * b)))
     return _row(
@@ -132,7 +147,13 @@ def _disc(
 
 
 def ball(body: int, center: tuple[float, float, float] | np.ndarray, radius: float) -> np.ndarray:
-    """Return a sphere as a piece: half its volume of added mass, drag of a sphere."""
+    """Return a sphere as a piece: added mass of half its volume, drag of a sphere.
+
+    Args:
+        body: index of the body that carries it.
+        center: in the frame of the body [m].
+        radius: [m].
+    """
     volume = 4 / 3 * pi * radius**3
     area = _BALL_DRAG * pi * radius**2
     return _row(
@@ -163,7 +184,13 @@ def _limb(limb: LimbPlace) -> list[np.ndarray]:
 
 
 def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
-    """Let every body swell to the volume that it has with its foam, and lift it as far as the foam's centre says."""
+    """Add foam and air to the pieces: bodies grow to their volume with foam, shifted by its offset.
+
+    Args:
+        place: layout of the robot.
+        table: of the pieces, changed in place.
+        hull: of the robot.
+    """
     number = {body.name: i for i, body in enumerate(place.bodies)}
     for foam in hull.foam:
         if foam.body not in number:
@@ -214,7 +241,14 @@ def _air_in_chambers(place: Layout, hull: Hull) -> dict[str, float]:
 
 
 def _check_hollow(place: Layout, body: str, air: float, volume: float) -> None:
-    """Refuse a chamber larger than what a body displaces, foam included, beside what is solid in it."""
+    """Refuse a chamber that is larger than the volume of its body, foam included, minus its solid parts.
+
+    Args:
+        place: layout of the robot.
+        body: that holds the chamber.
+        air: in the chamber [m3].
+        volume: of the body with its foam [m3].
+    """
     max_air = max(volume - masses(place.robot)[body] / SOLID, 0.0)
     if air > max_air + 1e-12:
         raise InvalidDesign(

@@ -161,7 +161,14 @@ def _arm(limb: Limb, foot: np.ndarray, plane: np.ndarray) -> np.ndarray:
 
 
 def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: int = SEEDS) -> np.ndarray:
-    """Take damped Gauss-Newton steps within the joints' ranges; who gets stuck begins again elsewhere."""
+    """Solve by damped Gauss-Newton steps within the joints' ranges; points without a solution start again elsewhere.
+
+    Args:
+        limb: the design.
+        points: of the foot from the hip, shape (*batch, 3) [m].
+        start: angles near the answer [rad]; the middle of the ranges if None.
+        tries: how often a point may start again [-].
+    """
     count = len(limb.hinges)
     lower_bound, upper_bound = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
     flat = points.reshape(-1, 3)
@@ -198,7 +205,15 @@ def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: in
 def _descend(
     limb: Limb, points: np.ndarray, angles: np.ndarray, lower_bound: np.ndarray, upper_bound: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the angles reached from a start and the errors left, in lengths of the limb."""
+    """Return angles and remaining errors after damped Gauss-Newton steps from a start.
+
+    Args:
+        limb: the design.
+        points: of the foot from the hip, shape (point, 3) [m].
+        angles: at the start, shape (point, hinge) [rad].
+        lower_bound: of each hinge [rad].
+        upper_bound: of each hinge [rad].
+    """
     size, angles = limb.reach, angles.copy()
     error = np.full(len(points), np.inf)
     active = np.arange(len(points))
@@ -219,7 +234,12 @@ def _descend(
 
 
 def _chain(limb: Limb, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the foot [m] and how it moves with the hinges [m/rad], by cross products."""
+    """Return the foot's position [m] and its Jacobian over the hinges [m/rad].
+
+    Args:
+        limb: the design.
+        angles: of the hinges, shape (*batch, hinge) [rad].
+    """
     batch = angles.shape[:-1]
     turn = np.broadcast_to(np.eye(3), (*batch, 3, 3))
     place, pivots, axes, i = np.zeros((*batch, 3)), [], [], 0

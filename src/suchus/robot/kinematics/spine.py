@@ -166,7 +166,13 @@ def least_bending(
 
 
 def _minimise_bending(spine: SpineLinks, points: np.ndarray, heading: np.ndarray) -> np.ndarray:
-    """Return the least bent angles, shape (point, 5); headings have the shape (point, 1)."""
+    """Return the angles with the least sum of squares, shape (point, 5) [rad].
+
+    Args:
+        spine: the lengths.
+        points: of joint 5 in frame 0, shape (point, 3) [m].
+        heading: azimuth of the head, shape (point, 1) [rad].
+    """
     aim, lower_bound, upper_bound, is_unreachable = _feasible_yaw(spine, points)
     if is_unreachable.any():
         raise _unreachable(spine, points[is_unreachable], "by any posture")
@@ -196,7 +202,15 @@ def _minimise_bending(spine: SpineLinks, points: np.ndarray, heading: np.ndarray
 def _closed_form(
     spine: SpineLinks, point: np.ndarray, azimuth: np.ndarray, first_yaw: np.ndarray, branch: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the angles for a given first yaw, NaN where there are none; and how level the head is, to 1."""
+    """Return the angles for a given first yaw, NaN where there are none, and the cosine of the head's tilt.
+
+    Args:
+        spine: the lengths.
+        point: of joint 5 in frame 0 [m].
+        azimuth: of the head [rad].
+        first_yaw: the first angle [rad].
+        branch: sign of the second pitch angle.
+    """
     s1, c1 = np.sin(first_yaw), np.cos(first_yaw)
     x, y = point[..., 0] - spine.base, point[..., 1]
     wx = (c1 * x + s1 * y) / spine.link - 1.0  # from joint 2 to joint 5, in links, seen from link 1
@@ -223,7 +237,12 @@ def _closed_form(
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def _feasible_yaw(spine: SpineLinks, points: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return each point's azimuth, how far the first yaw must and may lie off it, and which have none."""
+    """Return each point's azimuth, the bounds of the first yaw's distance from it [rad], and which points have none.
+
+    Args:
+        spine: the lengths.
+        points: of joint 5 in frame 0, shape (point, 3) [m].
+    """
     x, y, z = ((points - [spine.base, 0.0, 0.0]) / spine.link).T[..., None]
     rho, M = np.hypot(x, y), (x * x + y * y + z * z) / 2.0
     bound = ((M - 2.0) ** 2 + rho * rho - 4.0) / (2.0 * (M - 2.0) * rho)
@@ -242,7 +261,13 @@ def _feasible_yaw(spine: SpineLinks, points: np.ndarray) -> tuple[np.ndarray, ..
 def _golden_section(
     cost: Callable[[np.ndarray], np.ndarray], lower_bound: np.ndarray, upper_bound: np.ndarray
 ) -> np.ndarray:
-    """Return where each cost is least between ``low`` and ``high``, all at once."""
+    """Return where each cost is least between its bounds, by golden section, all elements at once.
+
+    Args:
+        cost: returns the cost at arguments of the shape of the bounds.
+        lower_bound: of each interval.
+        upper_bound: of each interval.
+    """
     golden = (np.sqrt(5.0) - 1.0) / 2.0
     inner_lower, inner_upper = (
         upper_bound - golden * (upper_bound - lower_bound),

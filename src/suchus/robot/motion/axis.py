@@ -98,7 +98,12 @@ class Waves:
     def bends(
         self, z: Complex[np.ndarray, "*batch"], size: np.ndarray | float | None = None
     ) -> Float[np.ndarray, "*batch hinge"]:
-        """Return the bend of the whole part, as each hinge takes its share of it [rad]."""
+        """Return the bend of the whole part, as each hinge takes its share of it [rad].
+
+        Args:
+            z: order parameter that the axis follows [-].
+            size: factor on the swing [-]; None for 1.
+        """
         z = np.asarray(z)[..., None]
         swing_bend = self.swing.real * z.real if self._real else self.swing.real * z.real - self.swing.imag * z.imag
         if size is not None:
@@ -106,7 +111,12 @@ class Waves:
         return np.asarray(swing_bend + self.offset if self._steady else swing_bend)
 
     def whole(self, indices: Sequence[int], bends: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch"]:
-        """Return the bend of some hinges together [rad]."""
+        """Return the bend of some hinges together [rad].
+
+        Args:
+            indices: of the hinges.
+            bends: as ``bends`` returns them [rad].
+        """
         if not len(indices):
             return np.zeros(bends.shape[:-1])
         is_shared_evenly, first_bend = self._takes_the_same(tuple(indices)), bends[..., indices[0]]
@@ -136,7 +146,13 @@ class Waves:
 
 
 def _swing(bend: Bend, place: int, count: int) -> complex:
-    """Return the complex amplitude of a part's bend as its hinge number ``place`` sees it [rad]."""
+    """Return the complex amplitude of a region's bend at one of its hinges [rad].
+
+    Args:
+        bend: of the region.
+        place: index of the hinge in the region, from the head [-].
+        count: number of hinges of the region [-].
+    """
     amplitude, lag = (at_knot(row, place, count) for row in (bend.amplitude, bend.lag))
     half = round(2.0 * lag)  # half cycles change the sign alone, and exactly
     remainder = 2 * np.pi * (lag - half / 2.0)
@@ -145,7 +161,13 @@ def _swing(bend: Bend, place: int, count: int) -> complex:
 
 
 def at_knot(row: tuple[float, ...], place: int, count: int) -> float:
-    """Return the value of knots, evenly spread over ``count`` hinges, at one of them."""
+    """Return the value of knots, evenly spread over ``count`` hinges, at one of them.
+
+    Args:
+        row: values of the knots, from the head.
+        place: index of the hinge [-].
+        count: number of hinges [-].
+    """
     if len(row) in (1, count):
         return row[place] if len(row) == count else row[0]
     position = place / (count - 1) if count > 1 else 0.5

@@ -72,7 +72,14 @@ def draft_gait(robot: Robot, name: str) -> Gait:
 
 
 def _walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> Gait:
-    """Return the first walk of those that are tried, the longest strokes first."""
+    """Return the first walk of those that are tried, the longest strokes first.
+
+    Args:
+        robot: the design.
+        name: of the gait.
+        phases: of the limbs [cycle].
+        period: of a cycle [s].
+    """
     girdles = robot.girdles
     clouds, budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_PATHS))
     axis = _axis(robot)
@@ -122,7 +129,16 @@ def _heights(robot: Robot) -> list[float]:
 def _does(
     robot: Robot, girdle: Girdle, cloud: cKDTree, height: float, stroke: float, budget: Iterator[int]
 ) -> FootPath | Sweep | None:
-    """Return what a girdle's limbs do at a height of the hindmost hips, if they can."""
+    """Return a foot path or crank sweep that a girdle's limbs can do at a hip height; None if they cannot.
+
+    Args:
+        robot: the design.
+        girdle: that carries the limbs.
+        cloud: points that the foot can reach, from the hip [m].
+        height: of the hindmost hips [reach of their limb].
+        stroke: half of the path's length [limb reach].
+        budget: an iterator that ends when no more paths may be solved.
+    """
     limb = girdle.limb
     if _is_crank(limb):
         return Sweep(stance=_STANCE, down=_down(limb)[0])

@@ -108,7 +108,14 @@ def is_upright(limb: Limb) -> bool:
 
 
 def _path_angles(limb: Limb, path: np.ndarray, stroke: float, down: float) -> np.ndarray | None:
-    """Return the angles along a path at a depth below the hip, (sample, hinge) [rad]; None if the limb cannot."""
+    """Return the angles along a path at a depth below the hip, (sample, hinge) [rad]; None if the limb cannot.
+
+    Args:
+        limb: the design.
+        path: ahead and up over one cycle, stroke 1 and lift 1 [-].
+        stroke: half of the path's length [limb reach].
+        down: depth of the stance below the hip [m].
+    """
     lower_bound, upper_bound = np.array([hinge.range or (-np.pi, np.pi) for hinge in limb.hinges]).T
     is_driven = np.array([hinge.servo is not None for hinge in limb.hinges])
     lower_bound, upper_bound = lower_bound + _MARGIN, upper_bound - _MARGIN
@@ -147,7 +154,16 @@ def _solve_path(
     ends: tuple[np.ndarray, np.ndarray],
     is_driven: np.ndarray,
 ) -> np.ndarray | None:
-    """Return the angles sample by sample, each from the one before; the second round closes the cycle."""
+    """Return the angles sample by sample, each from the one before; the second round closes the cycle.
+
+    Args:
+        foot_of: returns the foot's position for angles of the driven hinges [m].
+        targets: ahead and up of the foot at each sample [limb reach].
+        reach: of the limb [m].
+        start: angles of the first sample [rad].
+        ends: lower and upper bounds of the driven hinges [rad].
+        is_driven: which hinges have a servo.
+    """
     lower_bound, upper_bound = ends
     center, angles = (lower_bound + upper_bound) / 2, np.clip(start, lower_bound + 1e-9, upper_bound - 1e-9)
     solution = np.zeros((len(targets), len(is_driven)))
@@ -176,7 +192,17 @@ def _tabled(
     axis: tuple[Bend, ...],
     limbs: list[np.ndarray],
 ) -> Gait:
-    """Return the gait of the limbs' angles at their phases, with the axis bent as it is said."""
+    """Return the gait whose curves are the limbs' angles at their phases.
+
+    Args:
+        robot: the design.
+        name: of the gait.
+        period: of a cycle [s].
+        duty_factor: fraction of the cycle in which a foot stands [-].
+        phases: of the limbs [cycle].
+        axis: bends of the axis.
+        limbs: angles of each girdle's limb over a cycle, shape (sample, hinge) [rad].
+    """
     place, parts, count = layout(robot), servo_parts(robot), len(limbs[0])
     targets = np.zeros((count, len(place.servos)))
     for i, limb in enumerate(place.limbs):

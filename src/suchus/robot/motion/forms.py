@@ -316,7 +316,12 @@ class AxialWave:
 
 
 def _slope(places: np.ndarray, lags: np.ndarray) -> float | None:
-    """Return how much the lag grows along the body, apart from half cycles, by the slowest such growth [cycle]."""
+    """Return the smallest growth of the lag along the body, half cycles aside [cycle]; None if no wave fits.
+
+    Args:
+        places: of the hinges along the body [body length].
+        lags: of their bends [cycle].
+    """
     if len(places) < 2:
         return 0.0
     slopes = np.subtract(lags[1] - lags[0], np.arange(-2, 3) / 2) / (places[1] - places[0])

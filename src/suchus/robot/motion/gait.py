@@ -113,7 +113,12 @@ class Gait:
         return replace(self, period=sqrt(length) * self.period)
 
     def straightened(self, *parts: Part, name: str = "") -> "Gait":
-        """Return the gait with parts of the axis held straight, all of them if none is named; a steady bend stays."""
+        """Return the gait with regions of the axis held straight, all of them if none is named; a steady bend stays.
+
+        Args:
+            *parts: the regions.
+            name: of the new gait; that of this one if empty.
+        """
 
         def is_selected(region: str) -> bool:
             return not parts or region in parts or "axis" in parts
@@ -150,11 +155,19 @@ class Gait:
         return replace(self.with_numbers(tail_pitch=angle), name=name or self.name)
 
     def strode(self, share: float) -> "Gait":
-        """Return the gait whose limbs stride by a share of what they do [-]; held limbs and curves stay as they are."""
+        """Return the gait with all strokes scaled; held limbs and curves stay as they are.
+
+        Args:
+            share: factor on the strokes [-].
+        """
         return replace(self, limbs=tuple(_strode(limb, share) for limb in self.limbs))
 
     def bent(self, share: float) -> "Gait":
-        """Return the gait whose axis bends sideways by a share of what it does [-]; a steady bend stays."""
+        """Return the gait with all lateral bends scaled; a steady bend stays.
+
+        Args:
+            share: factor on the bends [-].
+        """
         return replace(
             self,
             axis=tuple(
@@ -170,7 +183,11 @@ class Gait:
         )
 
     def lagged(self, lag: float) -> "Gait":
-        """Return the gait whose axis lags the limbs by so much more than it does now [cycle]."""
+        """Return the gait whose axis follows the limbs later than it does now.
+
+        Args:
+            lag: additional phase lag [cycle].
+        """
         return replace(
             self,
             axis=tuple(_lagged(bend, lag) for bend in self.axis),
@@ -263,7 +280,12 @@ def _strode(limb: Limbs, share: float) -> Limbs:
 
 
 def _lagged(bend: Bend, lag: float) -> Bend:
-    """Return a bend that lags by so much more, its first lag brought back to -1/2 to 1/2 [cycle] where it leaves it."""
+    """Return a bend with an additional lag, its first lag wrapped to -1/2 to 1/2.
+
+    Args:
+        bend: the bend.
+        lag: additional phase lag [cycle].
+    """
     if lag == 0.0:
         return bend
     turns = round(bend.lag[0] + lag)
@@ -344,7 +366,13 @@ def _first_lag(gait: Gait, *parts: Part) -> float:
 
 
 def _with_lag(gait: Gait, extra_lag: float, *parts: Part) -> Gait:
-    """Return a gait whose lateral bends of some parts lag by so much more [cycle]."""
+    """Return a gait whose lateral bends of some regions lag more.
+
+    Args:
+        gait: the gait.
+        extra_lag: additional phase lag [cycle].
+        *parts: the regions.
+    """
 
     def shifted_bend(bend: Bend) -> Bend:
         if bend.turn != "yaw" or bend.part not in parts or extra_lag == 0.0:
@@ -394,7 +422,14 @@ def _steady(gait: Gait, region: Part, turn: Turn) -> float:
 
 
 def _with_steady(gait: Gait, region: Part, turn: Turn, value: float) -> Gait:
-    """Return a gait with another steady bend of a part: in the first bend of it, or in one more."""
+    """Return a gait with another steady bend of a region, in its first bend or in an additional one.
+
+    Args:
+        gait: the gait.
+        region: of the axis.
+        turn: ``yaw`` or ``pitch``.
+        value: the steady bend [rad].
+    """
     indices = [i for i, bend in enumerate(gait.axis) if bend.turn == turn and bend.part == region]
     axis = [replace(bend, offset=0.0) if i in indices else bend for i, bend in enumerate(gait.axis)]
     if indices:

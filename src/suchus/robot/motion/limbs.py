@@ -137,7 +137,15 @@ class LimbMotion:
     def _angles_at(
         self, numbers: "_Path", forward: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
     ) -> np.ndarray:
-        """Return the servo angles that bring feet to their places, shape (limb, *batch, servo) [rad]."""
+        """Return the servo angles that bring feet to their places, shape (limb, *batch, servo) [rad].
+
+        Args:
+            numbers: of the foot paths.
+            forward: of the feet from their hips [m].
+            outward: of the feet from their hips [m].
+            down: of the feet below their hips [m].
+            draw: draw feet into what limbs reach.
+        """
         if numbers.leg is not None:
             foot = np.stack([numbers.leg.hip_offset + outward, forward, down], axis=-1)
             return _leg_angles(numbers.leg, numbers.side, foot, draw=draw)
@@ -151,7 +159,13 @@ class LimbMotion:
         return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(numbers.swivel, forward.shape))
 
     def _crank_angle(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
-        """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above."""
+        """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above.
+
+        Args:
+            phase: of the limbs, shape (limb, *batch) [cycle].
+            stance: angle turned through in stance [rad].
+            down: angle at which the foot points straight down [rad].
+        """
         swing = 1.0 - self._duty
         turns, cycle = np.floor(phase), np.mod(phase, 1.0)
         half = stance / 2
@@ -310,7 +324,14 @@ def _of_limbs(field: np.ndarray | float, limb_indices: Sequence[int]) -> np.ndar
 
 
 def _leg_angles(leg: PlainLeg, side: int, foot: np.ndarray, *, draw: bool) -> np.ndarray:
-    """Return yaw, pitch and knee that bring a foot to its place, sprawled or erect [rad]."""
+    """Return yaw, pitch and knee that bring a foot to its place, sprawled or erect [rad].
+
+    Args:
+        leg: the lengths.
+        side: 0 sprawled, 1 erect with the knee ahead, -1 erect with the elbow behind.
+        foot: outward, forward, down in the leg's base frame [m].
+        draw: draw the foot into what the leg reaches.
+    """
     if draw:
         min_reach, max_reach = leg.reach
         foot = _clip_to_reach(
@@ -329,7 +350,13 @@ def _leg_angles(leg: PlainLeg, side: int, foot: np.ndarray, *, draw: bool) -> np
 
 
 def _clip_to_reach(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
-    """Return foot points drawn along the line to the hip into what a limb reaches; others stay as they are [m]."""
+    """Return foot points moved along the line to the hip into the reach of a limb; others stay as they are [m].
+
+    Args:
+        foot: shape (*batch, 3) [m].
+        hip: shape (3,) [m].
+        reach: nearest and farthest distance of the foot from the hip [m].
+    """
     offset, (min_reach, max_reach) = foot - hip, reach
     length = np.linalg.norm(offset, axis=-1, keepdims=True)
     clipped = hip + offset * np.clip(length, min_reach, max_reach) / np.maximum(length, _REACH_MARGIN)

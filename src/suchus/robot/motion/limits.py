@@ -50,7 +50,12 @@ def check_limits(robot: Robot, gait: Gait) -> None:
 
 
 def _lateral_ends(gait_movement: Movement, posture: np.ndarray) -> np.ndarray:
-    """Return a posture twice, with the least and the greatest angles of what waves bend sideways, (2, servo) [rad]."""
+    """Return a posture with the smallest and the greatest angles of the lateral wave, shape (2, servo) [rad].
+
+    Args:
+        gait_movement: the gait, worked out for the robot.
+        posture: servo angles at any time, shape (servo,) [rad].
+    """
     ends, follows = np.array([posture, posture]), float(np.abs(gait_movement.axis_of_clock(np.zeros(1)))[0])
     measured = {gait_movement.place.servos.index(curve.servo) for curve in gait_movement.gaits[0].curves}
     hinges, share = gait_movement.yaw.hinges, gait_movement.yaw.share[0]
@@ -216,7 +221,7 @@ def servo_parts(robot: Robot) -> dict[str, ServoPart]:
 
 
 def divided(robot: Robot, gait: Gait) -> Gait:
-    """Return a gait whose bends of the whole axis are given part by part, a knot for each hinge, so that one may go."""
+    """Return a gait whose bends of the whole axis are split into neck, trunk and tail, with a knot for each hinge."""
     hinges, axis = yaw_hinges(robot), []
     parts: tuple[Part, ...] = ("neck", "trunk", "tail")
     for bend in gait.axis:

@@ -255,7 +255,13 @@ class Batch:
     def targets(
         self, limbs: Float[np.ndarray, "run limb"], axis: Complex[np.ndarray, " run"], steer: Steer | None = None
     ) -> Float[np.ndarray, "run servo"]:
-        """Return the servo angles of every run; see ``Movement.targets`` [rad]."""
+        """Return the servo angles of every run; see ``Movement.targets`` [rad].
+
+        Args:
+            limbs: phases of the limbs [cycle].
+            axis: what the axis follows [-].
+            steer: what is asked besides.
+        """
         targets = np.zeros((len(limbs), self._servos))
         for movement, runs in self.groups:
             run_steer = None if steer is None else Steer(*(_of_runs(field, runs) for field in steer))
@@ -372,7 +378,11 @@ def middle_stance(robot: Robot, gait: Gait) -> Float[np.ndarray, " servo"]:
 
 
 def _references(gaits: Sequence[Gait]) -> tuple[np.ndarray, np.ndarray]:
-    """Return by which sign each limb pulls on the axis [-], and the rest of the phase at which it does [cycle]."""
+    """Return the sign with which each limb pulls on the axis [-], and the remaining phase of its pull [cycle].
+
+    Args:
+        gaits: one for each run.
+    """
     pulls = [gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases) for gait in gaits]
     reference = np.array(pulls, dtype=float)
     half = np.round(2.0 * reference)

@@ -292,9 +292,13 @@ def _forward_in_world(pitch: np.ndarray, point: np.ndarray) -> np.ndarray:
 
 
 def _balance(robot: Robot, keys: np.ndarray) -> np.ndarray:
-    """Return how far behind the feet the hips bring the centre of mass to its place in each key [m].
+    """Return how far ahead of the hips the feet must be in each key for the demanded ``lead`` [m].
 
     The centre of mass moves a little with the hind legs, and the hind legs follow from it: a few rounds agree.
+
+    Args:
+        robot: the design.
+        keys: numbers of the posture at each key, shape (key, number).
     """
     feet_forward = keys[:, FIELDS.index("lead")]
     for _ in range(SETTLING):
@@ -310,7 +314,14 @@ def _fields_by_name(numbers: np.ndarray) -> dict[str, np.ndarray]:
 def _angles(
     robot: Robot, parameters: dict[str, np.ndarray], feet_forward: np.ndarray, *, clip: bool = False
 ) -> np.ndarray:
-    """Return the angles of every hinge."""
+    """Return the angles of every hinge, shape (*batch, hinge) [rad].
+
+    Args:
+        robot: the design.
+        parameters: numbers of the posture by name, see ``Posture``.
+        feet_forward: how far the hind feet are ahead of the hips [m].
+        clip: let a leg that is too short point to its foot.
+    """
     chains = upright(robot)
     angles = np.zeros((*feet_forward.shape, len(layout(robot).hinges)))
     for arm in chains.arms:
@@ -336,7 +347,13 @@ def _angles(
 def bent_up(
     chains: Upright, first_angle: Float[np.ndarray, "*batch"], second_angle: Float[np.ndarray, "*batch"]
 ) -> Float[np.ndarray, "*batch hinge"]:
-    """Return the angles of the trunk's pitch hinges, from the root forward [rad]; see ``Posture.trunk_second``."""
+    """Return the angles of the trunk's pitch hinges, from the root forward [rad]; see ``Posture.trunk_second``.
+
+    Args:
+        chains: of the body.
+        first_angle: of the first hinge, front end up positive [rad].
+        second_angle: of all other hinges together, front end up positive [rad].
+    """
     other_count = len(chains.trunk) - 1
     return np.stack(
         [-first_angle, *other_count * [-second_angle / other_count]] if other_count else [-first_angle - second_angle],

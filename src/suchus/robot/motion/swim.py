@@ -110,7 +110,12 @@ def _knots(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def held(limb: Limb, angles: tuple[float, float]) -> Held:
-    """Return a limb held at yaw and pitch as far as its first such joints go, others as near 0 as they go [rad]."""
+    """Return a limb held at a yaw and a pitch within its ranges, all other joints as near to 0 as they go [rad].
+
+    Args:
+        limb: the design.
+        angles: yaw, forward positive, and pitch, down positive [rad].
+    """
     driven_hinges = [hinge for hinge in limb.hinges if hinge.servo is not None]
     turns, row = [hinge.turn for hinge in driven_hinges], [0.0] * len(driven_hinges)
     for turn, angle in zip(("yaw", "pitch"), angles, strict=True):

@@ -37,7 +37,12 @@ class Transition(NamedTuple):
         return float(self.times[-1])
 
     def at(self, time: float, start: Float[np.ndarray, " servo"]) -> Float[np.ndarray, " servo"]:
-        """Return the servo angles at a time, having begun with the angles ``start`` [rad]."""
+        """Return the servo angles at a time [rad].
+
+        Args:
+            time: since the beginning of the transition [s].
+            start: servo angles at that beginning [rad].
+        """
         i = int(np.searchsorted(self.times, time, side="right"))
         if i >= len(self.times):
             return self.targets[-1]

@@ -66,7 +66,12 @@ def reached(robot: Robot, gait: Gait, *, standing: bool, count: int, seed: int =
 
 
 def _box(robot: Robot, standing: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the least and the greatest of what is drawn: the pelvis' x, z and pitch, the trunk's joints."""
+    """Return the lower and upper bounds of the sampled x, z and pitch of the pelvis and of the trunk's joints.
+
+    Args:
+        robot: the design.
+        standing: on hind feet and tail instead of four feet.
+    """
     leg_reach, links = robot.hind_leg.reach[1], robot.spine
     ranges = [links.yaw_range if "yaw" in name else links.pitch_range for name in spine_joints()]
     pitch = STAND_PITCH if standing else CRAWL_PITCH
@@ -78,7 +83,14 @@ def _box(robot: Robot, standing: bool) -> tuple[np.ndarray, np.ndarray]:
 def _feasible(
     robot: Robot, gait: GaitInMetres, samples: np.ndarray, standing: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return snout, angles and pelvis of the configurations of a chunk that can be."""
+    """Return snout, angles and pelvis of those sampled configurations that meet all conditions.
+
+    Args:
+        robot: the design.
+        gait: where the feet stand.
+        samples: x, z and pitch of the pelvis and angles of the trunk, shape (n, number).
+        standing: on hind feet and tail instead of four feet.
+    """
     pelvis, trunk = samples[:, :3], samples[:, 3:]
     angles = np.zeros((len(samples), len(joint_names(robot))))
     first_joint = joint_names(robot).index(spine_joints()[0])
@@ -116,7 +128,15 @@ def _feasible(
 
 
 def _place(robot: Robot, angles: np.ndarray, good: np.ndarray, names: tuple[str, str], *feet: np.ndarray) -> None:
-    """Write the angles of two legs whose feet, in the frame of their girdle, are given; note who cannot."""
+    """Write the angles of two legs, and clear the mark of configurations whose feet are out of reach.
+
+    Args:
+        robot: the design.
+        angles: of every hinge, shape (n, joint), changed in place [rad].
+        good: marks of feasible configurations, shape (n,), changed in place.
+        names: of the two legs.
+        *feet: their positions in the frame of their girdle, shape (n, 3) [m].
+    """
     for name, foot in zip(names, feet, strict=True):
         links, limb, index = robot.leg(name), layout(robot).limb(name), 3 * LEGS.index(name)
         point = np.stack([limb.side * foot[..., 1], foot[..., 0], -foot[..., 2]], axis=-1)  # in the leg's D-H frame
@@ -129,7 +149,13 @@ def _place(robot: Robot, angles: np.ndarray, good: np.ndarray, names: tuple[str,
 
 
 def _tail_laid(robot: Robot, angles: np.ndarray, pelvis: np.ndarray) -> Bool[np.ndarray, " n"]:
-    """Write the pitch at which the tip of the straight tail touches the ground; return who can."""
+    """Write the tail pitch at which its tip touches the ground; return which configurations can do that.
+
+    Args:
+        robot: the design.
+        angles: of every hinge, shape (n, joint), changed in place [rad].
+        pelvis: x, z and pitch, shape (n, 3) [m], [rad].
+    """
     tail = robot.tail
     drop = (pelvis[:, 1] - tail.offset * np.sin(pelvis[:, 2]) - tail.radius_tip) / (tail.length - tail.offset)
     pitch = np.arcsin(np.clip(drop, -1.0, 1.0)) - pelvis[:, 2]

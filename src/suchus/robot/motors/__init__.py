@@ -46,7 +46,11 @@ def motor(name: str) -> Motor:
 
 
 def split(table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Return the values of a servo's table, their sources, and what is wrong with how they are written."""
+    """Return the values of a servo's table, their sources, and what is wrong with how they are written.
+
+    Args:
+        table: of one servo, as TOML gives it.
+    """
     values: dict[str, Any] = {}
     sources: dict[str, str] = {}
     odd: dict[str, str] = {}

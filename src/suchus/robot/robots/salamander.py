@@ -24,7 +24,11 @@ _HIPS = 3  # place of the segment that carries the hind limbs
 
 
 def _passive(stiffness: float) -> Spring:
-    """Return a passive joint of the source's model; stiffness in parts of the body's weight times its length [-]."""
+    """Return a passive joint after the published model.
+
+    Args:
+        stiffness: over the body's weight times its length [-].
+    """
     torque = _MASS * GRAVITY * _LENGTH
     return Spring(
         stiffness=stiffness * torque,

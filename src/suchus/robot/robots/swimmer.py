@@ -27,7 +27,12 @@ def _hinge(number: int, servo: Servo) -> Hinge:
 
 
 def _shapes(name: str, mass: float) -> tuple[Shell | Rod, ...]:
-    """Return an ellipsoid and the two edges of its flat belly, on which it stands; their mass together [kg]."""
+    """Return an ellipsoid and the two edges of its flat belly, on which it stands.
+
+    Args:
+        name: of the segment.
+        mass: of all three together [kg].
+    """
     end, edge = 0.4 * _SEGMENT, 0.2 * _WIDTH
     edges = tuple(
         Rod(
@@ -43,7 +48,11 @@ def _shapes(name: str, mass: float) -> tuple[Shell | Rod, ...]:
 
 
 def _swimmer(mass: float) -> Robot:
-    """Return it with segments of some mass [kg]."""
+    """Return the swimmer.
+
+    Args:
+        mass: of each segment [kg].
+    """
     servo = servo_for(_COUNT * mass, _LENGTH)
     return Robot(
         name="swimmer",
