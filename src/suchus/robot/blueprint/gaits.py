@@ -49,9 +49,9 @@ def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait
     base = shelf[base_name] if isinstance(base_name, str) and base_name in shelf else None
     if base_name is not None and base is None:
         mistakes["base",] = f"is {base_name!r}; there is {', '.join(shelf)}"
-        base = _metric_gait(shelf)  # to look for further mistakes with
+        base = _metric_gait(shelf)  # supplies values, so that further mistakes are found
     form = form_of(data)
-    # where limbs alone change their phases, the axis goes on as the article's law of a gait in metres says
+    # a file that changes the limbs' phases alone keeps the coupling of a gait in metres
     if form is None and base is not None and in_metres(base) and "limb_phases" in data and "coupling" not in data:
         form = GaitInMetres
     data = {"name": path.stem, **data}

@@ -1,4 +1,4 @@
-"""From what a validator complains of to sentences that a person can act on."""
+"""Translation of validation errors to sentences that name the place and the remedy."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
@@ -13,7 +13,7 @@ from suchus.core.errors import InvalidDesign, UnreadableFile
 Place = tuple[str | int, ...]
 """Keys from the top of a file down to a value."""
 
-_HOMES = 2  # of a field that stands in the wrong part; one that many parts have, as a mass, is not said
+_HOMES = 2  # greatest number of places that are suggested for a field in the wrong table
 _REQUIREMENTS: Mapping[str, str] = {
     "float_type": "a number is needed",
     "finite_number": "a finite number is needed",

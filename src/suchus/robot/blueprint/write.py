@@ -1,4 +1,4 @@
-"""From a frozen value to a TOML file that reads back equal, each number with its meaning beside it."""
+"""Writing of a frozen value as TOML that reads back equal, with the meaning of each number as a comment."""
 
 import json
 from collections.abc import Mapping, Sequence

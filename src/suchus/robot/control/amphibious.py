@@ -1,4 +1,4 @@
-"""From swimming to walking and back, by the load that the ground is felt to carry."""
+"""Change between swimming and walking by the sensed ground load."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -25,12 +25,12 @@ _GROWS = 0.5  # [cycle]; over which stroke and bends grow when the walk begins
 class Amphibious:
     """Swims where the water carries the robot and walks in the run's gait where the ground does.
 
-    Felt is what feet, belly and tail carry, in shares of the robot's weight, through a low pass. Where together they
-    carry more than ``touch`` it lands: it walks in the gait ``wade``, with its air let out, until the ground carries
-    ``aground``; then it takes the air in again and goes on in the run's gait. It swims again when its feet have
-    carried less than ``afloat`` for a whole cycle, in which each had its stance: a tail or a belly that drags on the
-    bottom does not walk. A change takes ``change``, in which nothing else is decided, and ``patience`` must pass before
-    the next. While it swims its limbs' phases stand still.
+    The sensed load is the low-pass-filtered contact force of feet, belly and tail, as a fraction of body weight. Above
+    ``touch`` the robot lands: it lets air out and walks in the gait ``wade`` until the load exceeds ``aground``. Then
+    it takes the air in again and walks in the run's gait. It swims again when its feet have carried less than
+    ``afloat`` for a whole cycle, in which each foot had its stance; the load on belly and tail does not count for
+    this. A change of posture takes ``change``; after it ``patience`` must pass before the next one. While the robot
+    swims, the phases of its limbs stand still.
     """
 
     swim: Gait
@@ -160,14 +160,14 @@ class Amphibian:
         n, limbs = len(robots), len(layout(robots[0]).limbs)
         self.walking: Bool[np.ndarray, " run"] = np.array([control.begins == "walking" for control in controls])
         """Which robots walk, or are about to."""
-        self._blend = self.walking.astype(float)  # 0 swims, 1 walks
+        self._blend = self.walking.astype(float)  # 0 swims, 1 walks [-]
         self.landing: Bool[np.ndarray, " run"] = np.zeros(n, dtype=bool)
         """Which robots walk, and are not yet carried by the ground."""
         self._landed = np.ones(n)  # 0 wades, 1 walks in the run's gait
-        self._load = self._blend.copy()  # [-]; so that a robot on land does not begin by swimming
+        self._load = self._blend.copy()  # [-]; a robot that begins on land is loaded
         self._feet = self._load.copy()  # [-]; of the weight on the feet
-        self._lifted = np.zeros(n)  # how long the feet have carried next to nothing [s]
-        self._since = np.where(self.walking, np.inf, 0.0)  # the last change [s]
+        self._lifted = np.zeros(n)  # time for which the feet have carried less than ``afloat`` [s]
+        self._since = np.where(self.walking, np.inf, 0.0)  # time since the last change [s]
         self._cycles = np.zeros(n)  # walked so far [cycle]
         self._unbroken_cycles = np.zeros(n)  # walked without a break [cycle]
         self._air_fraction = np.ones(n)
@@ -239,14 +239,16 @@ class Amphibian:
         return np.asarray((1.0 - self._landed) / self._wade_cycle + self._landed / self._cycle)
 
     def _advance(self) -> None:
-        """Go one control period on: postures, clocks and air."""
+        """Advance postures, clocks and air by one control period."""
         step = self._period / self._change
         walks = self._blend >= 1.0
         self._cycles = self._cycles + walks * self._rate * self._period
         self._unbroken_cycles = np.where(walks, self._unbroken_cycles + self._rate * self._period, 0.0)
         self._blend = np.clip(self._blend + np.where(self.walking, step, -step), 0.0, 1.0)
         landed = np.clip(self._landed + np.where(self.landing, -step, step), 0.0, 1.0)
-        self._landed = np.where(walks | ~self.walking, landed, 1.0 - self.landing)  # it stands up to wade
+        self._landed = np.where(
+            walks | ~self.walking, landed, 1.0 - self.landing
+        )  # a robot that begins to wade stands up
         air_target = 1.0 - self._air_released * self.landing
         max_step = self._pump * self._period
         self._air_fraction = self._air_fraction + np.clip(air_target - self._air_fraction, -max_step, max_step)
@@ -272,7 +274,7 @@ class Amphibian:
 
 
 def _eased(share: np.ndarray) -> np.ndarray:
-    """Return shares that begin and end without a jump of their rate, shape (run, 1)."""
+    """Return fractions eased by 3 x^2 - 2 x^3, whose rate is zero at both ends, shape (run, 1)."""
     return np.asarray(share**2 * (3.0 - 2.0 * share))[:, None]
 
 

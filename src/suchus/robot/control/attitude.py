@@ -1,4 +1,4 @@
-"""What the IMU says about roll and pitch, answered by the height of the feet."""
+"""Attitude feedback: the height of the feet is changed by the roll and pitch that the IMU measures."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -56,9 +56,8 @@ class Attitude:
             period: of control [s].
         """
         active_rules = [rule if rule is not None else _INACTIVE_RULE for rule in rules]
-        self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in active_rules]).T[
-            ..., None
-        ]  # (4, run, 1)
+        # shape (4, run, 1)
+        self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in active_rules]).T[..., None]
         self._max_lift = np.array(
             [[rule.most * _size(robot)] for rule, robot in zip(active_rules, robots, strict=True)]
         )

@@ -1,4 +1,4 @@
-"""The contract of a controller: a frozen setting that starts a machine for a batch."""
+"""The interface of a controller: a frozen setting that starts the controller of a batch."""
 
 from dataclasses import fields
 from typing import Any, NamedTuple, Protocol, runtime_checkable
@@ -39,7 +39,7 @@ SENSED = tuple(field.name for field in fields(Sensed) if field.name != "time")
 
 
 def united(*rule_needs: tuple[str, ...]) -> tuple[str, ...]:
-    """Return what several rules feel together, each once, in the order of ``Sensed``."""
+    """Return the sensors that any of several rules needs, in the order of ``Sensed``."""
     return tuple(name for name in SENSED if any(name in names for names in rule_needs))
 
 

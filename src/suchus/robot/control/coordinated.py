@@ -143,7 +143,7 @@ class Coordinator:
         self._steering = Steering.none(len(robots), limbs)
 
     def take_over(self, predecessor: "Coordinator") -> None:
-        """Go on from where another coordinator of the same runs stands, with other gaits or rules."""
+        """Continue from another coordinator of the same runs, with other gaits or rules."""
         self._limbs.take_over(predecessor._limbs)
         self._spine.take_over(predecessor._spine)
         self._tail.take_over(predecessor._tail)
@@ -191,7 +191,7 @@ class Coordinator:
         self._shared = replace(axis_state, limb_phase=limbs.limb_phase)
 
     def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
-        """Return the servo angles; where nothing is ahead of the clock and nobody steers, those of the table."""
+        """Return the servo angles; those of the table for runs without phase lead and steering."""
         table = self._table.command(tick, None).targets
         is_adjusted = self._limbs.ahead.any(axis=1) | self._steering.any()
         if not is_adjusted.any():

@@ -1,4 +1,4 @@
-"""The heading of robots, without the swinging of their own cycle."""
+"""The heading of robots, averaged over their cycle."""
 
 from collections.abc import Sequence
 from math import pi
@@ -22,7 +22,7 @@ class Facing:
     def __init__(self, robots: Sequence[Robot], cycle: Sequence[int]) -> None:
         self._yaw = list(layout(robots[0]).trunk_yaw)
         self._cycle, self._runs = np.array(cycle), np.arange(len(cycle))
-        self._summed = np.zeros((int(self._cycle.max()) + 1, len(cycle)))  # a ring, as long as the longest cycle
+        self._summed = np.zeros((int(self._cycle.max()) + 1, len(cycle)))  # ring buffer of the longest cycle
         self._count = 0
         self._walks = False
         self._previous_facing = np.zeros(len(cycle))
@@ -43,9 +43,6 @@ class Facing:
         return np.asarray((self._summed[slot] - self._summed[(self._count - window) % size, self._runs]) / window)
 
     def take_over(self, predecessor: "Facing") -> None:
-        """Go on from where another one of the same runs stands; the mean over the last cycle begins anew."""
-        self._walks, self._previous_facing, self._turned = (
-            predecessor._walks,
-            predecessor._previous_facing,
-            predecessor._turned,
-        )
+        """Continue from another estimator of the same runs; the mean over the last cycle starts again."""
+        self._walks, self._turned = predecessor._walks, predecessor._turned
+        self._previous_facing = predecessor._previous_facing

@@ -1,4 +1,4 @@
-"""A heading loop: what the IMU says about the direction of the walk, answered by one side's stroke."""
+"""A heading loop: the stroke of one side is changed by the error of the heading that the IMU measures."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -123,6 +123,6 @@ def _steering_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
     """Return the greatest steering command u that the limbs can follow [-]; 0 in a gait without strokes."""
     if not gait.has("strokes"):
         return 0.0
-    if rule.gain == rule.integral_gain == 0.0:  # nothing steers, and how far the limbs reach takes long to find
+    if rule.gain == rule.integral_gain == 0.0:  # nothing steers; computing the limbs' reach would be slow
         return rule.most
     return min(rule.most, max(longest_strokes(robot, gait) - 1.0, 0.0))

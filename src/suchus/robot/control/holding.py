@@ -151,9 +151,8 @@ class Depths:
         error = depth - rule["depth"]
         offset = self._offset + rule["integral_gain"] * error * self._period
         target_fraction = self._neutral + rule["gain"] * error + rule["rate_gain"] * self._sinking + offset
-        is_answerable = (
-            (target_fraction >= 0.0) & (target_fraction <= 1.0) & (np.abs(error) <= rule["near"])
-        )  # where the air can answer
+        # anti-windup: integrate only within the limits of the air
+        is_answerable = (target_fraction >= 0.0) & (target_fraction <= 1.0) & (np.abs(error) <= rule["near"])
         self._offset = np.where(is_answerable, offset, self._offset)
         max_step = rule["pump"] * self._period
         self._air_fraction = self._air_fraction + np.clip(

@@ -1,4 +1,4 @@
-"""Limb to limb: one phase oscillator per limb, slowed or hastened by what the feet carry."""
+"""Limb to limb: one phase oscillator per limb, whose rate depends on the loads of the feet."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from suchus.robot.control.shared import Shared
 from suchus.robot.design import GRAVITY, Layout, Robot, layout
 from suchus.robot.motion import Gait
 
-_DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates
+_DIAGONAL = 0.02  # [cycle]; greatest deviation from diagonal pairs in a gait for laws that make such pairs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,7 +93,7 @@ another body). ``wrong_sign``: the cross-load law reversed, which must fail.
 
 
 class Loads:
-    """What the limbs of a batch of equal bodies receive from feet and trunk, of any number.
+    """The filtered loads of feet and trunk of a batch, and their effect on the limbs' clocks.
 
     Args:
         laws: one for each run.
@@ -130,7 +130,7 @@ class Loads:
         self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
 
     def brake(self, phase: Float[np.ndarray, "run limb"]) -> Float[np.ndarray, "run limb"]:
-        """Return by which part of its clock each limb is slowed; nothing before anything was felt [-].
+        """Return the fraction by which each limb's clock is slowed [-]; 0 before the first reading.
 
         Args:
             phase: of the limbs [cycle].
@@ -145,7 +145,7 @@ class Loads:
 
 
 class Limbs:
-    """The oscillators of a batch. Their state is how far each limb is ahead of the gait's clock."""
+    """The oscillators of a batch; their state is each limb's phase lead over the gait's clock."""
 
     def __init__(
         self,
@@ -177,7 +177,7 @@ class Limbs:
     def step(
         self, shared: Shared, sensed: Sensed | None, clock: Float[np.ndarray, "run limb"], *, walking: bool
     ) -> Shared:
-        """Let the oscillators turn for one control period.
+        """Advance the oscillators by one control period.
 
         Args:
             shared: what the others say.
@@ -192,13 +192,13 @@ class Limbs:
         return shared.written_by("limbs", limb_phase=clock + self.ahead)
 
     def take_over(self, predecessor: "Limbs") -> None:
-        """Go on from where the oscillators of the same runs stand; limbs that nothing coordinates fall in step."""
+        """Continue from the oscillators of the same runs; limbs without feedback return to the clock."""
         if self._loads.felt:
             self.ahead = predecessor.ahead
             self._loads.take_over(predecessor._loads)
 
     def kick(self, run: int, phase_lead: Float[np.ndarray, " limb"]) -> None:
-        """Let the limbs of one run jump ahead [cycle]."""
+        """Add a phase lead to the limbs of one run [cycle]."""
         self.ahead = self.ahead.copy()
         self.ahead[run] += phase_lead
 

@@ -1,4 +1,4 @@
-"""Phase oscillators that are coupled to each other: their numbers, who drives whom, and how they turn.
+"""Coupled phase oscillators: their parameters, their couplings, and their integration.
 
 After Ijspeert, Crespi, Ryczko and Cabelguen 2007 (Science 315, 1416): every oscillator i has a phase and an amplitude,
 
@@ -137,7 +137,7 @@ def couple(
     edges: list[tuple[int, int, float, float]] = []
 
     def couple_pair(leader: int, follower: int, weight: float, phase_lag: float) -> None:
-        """Couple two oscillators of which the second is behind by so many cycles."""
+        """Couple two oscillators in both directions; the follower lags the leader by ``phase_lag`` [cycle]."""
         edges.append((follower, leader, weight, 2 * pi * phase_lag))
         edges.append((leader, follower, weight, -2 * pi * phase_lag))
 
@@ -151,7 +151,7 @@ def couple(
     for i in range(2, len(limbs)):
         couple_pair(2 * n + i - 2, 2 * n + i, numbers.limb_weight, phases[i - 2] - phases[i])
     for k, segment in enumerate(axis):
-        for limb in range(len(limbs)):  # those of other girdles too, without weight: equal bodies have equal edges
+        for limb in range(len(limbs)):  # limbs of other girdles get weight 0, so that equal bodies have equal edges
             girdle, side = divmod(limb, 2)
             weight = stiff * numbers.limb_axis_weight if girdle == segment.girdle else 0.0
             edges.append((side * n + k, 2 * n + limb, weight, 2 * pi * segment.phase_lag))
@@ -162,7 +162,7 @@ def couple(
 
 
 def cut(couplings: Couplings, lesions: Sequence[tuple[str, str]]) -> Couplings:
-    """Return couplings some of which are cut, in both directions.
+    """Return the couplings with the weights of some set to zero, in both directions.
 
     Args:
         couplings: the couplings.
@@ -203,7 +203,7 @@ def _select_oscillators(names: Sequence[str], name: str) -> list[int]:
 class Rhythm:
     """The oscillators of a batch of equal bodies, integrated by Heun's method.
 
-    Each run takes as many steps as its own couplings need, so that it turns the same alone and beside others.
+    Each run takes as many steps as its own couplings need, so that its result does not depend on the batch.
 
     Args:
         couplings: one for each run; they may differ in weights and biases.
@@ -243,7 +243,7 @@ class Rhythm:
         frequency: Float[np.ndarray, "run oscillator"],
         amplitude: Float[np.ndarray, "run oscillator"],
     ) -> None:
-        """Let one period pass, as the published clock counts it times the pace.
+        """Integrate one period of the published clock times the pace.
 
         Args:
             frequency: own frequencies, feedback included [Hz].
@@ -282,7 +282,7 @@ class Rhythm:
 
 
 def steps_needed(couplings: Couplings, numbers: Oscillators, pace: float, period: float) -> int:
-    """Return in how many steps a period must be integrated, by the fastest rate of the network.
+    """Return the number of integration steps of a period, from the fastest rate of the network.
 
     Args:
         couplings: of the network.

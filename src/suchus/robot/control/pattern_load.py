@@ -1,4 +1,4 @@
-"""What the ground is felt to carry, as a part of the drive of a pattern generator: one drive in water and on land."""
+"""Feedback of the ground load to the drive of a pattern generator, so that one drive serves water and land."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ from suchus.robot.design import GRAVITY, Robot
 class LoadRule:
     """Oscillators get more drive the less the ground is felt to carry.
 
-    Above the limbs' highest drive they fall silent and the axis swims: a descending drive that walks on land swims
-    afloat, and nothing but the load changes it. Felt is what feet, belly and tail carry, in shares of the weight,
-    through a low pass.
+    Above the limbs' highest drive the limbs fall silent and the axis swims. So one descending drive walks on land and
+    swims in water. The sensed load is the low-pass-filtered contact force of feet, belly and tail, as a fraction of
+    body weight.
     """
 
     afloat: float = 2.0

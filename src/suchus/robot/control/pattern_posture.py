@@ -1,4 +1,4 @@
-"""From oscillators to servo angles: which part of the axis each stands for, and how limbs follow theirs."""
+"""From oscillators to servo angles: the segments of the axis that oscillators drive, and the limbs' paths."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -187,7 +187,7 @@ def waves(
 def initial_phases(
     segments: Sequence[AxisSegment], limbs: Sequence[float], lag: float, *, driven: bool
 ) -> Float[np.ndarray, " oscillator"]:
-    """Return phases in which nothing pulls on anything much: the axis with its limbs, or a wave along it [rad].
+    """Return first phases near equilibrium: the axis in phase with its limbs, or a wave along the axis [rad].
 
     Args:
         segments: of the axis.

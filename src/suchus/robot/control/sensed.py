@@ -1,4 +1,4 @@
-"""What a batch of robots feels at one instant."""
+"""The sensor readings of a batch of robots at one instant."""
 
 from dataclasses import dataclass
 from math import exp

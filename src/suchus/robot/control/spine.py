@@ -71,7 +71,7 @@ class SpineController:
         return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
 
     def take_over(self, predecessor: "SpineController") -> None:
-        """Go on from where the trunks of the same runs stand."""
+        """Continue from the trunks of the same runs."""
         self._lacking = predecessor._lacking
 
     def correct(

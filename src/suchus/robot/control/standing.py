@@ -1,4 +1,4 @@
-"""Standing up, standing, and sitting down again, on what pelvis, feet and tail feel."""
+"""Standing up, standing, and lying down again, with feedback from pelvis, feet and tail."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -221,8 +221,8 @@ class Stander:
         self._hind = [limb.servos for limb in place.limbs[-2:]]
         self._legs = [(leg, np.array([leg == run_leg for run_leg in legs])) for leg in dict.fromkeys(legs)]
         self._period = period
-        self._mean = np.full(len(row), np.nan)  # of the pitch error [rad]
-        self._crept = np.zeros(len(row))  # of the hips, for the tail's sake [m]
+        self._mean = np.full(len(row), np.nan)  # mean of the pitch error [rad]
+        self._crept = np.zeros(len(row))  # integrated offset of the hips by the load on the tail [m]
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the gait."""
@@ -261,9 +261,8 @@ class Stander:
             upright: which runs stand upright.
         """
         g = self._gains
-        pitch_error = planned.pitch + rotation.steep_pitch(
-            sensed.orientation
-        )  # the course counts upward, the angle downward
+        # planned pitch is positive upward, the sensed one downward
+        pitch_error = planned.pitch + rotation.steep_pitch(sensed.orientation)
         self._mean = np.where(upright & np.isfinite(self._mean), self._mean, pitch_error)
         self._mean += self._period / g["washout"] * (pitch_error - self._mean)
         pitch_deviation = pitch_error - self._mean

@@ -1,4 +1,4 @@
-"""Which posture to walk in, by what is felt and not by a map."""
+"""Choice of the walking posture from sensor readings, without a map."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,8 +13,10 @@ from suchus.robot.control.sensed import Sensed
 from suchus.robot.design import GRAVITY, Robot
 from suchus.robot.motion import Gait
 
-_WASHOUT = 3.0  # [s]; over which tilt is compared with its own mean
-_FOOT_LOADED = 0.02895931795  # of the weight, 1 N of the article's robot; from here on a foot feels the ground
+_WASHOUT = 3.0  # [s]; time constant of the mean tilt
+_FOOT_LOADED = (
+    0.02895931795  # [body weight], 1 N of the article's robot; load from which a foot counts as on the ground
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +56,7 @@ class SwitchRule:
 
 
 class Switcher:
-    """What a batch feels of the ground, and the postures that it asks for."""
+    """The filtered ground readings of a batch, and the changes of posture that follow from them."""
 
     def __init__(
         self,
@@ -83,8 +85,8 @@ class Switcher:
         n = len(rules)
         self._belly, self._stumbling, self._tilt = np.zeros(n), np.zeros(n), np.zeros(n)
         self._mean: np.ndarray | None = None
-        self._since = np.zeros(n)  # in this posture [s]
-        self._calm = np.zeros(n)  # of calm without a break [s]
+        self._since = np.zeros(n)  # time in this posture [s]
+        self._calm = np.zeros(n)  # uninterrupted time of calm [s]
 
     def decide(
         self, sensed: Sensed, phase: Float[np.ndarray, "run limb"], gaits: Sequence[Gait], busy: set[int]

@@ -12,7 +12,7 @@ from suchus.robot.control.shared import Shared
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion import Batch, Gait
 
-_BEND_TOLERANCE = 1e-9  # [rad]; a trunk that bends less does not bend
+_BEND_TOLERANCE = 1e-9  # [rad]; smaller bends count as none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +88,7 @@ class TailController:
         return shared.written_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
 
     def take_over(self, predecessor: "TailController") -> None:
-        """Go on from where the tails of the same runs stand, as far as the gait asks for the same pitch."""
+        """Continue from the tails of the same runs where the gait demands the same pitch."""
         self._pitch = np.where(
             self._is_active & (self._target_pitch == predecessor._target_pitch), predecessor._pitch, self._target_pitch
         )

@@ -1,4 +1,4 @@
-"""Which controller feels, hears and writes what: watched while the code runs, not written down a second time."""
+"""Which sensors and shared variables each controller reads and writes, observed while the code runs."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

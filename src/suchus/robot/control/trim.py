@@ -108,14 +108,12 @@ class Pitches:
         max_step = rule["pump"] * self._period
         next_shift = self._air_shift + np.clip(target_shift - self._air_shift, -max_step, max_step)
         retained_fraction = finite(air_fraction)
-        min_shift = np.maximum(
-            -retained_fraction * front, -(1.0 - retained_fraction) * rear
-        )  # no chamber beyond empty or full
+        # chambers cannot be more than empty or full
+        min_shift = np.maximum(-retained_fraction * front, -(1.0 - retained_fraction) * rear)
         max_shift = np.minimum((1.0 - retained_fraction) * front, retained_fraction * rear)
         self._air_shift = np.where(self._is_active, np.clip(next_shift, min_shift, max_shift), 0.0)
-        is_answerable = (target_shift >= min_shift) & (
-            target_shift <= max_shift
-        )  # what stays adds up only where the chambers can answer
+        # anti-windup: integrate only within the limits of the chambers
+        is_answerable = (target_shift >= min_shift) & (target_shift <= max_shift)
         self._offset = np.where(is_answerable, offset, self._offset)
         share = np.where(self._share > 0.0, self._share, 1.0)
         return np.asarray(air_fraction[:, None] + self._air_shift[:, None] * _TO_AND_FRO / share)

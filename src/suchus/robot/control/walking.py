@@ -123,8 +123,8 @@ class Walker:
         self._period = period
         n = len(robots)
         self._began = np.full(n, START)
-        self._cycles = np.zeros(n)  # walked before the present gait [cycle]
-        self._full = np.zeros(n)  # over which stroke and bends grow [s]; zero: at once
+        self._cycles = np.zeros(n)  # cycles walked before the present gait [cycle]
+        self._full = np.zeros(n)  # duration over which stroke and bends grow [s]; 0: at once
         self._script: dict[int, tuple[float, Transition, np.ndarray]] = {}
         self._bend = np.array([control.bend for control in controls])
         place = layout(robots[0])

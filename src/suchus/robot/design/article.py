@@ -20,7 +20,7 @@ PASSIVE_RANGE = 1.2
 SLIM = 0.8
 """Radius of a tibia over that of its femur [-]."""
 _PASSIVE_ARMATURE = 1e-4  # [kg m2]
-_SPARE = 1.5  # a joint may bend by more than its share before the plates touch
+_SPARE = 1.5  # stop of a joint over its share of the greatest bend [-]
 
 
 def crocodile(tables: Tables) -> Robot:

@@ -1,4 +1,4 @@
-"""Factors on what the sections of a body feel, as a flow around it has found them at its Reynolds number."""
+"""Factors on added mass and drag of the section model, fitted to a flow simulation at one Reynolds number."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -133,7 +133,7 @@ class Drawing:
         step = (b - a) / count
         places = list(a + step * (np.arange(count) + 0.5))
         if number == len(ends) - 2:
-            places.append(b)  # the trailing edge: half of this one lies behind the tip, and is cut off there
+            places.append(b)  # trailing edge: half of this ellipsoid lies behind the tip, and its size counts half
         ellipsoids = []
         for place in places:
             half_width, half_height = (

@@ -21,7 +21,7 @@ CELL = 0.025
 """Between the points of a height field [m]; about the size of a foot."""
 _RAMP = 0.15  # [m]; over which bumps grow from nothing
 _MIN_SIZE = 1e-5  # [m]; of heights, lengths and widths
-_OUTER = (0.02, 0.98)  # between these shares of a field's heights lies what is called its height
+_OUTER = (0.02, 0.98)  # quantiles between which the height of a field is measured
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,10 +213,8 @@ def slope(uphill: float, sideways: float) -> Float[np.ndarray, "4"]:
         uphill: along the walk, up positive [rad].
         sideways: left side up positive [rad].
     """
-    pitch_rotation, roll_rotation = (
-        about(np.array([0.0, 1.0, 0.0]), -uphill),
-        about(np.array([1.0, 0.0, 0.0]), sideways),
-    )
+    pitch_rotation = about(np.array([0.0, 1.0, 0.0]), -uphill)
+    roll_rotation = about(np.array([1.0, 0.0, 0.0]), sideways)
     return multiply(pitch_rotation, roll_rotation)
 
 

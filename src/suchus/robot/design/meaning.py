@@ -1,4 +1,4 @@
-"""What the fields of a frozen value mean: the docstring under each, read from its source."""
+"""The meaning of the fields of a frozen value: the docstring below each, read from the source."""
 
 import ast
 import inspect

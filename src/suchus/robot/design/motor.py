@@ -61,7 +61,9 @@ class Heat:
             loss: what it would turn into heat with its winding at ``ROOM`` [W].
         """
         cold = loss * (1.0 + COPPER * (self.ambient - ROOM))
-        cools = (1.0 / self.resistance - COPPER * loss) * (self.limit - self.ambient)  # at the limit [W]
+        cools = (1.0 / self.resistance - COPPER * loss) * (
+            self.limit - self.ambient
+        )  # heat flow to the air at the limit [W]
         if cold <= cools:
             return inf
         time = self.capacity * (self.limit - self.ambient)

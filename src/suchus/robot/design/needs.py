@@ -1,4 +1,4 @@
-"""What is asked of a robot before something is done with it, as data: who lacks it is refused in one sentence."""
+"""Requirements that a robot must meet for a task, and the error that names those it does not meet."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType

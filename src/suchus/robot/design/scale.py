@@ -30,7 +30,7 @@ COARSEST = 20.0
 _POWERS = {
     "kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "Hz": (0, 0, -1), "rad": (0, 0, 0),
     "N": (1, 1, -2), "J": (1, 2, -2), "W": (1, 2, -3),
-    "V": (0, 0, 0), "A": (1, 2, -3), "K": (0, 0, 0),  # motors of one supply, as warm
+    "V": (0, 0, 0), "A": (1, 2, -3), "K": (0, 0, 0),  # scaled motors keep supply and temperature
 }  # fmt: skip
 _UNIT = re.compile(r"^(kg|rad|Hz|N|J|W|V|A|K|m|s)(\d*)$")
 
@@ -214,10 +214,8 @@ def scaled_fields(design: Any, names: Iterable[str], *, length_factor: float, ma
     field_meanings = meanings(type(design))
     resized = {}
     for name in names:
-        value, factor = (
-            getattr(design, name),
-            _factor(unit(field_meanings.get(name, "")), (mass_factor, length_factor, sqrt(length_factor))),
-        )
+        value = getattr(design, name)
+        factor = _factor(unit(field_meanings.get(name, "")), (mass_factor, length_factor, sqrt(length_factor)))
         is_numeric = isinstance(value, float) or (
             _numbers(value) and any(isinstance(component, float) for component in value)
         )
@@ -252,7 +250,7 @@ def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
                     tuple(factor * component for component in value) if _numbers(value) else factor * value
                 )
     if isinstance(design, Winding) and new_values:
-        new_values["motor"] = ""  # in another size it is none that is sold
+        new_values["motor"] = ""  # no maker sells it in another size
     return replace(design, **new_values)
 
 

@@ -1,4 +1,4 @@
-"""What of a robot decides how a gait moves it, and nothing else: one for all robots that are built of a design."""
+"""The part of a robot's design that decides how a gait moves it: shapes, hinges and ranges, without masses."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -33,7 +33,7 @@ def skeleton(robot: Robot) -> Robot:
 
 @lru_cache(maxsize=1024)
 def _intern(robot: Robot) -> Robot:
-    """Return the first of equal robots, which is told from others at once."""
+    """Return the first of equal robots, so that equal robots are one object."""
     return robot
 
 

@@ -1,4 +1,4 @@
-"""What is given to the closed forms: arrays of finite numbers of the right shape, or a sentence that says otherwise."""
+"""Validation of the arguments of closed forms: arrays of finite numbers of the right shape."""
 
 from typing import Any
 

@@ -20,7 +20,11 @@ from suchus.robot.kinematics.tree import rotation
 
 STEPS = 60
 """Gauss-Newton steps at most [-]; along a gait 2 to 5 are needed."""
-_STEP, _DAMPING, _ERROR_TOLERANCE = 0.6, 0.01, 1e-10  # rad; most that damps; error in limb lengths that ends
+_STEP, _DAMPING, _ERROR_TOLERANCE = (
+    0.6,
+    0.01,
+    1e-10,
+)  # greatest step [rad]; greatest damping [-]; error at which a point is done [limb reach]
 SEEDS = 40
 """Starts for those that get stuck, most of them on a joint limit near the hip [-]."""
 
@@ -141,9 +145,8 @@ def _arm(limb: Limb, foot: np.ndarray, plane: np.ndarray) -> np.ndarray:
     )
     flat = np.hypot(x, y)
     level = np.maximum(flat, 1e-300)
-    axial_offset = (upper_length**2 - lower_length**2 + squared) / (
-        2.0 * distance
-    )  # of the elbow, on the line from hip to foot
+    # position of the elbow along the line from hip to foot
+    axial_offset = (upper_length**2 - lower_length**2 + squared) / (2.0 * distance)
     radial_offset = np.sqrt(np.maximum(upper_length**2 - axial_offset**2, 0.0))
     ux, uy, uz = x / distance, y / distance, z / distance
     rise, side = radial_offset * np.cos(plane), radial_offset * np.sin(plane)
@@ -225,7 +228,7 @@ def _descend(
         active, miss, jacobian = active[is_unfinished], miss[is_unfinished], jacobian[is_unfinished] / size
         if not active.size:
             break
-        damping = np.minimum(_DAMPING, error[active] ** 2)  # it dies with the error; a fixed one slows the end
+        damping = np.minimum(_DAMPING, error[active] ** 2)  # it falls with the error; a constant one slows convergence
         normal = jacobian.transpose(0, 2, 1) @ jacobian + damping[:, None, None] * np.eye(angles.shape[1])
         normal += 1e-12 * np.eye(angles.shape[1])
         step = np.linalg.solve(normal, np.einsum("bij,bi->bj", jacobian, miss)[..., None])[..., 0]

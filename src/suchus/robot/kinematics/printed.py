@@ -1,4 +1,4 @@
-"""The article's formulas letter by letter, misprints and all: only to be shown beside the right ones.
+"""The article's formulas as printed, misprints included, for comparison with the right ones.
 
 Nothing else in suchus may compute with them. Where a printed formula has no value, NaN comes out.
 """

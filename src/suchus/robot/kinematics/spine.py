@@ -251,10 +251,8 @@ def _feasible_yaw(spine: SpineLinks, points: np.ndarray) -> tuple[np.ndarray, ..
     is_unreachable = (
         ~(farthest_cosine <= 1.0 + ROUNDING) | ~(nearest_cosine >= -1.0 - ROUNDING) | ((M == 2.0) & (rho > 2.0))
     )
-    lower_bound, upper_bound = (
-        np.arccos(np.clip(nearest_cosine, -1.0, 1.0)),
-        np.arccos(np.clip(farthest_cosine, -1.0, 1.0)),
-    )
+    lower_bound = np.arccos(np.clip(nearest_cosine, -1.0, 1.0))
+    upper_bound = np.arccos(np.clip(farthest_cosine, -1.0, 1.0))
     return np.arctan2(y, x), lower_bound, upper_bound, (is_unreachable | (lower_bound > upper_bound + ROUNDING))[:, 0]
 
 
@@ -269,10 +267,8 @@ def _golden_section(
         upper_bound: of each interval.
     """
     golden = (np.sqrt(5.0) - 1.0) / 2.0
-    inner_lower, inner_upper = (
-        upper_bound - golden * (upper_bound - lower_bound),
-        lower_bound + golden * (upper_bound - lower_bound),
-    )
+    inner_lower = upper_bound - golden * (upper_bound - lower_bound)
+    inner_upper = lower_bound + golden * (upper_bound - lower_bound)
     lower_cost, upper_cost = cost(inner_lower), cost(inner_upper)
     for _ in range(REFINEMENTS):
         falls = lower_cost > upper_cost

@@ -105,7 +105,7 @@ def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batc
     """
     theta = numbers(bend, "the bend")[..., None]
     pitch = tail.plate + tail.gap
-    plate_angles = np.arange(tail.joints) * theta / tail.joints  # of the plate before each joint
+    plate_angles = np.arange(tail.joints) * theta / tail.joints  # angle of the plate ahead of each joint
     steps = np.stack([np.cos(plate_angles), np.sin(plate_angles)], axis=-1) * pitch
     steps[..., 0, :] /= 2  # the first joint is half a pitch from the middle of its plate
     return np.cumsum(steps, axis=-2)

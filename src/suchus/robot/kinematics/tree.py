@@ -1,4 +1,4 @@
-"""Where every part of a robot is: its bodies, its feet, its centre of mass, for any tree of hinges.
+"""Forward kinematics of any tree of hinges: bodies, feet and centre of mass.
 
 Everything is in the frame of the root: x forward, y left, z up. Angles come in the order of
 ``suchus.robot.design.joint_names``.
@@ -60,7 +60,7 @@ def frames(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrame
         dx, dy, dz = body.offset
         places[..., i, :] = places[..., body.parent, :] + dx * x + dy * y + dz * z
         columns = [x, y, z]
-        for _, name, axis in body.hinges:  # about one of them: the next turns towards the one after it
+        for _, name, axis in body.hinges:  # each turns about one axis of the frame, in cyclic order
             axis_index = next(k for k in range(3) if axis[k])
             s, c = axis[axis_index] * sines[..., hinge_index[name], :], cosines[..., hinge_index[name], :]
             first_column, second_column = columns[axis_index - 2], columns[axis_index - 1]

@@ -1,4 +1,4 @@
-"""The axis: which hinges bend it, and what the bends of gaits ask of each of them."""
+"""The axis: its hinges, and the angle of each in the bends of a gait."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -65,7 +65,7 @@ def pitch_hinges(robot: Robot) -> Hinges:
 
 
 class Waves:
-    """What gaits ask of one row of hinges: of a part's bend b, ``offset + Re(swing z)``, each hinge turns an nth."""
+    """Bends that gaits demand of a row of hinges: ``offset + Re(swing z)`` of a region, an nth at each of n hinges."""
 
     def __init__(self, hinges: Hinges, turn: str, gaits: Sequence[Gait]) -> None:
         """Add up what the bends of each gait ask of each hinge.
@@ -120,7 +120,7 @@ class Waves:
         if not len(indices):
             return np.zeros(bends.shape[:-1])
         is_shared_evenly, first_bend = self._takes_the_same(tuple(indices)), bends[..., indices[0]]
-        if is_shared_evenly.all():  # n nths of a number are not the number
+        if is_shared_evenly.all():  # the sum of n nths differs by rounding
             return np.asarray(first_bend)
         parts = (bends[..., indices] / self.share[:, indices]).sum(axis=-1)
         return np.asarray(np.where(is_shared_evenly, first_bend, parts))
@@ -154,7 +154,7 @@ def _swing(bend: Bend, place: int, count: int) -> complex:
         count: number of hinges of the region [-].
     """
     amplitude, lag = (at_knot(row, place, count) for row in (bend.amplitude, bend.lag))
-    half = round(2.0 * lag)  # half cycles change the sign alone, and exactly
+    half = round(2.0 * lag)  # half cycles change the sign only, without rounding
     remainder = 2 * np.pi * (lag - half / 2.0)
     signed = amplitude if half % 2 else -amplitude
     return complex(signed) if remainder == 0.0 else complex(signed * np.cos(remainder), -signed * np.sin(remainder))

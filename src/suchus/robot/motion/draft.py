@@ -19,23 +19,39 @@ from suchus.robot.motion.limbs import foot_path
 from suchus.robot.motion.limits import check_limits, shortest_period
 from suchus.robot.motion.parts import Bend, FootPath, Sweep
 
-_STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
-_HEIGHTS = (0.5, 0.55, 0.6, 0.45, 0.65, 0.7, 0.4, 0.75, 0.8, 0.85, 0.35, 0.3, 0.9)  # of the reach, the first that fits
+_STROKES = (0.2, 0.15, 0.1, 0.06)  # [limb reach]; the longest stroke that all girdles can follow is chosen
+_HEIGHTS = (
+    0.5,
+    0.55,
+    0.6,
+    0.45,
+    0.65,
+    0.7,
+    0.4,
+    0.75,
+    0.8,
+    0.85,
+    0.35,
+    0.3,
+    0.9,
+)  # [limb reach]; the first feasible one is chosen
 _LIFT = 0.7  # of the stroke
-_MIN_OUTWARD = 0.3  # of the reach; limbs that hang down stand so far outside their hips at least, or the body rolls
+_MIN_OUTWARD = 0.3  # [limb reach]; limbs that hang down stand at least so far outside their hips, or the body rolls
 _OUTWARD = (0.55, 0.45, 0.35, 0.25, 0.15, 0.05, 0.65, 0.75, 0.0)
 _FORWARD_OFFSETS = (0.0, 0.1, -0.1, 0.2, -0.2)
 _DUTY = 0.6
 _PERIOD = 6.0  # in gravity times; the shelf's walks take 4 to 10
-_STANCE = radians(80)  # that a crank turns through
-_BEND, _SHARE = radians(10), 0.3  # of a trunk joint; and at most this part of its range
-_CLOUD, _CLOUD_TOLERANCE = (
-    16000,
-    0.05,
-)  # postures that show what a limb reaches; how near a path comes to them, in reaches
-_SAMPLES, _JUMP, _MARGIN = 24, 0.7, 0.02  # of a path; rad between two of them; rad from a joint's stop
+_STANCE = radians(80)  # angle that a crank turns through in stance
+_BEND, _SHARE = radians(10), 0.3  # amplitude of a trunk joint [rad]; its greatest fraction of the joint's range [-]
+# random postures that sample a limb's reach [-]; greatest distance of a path from them [limb reach]
+_CLOUD, _CLOUD_TOLERANCE = 16000, 0.05
+_SAMPLES, _JUMP, _MARGIN = (
+    24,
+    0.7,
+    0.02,
+)  # samples of a path [-]; greatest jump between two of them [rad]; distance from a joint's stop [rad]
 _TRIES, _PATHS = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
-_SPEED = 0.6  # of its servo's speed that a joint is asked for at most
+_SPEED = 0.6  # greatest speed of a joint over that of its servo [-]
 _PLANAR = 2  # hinges of a limb whose foot moves on a surface only
 
 

@@ -22,12 +22,16 @@ _STROKES = (0.25, 0.18, 0.12, 0.08)  # of the limb's reach, the longest that all
 _DEPTHS = (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2, 0.9)  # of the hindmost limbs' reach, the first that fits
 _UPRIGHT_STROKES = (0.2, 0.16, 0.12, 0.08)
 _UPRIGHT_DEPTHS = (0.75, 0.8, 0.7, 0.85, 0.9, 0.95, 0.65, 0.6, 0.5, 0.4)
-_UPRIGHT_PERIOD = 0.5  # of the walk's: two feet below the body hold it up only for as long as it takes to tip over
-_UNDER_HIP = 20.0  # weight of a foot's distance from below its hip, in reaches, beside angles from the middle in rad
+_UPRIGHT_PERIOD = 0.5  # of the walk's period: on two feet below the body the robot tips over in a longer step
+_UNDER_HIP = 20.0  # weight of a foot's distance from below its hip [rad/limb reach], against angles from the middle
 _LIFT = 0.6  # of the stroke
-_CLOUD = 4000  # postures among which the middle of the stance is looked for
-_FROM_MIDDLE = 1e-3  # weight of angles beside lengths in reaches: of two postures that do, the one near the middle
-_PATH_TOLERANCE, _MARGIN, _JUMP = 0.02, 0.02, 0.9  # reaches off the path; rad from a stop; rad between two samples
+_CLOUD = 4000  # random postures among which the middle of the stance is chosen
+_FROM_MIDDLE = 1e-3  # weight of angles [limb reach/rad]: of two feasible postures the one near the middle is taken
+_PATH_TOLERANCE, _MARGIN, _JUMP = (
+    0.02,
+    0.02,
+    0.9,
+)  # path error [limb reach]; distance from a stop [rad]; jump between two samples [rad]
 _MIN_HINGES = 2
 """Hinges without which a foot cannot be lifted and brought forward."""
 

@@ -17,14 +17,11 @@ from suchus.robot.kinematics.limb import PlainLeg
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.parts import FootPath, Held, Limbs, Sweep
 
-_PICOMETRE = 12  # digits of a metre to which lengths of a gait are rounded: a share of a reach of 0.175 m gives 0.027 m
-_REACH_MARGIN = (
-    1e-6  # how far inside its reach a foot that is drawn into it stays: [m] for a leg, [reach] for other limbs
-)
-_MIN_STANCE_ANGLE, _MAX_STANCE_ANGLE = (
-    0.02,
-    2 * np.pi - 0.02,
-)  # [rad]; of the angle that a crank turns through in stance
+_PICOMETRE = 12  # decimals of a metre to which lengths are rounded, so that fractions of a reach give round numbers
+# distance inside its reach to which a foot is drawn: [m] for a leg, [reach] for other limbs
+_REACH_MARGIN = 1e-6
+# bounds of the angle that a crank turns through in stance [rad]
+_MIN_STANCE_ANGLE, _MAX_STANCE_ANGLE = 0.02, 2 * np.pi - 0.02
 _SIDEWAYS = 2 / np.pi  # quarter turns of swivel a radian
 
 
@@ -93,7 +90,7 @@ class LimbMotion:
         try:
             return list(self._angles_at(numbers, *self._feet(numbers, phase, steer), draw=draw))
         except Unreachable as error:
-            if len(self.among) > 1:  # say it of the first limb that it is true of
+            if len(self.among) > 1:  # name the first limb that fails
                 for i in self.among:
                     LimbMotion(self.robot, self.gaits, [i]).angles(limbs, steer, draw=draw)
             names = ", ".join(dict.fromkeys(repr(gait.name) for gait in self.gaits))

@@ -1,4 +1,4 @@
-"""What a gait asks of joints and servos, and whether a robot can give it."""
+"""The angles and speeds that a gait demands of joints and servos, and whether a robot can follow it."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -14,13 +14,11 @@ from suchus.robot.motion.parts import MOST_ANGLES, Bend, Curve, Part, ServoPart
 
 SAMPLES = 128
 """Looks over a cycle [-]."""
-_SPEED_SAMPLES = 200  # of a cycle, to see how fast servos turn in it
-_MAX_STROKE_FACTOR, _STROKE_TOLERANCE = (
-    8.0,
-    1e-3,
-)  # greatest factor on strokes that is tried, and how near to the greatest possible one it ends
-_LENGTH, _ANGLE, _SPEED = 0.01, 0.1, 1.0  # [m], [rad], [rad/s]; what counts as one of the excess
-_ROUNDING = 1e-9  # [rad]; by which a bend may leave its limit
+_SPEED_SAMPLES = 200  # of a cycle, for the servos' speeds
+# greatest factor on strokes that is tried [-]; width of the bracket at which the bisection stops [-]
+_MAX_STROKE_FACTOR, _STROKE_TOLERANCE = 8.0, 1e-3
+_LENGTH, _ANGLE, _SPEED = 0.01, 0.1, 1.0  # [m], [rad], [rad/s]; an excess of this size counts as 1
+_ROUNDING = 1e-9  # [rad]; tolerance of a bend beyond its limit
 
 
 def check_limits(robot: Robot, gait: Gait) -> None:
@@ -33,10 +31,8 @@ def check_limits(robot: Robot, gait: Gait) -> None:
     """
     gait_movement, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
     _check_cables(gait_movement)
-    targets, direct = (
-        cycle_targets(robot, gait, clock),
-        len(gait_movement.place.servos) - len(gait_movement.place.cables),
-    )
+    targets = cycle_targets(robot, gait, clock)
+    direct = len(gait_movement.place.servos) - len(gait_movement.place.cables)
     targets = np.vstack([targets, _lateral_ends(gait_movement, targets[0])])
     for name, column, (lower_bound, upper_bound) in zip(
         gait_movement.place.servos[:direct], targets.T[:direct], servo_ranges(robot)[:direct], strict=True
@@ -72,10 +68,8 @@ def _check_cables(gait_movement: Movement) -> None:
     for servo in gait_movement.place.cables:
         hinge_indices = [k for k, hinge_servo in enumerate(gait_movement.yaw.hinges.servos) if hinge_servo == servo]
         swing, steady = gait_movement.yaw.together(hinge_indices)
-        max_bend, limit = (
-            float(follows * np.abs(swing[0]) + np.abs(steady[0])),
-            gait_movement.place.cable(servo).bend_limit,
-        )
+        max_bend = float(follows * np.abs(swing[0]) + np.abs(steady[0]))
+        limit = gait_movement.place.cable(servo).bend_limit
         if max_bend > limit + _ROUNDING:
             raise OutsideLimits(
                 f"gait {gait_movement.gaits[0].name!r} asks the hinges of cable {gait_movement.place.servos[servo]} of "
@@ -155,10 +149,8 @@ def excess(robot: Robot, gait: Gait) -> float:
     """
     gait_movement, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
     limbs = clock[:, None] + np.array(gait.limb_phases)
-    targets, foot_distance = (
-        gait_movement.targets(limbs, gait_movement.axis_of_clock(clock), draw=True),
-        gait_movement.out_of_reach(limbs),
-    )
+    targets = gait_movement.targets(limbs, gait_movement.axis_of_clock(clock), draw=True)
+    foot_distance = gait_movement.out_of_reach(limbs)
     ranges = servo_ranges(robot)
     range_excess = np.maximum(np.maximum(ranges[:, 0] - targets, targets - ranges[:, 1]), 0.0).max(axis=0)
     turns = np.diff(targets, axis=0, append=targets[:1])

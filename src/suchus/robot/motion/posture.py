@@ -22,7 +22,7 @@ from suchus.robot.kinematics.tree import centre_of_mass
 
 SETTLING = 12
 """Rounds that bring the centre of mass to its place [-]; each leaves a tenth of the error, since the legs are light."""
-_REACH_MARGIN = 1e-6  # [m]; how far inside its reach a clipped leg stays
+_REACH_MARGIN = 1e-6  # [m]; distance inside its reach to which a leg is clipped
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,8 +18,8 @@ MEETING = 0.090 / LIMB_REACH
 """Least height of the hips at which limbs change their posture [limb reach]: a folded limb needs room."""
 RAISED = 0.2
 """How high limbs are lifted while they turn [reach of the hindmost limb]."""
-_TIMES = (0.6, 0.3, 0.5, 0.3, 0.3, 0.5, 0.3, 0.7)  # [s]; between one key and the next
-_LENGTH = 1.01  # [m]; of the body for which the times are
+_TIMES = (0.6, 0.3, 0.5, 0.3, 0.3, 0.5, 0.3, 0.7)  # durations between keys [s]
+_LENGTH = 1.01  # length of the body for which the times are [m]
 _STANDING = 0.999  # [cycle]; a phase at which every foot is meant to stand
 
 

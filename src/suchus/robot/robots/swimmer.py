@@ -12,12 +12,10 @@ from suchus.robot.robots._plans import BY_SIZE
 _COUNT, _SEGMENT, _HEIGHT, _WIDTH = 11, 0.095, 0.056, 0.040
 _LENGTH = _COUNT * _SEGMENT
 _HALF = (0.55 * _SEGMENT, _WIDTH / 2, _HEIGHT / 2)
-_RELATIVE_DENSITY = (
-    0.95  # mass over that of the water that it displaces when it is all under water: it swims at the surface
-)
-_BELLY_MASS_FRACTION = (
-    0.15  # share of the mass in each of the two edges of the belly: the batteries lie low, so that it floats upright
-)
+# mass over that of the water that it displaces when it is all under water: it swims at the surface
+_RELATIVE_DENSITY = 0.95
+# share of the mass in each of the two edges of the belly: the batteries lie low, so that it floats upright
+_BELLY_MASS_FRACTION = 0.15
 _ROOT = _COUNT // 2
 
 
