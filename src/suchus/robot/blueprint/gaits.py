@@ -27,10 +27,10 @@ _WAVE = ("amplitude", "waves", "phase")
 def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
     """Read a gait from a TOML file.
 
-    Its keys say in which form it is: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places
-    along the body, ``girdles`` and ``wave``. A curve that does not say its part gets that of its servo. With ``base =
-    "belly_crawl"`` at the top it starts from that gait of the shelf and overrides what the file says. A file without a
-    ``name`` lends its own.
+    The keys of the file decide its form: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places
+    along the body, ``girdles`` and ``wave``. A curve without a part gets the part of its servo. With ``base =
+    "belly_crawl"`` at the top the file changes numbers of that gait of the shelf. A gait without a ``name`` is named
+    after the file.
 
     Args:
         path: the file.

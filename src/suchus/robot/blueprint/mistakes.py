@@ -31,10 +31,10 @@ _REQUIREMENTS: Mapping[str, str] = {
 
 
 class MistakenFile(UnreadableFile, InvalidDesign):
-    """A file whose values cannot be what they should be.
+    """A file with values that are missing, unknown, of the wrong kind or impossible.
 
     Attributes:
-        mistakes: where each mistake is, and what it is.
+        mistakes: text of each mistake by its place.
     """
 
     def __init__(self, name: str, mistakes: Mapping[Place, str]) -> None:
@@ -60,9 +60,10 @@ def dotted(place: Place) -> str:
 
 
 def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]:
-    """Return what one of pydantic's errors says, by place; a part can complain of several fields at once.
+    """Return the texts of one pydantic error by place; one error can concern several fields.
 
-    Where a part may be of several kinds, pydantic complains of each; what counts is the kind whose keys the part names.
+    If a table may be of several kinds, pydantic reports errors for each; only the kind that fits the table's keys
+    counts.
 
     Args:
         error: as pydantic tells it.
@@ -115,7 +116,7 @@ def _locate(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
 
 
 def closest(data: Any, kinds: Sequence[Any]) -> Any:
-    """Return the kind of which a table names most fields; the first of those alike."""
+    """Return the kind that has most of a table's keys as fields; the first of several equal ones."""
     keys = set(data) if isinstance(data, Mapping) else set()
     return max(kinds, key=lambda kind: len(keys & {field.name for field in fields(kind) if field.init}))
 

@@ -32,9 +32,9 @@ def read(path: str | Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ..
 def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     """Read a robot or a gait from a TOML file.
 
-    ``base = "caiman"`` at the top starts from that one of the shelf and overrides what the file says. A file
-    without a ``name`` lends its own. Where ``kind`` is a union, a file without ``base`` is of the kind that has most of
-    what stands at its top, the first of those alike.
+    With ``base = "caiman"`` at the top the file changes numbers of that entry of the shelf. A design without a ``name``
+    is named after the file. If ``kind`` is a union, a file without ``base`` is of the kind that has most of its
+    top-level keys.
 
     Args:
         path: the file.
@@ -108,7 +108,7 @@ def described(data: Mapping[str, Any], kind: type[T], label: str) -> T:
 
 
 def _settable_fields(model: Any) -> set[str]:
-    """Return the fields that a file can say."""
+    """Return the names of the fields that a file can set."""
     return {field.name for field in fields(model) if field.init}
 
 

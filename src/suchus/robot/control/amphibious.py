@@ -88,12 +88,12 @@ class Amphibious:
 
     @property
     def feels(self) -> bool:
-        """It decides by what it feels."""
+        """Whether it reads sensors: always."""
         return True
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Loads on the ground, and what swim and heading are held by."""
+        """Sensors of the ground load, and those of the rules for swim and heading."""
         return united(
             ("foot_pressure", "belly_pressure", "tail_pressure"),
             self.swimming.needs,

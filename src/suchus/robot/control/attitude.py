@@ -45,7 +45,7 @@ class AttitudeRule:
 
 
 class Attitude:
-    """The attitude of a batch, and what the feet do about it; each run has its own rule or none."""
+    """The attitude feedback of a batch; each run has its own rule or none."""
 
     def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[Robot], period: float) -> None:
         """Gather gains and hip positions of the batch.
@@ -94,6 +94,6 @@ def _hips_forward_of_center(robot: Robot) -> list[float]:
 
 
 def _size(robot: Robot) -> float:
-    """Return how long the hind limbs are beside those of the article's robot [-]."""
+    """Return the reach of the hind limbs over that of the article's robot [-]."""
     limbs = layout(robot).limbs
     return round(limbs[-1].girdle.limb.reach / LIMB_REACH, 9) if limbs else 1.0

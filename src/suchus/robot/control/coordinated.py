@@ -38,7 +38,7 @@ class Kick:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coordinated:
-    """Three feedback rules over the gait's clock, and a heading loop for who wants one.
+    """Three feedback rules over the gait's clock, and an optional heading loop.
 
     With the law ``off`` and no rule the commands are those of ``OpenLoop``, to the bit.
 

@@ -54,11 +54,11 @@ class Steering(NamedTuple):
 
     @classmethod
     def none(cls, runs: int, limbs: int) -> "Steering":
-        """Return what steers straight ahead."""
+        """Return zero steering for every run."""
         return cls(np.zeros((runs, limbs)), np.zeros(runs))
 
     def any(self) -> Bool[np.ndarray, " run"]:
-        """Tell which runs are steered."""
+        """Return which runs are steered."""
         return self.stroke.any(axis=1) | (self.trunk != 0.0)
 
 
@@ -94,7 +94,7 @@ class Heading:
         self._offset = np.zeros(len(gaits))
 
     def step(self, sensed: Sensed, *, walking: bool | Bool[np.ndarray, " run"]) -> Steering:
-        """Answer to the direction that is felt now.
+        """Return the steering that the present heading error demands.
 
         Args:
             sensed: what is felt.
@@ -114,7 +114,7 @@ class Heading:
         return Steering(-self._limb_sides * steer[:, None], self._trunk * steer)
 
     def take_over(self, predecessor: "Heading") -> None:
-        """Go on from where the loops of the same runs stand; the mean over the last cycle begins anew."""
+        """Continue from the loops of the same runs; the mean over the last cycle starts again."""
         self._facing.take_over(predecessor._facing)
         self._offset = np.clip(predecessor._offset, -self._max_steering, self._max_steering)
 

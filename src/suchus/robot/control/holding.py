@@ -47,9 +47,9 @@ class HeadingHold:
 class DepthHold:
     """Keeps a depth by the air in the hull.
 
-    With e how much deeper than asked the root is and w its sinking speed, the share of the air that is kept is that of
-    neutral buoyancy plus gain e + rate_gain w + integral_gain sum(e dt), within 0 and 1, and changes by ``pump`` at
-    most. Errors beyond ``near`` do not add up.
+    Let e be the depth of the root minus its target, and w its sinking speed. The fraction of the air that is kept is
+    that of neutral buoyancy plus gain e + rate_gain w + integral_gain sum(e dt), within 0 and 1. It changes at a rate
+    of ``pump`` at most. Errors beyond ``near`` are not integrated.
     """
 
     depth: float

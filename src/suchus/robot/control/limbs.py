@@ -204,7 +204,7 @@ class Limbs:
 
 
 def _trunk_torque(robot: Robot) -> float:
-    """Return the sum of what the trunk's yaw servos can give, 1 of a robot without any [N m]."""
+    """Return the sum of the torque limits of the trunk's yaw servos; 1 for a robot without any [N m]."""
     place = layout(robot)
     return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw) or 1.0
 

@@ -81,7 +81,7 @@ class GaitTable:
         return self._targets[self._row, 0]
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Look up one tick."""
+        """Return the servo angles and phases of one control period from the tables."""
         del sensed
         return Command(self._targets[self._row, tick], self._phase[self._row, tick])
 

@@ -86,12 +86,12 @@ class Oscillators:
 
     @property
     def reference(self) -> float:
-        """The drive in the middle of what moves the limbs; a gait's own period and bends belong to it [-]."""
+        """The mean drive of the limbs' range, at which a gait's own period and bends apply [-]."""
         return (self.limb_drives[0] + self.limb_drives[1]) / 2
 
 
 class Couplings(NamedTuple):
-    """Who drives whom; one entry for each direction of a coupling, sorted by who is driven."""
+    """Couplings of the oscillators, one entry for each direction, sorted by receiver."""
 
     names: tuple[str, ...]
     """Names of the oscillators: ``axis_1_left`` from the head, then those on the right, then the limbs."""
@@ -119,11 +119,11 @@ def couple(
 ) -> Couplings:
     """Return the couplings of a body.
 
-    Neighbours on the axis keep a lag from head to tail, its sides take turns, each limb draws its side of its part of
-    the axis along, and limbs keep the phases of a gait against the limb on the other side and against the next one on
-    their own side. In a diagonal gait these are half a cycle, as published. Along an axis of more segments than the
-    published one the weights of the axis grow with the square of their number, since the time in which a chain of
-    oscillators locks does.
+    Neighbours on the axis keep a lag from head to tail, and left and right sides alternate. Each limb drives its side
+    of its part of the axis. Limbs keep the phases of a gait against the limb on the other side and the next limb on
+    their own side; in a diagonal gait these are half a cycle, as published. On an axis of more segments than the
+    published one the weights of the axis grow with the square of the number of segments, as the locking time of a chain
+    of oscillators does.
 
     Args:
         numbers: of the oscillators.

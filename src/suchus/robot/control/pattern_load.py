@@ -13,7 +13,7 @@ from suchus.robot.design import GRAVITY, Robot
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadRule:
-    """Oscillators get more drive the less the ground is felt to carry.
+    """Oscillators get more drive the smaller the sensed ground load is.
 
     Above the limbs' highest drive the limbs fall silent and the axis swims. So one descending drive walks on land and
     swims in water. The sensed load is the low-pass-filtered contact force of feet, belly and tail, as a fraction of
@@ -37,7 +37,7 @@ class LoadRule:
 
 
 class FeltDrive:
-    """The load that each run of a batch feels, and the drive that it adds."""
+    """The filtered ground load of each run of a batch, and the drive that it adds."""
 
     def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[Robot], period: float) -> None:
         """Gather the rules of the batch; a run without one gets no drive from its load.
@@ -59,12 +59,12 @@ class FeltDrive:
         """Share of the weight that the ground carries, through the low pass; as on land before anything is felt [-]."""
 
     def feel(self, sensed: Sensed) -> None:
-        """Take in what the robots feel now."""
+        """Update the filtered ground load."""
         ground = finite(sensed.foot_pressure).sum(axis=1) + finite(sensed.belly_pressure).sum(axis=1)
         load = (ground + finite(sensed.tail_pressure)) / self._weight
         self.load = load + self._decay * (self.load - load)
 
     @property
     def drive(self) -> Float[np.ndarray, " run"]:
-        """What the oscillators get beside the descending drive [-]."""
+        """Drive that the load rule adds to the descending drive [-]."""
         return np.asarray(self._afloat_drive * np.clip(1.0 - self.load / self._touch, 0.0, 1.0))

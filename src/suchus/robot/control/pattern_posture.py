@@ -167,7 +167,7 @@ def _folded(place: Layout, gait: Gait, middle: np.ndarray) -> np.ndarray:
 
 
 def _cranked(place: Layout, gait: Gait, limb: int) -> bool:
-    """Return whether a limb turns all round, so that it stops where it is."""
+    """Return whether a limb is a crank; a silent crank stops at its present angle."""
     return isinstance(gait.limbs[place.limbs[limb].number], Sweep)
 
 

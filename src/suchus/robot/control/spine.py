@@ -15,7 +15,7 @@ from suchus.robot.motion import Batch
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpineRule:
-    """Every yaw joint of the trunk takes over a part of what all of them together lack.
+    """Every yaw joint of the trunk adds a fraction of the bend that all of them together lack.
 
     With B the bend that the limbs' phases ask for and q the sensed yaw angles, e is the low-passed B - sum(q), and
     each joint is commanded its part of B, a third in the article's robot, and share e. A joint that is stuck, weak or

@@ -21,13 +21,12 @@ from suchus.robot.motion.rising import stand_up
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Balance:
-    """How a standing robot answers what it feels; every gain may be zero.
+    """Gains of the balance feedback of a standing robot; every gain may be zero.
 
-    Two corrections come out: how far the hips go back over the planted feet, all leg servos together, and how far the
-    trunk's first pitch joint bends back. Both are driven by how fast the pelvis pitches forward beyond what is
-    intended, and by how far it has, against its own mean over the last ``washout`` seconds: a steady droop of the
-    servos is no fall. The hips are also driven by the load on the tail: as long as it lacks its share of the weight,
-    they creep back.
+    The feedback has two outputs: the distance by which the hips move back over the planted feet, and the angle by which
+    the trunk's first pitch joint bends back. Its inputs are the error of the pelvis' pitch rate and that of its pitch.
+    The pitch error is compared with its own mean over the last ``washout`` seconds, since a steady droop of the servos
+    is no fall. The hips also creep back while the tail carries less than its share of the weight.
     """
 
     hips_per_pitch: float
@@ -177,7 +176,7 @@ class Standing:
 
 
 class Course(NamedTuple):
-    """What is intended over time, one row per distinct robot and gait."""
+    """Intended motion over time, one row for each distinct robot and gait."""
 
     targets: Float[np.ndarray, "*row tick servo"]
     """Servo angles [rad]."""

@@ -48,7 +48,7 @@ class Swimming:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """What is held is felt."""
+        """Sensors of the rules that are on."""
         return united(
             ("orientation", "servo_position") if self.heading else (),
             ("depth",) if self.depth else (),
@@ -78,7 +78,7 @@ def _with_trunk_bend(gait: Gait, bend: float) -> Gait:
 
 
 class SwimmingController:
-    """The running swims of a batch: the postures of their gaits, to which what is felt adds."""
+    """The running swims of a batch: the postures of their gaits, corrected by feedback."""
 
     def __init__(
         self, controls: Sequence[Swimming], robots: Sequence[Robot], gaits: Sequence[Gait], period: float
@@ -134,7 +134,7 @@ class SwimmingController:
 
 
 def grown(time: float, ramp: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
-    """Return how much of a motion has grown at a time [s], over a ramp and smoothly at both ends [-]."""
+    """Return the fraction of a motion at a time [s]: 0 to 1 over a ramp, smooth at both ends [-]."""
     share = np.where(ramp > 0.0, np.clip(time / np.where(ramp > 0.0, ramp, 1.0), 0.0, 1.0), 1.0)
     return np.asarray(share**2 * (3.0 - 2.0 * share))
 

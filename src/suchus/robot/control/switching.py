@@ -23,10 +23,10 @@ _FOOT_LOADED = (
 class SwitchRule:
     """A ladder of postures: up when the belly touches, down when the feet stumble or the ground is calm.
 
-    Three quantities are felt, each averaged over the last ``memory`` seconds: the share of the weight that the belly
-    carries; how far the feet contradict the gait, loaded in swing or free in stance; and how much the body tilts
-    against its own mean. A belly that touches asks for the next rung. Feet that contradict the gait too much on a rung
-    above ``home`` ask for the one below, and so does a body that hardly tilts.
+    Three quantities are sensed, each averaged over the last ``memory`` seconds: the fraction of the weight that the
+    belly carries; the fraction of feet that contradict the gait, loaded in swing or free in stance; and the tilt of the
+    body against its own mean. A loaded belly leads to the next higher posture. On a posture above ``home``, too many
+    contradictions of the feet or a calm body lead to the next lower one.
     """
 
     ladder: tuple[Gait, ...]

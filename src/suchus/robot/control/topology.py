@@ -31,7 +31,7 @@ class ControlPart(NamedTuple):
 
 
 def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tuple[ControlPart, ...]:
-    """Return what each controller reads and writes when it takes a step, in the order in which they act.
+    """Return the sensors and shared variables that each controller reads and writes, in the order of action.
 
     Args:
         robot: the design.

@@ -19,10 +19,10 @@ from suchus.robot.design.pieces import chambers
 class PitchHold:
     """Keeps the pitch of a swim under water by air that moves between the chambers of the hull.
 
-    With theta the pitch less the asked one, nose down positive, and q its rate, both through a low pass, since a swim
-    pitches to and fro, the share of the hull's air that moves ahead of where it is with all chambers filled alike is
-    gain theta + rate_gain q + integral_gain sum(theta dt), as far as the chambers have air and room, and changes by
-    ``pump`` at most.
+    Let theta be the pitch minus its target, nose down positive, and q its rate, both low-pass-filtered because a
+    swimming robot pitches periodically. The fraction of the hull's air that moves from the rear to the front chambers
+    is gain theta + rate_gain q + integral_gain sum(theta dt), within the limits of the chambers. It changes at a rate
+    of ``pump`` at most.
     """
 
     pitch: float = 0.0
@@ -92,7 +92,7 @@ class Pitches:
         self._offset, self._air_shift = np.zeros(len(rules)), np.zeros(len(rules))
 
     def split(self, air_fraction: Float[np.ndarray, " run"], sensed: Sensed) -> Float[np.ndarray, "run 2"]:
-        """Return the share of the air that is kept in front and rear chambers [-].
+        """Return the fraction of the air that the front and the rear chambers keep [-].
 
         Args:
             air_fraction: share of the whole air that is kept, NaN where it is not commanded [-].
@@ -119,7 +119,7 @@ class Pitches:
         return np.asarray(air_fraction[:, None] + self._air_shift[:, None] * _TO_AND_FRO / share)
 
     def _target_pitch(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
-        """Return the asked pitches, nose down positive [rad]."""
+        """Return the target pitch of each run, nose down positive [rad]."""
         rule = self._rule
         if sensed.depth is None:
             return np.asarray(rule["pitch"])

@@ -34,9 +34,9 @@ class Change:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Walking:
-    """The run's gait, with what is asked of it besides; runs that differ share a batch.
+    """The run's gait with steering, attitude feedback and changes of gait; runs that differ share a batch.
 
-    With nothing asked the servo angles are those of ``OpenLoop``.
+    Without any of these the servo angles equal those of ``OpenLoop``.
     """
 
     attitude: AttitudeRule | None = None

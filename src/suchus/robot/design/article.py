@@ -26,7 +26,7 @@ _SPARE = 1.5  # stop of a joint over its share of the greatest bend [-]
 def crocodile(tables: Tables) -> Robot:
     """Return the robot of the article's kind that has these measures.
 
-    It remembers them, so that ``with_values`` can change one of them and make the robot anew.
+    The robot stores the tables, so that ``with_values`` can change one of their numbers and build the robot again.
 
     Raises:
         InvalidDesign: these measures make no robot.
@@ -49,7 +49,7 @@ def crocodile(tables: Tables) -> Robot:
 
 
 def remade(robot: Robot, change: Callable[[Any], Any]) -> Robot:
-    """Return a robot with a change in what it was made of: in its tables if it has some, else in itself.
+    """Return a robot with a change in its tables if it has some, else in itself.
 
     Args:
         robot: the robot; it stays as it is.
@@ -94,7 +94,7 @@ def tables_of(robot: Robot) -> Tables | None:
 
 
 def _cord_drive(robot: Robot) -> dict[str, object]:
-    """Return what of the tables says how the tail's cords are moved."""
+    """Return the fields of the tables that describe the drive of the tail's cords."""
     linear = robot.cables[0].linear
     return {"drive": "cable"} if linear is None else {"drive": "linear_actuator", "actuator": linear}
 

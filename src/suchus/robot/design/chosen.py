@@ -17,7 +17,7 @@ _STEP = re.compile(r"(\w+)|\[(\d+)\]")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chosen:
-    """Why a field holds what it holds, and how far it could plausibly be off."""
+    """The reason for the value of a field, and its plausible range."""
 
     field: str
     """Dotted path of the field from the robot or gait, as ``spine.pitch_servo.torque``."""
@@ -44,7 +44,7 @@ class Numbered(Protocol):
 
 
 def value_at(design: Any, path: str) -> Any:
-    """Return what a field of a robot or gait holds.
+    """Return the value of a field of a robot or gait.
 
     Args:
         design: the robot, the gait, or a part.
@@ -141,7 +141,7 @@ def _holder(design: Any, step: str | int) -> Any:
 
 
 def _step(design: Any, step: str | int) -> Any:
-    """Return what a field, an element or a number of a design holds.
+    """Return the value of a field, an element or a number of a design.
 
     Raises:
         UnknownName: the design has nothing of that name.

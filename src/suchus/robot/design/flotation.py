@@ -16,8 +16,8 @@ def float_hull(
 ) -> Hull:
     """Return a hull that lets every body that is too heavy for its water displace its own weight and no more.
 
-    A bent body floats level only if its parts float by themselves. Where light bodies displace more than they weigh,
-    the foam of all others is a little less, so that the whole floats with the share above that is asked for.
+    A bent body floats level only if each part floats by itself. Light bodies displace more than their weight; the foam
+    of all others is then reduced, so that the whole robot floats with the demanded fraction above the surface.
 
     Args:
         robot: a robot without a hull.

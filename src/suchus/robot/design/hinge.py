@@ -65,7 +65,7 @@ class Servo:
         return self.speed / (1.0 - self._idle / self.torque)
 
     def given(self, speed: Float[np.ndarray, "..."], supply: float = 1.0) -> Float[np.ndarray, "..."]:
-        """Return the greatest torque that its motor gives in the direction of a torque [N m].
+        """Return the greatest torque of the motor at a speed, in the direction of that torque [N m].
 
         Args:
             speed: of the shaft in that direction; negative where it is driven backwards [rad/s].
@@ -79,9 +79,9 @@ class Servo:
     def of(motor: Motor, volts: float | None = None, *, like: Optional["Servo"] = None) -> "Servo":
         """Return a servo that is bought, at a supply.
 
-        Torque, speed and winding are the motor's. No data sheet gives the numbers of the loop and of the gear, since
-        the first are set and the second differ from one to the next: they are those of another servo, or, without one,
-        those of the article's robot's servos in proportion to the torque. ``suchus calibrate`` measures them.
+        Torque, speed and winding are those of the motor. Data sheets do not give the gains of the loop and the friction
+        of the gear. These are taken from another servo, or, without one, from the servos of the article's robot in
+        proportion to the torque. ``suchus calibrate`` measures them.
 
         Args:
             motor: as it is bought.
@@ -238,7 +238,7 @@ class LinearActuator:
 
     @classmethod
     def of(cls, servo: Servo, radius: float, travel: float) -> Self:
-        """Return the actuator that gives the cords what a servo gives them by a pulley.
+        """Return the actuator that moves the cords as a servo with a pulley does.
 
         Args:
             servo: the servo.
@@ -283,9 +283,9 @@ class LinearActuator:
 class Cable:
     """Two cords that bend hinges which follow each other, all by the same angle where nothing resists.
 
-    A servo pulls them over one pulley, or a linear actuator moves them directly. All that is said of servos in radians
-    and newton metres, as commands and records, says of a linear actuator what a servo on a pulley of the radius
-    ``pulley`` would turn and give; its travel is the angle times that radius.
+    A servo pulls the cords over one pulley, or a linear actuator moves them directly. Commands and records give angles
+    and torques for both: those of a linear actuator are the angle and torque of an equivalent servo on a pulley of the
+    radius ``pulley``; its travel is the angle times that radius.
 
     Paper: Eqs (16) to (18).
     """

@@ -194,7 +194,7 @@ def layout(robot: Robot) -> Layout:
 
 
 def servo_ranges(robot: Robot) -> np.ndarray:
-    """Return the range of what each servo turns, shape (servo, 2) [rad]; a crank has none, for a cable see the pulley.
+    """Return the range of each servo, shape (servo, 2) [rad]: infinite for a crank, of the pulley for a cable.
 
     A pulley that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
     """
@@ -363,7 +363,7 @@ def _limbs(robot: Robot, hinges: tuple[str, ...], servos: tuple[str, ...], tips:
 
 
 def _trunk_hinges(robot: Robot, forward_hinges: list[str]) -> list[str]:
-    """Return those of the hinges ahead of the root that lie behind the foremost girdle, or all without one."""
+    """Return the hinges between the root and the foremost girdle; without limbs all hinges ahead of the root."""
     if not robot.girdles:
         return forward_hinges
     names = [segment.name for segment in robot.axis]
@@ -373,7 +373,7 @@ def _trunk_hinges(robot: Robot, forward_hinges: list[str]) -> list[str]:
 
 
 def _place(robot: Robot, hinge: str) -> float:
-    """Return where a hinge of the axis is, as a share of the length from the snout."""
+    """Return the distance of a hinge from the snout over the length of the body [-]."""
     distance = 0.0
     for segment in robot.axis:
         distance += segment.front + segment.rear

@@ -378,5 +378,5 @@ def shell_of(robot: "Robot", name: str) -> Shell | None:
 
 
 def _tidy(value: float) -> float:
-    """Return a number without what sums and differences of decimal fractions add in the last digits."""
+    """Return a number rounded to 14 digits, which removes rounding errors of decimal fractions."""
     return float(f"{value:.14g}")

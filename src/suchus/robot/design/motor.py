@@ -43,7 +43,7 @@ class Heat:
             check.that(self.limit > self.ambient, f"limit is {self.limit:g} degC, not above the air's {self.ambient:g}")
 
     def steady(self, loss: float) -> float:
-        """Return the temperature at which a servo stays that turns so much into heat [degC]; infinite if it runs away.
+        """Return the steady temperature of a servo at a constant loss [degC]; infinite for thermal runaway.
 
         Args:
             loss: what it would turn into heat with its winding at ``ROOM`` [W].
@@ -55,7 +55,7 @@ class Heat:
         return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM)) / margin
 
     def reached_after(self, loss: float) -> float:
-        """Return how long a cold servo that turns so much into heat takes to its limit; infinite if never [s].
+        """Return the time in which a cold servo reaches its temperature limit [s]; infinite if it never does.
 
         Args:
             loss: what it would turn into heat with its winding at ``ROOM`` [W].
@@ -180,7 +180,7 @@ class Motor:
             )
 
     def source(self, field: str) -> str:
-        """Return where a number comes from; empty where it is not said."""
+        """Return the source of a number; empty if none is given."""
         return dict(self.sources).get(field, "")
 
     @property
@@ -190,7 +190,7 @@ class Motor:
 
     @property
     def heat(self) -> Heat:
-        """How it warms up: so that it stays at its limit when it gives its continuous torque all the time."""
+        """Thermal model by which the servo stays at its temperature limit at continuous torque."""
         cold = self.volts * self.stall_current * (self.continuous_torque / self.stall_torque) ** 2
         hot = cold * (1.0 + COPPER * (self.temperature_limit - ROOM))
         resistance = (self.temperature_limit - ROOM) / hot

@@ -10,7 +10,7 @@ from suchus.robot.design.chosen import Chosen
 
 
 class Reason(NamedTuple):
-    """Why the numbers whose paths match a pattern are what they are."""
+    """The reason for all numbers whose paths match a pattern."""
 
     pattern: str
     """Regular expression, searched for in the path."""

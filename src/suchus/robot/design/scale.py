@@ -114,14 +114,13 @@ _WATER = 2.0
 def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Servo:
     """Return the servo that holds a limbless body of a size in the water, at whatever phase.
 
-    A servo in proportion to weight, as that of ``servo_for``, is a spring on which body and water swing: at the
-    frequency of a swim near their natural one the joint overshoots. Here stiffness follows from the
-    inertia that it moves: half of the body and its water, ``_WATER m / 2 (L / 2)^2 / 3``, is to swing at ``SWIM`` times
-    the beat. Damping is what makes a joint late, by ``kd / kp`` times its rate, and follows from ``BEHIND``; it is far
-    below the critical one of half of the body, whose swing the water damps. More of it would hold no better, but on a
-    segment alone, little more than the servo's own inertia, it decays in less than a step of explicit physics
-    (``model.longest_step``) and makes a servo rattle that meets its limit. Torque and speed are never short: what the
-    water asks of them stands in the record.
+    A servo in proportion to weight, as that of ``servo_for``, resonates with the inertia of body and water near the
+    frequency of a swim. Here the stiffness follows from the moved inertia: half of the body and its water,
+    ``_WATER m / 2 (L / 2)^2 / 3``, has a natural frequency of ``SWIM`` times the beat. Damping delays a
+    joint by ``kd / kp`` times its rate; it follows from ``BEHIND`` and is far below the critical damping of half of the body, whose motion the
+    water damps. More damping would not help: on a single segment it decays within a step of explicit physics
+    (``model.longest_step``), and a servo at its limit would chatter. Torque and speed limits are never reached; the
+    record has the torque that the water demands.
 
     Args:
         mass: of the whole body [kg].
@@ -259,7 +258,7 @@ def _numbers(value: Any) -> bool:
 
 
 def _factor(name: str, factors: tuple[float, float, float]) -> float:
-    """Return the factor on numbers of a unit as docstrings write it, ``N m s/rad`` or ``kg m2``; 1 for one unknown."""
+    """Return the factor on numbers of a unit as docstrings write it, ``N m s/rad`` or ``kg m2``; 1 if unknown."""
     factor = 1.0
     numerator, _, denominator = name.partition("/")
     for units, sign in ((numerator, 1), (denominator.strip("()"), -1)):

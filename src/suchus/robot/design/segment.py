@@ -91,7 +91,7 @@ class Shell:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inertia:
-    """Where the mass of a stiff body lies, where that is known and is not what its shapes would make of it."""
+    """Measured inertia of a rigid body, in place of that of its shapes."""
 
     centre: Point
     """Centre of mass: forward, left, up in the frame of its segment; of a left limb's link, from its beginning [m]."""
@@ -121,7 +121,7 @@ class Inertia:
 
 
 def together(parts: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return what several stiff bodies are as one, by the theorem of parallel axes.
+    """Return mass, centre and inertia of several rigid bodies joined to one, by the parallel-axis theorem.
 
     Args:
         parts: of each its mass [kg], its centre of mass, shape (3,) [m], and its tensor of inertia about that,

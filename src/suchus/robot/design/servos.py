@@ -28,7 +28,7 @@ def with_leg_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
 
 
 def with_speed_line(servo: Servo) -> Servo:
-    """Return a servo whose torque falls to nothing at its speed; one that has a winding already stays as it is.
+    """Return a servo whose torque falls linearly to zero at its speed; one with a winding stays as it is.
 
     The viscous friction of its gear is in that line.
     """
@@ -36,7 +36,7 @@ def with_speed_line(servo: Servo) -> Servo:
 
 
 def with_full_torque(servo: Servo) -> Servo:
-    """Return a servo that gives its torque at any speed and heat, up to its speed: one without a motor."""
+    """Return a servo without a motor model, which gives its full torque at any speed and temperature."""
     return replace(servo, winding=None)
 
 
@@ -111,7 +111,7 @@ def with_spring(robot: Robot, hinges: Collection[str], stiffness: float) -> Robo
 
 
 def _with_drive(cable: Cable, servo: Servo) -> Cable:
-    """Return a cable whose drive does what a servo does on its pulley."""
+    """Return a cable with another drive: the servo itself, or the linear actuator that is equivalent to it."""
     linear = cable.linear
     drive = servo if linear is None else LinearActuator.of(servo, cable.pulley, linear.travel)
     return replace(cable, servo=drive)

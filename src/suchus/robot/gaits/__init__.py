@@ -53,13 +53,13 @@ ALIKE = 1.5
 
 
 def own_gait(robot: Robot) -> Gait:
-    """Return the gait in which a robot moves unless another one is asked for.
+    """Return the default gait of a robot.
 
-    A gait made for a robot of its name comes first, then one made for another robot whose limbs turn about the same
-    axes, in the size of this robot (``in_size``): of a robot that pitches its tail those first that lay it down, of any
-    other robot those that leave it alone. For which robots a gait was made its module says by ``made_for``, and nothing
-    else does. For a robot that none of them suits one is drafted, ``DRAFTED``: a walk in which every other limb steps,
-    or a wave along a body without limbs.
+    A gait made for a robot of this name comes first. Next come gaits made for other robots whose limbs turn about the
+    same axes, in the size of this robot (``in_size``): for a robot that pitches its tail first those that lay the tail
+    down, for any other robot first those that do not. Only ``made_for`` in the module of a gait says for which robots
+    it was made. If none of these gaits suits the robot, one is drafted, ``DRAFTED``: a walk in which every other limb
+    steps, or a wave along a body without limbs.
 
     Args:
         robot: on the shelf or not.
@@ -143,10 +143,10 @@ def control_group(gait: Gait, replacement: Gait | None = None) -> Gait:
 
     Args:
         gait: with all of the axis.
-        replacement: what stands for it instead; None for the gait without the motion of its axis.
+        replacement: gait to use as control group; None for the gait without the motion of its axis.
 
     Raises:
-        OutsideLimits: the one given has other legs, so that more than the axis would differ.
+        OutsideLimits: the replacement has other legs, so that more than the axis would differ.
     """
     if replacement is None:
         return gait.without("axis", name="limbs_only")
@@ -166,8 +166,7 @@ def control_group(gait: Gait, replacement: Gait | None = None) -> Gait:
 def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
     """Return the gaits of those of ``CONDITIONS`` that a robot's parts make possible, in their order.
 
-    Without a servo that pitches the tail nothing lifts it; without one that bends the tail, or the trunk, that part
-    has no swing to be taken away.
+    The tail is lifted only if a servo pitches it. The swing of tail or trunk is removed only if servos bend that part.
 
     Args:
         robot: the design.

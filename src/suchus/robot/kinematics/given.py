@@ -52,7 +52,7 @@ def number(value: Any, label: str) -> float:
 
 
 def spread_over(values: Any, shape: tuple[int, ...], label: str) -> np.ndarray:
-    """Return finite numbers as an array of a given shape: one for all, or one for each.
+    """Return finite numbers broadcast to a shape.
 
     Raises:
         InvalidDesign: they are no numbers, one of them is not finite, or there are more or fewer than can be.

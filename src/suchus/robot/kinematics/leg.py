@@ -21,7 +21,7 @@ ROUNDING = 1e-12
 
 
 def forward(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.ndarray, "*batch 3"]:
-    """Return where the foot's centre is.
+    """Return the position of the foot's centre.
 
     Args:
         leg: the lengths.

@@ -133,7 +133,7 @@ def candidates(
     first_yaw: Numbers,
     branch: Numbers,
 ) -> Float[np.ndarray, "*batch 5"]:
-    """Return what ``inverse`` returns, but NaN where nothing can be reached; the branch may be an array, too."""
+    """Return the angles of ``inverse``, with NaN for points that cannot be reached; the branch may be an array."""
     point = rows(point, 3, "the point")
     azimuth, first_yaw = numbers(azimuth, "the azimuth"), numbers(first_yaw, "the first yaw angle")
     branch = numbers(branch, "the branch")

@@ -47,7 +47,7 @@ def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[Float[np.ndarray, "*
 
 
 def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
-    """Return the cord that a bend sets free [m]: both cords on one pulley cannot stay taut.
+    """Return the length by which both cords together get slack in a bend [m]: on one pulley they cannot stay taut.
 
     Args:
         tail: the measures of the cable section.

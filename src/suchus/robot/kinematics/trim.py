@@ -15,10 +15,10 @@ def level_chambers(
 ) -> tuple[Chamber, Chamber]:
     """Return two chambers with which a robot at neutral buoyancy has no trim moment in a level posture.
 
-    Let V be its volume and x_B the centre of that, both with all air, x_G the centre of mass, and s = V - m / rho the
-    air that it lets out to hover. What is displaced then has the moment V x_B - s x_A about the root, with x_A the
-    centre of the air that is let out, and must have (V - s) x_G. So x_A = x_G + V (x_B - x_G) / s; and the lever rule
-    says how two chambers that are emptied alike share the air for their centre to be there.
+    Let V be the volume of the robot and x_B the centre of that volume, both with all air, x_G the centre of mass, and s
+    = V - m / rho the air that it lets out to hover. The displaced water then has the moment V x_B - s x_A about the
+    root, with x_A the centre of the released air. For zero trim moment it must equal (V - s) x_G, so that x_A = x_G + V
+    (x_B - x_G) / s. The lever rule gives the fractions of two chambers whose common centre is x_A.
 
     Args:
         robot: a design with air in its hull.

@@ -13,7 +13,7 @@ from suchus.robot.motion.parts import Bend, Part
 
 
 class Hinges(NamedTuple):
-    """The hinges of the axis that turn one way, from head to tail; a cable has one for each of its joints."""
+    """The hinges of the axis with one turn, from head to tail; a cable has one for each of its joints."""
 
     names: tuple[str, ...]
     """Name of each of them."""
@@ -98,7 +98,7 @@ class Waves:
     def bends(
         self, z: Complex[np.ndarray, "*batch"], size: np.ndarray | float | None = None
     ) -> Float[np.ndarray, "*batch hinge"]:
-        """Return the bend of the whole part, as each hinge takes its share of it [rad].
+        """Return, at each hinge, the bend of its whole region [rad]; the hinge turns by its share of it.
 
         Args:
             z: order parameter that the axis follows [-].
@@ -126,7 +126,7 @@ class Waves:
         return np.asarray(np.where(is_shared_evenly, first_bend, parts))
 
     def _takes_the_same(self, indices: tuple[int, ...]) -> Bool[np.ndarray, " run"]:
-        """Return of each run whether some hinges share the bend of one part evenly, and it is all of them."""
+        """Return for each run whether some hinges are exactly those that share one bend evenly."""
         if indices not in self._is_evenly_shared:
             rows, first_row = list(indices), [indices[0]]
             is_equal = (self.swing[:, rows] == self.swing[:, first_row]) & (
@@ -161,7 +161,7 @@ def _swing(bend: Bend, place: int, count: int) -> complex:
 
 
 def at_knot(row: tuple[float, ...], place: int, count: int) -> float:
-    """Return the value of knots, evenly spread over ``count`` hinges, at one of them.
+    """Return the value at one hinge of knots that are evenly spread over ``count`` hinges.
 
     Args:
         row: values of the knots, from the head.

@@ -233,5 +233,5 @@ def _axis(robot: Robot) -> tuple[Bend, ...]:
 
 
 def _with_feasible_period(robot: Robot, gait: Gait) -> Gait:
-    """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
+    """Return a gait whose period keeps every servo below a fraction of its speed."""
     return replace(gait, period=float(np.round(max(gait.period, shortest_period(robot, gait)[0] / _SPEED), 4)))

@@ -158,7 +158,7 @@ def _solve_path(
     ends: tuple[np.ndarray, np.ndarray],
     is_driven: np.ndarray,
 ) -> np.ndarray | None:
-    """Return the angles sample by sample, each from the one before; the second round closes the cycle.
+    """Return the angles sample by sample, each from the last; a second pass closes the cycle. None without a solution.
 
     Args:
         foot_of: returns the foot's position for angles of the driven hinges [m].

@@ -50,7 +50,7 @@ _ALLOWED = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaitInMetres:
-    """A gait of four legs, a trunk and a tail in metres, as one speaks of the article's robot."""
+    """A gait of four legs, a trunk and a tail, in metres."""
 
     name: str
     """Name, as messages, tables and files show it."""
@@ -135,7 +135,7 @@ class GaitInMetres:
 
     @classmethod
     def near(cls, gait: Gait, reaches: Sequence[float]) -> Self:
-        """Return the numbers of a gait in metres, of its first limbs and knots where it has more to say.
+        """Return a gait in metres with the numbers of a gait, of its first limbs and knots where it has several.
 
         Args:
             gait: of foot paths for two girdles.
@@ -173,7 +173,7 @@ class GaitInMetres:
         )
 
     def onto(self, base: Gait, field_names: Collection[str], reaches: Sequence[float]) -> Gait:
-        """Return a gait of which some numbers are these, and the rest is another gait's.
+        """Return a gait with some numbers of this one and all others of a base.
 
         Args:
             base: gait of foot paths for two girdles.
@@ -211,7 +211,7 @@ class GaitInMetres:
 
 
 def in_metres(gait: Gait) -> bool:
-    """Return whether a gait moves and bends what a gait in metres does, and nothing else."""
+    """Return whether a gait has exactly the limbs and bends of a gait in metres."""
     bends = [(bend.part, bend.turn) for bend in gait.axis]
     paths = len(gait.limbs) == 2 and all(isinstance(limb, FootPath) for limb in gait.limbs)
     return paths and not gait.curves and bends == [("trunk", "yaw"), ("tail", "yaw"), ("tail", "pitch")]
@@ -333,7 +333,7 @@ def _slope(places: np.ndarray, lags: np.ndarray) -> float | None:
 
 
 def _plain(row: list[float]) -> tuple[float, ...]:
-    """Return a row of knots, or one where all are alike."""
+    """Return a row of knots, shortened to one knot where all are equal."""
     return (row[0],) if len(set(row)) == 1 else tuple(row)
 
 
@@ -361,7 +361,7 @@ class FootPathByPlane:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaitByPlaces:
-    """A gait of any body: what the limbs of each girdle do, and a wave by places along the axis."""
+    """A gait of any body: the movement of each girdle's limbs, and a wave by places along the axis."""
 
     name: str
     """Name, as messages, tables and files show it."""

@@ -70,7 +70,7 @@ class Gait:
             check.that(not duplicate, f"gait {self.name} has two curves for {duplicate}; leave one")
 
     def has(self, ability: Ability) -> bool:
-        """Return whether a gait has what may be changed in it."""
+        """Return whether a gait has an ability, see ``Ability``."""
         if ability == "foot paths":
             return any(isinstance(limb, FootPath) for limb in self.limbs)
         if ability == "strokes":
@@ -138,7 +138,7 @@ class Gait:
     def without(self, region: Literal["axis", "neck", "trunk", "tail", "limbs"], name: str = "") -> "Gait":
         """Return the control group that lacks the motion of a part and differs in nothing else.
 
-        Without ``limbs`` the feet stay where the middle of their stance is; limbs with curves are held at the mean.
+        Without ``limbs`` the feet stay at the middle of their stance; limbs with curves are held at their mean angles.
         """
         if region != "limbs":
             return self.straightened(region, name=name)

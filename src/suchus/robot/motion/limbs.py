@@ -26,7 +26,7 @@ _SIDEWAYS = 2 / np.pi  # quarter turns of swivel a radian
 
 
 class Steer(NamedTuple):
-    """What is asked of a gait besides; every field broadcasts over runs, and limbs where it has them."""
+    """Changes of a gait while it runs; every field broadcasts over runs, and over limbs where it has them."""
 
     size: Float[np.ndarray, "*batch"] | float = 1.0
     """Factor on strokes and bends, 0 where a robot stands [-]."""
@@ -63,7 +63,7 @@ class LimbMotion:
     def angles(
         self, limbs: Float[np.ndarray, "*batch limb"], steer: Steer | None, *, draw: bool
     ) -> list[Float[np.ndarray, "*batch servo"]]:
-        """Return the servo angles of each of the limbs, nothing where the gaits say nothing of limbs [rad].
+        """Return the servo angles of each of the limbs [rad]; an empty list for gaits without limb movements.
 
         Args:
             limbs: phases of all limbs of the robot [cycle].
@@ -172,7 +172,7 @@ class LimbMotion:
 
 
 def hip_height(robot: Robot, gait: Gait) -> float:
-    """Return how high the root's axis is above the ground in a gait [m]; 0 where the gait does not say."""
+    """Return the height of the root's axis above the ground in a gait [m]; 0 if the gait has none."""
     girdles = robot.girdles
     return _metres(gait.height, girdles[-1].limb.reach) - girdles[-1].above if girdles and gait.limbs else 0.0
 
@@ -286,7 +286,7 @@ class _Crank(NamedTuple):
 
 
 def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Crank | np.ndarray | None":
-    """Return what the gaits say of the limbs of a girdle."""
+    """Return the movement of a girdle's limbs in all gaits as arrays over runs; None without limb movements."""
     if not gaits[0].limbs:
         return None
     limbs: list[Any] = [gait.limbs[number] for gait in gaits]
@@ -311,12 +311,12 @@ def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Cran
 
 
 def _limbs_first(values: Float[np.ndarray, "*batch limb"], limb_indices: Sequence[int]) -> np.ndarray:
-    """Return what is said of some limbs, shape (limb, *batch)."""
+    """Return the values of some limbs, shape (limb, *batch)."""
     return np.stack([values[..., i] for i in limb_indices])
 
 
 def _of_limbs(field: np.ndarray | float, limb_indices: Sequence[int]) -> np.ndarray:
-    """Return what a field of a ``Steer`` says of some limbs, shape (limb, *batch), or () where it is one number."""
+    """Return a field of a ``Steer`` for some limbs, shape (limb, *batch), or () where it is one number."""
     return _limbs_first(np.asarray(field), limb_indices) if np.ndim(field) else np.asarray(field)
 
 

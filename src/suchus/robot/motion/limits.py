@@ -63,7 +63,7 @@ def _lateral_ends(gait_movement: Movement, posture: np.ndarray) -> np.ndarray:
 
 
 def _check_cables(gait_movement: Movement) -> None:
-    """Refuse bends beyond what cables allow; the pulleys' angles are clipped, and would not show it."""
+    """Refuse bends beyond the limits of cables; the clipped angles of the pulleys would not show them."""
     follows = float(np.abs(gait_movement.axis_of_clock(np.zeros(1)))[0])
     for servo in gait_movement.place.cables:
         hinge_indices = [k for k, hinge_servo in enumerate(gait_movement.yaw.hinges.servos) if hinge_servo == servo]
@@ -121,7 +121,7 @@ def check_speeds(robot: Robot, gait: Gait) -> None:
 
 @lru_cache(maxsize=256)
 def longest_strokes(robot: Robot, gait: Gait) -> float:
-    """Return the greatest share of its strokes that a robot's limbs can follow, up to eight times [-]."""
+    """Return the greatest factor on a gait's strokes that a robot's limbs can follow, up to 8 [-]."""
     if not gait.has("strokes"):
         return 1.0
     lower_bound, upper_bound = 1.0, _MAX_STROKE_FACTOR
@@ -139,7 +139,7 @@ def _strides(robot: Robot, gait: Gait, share: float) -> bool:
 
 
 def excess(robot: Robot, gait: Gait) -> float:
-    """Return how far a gait is from what a robot can follow; zero where it can [-].
+    """Return by how much a gait exceeds reach, ranges and speeds of a robot; zero for a feasible gait [-].
 
     Counted are the distance by which feet lie outside their limbs' reach, in centimetres, the angles by which joints
     leave their range, in tenths of a radian, and the speeds by which servos turn too fast, in radians a second.
@@ -165,7 +165,7 @@ def excess(robot: Robot, gait: Gait) -> float:
 
 
 def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
-    """Return a gait as measured curves: what every servo does over one cycle, to be changed by hand or in a file.
+    """Return a gait as curves of every servo over one cycle.
 
     Between the samples a curve is smooth where a gait may have a corner, at lift-off and touch-down of a foot; with
     64 samples the crawl's angles differ by less than 0.002 rad.

@@ -74,7 +74,7 @@ class Movement:
         return np.asarray(self._mean(np.cos(angle)) + 1j * self._mean(np.sin(angle)))
 
     def _mean(self, pulls: np.ndarray) -> np.ndarray:
-        """Return the mean over the limbs with their signs, summed in one order so that no batch changes a bit."""
+        """Return the signed mean over the limbs, summed in a fixed order so that the batch size changes no bit."""
         terms = [pulls[..., i] * sign for i, sign in enumerate(self._signs)]
         while len(terms) > 1:
             half = (len(terms) + 1) // 2
@@ -82,7 +82,7 @@ class Movement:
         return np.asarray(terms[0] / len(self._signs))
 
     def axis_of_clock(self, clock: Float[np.ndarray, "*batch"]) -> Complex[np.ndarray, "*batch"]:
-        """Return what the axis follows at times since the beginning [cycle], without asking the limbs."""
+        """Return the order parameter that the axis follows at times since the beginning [cycle]."""
         if len(self._signs):
             return self.axis_phase(np.asarray(clock)[..., None] + self._phases)
         return np.asarray(np.exp(2j * np.pi * (np.asarray(clock) - self._touch_down)))
@@ -186,7 +186,7 @@ class Movement:
             targets[..., list(self.place.trunk_yaw)] += (np.asarray(steer.bend) / len(self.place.trunk_yaw))[..., None]
 
     def _of_tail(self, bend: np.ndarray | float) -> np.ndarray:
-        """Return what a steady bend of the tail adds to the bends of all hinges, as ``Waves.bends`` has them [rad]."""
+        """Return what a steady bend of the tail adds to ``Waves.bends`` at all hinges [rad]."""
         tail_hinges = self.yaw.hinges.within("tail")
         weights = np.zeros(len(self.yaw.hinges.servos))
         weights[tail_hinges] = 1.0 / max(len(tail_hinges), 1)
@@ -219,7 +219,7 @@ def trunk_amplitude(robot: Robot, gait: Gait) -> float:
 
 
 class Batch:
-    """The gaits of the runs of a batch, gathered by skeleton and structure: each kind is worked out in one call.
+    """The gaits of a batch, grouped by skeleton and structure; each group is computed in one call.
 
     Robots that are built of one design have one skeleton, so that a batch of them is one kind.
 
@@ -246,7 +246,7 @@ class Batch:
         self._servos = len(layout(robots[0]).servos)
 
     def axis_phase(self, limbs: Float[np.ndarray, "run limb"], clock: Float[np.ndarray, " run"]) -> np.ndarray:
-        """Return what the axis of each run follows: its limbs, or its clock where it has none [-]."""
+        """Return the order parameter of each run's axis: of its limbs, or of its clock without limbs [-]."""
         z = np.zeros(len(limbs), dtype=complex)
         for movement, runs in self.groups:
             z[runs] = movement.axis_phase(limbs[runs]) if limbs.shape[1] else movement.axis_of_clock(clock[runs])
@@ -285,7 +285,7 @@ class Batch:
 
 
 def structure(gait: Gait) -> Any:
-    """Return what gaits must have in common to be worked out together: all that is no plain number."""
+    """Return a key that is equal for gaits that differ in plain numbers only."""
     limbs = tuple((type(limb), quarter(limb.swivel) if isinstance(limb, FootPath) else 0) for limb in gait.limbs)
     signs = tuple(_references([gait])[0])
     return limbs, signs, tuple((curve.servo, len(curve.angles)) for curve in gait.curves)
@@ -293,7 +293,7 @@ def structure(gait: Gait) -> Any:
 
 @lru_cache(maxsize=256)
 def movement(robot: Robot, gait: Gait) -> Movement:
-    """Return one gait worked out for a robot."""
+    """Return the movement of one gait on a robot; cached."""
     return Movement(robot, [gait])
 
 
@@ -400,5 +400,5 @@ class _Measured:
 
 
 def _of_runs(field: np.ndarray | float, runs: np.ndarray) -> np.ndarray:
-    """Return what a field of a ``Steer`` says of some runs."""
+    """Return a field of a ``Steer`` for some runs."""
     return np.asarray(field)[runs] if np.ndim(field) else np.asarray(field)

@@ -122,7 +122,7 @@ class Bend:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Curve:
-    """The angle of one servo over one cycle, as it was measured; it stands in the place of what limbs and axis say."""
+    """The measured angle of one servo over one cycle; it replaces the angles from limbs and axis."""
 
     servo: str
     """Name of the servo, as ``suchus.robot.design.layout(robot).servos`` has it."""
@@ -160,6 +160,6 @@ class Curve:
         return np.asarray((np.exp(2j * np.pi * turns) @ self.harmonics).real)
 
     def lagged(self, lag: float) -> "Curve":
-        """Return the curve so much later in the cycle [cycle]."""
+        """Return the curve delayed in the cycle [cycle]."""
         count = len(self.angles)
         return replace(self, angles=tuple(float(angle) for angle in self.at(np.arange(count) / count - lag)))

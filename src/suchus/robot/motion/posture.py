@@ -367,7 +367,7 @@ def tail_down(
     pitch: Float[np.ndarray, "*batch"],
     press: Float[np.ndarray, "*batch"] | float,
 ) -> Float[np.ndarray, "*batch"]:
-    """Return the pitch of the tail that brings the tip of a straight one to a depth below the ground [rad].
+    """Return the pitch of a straight tail that brings its tip to a depth below the ground [rad].
 
     Args:
         chains: of the body.

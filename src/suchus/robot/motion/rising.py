@@ -128,14 +128,14 @@ def _feet_ahead(robot: Robot, level: Posture) -> float:
 
 
 def stretched(robot: Robot) -> float:
-    """Return hind leg, trunk and head in one straight line [m]; no posture reaches higher over the feet's centres."""
+    """Return the length of hind leg, trunk and head in a straight line [m], an upper bound of the snout's height."""
     chains, straight = upright(robot), np.zeros(len(layout(robot).hinges))
     snout_forward = float(landmarks(robot, straight).snout[0]) - chains.hips[0]
     return chains.leg.femur + chains.leg.tibia + snout_forward
 
 
 def cantilever_torque(robot: Robot) -> float:
-    """Return what the first pitch joint of a straight trunk must give to lift the level forebody off the ground [N m].
+    """Return the torque of the first pitch joint that lifts the level forebody off the ground [N m].
 
     The limbs ahead of it hang out sideways, so that their weight acts at the shoulders.
     """

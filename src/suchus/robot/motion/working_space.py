@@ -1,8 +1,9 @@
 """Where a robot can bring its snout while its feet stay where they are: on four feet, or on hind feet and tail.
 
 Configurations are drawn at random: place, height and pitch of the pelvis, and the joints of the trunk within their
-ranges. Inverse kinematics then finds the legs. Kept is what leaves every joint within its range, the trunk above the
-ground, and the centre of mass over what stands. Servo torques and the body's own thickness are left out.
+ranges. Inverse kinematics then finds the legs. Configurations are kept if every joint is within its range, the trunk is
+above the ground, and the centre of mass is over the support polygon. Servo torques and the body's own thickness are
+left out.
 """
 
 from math import radians

@@ -46,7 +46,7 @@ def motor(name: str) -> Motor:
 
 
 def split(table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Return the values of a servo's table, their sources, and what is wrong with how they are written.
+    """Return the values of a servo's table, their sources, and the mistakes in its form, each by field.
 
     Args:
         table: of one servo, as TOML gives it.
