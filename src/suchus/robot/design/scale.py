@@ -116,11 +116,11 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
 
     A servo in proportion to weight, as that of ``servo_for``, resonates with the inertia of body and water near the
     frequency of a swim. Here the stiffness follows from the moved inertia: half of the body and its water,
-    ``_WATER m / 2 (L / 2)^2 / 3``, has a natural frequency of ``SWIM`` times the beat. Damping delays a
-    joint by ``kd / kp`` times its rate; it follows from ``BEHIND`` and is far below the critical damping of half of the body, whose motion the
-    water damps. More damping would not help: on a single segment it decays within a step of explicit physics
-    (``model.longest_step``), and a servo at its limit would chatter. Torque and speed limits are never reached; the
-    record has the torque that the water demands.
+    ``_WATER m / 2 (L / 2)^2 / 3``, has a natural frequency of ``SWIM`` times the beat. Damping delays a joint by
+    ``kd / kp`` times its rate; it follows from ``BEHIND`` and is far below the critical damping of half of the body,
+    whose motion the water damps. More damping would not help: on a single segment it decays within a step of explicit
+    physics (``model.longest_step``), and a servo at its limit would chatter. Torque and speed limits are never reached;
+    the record has the torque that the water demands.
 
     Args:
         mass: of the whole body [kg].
