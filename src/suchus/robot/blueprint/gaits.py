@@ -66,8 +66,8 @@ def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait
         raise MistakenFile(path.name, {(): f"on robot {robot.name!r} {str(error).rstrip('.')}"}) from error
     except OutsideLimits as error:
         raise UnreadableFile(f"{path.name}: {error}") from error
-    spare, data = plain(asdict(base or _metric_gait(shelf))), _with_parts(data, robot)
-    return validated(data if base is None else merged(spare, data), Gait, spare, path.name, mistakes)
+    fallback, data = plain(asdict(base or _metric_gait(shelf))), _with_parts(data, robot)
+    return validated(data if base is None else merged(fallback, data), Gait, fallback, path.name, mistakes)
 
 
 def _metric_gait(shelf: Mapping[str, Gait]) -> Gait:
@@ -111,9 +111,9 @@ def _in_metres(
         mistakes: those that are known already, by place.
     """
     reaches, keys = limb_reaches(robot), frozenset(data)
-    spare = plain(asdict(GaitInMetres.near(base or _metric_gait(shelf), reaches)))
-    table = data if base is None else merged(spare, data)
-    metres = validated(table, GaitInMetres, spare, name, mistakes)
+    fallback = plain(asdict(GaitInMetres.near(base or _metric_gait(shelf), reaches)))
+    table = data if base is None else merged(fallback, data)
+    metres = validated(table, GaitInMetres, fallback, name, mistakes)
     return metres.gait(reaches) if base is None else metres.onto(base, keys, reaches)
 
 
@@ -129,7 +129,7 @@ def _by_places(
     wave = data.get("wave")
     straight_wave = AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0)
     is_partial = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)
-    spare = plain(
+    fallback = plain(
         asdict(
             GaitByPlaces.of(
                 base or _metric_gait(shelf),
@@ -137,6 +137,6 @@ def _by_places(
             )
         )
     )
-    table = data if base is None else merged(spare, data)
-    gait = validated(table, GaitByPlaces, spare, name, mistakes).gait(robot)
+    table = data if base is None else merged(fallback, data)
+    gait = validated(table, GaitByPlaces, fallback, name, mistakes).gait(robot)
     return gait if base is None or wave is not None else replace(gait, axis=base.axis)

@@ -67,13 +67,13 @@ def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
             f"{path.name} starts from {base!r}, which is a {type(model).__name__}; a "
             f"{' or '.join(candidate.__name__ for candidate in kinds)} is needed here."
         )
-    spare = plain({name: value for name, value in asdict(model).items() if name in _settable_fields(model)})
+    fallback = plain({name: value for name, value in asdict(model).items() if name in _settable_fields(model)})
     mistakes: dict[Place, str] = {}
     if not is_known_base:
         mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
     if base is not None:
-        data = merged({**spare, "name": path.stem}, data)
-    value = validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
+        data = merged({**fallback, "name": path.stem}, data)
+    value = validated({"name": path.stem, **data}, type(model), fallback, path.name, mistakes)
     return crocodile(value) if isinstance(value, Tables) else value
 
 
@@ -120,14 +120,14 @@ def plain(value: Any) -> Any:
 
 
 def validated(
-    data: dict[str, Any], kind: type[T], spare: Mapping[str, Any], name: str, mistakes: dict[Place, str]
+    data: dict[str, Any], kind: type[T], fallback: Mapping[str, Any], name: str, mistakes: dict[Place, str]
 ) -> T:
     """Return the value that a table describes; where it does not, mend it with spare values until nothing new is found.
 
     Args:
         data: the table; what is wrong with it is mended in place.
         kind: of the value.
-        spare: values that are right, to look on with.
+        fallback: values that are right, to look on with.
         name: of the file.
         mistakes: those that are known already, by place.
 
@@ -151,7 +151,7 @@ def validated(
             if _container_place(p) not in repaired and not _follows(p, repaired)
         }
         mistakes |= fresh
-        mendable = [_mend(data, _container_place(place), spare) for place in fresh]
+        mendable = [_mend(data, _container_place(place), fallback) for place in fresh]
         if not mendable or not all(mendable):
             break
         repaired |= {_container_place(place) for place in fresh}
@@ -172,23 +172,23 @@ def _follows(place: Place, repaired: set[Place]) -> bool:
     return any(m[: len(place)] == place for m in repaired)
 
 
-def _mend(data: Any, place: Place, spare: Any) -> bool:
+def _mend(data: Any, place: Place, fallback: Any) -> bool:
     """Put the fallback value at a place, or remove a key that should not be there; return whether that was possible.
 
     Args:
         data: the table, changed in place.
         place: keys from the top of the table down to the mistake.
-        spare: a table without mistakes.
+        fallback: a table without mistakes.
     """
     if not place:
         return False
     for key in place[:-1]:
-        if not (isinstance(data, dict) and isinstance(spare, dict) and key in data and key in spare):
+        if not (isinstance(data, dict) and isinstance(fallback, dict) and key in data and key in fallback):
             return False
-        data, spare = data[key], spare[key]
+        data, fallback = data[key], fallback[key]
     data.pop(place[-1], None)
-    if place[-1] in spare:
-        data[place[-1]] = deepcopy(spare[place[-1]])
+    if place[-1] in fallback:
+        data[place[-1]] = deepcopy(fallback[place[-1]])
     return True
 
 

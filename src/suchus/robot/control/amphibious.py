@@ -273,9 +273,9 @@ class Amphibian:
         return gaits.targets(self._phase, gaits.axis_phase(self._phase, self._cycles), steer)
 
 
-def _eased(share: np.ndarray) -> np.ndarray:
+def _eased(fraction: np.ndarray) -> np.ndarray:
     """Return fractions eased by 3 x^2 - 2 x^3, whose rate is zero at both ends, shape (run, 1)."""
-    return np.asarray(share**2 * (3.0 - 2.0 * share))[:, None]
+    return np.asarray(fraction**2 * (3.0 - 2.0 * fraction))[:, None]
 
 
 controller = Amphibious

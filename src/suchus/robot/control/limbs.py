@@ -226,9 +226,8 @@ def _refuse_others(gait: Gait, place: Layout) -> None:
     deviation = _off_pairs(place, gait)
     if deviation > _DIAGONAL:
         raise OutsideLimits(
-            f"gait {gait.name!r} has limb phases {gait.limb_phases}, {deviation:.2f} cycle away from diagonal "
-            "pairs; this "
-            "limb law would turn it into a trot: use the law 'off' or 'own_load'."
+            f"gait {gait.name!r} has limb phases {gait.limb_phases}, {deviation:.2f} cycle away from diagonal pairs; "
+            "this limb law would turn it into a trot: use the law 'off' or 'own_load'."
         )
 
 

@@ -341,18 +341,18 @@ class Generator:
         drive = common_drive[:, None] + self._asymmetry.at(time)[:, None] * self._sides
         frequency, amplitude = np.empty_like(drive), np.empty_like(drive)
         axis = slice(0, self._limbs.start)
-        for numbers, runs in self._numbers:
-            for group, law in ((axis, numbers.axis), (self._limbs, numbers.limbs)):
+        for parameters, runs in self._numbers:
+            for group, law in ((axis, parameters.axis), (self._limbs, parameters.limbs)):
                 frequency[runs, group], amplitude[runs, group] = law(drive[runs, group])
         return frequency, amplitude
 
     def _targets(self, time: float) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles at a time [rad]."""
-        share = np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0)
+        fraction = np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0)
         wave, phase = self.wave, self.limb_phase
         offset = self._steering.at(time)[:, None] * self._gain
         group_targets = [
-            (runs, posture.targets(phase[runs], share[runs], wave[runs], offset[runs]))
+            (runs, posture.targets(phase[runs], fraction[runs], wave[runs], offset[runs]))
             for posture, runs in self._groups
         ]
         targets = np.empty((len(phase), group_targets[0][1].shape[1]))
@@ -376,9 +376,9 @@ def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
     return [float(np.interp(segment.place, places, factors)) for segment in posture.segments]
 
 
-def _min_limb_amplitude(numbers: Oscillators) -> float:
+def _min_limb_amplitude(parameters: Oscillators) -> float:
     """Return the amplitude of limbs at the lowest drive that moves them [-]."""
-    return float(numbers.limbs(np.array(numbers.limb_drives[0]))[1])
+    return float(parameters.limbs(np.array(parameters.limb_drives[0]))[1])
 
 
 def _pace(control: PatternGenerator, robot: Robot, gait: Gait) -> float:
@@ -389,12 +389,12 @@ def _pace(control: PatternGenerator, robot: Robot, gait: Gait) -> float:
     """
     if control.pace is not None:
         return control.pace
-    numbers = control.oscillators
-    law = numbers.limbs if layout(robot).limbs else numbers.axis
-    frequency = float(law(np.array(numbers.reference))[0])
+    parameters = control.oscillators
+    law = parameters.limbs if layout(robot).limbs else parameters.axis
+    frequency = float(law(np.array(parameters.reference))[0])
     if frequency <= 0.0:
         raise InvalidDesign(
-            f"the oscillators do not turn at drive {numbers.reference:g}, so that no pace gives the period of gait "
+            f"the oscillators do not turn at drive {parameters.reference:g}, so that no pace gives the period of gait "
             f"{gait.name!r}: set pattern_generator.pace."
         )
     return 1.0 / (gait.period * frequency)

@@ -91,16 +91,16 @@ class PatternPosture:
         self._limb_servos = [i for limb in self._place.limbs for i in range(limb.servos.start, limb.servos.stop)]
         owner = [n for n, limb in enumerate(self._place.limbs) for _ in range(limb.servos.start, limb.servos.stop)]
         self._owner = np.array(owner, dtype=int)
-        middle = middle_stance(robot, gait)
-        self._silent_angles = (middle if standing else _folded(self._place, gait, middle))[self._limb_servos]
+        center = middle_stance(robot, gait)
+        self._silent_angles = (center if standing else _folded(self._place, gait, center))[self._limb_servos]
         self._turns = np.array([_cranked(self._place, gait, limb) for limb in owner], dtype=bool)
         self._lower_bound, self._upper_bound = servo_ranges(robot).T
-        self._steady = middle
+        self._steady = center
 
     def targets(
         self,
         phase: Float[np.ndarray, "run limb"],
-        share: Float[np.ndarray, "run limb"],
+        fraction: Float[np.ndarray, "run limb"],
         wave: Float[np.ndarray, "run segment"],
         offset: Float[np.ndarray, "run segment"],
     ) -> Float[np.ndarray, "run servo"]:
@@ -108,14 +108,14 @@ class PatternPosture:
 
         Args:
             phase: of the limbs in the gait, not wrapped [cycle].
-            share: how far each limb follows its path; 0 at rest, 1 in full [-].
+            fraction: how far each limb follows its path; 0 at rest, 1 in full [-].
             wave: of each segment, 1 where it bends to the left by the gait's amplitude [-].
             offset: steady bend of each segment to the left [rad].
         """
         targets = np.tile(self._steady, (len(phase), 1))
         if self._limb_servos:
             path = self._limbs.targets(phase, np.zeros(len(phase), dtype=complex))[:, self._limb_servos]
-            follows = np.where(self._turns, 1.0, share[:, self._owner])
+            follows = np.where(self._turns, 1.0, fraction[:, self._owner])
             targets[:, self._limb_servos] = self._silent_angles + follows * (path - self._silent_angles)
         amplitude, steady = np.array([(segment.amplitude, segment.offset) for segment in self.segments]).T
         bend = amplitude * wave + steady + offset
@@ -145,15 +145,15 @@ def _lag(gait: Gait, swing: complex, girdle: int) -> float:
     return lag - round(lag)
 
 
-def _folded(place: Layout, gait: Gait, middle: np.ndarray) -> np.ndarray:
+def _folded(place: Layout, gait: Gait, center: np.ndarray) -> np.ndarray:
     """Return the servo angles with every limb straight back along the body, within its ranges; held limbs stay held.
 
     Args:
         place: layout of the robot.
         gait: that says which limbs are held.
-        middle: servo angles in the middle of the stance, shape (servo,) [rad].
+        center: servo angles in the middle of the stance, shape (servo,) [rad].
     """
-    folded, ranges = middle.copy(), servo_ranges(place.robot)
+    folded, ranges = center.copy(), servo_ranges(place.robot)
     for limb in place.limbs:
         if isinstance(gait.limbs[limb.number], Held):
             continue

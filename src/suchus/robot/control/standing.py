@@ -163,11 +163,11 @@ class Standing:
         descent_time = rise.duration - (time - leave) / self.slower_down
         planned = plan(robot, rise, np.where(time < leave, rise_time, descent_time))
         blend_progress = np.clip(np.minimum(time - self.at, end - time) / self.blend, 0.0, 1.0)
-        share = (1.0 - np.cos(np.pi * blend_progress)) / 2.0
+        fraction = (1.0 - np.cos(np.pi * blend_progress)) / 2.0
         phase, crawling = intended(robot, gait, np.where(time < end, np.minimum(time, self.at), time - (end - self.at)))
-        pitch = share * planned.pitch
+        pitch = fraction * planned.pitch
         return Course(
-            targets=crawling + share[:, None] * (planned.targets - crawling),
+            targets=crawling + fraction[:, None] * (planned.targets - crawling),
             phase=phase,
             pitch=pitch,
             feet=planned.feet,

@@ -135,8 +135,8 @@ class SwimmingController:
 
 def grown(time: float, ramp: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
     """Return the fraction of a motion at a time [s]: 0 to 1 over a ramp, smooth at both ends [-]."""
-    share = np.where(ramp > 0.0, np.clip(time / np.where(ramp > 0.0, ramp, 1.0), 0.0, 1.0), 1.0)
-    return np.asarray(share**2 * (3.0 - 2.0 * share))
+    fraction = np.where(ramp > 0.0, np.clip(time / np.where(ramp > 0.0, ramp, 1.0), 0.0, 1.0), 1.0)
+    return np.asarray(fraction**2 * (3.0 - 2.0 * fraction))
 
 
 controller = Swimming

@@ -55,8 +55,8 @@ class TailController:
             gaits: one for each run.
             period: of control [s].
         """
-        share = max(len(layout(robots[0]).tail_pitch), 1)
-        self._target_pitch = np.array([gait.number("tail_pitch") / share for gait in gaits])
+        joint_count = max(len(layout(robots[0]).tail_pitch), 1)
+        self._target_pitch = np.array([gait.number("tail_pitch") / joint_count for gait in gaits])
         self._pitch = self._target_pitch
         self._is_active = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
         if not self._is_active.any():

@@ -115,8 +115,8 @@ class Pitches:
         # anti-windup: integrate only within the limits of the chambers
         is_answerable = (target_shift >= min_shift) & (target_shift <= max_shift)
         self._offset = np.where(is_answerable, offset, self._offset)
-        share = np.where(self._share > 0.0, self._share, 1.0)
-        return np.asarray(air_fraction[:, None] + self._air_shift[:, None] * _TO_AND_FRO / share)
+        fraction = np.where(self._share > 0.0, self._share, 1.0)
+        return np.asarray(air_fraction[:, None] + self._air_shift[:, None] * _TO_AND_FRO / fraction)
 
     def _target_pitch(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
         """Return the target pitch of each run, nose down positive [rad]."""

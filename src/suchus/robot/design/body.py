@@ -293,12 +293,12 @@ def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float
         length: of the robot [m].
     """
     for name, servo in servos.items():
-        share = servo.armature / (mass * length**2)
+        inertia_ratio = servo.armature / (mass * length**2)
         check.that(
-            share <= 0.1,
-            f"servo {name} of {robot} has an armature of {servo.armature:.3g} kg m2, {share:.3g} of mass times length "
-            f"squared ({mass:.3g} kg, {length:.3g} m), where up to 0.1 makes sense: it belongs to a larger robot; "
-            "see suchus.robot.design.scale.scaled",
+            inertia_ratio <= 0.1,
+            f"servo {name} of {robot} has an armature of {servo.armature:.3g} kg m2, {inertia_ratio:.3g} of mass "
+            f"times length squared ({mass:.3g} kg, {length:.3g} m), where up to 0.1 makes sense: it belongs to a "
+            "larger robot; see suchus.robot.design.scale.scaled",
         )
-        if share > 0.1:
+        if inertia_ratio > 0.1:
             break

@@ -78,10 +78,9 @@ class SectionCorrection:
             return ""
         valid_range = f"{lower_bound:.3g}" if lower_bound == upper_bound else f"{lower_bound:.3g} to {upper_bound:.3g}"
         return (
-            f"the correction {self.name!r} of the section model was found at f L2 / nu = {valid_range}, and this "
-            "swim is at "
-            f"{reynolds:.3g}: layers and wakes differ there, so that its factors may mislead; leave it out, or take "
-            "water of the viscosity that it was found in."
+            f"the correction {self.name!r} of the section model was found at f L2 / nu = {valid_range}, and this swim "
+            f"is at {reynolds:.3g}: layers and wakes differ there, so that its factors may mislead; leave it out, or "
+            "take water of the viscosity that it was found in."
         )
 
     def check(self, bodies: tuple[str, ...], robot: str) -> None:

@@ -87,8 +87,7 @@ class Drawing:
             scale *= (target_volume / volume) ** 0.5
         raise InvalidDesign(
             f"drawing {self.name} would need sections {scale:.2g} times as wide as drawn for {target_volume:.3g} m3 of "
-            f"volume; "
-            "check mass, density and length."
+            "volume; check mass, density and length."
         )
 
     def _robot(self, scale: float, servo: Servo | None) -> Robot:

@@ -92,8 +92,8 @@ class Servo:
             InvalidFields: the supply is not one that the motor bears.
         """
         volts = motor.volts if volts is None else volts
-        winding, share = motor.winding(volts), volts / motor.volts
-        torque, speed = share * motor.stall_torque, share * motor.no_load_speed
+        winding, supply_ratio = motor.winding(volts), volts / motor.volts
+        torque, speed = supply_ratio * motor.stall_torque, supply_ratio * motor.no_load_speed
         if like is not None:
             return replace(like, torque=torque, speed=speed, winding=winding)
         return Servo(
@@ -318,10 +318,9 @@ class Cable:
                 required_travel = self.cord_at(self.bend_limit)
                 check.that(
                     required_travel <= self.servo.travel * (1 + 1e-9),
-                    f"cable {self.name} bends up to {self.bend_limit:.4g} rad, for which its linear actuator must move "
-                    f"{required_travel:.4g} m to either side, and its travel is {self.servo.travel:.4g} m: let it "
-                    "bend less, "
-                    "give more travel, or cords that are closer together",
+                    f"cable {self.name} bends up to {self.bend_limit:.4g} rad, for which its linear actuator must "
+                    f"move {required_travel:.4g} m to either side, and its travel is {self.servo.travel:.4g} m: let "
+                    "it bend less, give more travel, or cords that are closer together",
                 )
             check.number("pulley", 1e-5, 10.0, "m")
 

@@ -208,10 +208,10 @@ class Motor:
                 min_volts <= volts <= max_volts,
                 f"{volts:g} V is no supply for {self.name}; {min_volts:g} to {max_volts:g} V is allowed",
             )
-        share = volts / self.volts
+        supply_ratio = volts / self.volts
         return Winding(
             volts=volts,
-            stall_current=share * self.stall_current,
+            stall_current=supply_ratio * self.stall_current,
             idle_current=self.idle_current,
             heat=self.heat,
             motor=self.name,

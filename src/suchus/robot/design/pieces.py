@@ -85,9 +85,9 @@ def _strips(place: Layout) -> list[np.ndarray]:
         s = start + length * (np.arange(count * _SAMPLES_PER_STRIP) + 0.5) / _SAMPLES_PER_STRIP
         sections = [values.reshape(count, _SAMPLES_PER_STRIP) for values in profile(robot, s)]
         shift = place.bodies[number[segment.name]].shift
-        for i, (half_width, half_height, area, middle) in enumerate(zip(*sections, strict=True)):
+        for i, (half_width, half_height, area, center) in enumerate(zip(*sections, strict=True)):
             x = shift + segment.front - (i + 0.5) * length
-            strips.append(_strip(number[segment.name], x, length, (half_width, half_height, area, middle)))
+            strips.append(_strip(number[segment.name], x, length, (half_width, half_height, area, center)))
     tail_strip = strips[-1]
     a, b, c = tail_strip[slice(*COLUMNS["half"])]
     tail_strip[slice(*COLUMNS["shed"])], tail_strip[COLUMNS["shed_at"][0]] = (pi * b**2, pi * a**2), -c

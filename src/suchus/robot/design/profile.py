@@ -57,8 +57,8 @@ def profile(robot: Robot, s: Float[np.ndarray, " station"]) -> Profile:
     z = (0.5 * (top + bottom))[:, None] + (0.5 * (top - bottom))[:, None] * np.cos(angle)
     length = _union(section, z) * np.sin(angle) * (np.pi / _LEVELS) * (0.5 * (top - bottom))[:, None]
     area = length.sum(axis=-1)
-    middle = np.divide((length * z).sum(axis=-1), area, out=np.zeros_like(area), where=area > 0)
-    return Profile(half_width, 0.5 * (top - bottom), area, middle)
+    center = np.divide((length * z).sum(axis=-1), area, out=np.zeros_like(area), where=area > 0)
+    return Profile(half_width, 0.5 * (top - bottom), area, center)
 
 
 def _section(shape: Rod | Shell, x: np.ndarray) -> _Section:

@@ -147,18 +147,18 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
     )
 
 
-def spring_for(mass: float, length: float, share: float) -> Spring:
+def spring_for(mass: float, length: float, mass_ratio: float) -> Spring:
     """Return a passive joint that suits a body of a size.
 
     Args:
         mass: of the whole body [kg].
         length: of the whole body [m].
-        share: the mass of the segment over that of the heaviest one [-].
+        mass_ratio: the mass of the segment over that of the heaviest one [-].
     """
     torque = mass * GRAVITY * length
     return Spring(
-        stiffness=0.2 * torque * share,
-        damping=0.02 * torque * gravity_time(length) * share,
+        stiffness=0.2 * torque * mass_ratio,
+        damping=0.02 * torque * gravity_time(length) * mass_ratio,
         armature=2.8e-5 * mass * length**2,
     )
 

@@ -42,11 +42,9 @@ def level_chambers(
     target_center = mass + volume.sum() * (buoyancy - mass) / spare_volume(robot)
     if not rear_center < target_center < front_center:
         raise InvalidDesign(
-            f"the air that robot {robot.name!r} lets out to hover must have its centre {target_center:.3f} m "
-            "ahead of the "
-            f"root for it to be level; {front} is at {front_center:.3f} m and {rear} at {rear_center:.3f} m: "
-            "choose chambers "
-            "before and behind that point."
+            f"the air that robot {robot.name!r} lets out to hover must have its centre {target_center:.3f} m ahead of "
+            f"the root for it to be level; {front} is at {front_center:.3f} m and {rear} at {rear_center:.3f} m: "
+            "choose chambers before and behind that point."
         )
     fraction = float((target_center - rear_center) / (front_center - rear_center))
     return Chamber(body=front, share=fraction), Chamber(body=rear, share=1.0 - fraction)
@@ -60,10 +58,10 @@ def spare_volume(robot: Robot) -> float:
     """
     hull = robot.hull
     air = 0.0 if hull is None else hull.air
-    spare = sum(volumes(robot).values()) - robot.mass / WATER_DENSITY
-    if not 0.0 < spare <= air:
+    spare_air = sum(volumes(robot).values()) - robot.mass / WATER_DENSITY
+    if not 0.0 < spare_air <= air:
         raise InvalidDesign(
-            f"robot {robot.name!r} would have to let out {1e3 * spare:.3g} l of air to hover, and has {1e3 * air:.3g} "
-            "l: give it a design.Hull with as much air, and foam enough to float with it."
+            f"robot {robot.name!r} would have to let out {1e3 * spare_air:.3g} l of air to hover, and has "
+            f"{1e3 * air:.3g} l: give it a design.Hull with as much air, and foam enough to float with it."
         )
-    return spare
+    return spare_air

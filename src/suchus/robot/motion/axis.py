@@ -137,8 +137,8 @@ class Waves:
 
     def together(self, indices: Sequence[int]) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return swing and steady bend of some hinges together [rad]."""
-        share = self.share[:, indices]
-        return (self.swing[:, indices] / share).sum(axis=1), (self.offset[:, indices] / share).sum(axis=1)
+        hinge_counts = self.share[:, indices]
+        return (self.swing[:, indices] / hinge_counts).sum(axis=1), (self.offset[:, indices] / hinge_counts).sum(axis=1)
 
     def amplitude(self) -> Float[np.ndarray, "run hinge"]:
         """Return the most that each hinge turns to either side, its steady angle aside [rad]."""

@@ -92,10 +92,8 @@ def _check_hinges(robot: Robot, girdle: Girdle) -> None:
     if len(driven_hinges) < _MIN_HINGES or any(isinstance(hinge.drive, Crank) for hinge in driven_hinges):
         raise OutsideLimits(
             f"no walk was found for robot {robot.name!r}: {limbs} have {len(driven_hinges)} driven hinges, cranks "
-            "counted, "
-            f"and a foot needs {_MIN_HINGES} without cranks to be lifted and brought forward; drive more of them, "
-            "leave "
-            "these limbs out, or write a gait of its own."
+            f"counted, and a foot needs {_MIN_HINGES} without cranks to be lifted and brought forward; drive more of "
+            "them, leave these limbs out, or write a gait of its own."
         )
     turns = {hinge.turn for hinge in driven_hinges}
     if turns in ({"yaw"}, {"pitch"}):

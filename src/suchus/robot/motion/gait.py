@@ -102,9 +102,8 @@ class Gait:
         """
         if not self.has("steering"):
             raise OutsideLimits(
-                f"{consumer} needs a gait of foot paths and bends; gait {self.name!r} has measured curves: choose "
-                "a gait "
-                "without, or an experiment that walks it in open loop."
+                f"{consumer} needs a gait of foot paths and bends; gait {self.name!r} has measured curves: choose a "
+                "gait without, or an experiment that walks it in open loop."
             )
 
     def scaled(self, length: float) -> "Gait":
@@ -154,30 +153,30 @@ class Gait:
         """Return the gait with another steady pitch of the tail, down positive [rad]."""
         return replace(self.with_numbers(tail_pitch=angle), name=name or self.name)
 
-    def strode(self, share: float) -> "Gait":
+    def strode(self, fraction: float) -> "Gait":
         """Return the gait with all strokes scaled; held limbs and curves stay as they are.
 
         Args:
-            share: factor on the strokes [-].
+            fraction: factor on the strokes [-].
         """
-        return replace(self, limbs=tuple(_strode(limb, share) for limb in self.limbs))
+        return replace(self, limbs=tuple(_strode(limb, fraction) for limb in self.limbs))
 
-    def bent(self, share: float) -> "Gait":
+    def bent(self, fraction: float) -> "Gait":
         """Return the gait with all lateral bends scaled; a steady bend stays.
 
         Args:
-            share: factor on the bends [-].
+            fraction: factor on the bends [-].
         """
         return replace(
             self,
             axis=tuple(
-                replace(bend, amplitude=tuple(share * angle for angle in bend.amplitude))
+                replace(bend, amplitude=tuple(fraction * angle for angle in bend.amplitude))
                 if bend.turn == "yaw"
                 else bend
                 for bend in self.axis
             ),
             curves=tuple(
-                curve if curve.part == "limb" else replace(curve, angles=tuple(share * a for a in curve.angles))
+                curve if curve.part == "limb" else replace(curve, angles=tuple(fraction * a for a in curve.angles))
                 for curve in self.curves
             ),
         )
@@ -273,10 +272,10 @@ def _standing(limb: Limbs) -> Limbs:
     return Held(angles=(limb.down,)) if isinstance(limb, Sweep) else limb
 
 
-def _strode(limb: Limbs, share: float) -> Limbs:
+def _strode(limb: Limbs, fraction: float) -> Limbs:
     if isinstance(limb, FootPath):
-        return replace(limb, stroke=share * limb.stroke)
-    return replace(limb, stance=share * limb.stance) if isinstance(limb, Sweep) else limb
+        return replace(limb, stroke=fraction * limb.stroke)
+    return replace(limb, stance=fraction * limb.stance) if isinstance(limb, Sweep) else limb
 
 
 def _lagged(bend: Bend, lag: float) -> Bend:

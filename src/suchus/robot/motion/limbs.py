@@ -73,22 +73,22 @@ class LimbMotion:
         Raises:
             OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
         """
-        phase, numbers = _limbs_first(limbs, self.among), self._numbers
-        if numbers is None:
+        phase, parameters = _limbs_first(limbs, self.among), self._numbers
+        if parameters is None:
             return []
-        if isinstance(numbers, np.ndarray):  # held
-            return [numbers] * len(self.among)
-        if isinstance(numbers, _Crank):
-            stance = numbers.stance
+        if isinstance(parameters, np.ndarray):  # held
+            return [parameters] * len(self.among)
+        if isinstance(parameters, _Crank):
+            stance = parameters.stance
             if steer is not None:
                 stance = np.clip(
                     np.asarray(steer.size) * _of_limbs(steer.stroke, self.among) * stance,
                     _MIN_STANCE_ANGLE,
                     _MAX_STANCE_ANGLE,
                 )
-            return list(self._crank_angle(phase, stance, numbers.down)[..., None])
+            return list(self._crank_angle(phase, stance, parameters.down)[..., None])
         try:
-            return list(self._angles_at(numbers, *self._feet(numbers, phase, steer), draw=draw))
+            return list(self._angles_at(parameters, *self._feet(parameters, phase, steer), draw=draw))
         except Unreachable as error:
             if len(self.among) > 1:  # name the first limb that fails
                 for i in self.among:
@@ -116,36 +116,36 @@ class LimbMotion:
         return np.stack(self._feet(self._numbers, _limbs_first(limbs, self.among), None))
 
     def _feet(
-        self, numbers: "_Path", phase: np.ndarray, steer: Steer | None
+        self, parameters: "_Path", phase: np.ndarray, steer: Steer | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return how far feet are ahead of their hips, outside them and below them, each (limb, *batch) [m]."""
         forward, lifted = foot_path(phase, self._duty)
-        stroke, lowering = numbers.stroke, np.zeros(())
+        stroke, lowering = parameters.stroke, np.zeros(())
         if steer is not None:
             stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, self.among)
             lowering = _of_limbs(steer.lower, self.among)
-        forward_position = numbers.ahead + stroke * forward
+        forward_position = parameters.ahead + stroke * forward
         return (
             forward_position,
-            np.broadcast_to(numbers.outward, forward_position.shape),
-            numbers.down + lowering - numbers.lift * lifted,
+            np.broadcast_to(parameters.outward, forward_position.shape),
+            parameters.down + lowering - parameters.lift * lifted,
         )
 
     def _angles_at(
-        self, numbers: "_Path", forward: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
+        self, parameters: "_Path", forward: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
     ) -> np.ndarray:
         """Return the servo angles that bring feet to their places, shape (limb, *batch, servo) [rad].
 
         Args:
-            numbers: of the foot paths.
+            parameters: of the foot paths.
             forward: of the feet from their hips [m].
             outward: of the feet from their hips [m].
             down: of the feet below their hips [m].
             draw: draw feet into what limbs reach.
         """
-        if numbers.leg is not None:
-            foot = np.stack([numbers.leg.hip_offset + outward, forward, down], axis=-1)
-            return _leg_angles(numbers.leg, numbers.side, foot, draw=draw)
+        if parameters.leg is not None:
+            foot = np.stack([parameters.leg.hip_offset + outward, forward, down], axis=-1)
+            return _leg_angles(parameters.leg, parameters.side, foot, draw=draw)
         foot = np.stack([forward, outward, -down], axis=-1)
         limb = self.limb.girdle.limb
         if draw:
@@ -153,7 +153,7 @@ class LimbMotion:
             foot = _clip_to_reach(
                 foot, np.zeros(3), (min_reach + _REACH_MARGIN * max_reach, max_reach - _REACH_MARGIN * max_reach)
             )
-        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(numbers.swivel, forward.shape))
+        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(parameters.swivel, forward.shape))
 
     def _crank_angle(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
         """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above.
@@ -177,8 +177,8 @@ def hip_height(robot: Robot, gait: Gait) -> float:
     return _metres(gait.height, girdles[-1].limb.reach) - girdles[-1].above if girdles and gait.limbs else 0.0
 
 
-def _metres(share: float, reach: float) -> float:
-    return round(share * reach, _PICOMETRE)
+def _metres(fraction: float, reach: float) -> float:
+    return round(fraction * reach, _PICOMETRE)
 
 
 def foot_path(phase: Float[np.ndarray, "*batch"], duty: Any) -> tuple[np.ndarray, np.ndarray]:

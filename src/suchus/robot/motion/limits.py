@@ -54,11 +54,11 @@ def _lateral_ends(gait_movement: Movement, posture: np.ndarray) -> np.ndarray:
     """
     ends, follows = np.array([posture, posture]), float(np.abs(gait_movement.axis_of_clock(np.zeros(1)))[0])
     measured = {gait_movement.place.servos.index(curve.servo) for curve in gait_movement.gaits[0].curves}
-    hinges, share = gait_movement.yaw.hinges, gait_movement.yaw.share[0]
+    hinges, hinge_counts = gait_movement.yaw.hinges, gait_movement.yaw.share[0]
     for k, (servo, sign) in enumerate(zip(hinges.servos, hinges.signs, strict=True)):
         if servo not in gait_movement.place.cables and servo not in measured:
-            swing = max(follows * float(np.abs(gait_movement.yaw.swing[0, k])) / share[k] - _ROUNDING, 0.0)
-            ends[:, servo] = sign * gait_movement.yaw.offset[0, k] / share[k] + np.array([-swing, swing])
+            swing = max(follows * float(np.abs(gait_movement.yaw.swing[0, k])) / hinge_counts[k] - _ROUNDING, 0.0)
+            ends[:, servo] = sign * gait_movement.yaw.offset[0, k] / hinge_counts[k] + np.array([-swing, swing])
     return ends
 
 
@@ -114,8 +114,7 @@ def check_speeds(robot: Robot, gait: Gait) -> None:
         limit = robot.servo(servo).speed
         raise OutsideLimits(
             f"gait {gait.name!r} asks {servo} of robot {robot.name!r} for {limit * min_period / gait.period:.2f} "
-            "rad/s; "
-            f"the servo turns at {limit:.2f} rad/s at most: make the period {min_period:.3g} s, or bend less."
+            f"rad/s; the servo turns at {limit:.2f} rad/s at most: make the period {min_period:.3g} s, or bend less."
         )
 
 
@@ -131,9 +130,9 @@ def longest_strokes(robot: Robot, gait: Gait) -> float:
     return lower_bound
 
 
-def _strides(robot: Robot, gait: Gait, share: float) -> bool:
+def _strides(robot: Robot, gait: Gait, fraction: float) -> bool:
     try:
-        return suits(robot, gait.strode(share))
+        return suits(robot, gait.strode(fraction))
     except InvalidDesign:
         return False
 
@@ -223,14 +222,14 @@ def divided(robot: Robot, gait: Gait) -> Gait:
         count = len(hinges.servos)
         for region in parts:
             hinge_indices = hinges.within(region)
-            share = len(hinge_indices) / count
+            fraction = len(hinge_indices) / count
             if hinge_indices:
                 axis.append(
                     Bend(
                         part=region,
-                        amplitude=tuple(share * at_knot(bend.amplitude, k, count) for k in hinge_indices),
+                        amplitude=tuple(fraction * at_knot(bend.amplitude, k, count) for k in hinge_indices),
                         lag=tuple(at_knot(bend.lag, k, count) for k in hinge_indices),
-                        offset=share * bend.offset,
+                        offset=fraction * bend.offset,
                     )
                 )
     return replace(gait, axis=tuple(axis))

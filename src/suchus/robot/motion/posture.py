@@ -277,8 +277,8 @@ def _eased(times: np.ndarray, keys: np.ndarray, time: np.ndarray) -> np.ndarray:
     if len(times) == 1:
         return np.broadcast_to(keys[0], (*time.shape, keys.shape[1]))
     i = np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 2)
-    share = np.clip((time - times[i]) / (times[i + 1] - times[i]), 0.0, 1.0)
-    return np.asarray(keys[i] + ((1.0 - np.cos(np.pi * share)) / 2.0)[..., None] * (keys[i + 1] - keys[i]))
+    fraction = np.clip((time - times[i]) / (times[i + 1] - times[i]), 0.0, 1.0)
+    return np.asarray(keys[i] + ((1.0 - np.cos(np.pi * fraction)) / 2.0)[..., None] * (keys[i + 1] - keys[i]))
 
 
 def mass_from_hips(robot: Robot, angles: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch 3"]:
@@ -307,8 +307,8 @@ def _balance(robot: Robot, keys: np.ndarray) -> np.ndarray:
     return np.asarray(feet_forward)
 
 
-def _fields_by_name(numbers: np.ndarray) -> dict[str, np.ndarray]:
-    return dict(zip(FIELDS, np.moveaxis(numbers, -1, 0), strict=False))
+def _fields_by_name(parameters: np.ndarray) -> dict[str, np.ndarray]:
+    return dict(zip(FIELDS, np.moveaxis(parameters, -1, 0), strict=False))
 
 
 def _angles(

@@ -47,8 +47,8 @@ class Transition(NamedTuple):
         if i >= len(self.times):
             return self.targets[-1]
         since, previous = (self.times[i - 1], self.targets[i - 1]) if i > 0 else (0.0, start)
-        share = np.clip((time - since) / (self.times[i] - since), 0.0, 1.0)
-        return np.asarray(previous + (1.0 - np.cos(np.pi * share)) / 2.0 * (self.targets[i] - previous))
+        fraction = np.clip((time - since) / (self.times[i] - since), 0.0, 1.0)
+        return np.asarray(previous + (1.0 - np.cos(np.pi * fraction)) / 2.0 * (self.targets[i] - previous))
 
 
 @lru_cache(maxsize=64)
@@ -86,8 +86,8 @@ def transition(robot: Robot, old_gait: Gait, new_gait: Gait, *, slower: float = 
             lifted: which limbs are lifted.
         """
         old_targets, new_targets = standing(old, lifted), standing(new, lifted)
-        share = is_turned.mean() if is_turned.size else 1.0
-        targets = (1.0 - share) * old_targets + share * new_targets
+        fraction = is_turned.mean() if is_turned.size else 1.0
+        targets = (1.0 - fraction) * old_targets + fraction * new_targets
         for limb, is_new in zip(place.limbs, is_turned, strict=True):
             targets[limb.servos] = (new_targets if is_new else old_targets)[limb.servos]
         return targets

@@ -57,8 +57,8 @@ def reached(robot: Robot, gait: Gait, *, standing: bool, count: int, seed: int =
     """
     lower_bound, upper_bound = _box(robot, standing)
     metres = GaitInMetres.near(gait, limb_reaches(robot))
-    shares = qmc.Sobol(len(lower_bound), rng=seed).random_base2(max(count - 1, 1).bit_length())
-    samples = lower_bound + (upper_bound - lower_bound) * shares
+    fractions = qmc.Sobol(len(lower_bound), rng=seed).random_base2(max(count - 1, 1).bit_length())
+    samples = lower_bound + (upper_bound - lower_bound) * fractions
     parts = [
         _feasible(robot, metres, samples[start : start + _CHUNK], standing) for start in range(0, len(samples), _CHUNK)
     ]
