@@ -65,8 +65,10 @@ def _section(shape: Rod | Shell, x: np.ndarray) -> _Section:
     """Return where planes at x, in the frame of its segment, cut a shape."""
     if isinstance(shape, Shell):
         round_ = np.sqrt(np.clip(1.0 - ((x - shape.at[0]) / shape.half[0]) ** 2, 0.0, None))
-        ones = np.ones_like(x)
-        return _Section(shape.at[1] * ones, shape.at[2] * ones, shape.half[1] * round_, shape.half[2] * round_)
+        unit_array = np.ones_like(x)
+        return _Section(
+            shape.at[1] * unit_array, shape.at[2] * unit_array, shape.half[1] * round_, shape.half[2] * round_
+        )
     (x0, y0, z0), (x1, y1, z1) = sorted((shape.start, shape.end))
     fraction = np.clip((x - x0) / (x1 - x0), 0.0, 1.0) if x1 > x0 else np.full_like(x, 0.5)
     overshoot = np.maximum(np.maximum(x0 - x, x - x1), 0.0)

@@ -94,9 +94,9 @@ def transition(robot: Robot, old_gait: Gait, new_gait: Gait, *, slower: float = 
 
     no_limb = np.zeros(len(place.limbs), dtype=bool)
     keys = [mixed(no_limb, no_limb)]
-    for previous_turned, pair in ((no_limb, is_first_pair), (is_first_pair, ~is_first_pair)):
-        next_turned = previous_turned | pair
-        keys += [mixed(previous_turned, pair), mixed(next_turned, pair), mixed(next_turned, no_limb)]
+    for previous_mask, pair in ((no_limb, is_first_pair), (is_first_pair, ~is_first_pair)):
+        next_mask = previous_mask | pair
+        keys += [mixed(previous_mask, pair), mixed(next_mask, pair), mixed(next_mask, no_limb)]
     lower_bound, upper_bound = servo_ranges(robot).T
     times = slower * gravity_time(robot.length) / gravity_time(_LENGTH) * np.cumsum(_TIMES)
     return Transition(times, np.clip(np.array([*keys, standing(new_gait, no_limb)]), lower_bound, upper_bound))

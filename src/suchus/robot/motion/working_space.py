@@ -167,8 +167,15 @@ def _tail_laid(robot: Robot, angles: np.ndarray, pelvis: np.ndarray) -> Bool[np.
 
 
 def _turn(pelvis: np.ndarray) -> np.ndarray:
-    s, c, zeros, ones = np.sin(pelvis[:, 2]), np.cos(pelvis[:, 2]), np.zeros(len(pelvis)), np.ones(len(pelvis))
-    return np.stack([c, zeros, -s, zeros, ones, zeros, s, zeros, c], axis=-1).reshape(-1, 3, 3)
+    s, c, zero_array, unit_array = (
+        np.sin(pelvis[:, 2]),
+        np.cos(pelvis[:, 2]),
+        np.zeros(len(pelvis)),
+        np.ones(len(pelvis)),
+    )
+    return np.stack([c, zero_array, -s, zero_array, unit_array, zero_array, s, zero_array, c], axis=-1).reshape(
+        -1, 3, 3
+    )
 
 
 def _position(pelvis: np.ndarray) -> np.ndarray:
