@@ -27,10 +27,10 @@ _WAVE = ("amplitude", "waves", "phase")
 def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
     """Read a gait from a TOML file.
 
-    Its keys say in which form it is: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places
-    along the body, ``girdles`` and ``wave``. A curve that does not say its part gets that of its servo. With ``base =
-    "belly_crawl"`` at the top it starts from that gait of the shelf and overrides what the file says. A file without a
-    ``name`` lends its own.
+    The keys of the file decide its form: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places
+    along the body, ``girdles`` and ``wave``. A curve without a part gets the part of its servo. With ``base =
+    "belly_crawl"`` at the top the file changes numbers of that gait of the shelf. A gait without a ``name`` is named
+    after the file.
 
     Args:
         path: the file.
@@ -44,14 +44,14 @@ def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait
     """
     path = Path(path)
     data = read_toml(path)
-    named = data.pop("base", None)
+    base_name = data.pop("base", None)
     mistakes: dict[Place, str] = {}
-    base = shelf[named] if isinstance(named, str) and named in shelf else None
-    if named is not None and base is None:
-        mistakes["base",] = f"is {named!r}; there is {', '.join(shelf)}"
-        base = _any(shelf)  # to look for further mistakes with
+    base = shelf[base_name] if isinstance(base_name, str) and base_name in shelf else None
+    if base_name is not None and base is None:
+        mistakes["base",] = f"is {base_name!r}; there is {', '.join(shelf)}"
+        base = _metric_gait(shelf)  # supplies values, so that further mistakes are found
     form = form_of(data)
-    # where limbs alone change their phases, the axis goes on as the article's law of a gait in metres says
+    # a file that changes the limbs' phases alone keeps the coupling of a gait in metres
     if form is None and base is not None and in_metres(base) and "limb_phases" in data and "coupling" not in data:
         form = GaitInMetres
     data = {"name": path.stem, **data}
@@ -66,17 +66,22 @@ def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait
         raise MistakenFile(path.name, {(): f"on robot {robot.name!r} {str(error).rstrip('.')}"}) from error
     except OutsideLimits as error:
         raise UnreadableFile(f"{path.name}: {error}") from error
-    spare, data = plain(asdict(base or _any(shelf))), _with_parts(data, robot)
-    return validated(data if base is None else merged(spare, data), Gait, spare, path.name, mistakes)
+    fallback, data = plain(asdict(base or _metric_gait(shelf))), _with_parts(data, robot)
+    return validated(data if base is None else merged(fallback, data), Gait, fallback, path.name, mistakes)
 
 
-def _any(shelf: Mapping[str, Gait]) -> Gait:
+def _metric_gait(shelf: Mapping[str, Gait]) -> Gait:
     """Return a gait that can be written in every form."""
     return next(gait for gait in shelf.values() if in_metres(gait))
 
 
 def _with_parts(data: dict[str, Any], robot: Robot) -> dict[str, Any]:
-    """Return a table whose curves say which part of the body they move."""
+    """Return a table whose curves say which part of the body they move.
+
+    Args:
+        data: the table of a gait.
+        robot: whose servos the curves move.
+    """
     if not isinstance(data.get("curves"), list):
         return data
     parts = servo_parts(robot)
@@ -95,10 +100,20 @@ def _in_metres(
     name: str,
     mistakes: dict[Place, str],
 ) -> Gait:
+    """Return the gait that a table in metres describes.
+
+    Args:
+        data: the table.
+        robot: for whose limbs the metres are.
+        base: gait that the table changes; None if the table gives every number.
+        shelf: gaits by name; one of them supplies values to go on with after a mistake.
+        name: of the file.
+        mistakes: those that are known already, by place.
+    """
     reaches, keys = limb_reaches(robot), frozenset(data)
-    spare = plain(asdict(GaitInMetres.near(base or _any(shelf), reaches)))
-    whole = data if base is None else merged(spare, data)
-    metres = validated(whole, GaitInMetres, spare, name, mistakes)
+    fallback = plain(asdict(GaitInMetres.near(base or _metric_gait(shelf), reaches)))
+    table = data if base is None else merged(fallback, data)
+    metres = validated(table, GaitInMetres, fallback, name, mistakes)
     return metres.gait(reaches) if base is None else metres.onto(base, keys, reaches)
 
 
@@ -110,14 +125,18 @@ def _by_places(
     name: str,
     mistakes: dict[Place, str],
 ) -> Gait:
+    """Return the gait that a table with a wave by places along the body describes; arguments as for ``_in_metres``."""
     wave = data.get("wave")
-    still = AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0)
-    partly = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)
-    spare = plain(
+    straight_wave = AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0)
+    is_partial = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)
+    fallback = plain(
         asdict(
-            GaitByPlaces.of(base or _any(shelf), AxialWave.of(base, robot) if base is not None and partly else still)
+            GaitByPlaces.of(
+                base or _metric_gait(shelf),
+                AxialWave.of(base, robot) if base is not None and is_partial else straight_wave,
+            )
         )
     )
-    whole = data if base is None else merged(spare, data)
-    gait = validated(whole, GaitByPlaces, spare, name, mistakes).gait(robot)
+    table = data if base is None else merged(fallback, data)
+    gait = validated(table, GaitByPlaces, fallback, name, mistakes).gait(robot)
     return gait if base is None or wave is not None else replace(gait, axis=base.axis)

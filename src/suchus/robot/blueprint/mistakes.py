@@ -1,4 +1,4 @@
-"""From what a validator complains of to sentences that a person can act on."""
+"""Translation of validation errors to sentences that name the place and the remedy."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
@@ -13,8 +13,8 @@ from suchus.core.errors import InvalidDesign, UnreadableFile
 Place = tuple[str | int, ...]
 """Keys from the top of a file down to a value."""
 
-_HOMES = 2  # of a field that stands in the wrong part; one that many parts have, as a mass, is not said
-_NEEDED: Mapping[str, str] = {
+_HOMES = 2  # greatest number of places that are suggested for a field in the wrong table
+_REQUIREMENTS: Mapping[str, str] = {
     "float_type": "a number is needed",
     "finite_number": "a finite number is needed",
     "int_type": "a whole number is needed",
@@ -31,20 +31,26 @@ _NEEDED: Mapping[str, str] = {
 
 
 class MistakenFile(UnreadableFile, InvalidDesign):
-    """A file whose values cannot be what they should be.
+    """A file with values that are missing, unknown, of the wrong kind or impossible.
 
     Attributes:
-        mistakes: where each mistake is, and what it is.
+        mistakes: text of each mistake by its place.
     """
 
     def __init__(self, name: str, mistakes: Mapping[Place, str]) -> None:
+        """Join the mistakes of a file to one message.
+
+        Args:
+            name: of the file.
+            mistakes: what is wrong, by place.
+        """
         self.mistakes = {dotted(place): text for place, text in mistakes.items()}
-        listed = [f"{place} {text}".lstrip() for place, text in self.mistakes.items()]
-        if len(listed) == 1:
-            super().__init__(f"{name} has a mistake: {listed[0]}.")
+        descriptions = [f"{place} {text}".lstrip() for place, text in self.mistakes.items()]
+        if len(descriptions) == 1:
+            super().__init__(f"{name} has a mistake: {descriptions[0]}.")
         else:
-            numbered = "; ".join(f"({i}) {one}" for i, one in enumerate(listed, 1))
-            super().__init__(f"{name} has {len(listed)} mistakes: {numbered}.")
+            numbered_list = "; ".join(f"({i}) {description}" for i, description in enumerate(descriptions, 1))
+            super().__init__(f"{name} has {len(descriptions)} mistakes: {numbered_list}.")
 
 
 def dotted(place: Place) -> str:
@@ -54,19 +60,20 @@ def dotted(place: Place) -> str:
 
 
 def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]:
-    """Return what one of pydantic's errors says, by place; a part can complain of several fields at once.
+    """Return the texts of one pydantic error by place; one error can concern several fields.
 
-    Where a part may be of several kinds, pydantic complains of each; what counts is the kind whose keys the part names.
+    If a table may be of several kinds, pydantic reports errors for each; only the kind that fits the table's keys
+    counts.
 
     Args:
         error: as pydantic tells it.
         kind: of the whole.
         data: what was validated.
     """
-    meant = _meant(tuple(error["loc"]), kind, data)
-    if meant is None:
+    location = _locate(tuple(error["loc"]), kind, data)
+    if location is None:
         return {}
-    place, owner = meant
+    place, owner = location
     cause = error.get("ctx", {}).get("error")
     if isinstance(cause, InvalidFields):
         return {(*place, *_keys(c.field)): c.text for c in cause.complaints}
@@ -74,16 +81,26 @@ def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]
         return {place: "is missing"}
     if error["type"] == "unexpected_keyword_argument":
         return {place: _unknown(place, owner, kind)}
-    return {place: f"is {_show(error['input'])}; {_needed(error, cause)}"}
+    return {place: f"is {_show(error['input'])}; {_requirement(error, cause)}"}
 
 
-def _meant(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
-    """Return the place of an error and the kind of the part that it stands in; None for a kind that was not meant."""
+def _locate(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
+    """Return the place of an error and the kind of the table that it stands in; None if the file means another kind.
+
+    Args:
+        loc: place of the error as pydantic gives it, names of kinds included.
+        kind: of the whole file.
+        data: what was validated.
+    """
     place: list[str | int] = []
     owner = kind
     for key in loc:
-        kinds = [one for one in get_args(kind) if is_dataclass(one)] if isinstance(kind, UnionType) else []
-        if len(kinds) > 1 and key in [one.__name__ for one in kinds]:  # type: ignore[union-attr]
+        kinds = (
+            [candidate for candidate in get_args(kind) if is_dataclass(candidate)]
+            if isinstance(kind, UnionType)
+            else []
+        )
+        if len(kinds) > 1 and key in [candidate.__name__ for candidate in kinds]:  # type: ignore[union-attr]
             kind = closest(data, kinds)
             if kind.__name__ != key:
                 return None
@@ -99,7 +116,7 @@ def _meant(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
 
 
 def closest(data: Any, kinds: Sequence[Any]) -> Any:
-    """Return the kind of which a table names most fields; the first of those alike."""
+    """Return the kind that has most of a table's keys as fields; the first of several equal ones."""
     keys = set(data) if isinstance(data, Mapping) else set()
     return max(kinds, key=lambda kind: len(keys & {field.name for field in fields(kind) if field.init}))
 
@@ -116,31 +133,45 @@ def _keys(field: str) -> Place:
     return () if not name else (name, int(index)) if index else (name,)
 
 
-def _needed(error: Mapping[str, Any], cause: Exception | None) -> str:
+def _requirement(error: Mapping[str, Any], cause: Exception | None) -> str:
+    """Return what a value must be instead, as the second half of a sentence."""
     context = error.get("ctx", {})
     if error["type"] in ("too_long", "too_short"):
-        wanted = context.get("max_length", context.get("min_length"))
-        return f"{wanted} values are needed"
+        length = context.get("max_length", context.get("min_length"))
+        return f"{length} values are needed"
     if error["type"] == "literal_error":
         return f"{context['expected']} is allowed"
     if cause is not None:
         return str(cause).rstrip(".")
-    return _NEEDED.get(error["type"], "something else is needed")
+    return _REQUIREMENTS.get(error["type"], "something else is needed")
 
 
 def _unknown(place: Place, owner: Any, kind: type) -> str:
-    known = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
+    """Return what to say of a field that its table does not have: where it belongs, or which name is similar.
+
+    Args:
+        place: of the field in the file.
+        owner: kind of the table that the field stands in.
+        kind: of the whole file.
+    """
+    field_names = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
     homes = list(islice(_homes(str(place[-1]), kind), _HOMES + 1))
     if 0 < len(homes) <= _HOMES:
         return f"is not known there; it stands at {' and '.join(homes)}: move it"
-    near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
-    if near:
-        return f"is not known (did you mean {dotted((*place[:-1], near[0]))}?)"
-    return f"is not known; there is {', '.join(known)}" if known else "is not known"
+    suggestions = get_close_matches(str(place[-1]), field_names, n=1, cutoff=0.5)
+    if suggestions:
+        return f"is not known (did you mean {dotted((*place[:-1], suggestions[0]))}?)"
+    return f"is not known; there is {', '.join(field_names)}" if field_names else "is not known"
 
 
 def _homes(name: str, kind: Any, place: str = "") -> Iterator[str]:
-    """Yield where a design has a field of a name; what is listed, as segments are, has no place that could be said."""
+    """Yield the places where a design has a field of a name; elements of lists, as segments, are left out.
+
+    Args:
+        name: of the field.
+        kind: of the design.
+        place: of the design in the file, with a dot at its end.
+    """
     if not is_dataclass(kind):
         return
     for field in fields(kind):

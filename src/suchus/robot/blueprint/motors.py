@@ -25,7 +25,7 @@ def read_motors(path: str | Path) -> Mapping[str, Motor]:
     data = read_toml(path)
     if not data:
         raise MistakenFile(path.name, {(): "has no servo; give a table for each, as in [my_servo]"})
-    found: dict[str, Motor] = {}
+    motors: dict[str, Motor] = {}
     mistakes: dict[Place, str] = {}
     for name, table in data.items():
         if not isinstance(table, dict):
@@ -34,12 +34,12 @@ def read_motors(path: str | Path) -> Mapping[str, Motor]:
         values, sources, odd = split(table)
         mistakes |= {(name, field): text for field, text in odd.items()}
         try:
-            whole = {**values, "name": name, "sources": [list(pair) for pair in sources.items()]}
-            found[name] = validated(whole, Motor, {}, path.name, {})
+            motor_fields = {**values, "name": name, "sources": [list(pair) for pair in sources.items()]}
+            motors[name] = validated(motor_fields, Motor, {}, path.name, {})
         except MistakenFile as error:
             mistakes |= {
                 (name, place) if place else (name,): text for place, text in error.mistakes.items() if place not in odd
             }
     if mistakes:
         raise MistakenFile(path.name, mistakes)
-    return MappingProxyType(found)
+    return MappingProxyType(motors)

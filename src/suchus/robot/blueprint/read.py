@@ -32,9 +32,9 @@ def read(path: str | Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ..
 def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     """Read a robot or a gait from a TOML file.
 
-    ``base = "caiman"`` at the top starts from that one of the shelf and overrides what the file says. A file
-    without a ``name`` lends its own. Where ``kind`` is a union, a file without ``base`` is of the kind that has most of
-    what stands at its top, the first of those alike.
+    With ``base = "caiman"`` at the top the file changes numbers of that entry of the shelf. A design without a ``name``
+    is named after the file. If ``kind`` is a union, a file without ``base`` is of the kind that has most of its
+    top-level keys.
 
     Args:
         path: the file.
@@ -48,29 +48,32 @@ def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     path = Path(path)
     data = read_toml(path)
     base = data.pop("base", None)
-    known = base is None or (isinstance(base, str) and base in shelf)
-    kinds = tuple(one for one in get_args(kind) or (kind,) if one is not NoneType)
-    described: tuple[Any, ...] = (*kinds, Tables) if Robot in kinds else kinds
-    if base is not None and known:
+    is_known_base = base is None or (isinstance(base, str) and base in shelf)
+    kinds = tuple(candidate for candidate in get_args(kind) or (kind,) if candidate is not NoneType)
+    allowed_kinds: tuple[Any, ...] = (*kinds, Tables) if Robot in kinds else kinds
+    if base is not None and is_known_base:
         model = shelf[base]
         if isinstance(model, Robot) and model.tables is not None and closest(data, (Tables, Robot)) is Tables:
             model = model.tables
     else:
-        meant = closest(data, described)
-        things = (getattr(thing, "tables", None) if meant is Tables else thing for thing in shelf.values())
-        model = next(thing for thing in things if isinstance(thing, meant))
-    if not isinstance(model, described):
+        best_kind = closest(data, allowed_kinds)
+        shelf_models = (
+            getattr(shelf_model, "tables", None) if best_kind is Tables else shelf_model
+            for shelf_model in shelf.values()
+        )
+        model = next(shelf_model for shelf_model in shelf_models if isinstance(shelf_model, best_kind))
+    if not isinstance(model, allowed_kinds):
         raise UnreadableFile(
             f"{path.name} starts from {base!r}, which is a {type(model).__name__}; a "
-            f"{' or '.join(one.__name__ for one in kinds)} is needed here."
+            f"{' or '.join(candidate.__name__ for candidate in kinds)} is needed here."
         )
-    spare = plain({name: value for name, value in asdict(model).items() if name in _said(model)})
+    fallback = plain({name: value for name, value in asdict(model).items() if name in _settable_fields(model)})
     mistakes: dict[Place, str] = {}
-    if not known:
+    if not is_known_base:
         mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
     if base is not None:
-        data = merged({**spare, "name": path.stem}, data)
-    value = validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
+        data = merged({**fallback, "name": path.stem}, data)
+    value = validated({"name": path.stem, **data}, type(model), fallback, path.name, mistakes)
     return crocodile(value) if isinstance(value, Tables) else value
 
 
@@ -90,22 +93,22 @@ def described_robot(values: Mapping[str, Any]) -> Robot:
     return TypeAdapter(Robot).validate_python(values)
 
 
-def described(data: Mapping[str, Any], kind: type[T], about: str) -> T:
+def described(data: Mapping[str, Any], kind: type[T], label: str) -> T:
     """Return the frozen value that a table of a file describes.
 
     Args:
         data: the table.
         kind: the frozen dataclass.
-        about: what it is, for messages.
+        label: what it is, for messages.
 
     Raises:
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
-    return validated(dict(data), kind, {}, about, {})
+    return validated(dict(data), kind, {}, label, {})
 
 
-def _said(model: Any) -> set[str]:
-    """Return the fields that a file can say."""
+def _settable_fields(model: Any) -> set[str]:
+    """Return the names of the fields that a file can set."""
     return {field.name for field in fields(model) if field.init}
 
 
@@ -117,14 +120,14 @@ def plain(value: Any) -> Any:
 
 
 def validated(
-    data: dict[str, Any], kind: type[T], spare: Mapping[str, Any], name: str, mistakes: dict[Place, str]
+    data: dict[str, Any], kind: type[T], fallback: Mapping[str, Any], name: str, mistakes: dict[Place, str]
 ) -> T:
     """Return the value that a table describes; where it does not, mend it with spare values until nothing new is found.
 
     Args:
         data: the table; what is wrong with it is mended in place.
         kind: of the value.
-        spare: values that are right, to look on with.
+        fallback: values that are right, to look on with.
         name: of the file.
         mistakes: those that are known already, by place.
 
@@ -132,57 +135,72 @@ def validated(
         MistakenFile: it describes none; all mistakes are named.
     """
     adapter = TypeAdapter(kind)
-    mended: set[Place] = set()
+    repaired: set[Place] = set()
     while True:
         try:
             value = adapter.validate_json(json.dumps(data, default=str), strict=True, extra="forbid")
         except ValidationError as error:
-            found: dict[Place, str] = {}
-            for one in error.errors(include_url=False):
-                found |= explain(one, kind, data)
+            complaints: dict[Place, str] = {}
+            for detail in error.errors(include_url=False):
+                complaints |= explain(detail, kind, data)
         else:
             break
-        fresh = {p: text for p, text in found.items() if _whole(p) not in mended and not _follows(p, mended)}
+        fresh = {
+            p: text
+            for p, text in complaints.items()
+            if _container_place(p) not in repaired and not _follows(p, repaired)
+        }
         mistakes |= fresh
-        mendable = [_mend(data, _whole(place), spare) for place in fresh]
+        mendable = [_mend(data, _container_place(place), fallback) for place in fresh]
         if not mendable or not all(mendable):
             break
-        mended |= {_whole(place) for place in fresh}
+        repaired |= {_container_place(place) for place in fresh}
     if mistakes:
         raise MistakenFile(name, mistakes)
     return value
 
 
-def _whole(place: Place) -> Place:
+def _container_place(place: Place) -> Place:
     """The place of the list that an element stands in, else the place itself."""
     while place and isinstance(place[-1], int):
         place = place[:-1]
     return place
 
 
-def _follows(place: Place, mended: set[Place]) -> bool:
-    """Whether a complaint about a whole part may stem from a value that we put into it."""
-    return any(m[: len(place)] == place for m in mended)
+def _follows(place: Place, repaired: set[Place]) -> bool:
+    """Return whether a complaint about a whole table may stem from a fallback value that was put into it."""
+    return any(m[: len(place)] == place for m in repaired)
 
 
-def _mend(data: Any, place: Place, spare: Any) -> bool:
-    """Put the spare value at a place, or drop what should not be there; return whether that was possible."""
+def _mend(data: Any, place: Place, fallback: Any) -> bool:
+    """Put the fallback value at a place, or remove a key that should not be there; return whether that was possible.
+
+    Args:
+        data: the table, changed in place.
+        place: keys from the top of the table down to the mistake.
+        fallback: a table without mistakes.
+    """
     if not place:
         return False
     for key in place[:-1]:
-        if not (isinstance(data, dict) and isinstance(spare, dict) and key in data and key in spare):
+        if not (isinstance(data, dict) and isinstance(fallback, dict) and key in data and key in fallback):
             return False
-        data, spare = data[key], spare[key]
+        data, fallback = data[key], fallback[key]
     data.pop(place[-1], None)
-    if place[-1] in spare:
-        data[place[-1]] = deepcopy(spare[place[-1]])
+    if place[-1] in fallback:
+        data[place[-1]] = deepcopy(fallback[place[-1]])
     return True
 
 
-def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a table with what another one says in the place of its own."""
-    whole = dict(deepcopy(base))
-    for key, value in over.items():
-        there = whole.get(key)
-        whole[key] = merged(there, value) if isinstance(there, dict) and isinstance(value, dict) else value
-    return whole
+def merged(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table in which the values of a second table replace those of the first, table by table.
+
+    Args:
+        base: the first table; it stays as it is.
+        overrides: the second table.
+    """
+    table = dict(deepcopy(base))
+    for key, value in overrides.items():
+        current = table.get(key)
+        table[key] = merged(current, value) if isinstance(current, dict) and isinstance(value, dict) else value
+    return table

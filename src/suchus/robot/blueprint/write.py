@@ -1,4 +1,4 @@
-"""From a frozen value to a TOML file that reads back equal, each number with its meaning beside it."""
+"""Writing of a frozen value as TOML that reads back equal, with the meaning of each number as a comment."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -31,29 +31,37 @@ def render(value: object, *, notes: Mapping[str, str] | None = None, head: Seque
     A robot of the article's kind is written as its tables, which are what people change.
     """
     value = getattr(value, "tables", None) or value
-    words = [f"# {_plain(one)}" for one in head]
-    return "\n".join([*words, *([""] if words else []), "\n".join(_table(value, (), notes or {})).strip(), ""])
+    comments = [f"# {_plain(sentence)}" for sentence in head]
+    return "\n".join([*comments, *([""] if comments else []), "\n".join(_table(value, (), notes or {})).strip(), ""])
 
 
 def _table(
     value: Any, path: tuple[str, ...], notes: Mapping[str, str], place: str = "", *, row: bool = False
 ) -> list[str]:
-    """A table's own values first, then the tables below it, as TOML wants it; a row of tables has double brackets."""
-    about = meanings(type(value))
+    """Return the lines of a table: its own values first, then the tables below it, as TOML needs it.
+
+    Args:
+        value: the frozen value.
+        path: keys from the top of the file down to the table.
+        notes: remarks by the place of a value.
+        place: of the table, with a dot at its end, as the notes name it.
+        row: whether the table is an element of a list, which has double brackets.
+    """
+    field_meanings = meanings(type(value))
     items = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
     name = ".".join(path)
     lines = ["", f"[[{name}]]" if row else f"[{name}]"] if path else []
-    below: list[str] = []
+    subtables: list[str] = []
     for name, item in items.items():
         if is_dataclass(item):
-            below += _table(item, (*path, name), notes, f"{place}{name}.")
-        elif isinstance(item, tuple) and item and all(is_dataclass(one) for one in item):
-            for i, one in enumerate(item):
-                below += _table(one, (*path, name), notes, f"{place}{name}[{i}].", row=True)
+            subtables += _table(item, (*path, name), notes, f"{place}{name}.")
+        elif isinstance(item, tuple) and item and all(is_dataclass(element) for element in item):
+            for i, element in enumerate(item):
+                subtables += _table(element, (*path, name), notes, f"{place}{name}[{i}].", row=True)
         elif item is not None:
-            meaning = _plain(f"{about.get(name, '')} {_sentence(notes.get(place + name, ''))}")
+            meaning = _plain(f"{field_meanings.get(name, '')} {_sentence(notes.get(place + name, ''))}")
             lines.append(f"{name} = {_inline(item)}" + (f"  # {meaning}" if meaning else ""))
-    return lines + below
+    return lines + subtables
 
 
 def _sentence(note: str) -> str:
@@ -67,6 +75,11 @@ def _plain(text: str) -> str:
 
 
 def _inline(value: Any) -> str:
+    """Return a value as TOML on one line.
+
+    Raises:
+        TypeError: TOML cannot hold a value of this type.
+    """
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""From swimming to walking and back, by the load that the ground is felt to carry."""
+"""Change between swimming and walking by the sensed ground load."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -25,12 +25,12 @@ _GROWS = 0.5  # [cycle]; over which stroke and bends grow when the walk begins
 class Amphibious:
     """Swims where the water carries the robot and walks in the run's gait where the ground does.
 
-    Felt is what feet, belly and tail carry, in shares of the robot's weight, through a low pass. Where together they
-    carry more than ``touch`` it lands: it walks in the gait ``wade``, with its air let out, until the ground carries
-    ``aground``; then it takes the air in again and goes on in the run's gait. It swims again when its feet have
-    carried less than ``afloat`` for a whole cycle, in which each had its stance: a tail or a belly that drags on the
-    bottom does not walk. A change takes ``change``, in which nothing else is decided, and ``patience`` must pass before
-    the next. While it swims its limbs' phases stand still.
+    The sensed load is the low-pass-filtered contact force of feet, belly and tail, as a fraction of body weight. Above
+    ``touch`` the robot lands: it lets air out and walks in the gait ``wade`` until the load exceeds ``aground``. Then
+    it takes the air in again and walks in the run's gait. It swims again when its feet have carried less than
+    ``afloat`` for a whole cycle, in which each foot had its stance; the load on belly and tail does not count for
+    this. A change of posture takes ``change``; after it ``patience`` must pass before the next one. While the robot
+    swims, the phases of its limbs stand still.
     """
 
     swim: Gait
@@ -88,12 +88,12 @@ class Amphibious:
 
     @property
     def feels(self) -> bool:
-        """It decides by what it feels."""
+        """Whether it reads sensors: always."""
         return True
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Loads on the ground, and what swim and heading are held by."""
+        """Sensors of the ground load, and those of the rules for swim and heading."""
         return united(
             ("foot_pressure", "belly_pressure", "tail_pressure"),
             self.swimming.needs,
@@ -140,30 +140,44 @@ class Amphibian:
         swims: Controller,
         period: float,
     ) -> None:
+        """Start every run in the mode that its control begins with.
+
+        Args:
+            controls: settings, one for each run.
+            robots: one for each run.
+            gaits: of the walk on land, one for each run.
+            wades: gaits of the walk while a robot lands, one for each run.
+            swims: controller of the swims of the whole batch.
+            period: of control [s].
+        """
         self._period, self._swims = period, swims
-        self._touch, self._afloat, self._aground, self._change, self._patience, self._out, self._pump = (
+        self._touch, self._afloat_load, self._aground, self._change, self._patience, self._air_released, self._pump = (
             np.array([getattr(control, name) for control in controls])
             for name in ("touch", "afloat", "aground", "change", "patience", "air_released", "pump")
         )
-        self._kept = np.array([keep(control.memory, period) for control in controls])
+        self._decay = np.array([keep(control.memory, period) for control in controls])
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
         n, limbs = len(robots), len(layout(robots[0]).limbs)
         self.walking: Bool[np.ndarray, " run"] = np.array([control.begins == "walking" for control in controls])
         """Which robots walk, or are about to."""
-        self._blend = self.walking.astype(float)  # 0 swims, 1 walks
+        self._blend = self.walking.astype(float)  # 0 swims, 1 walks [-]
         self.landing: Bool[np.ndarray, " run"] = np.zeros(n, dtype=bool)
         """Which robots walk, and are not yet carried by the ground."""
         self._landed = np.ones(n)  # 0 wades, 1 walks in the run's gait
-        self._load = self._blend.copy()  # [-]; so that a robot on land does not begin by swimming
+        self._load = self._blend.copy()  # [-]; a robot that begins on land is loaded
         self._feet = self._load.copy()  # [-]; of the weight on the feet
-        self._lifted = np.zeros(n)  # how long the feet have carried next to nothing [s]
-        self._since = np.where(self.walking, np.inf, 0.0)  # the last change [s]
+        self._lifted = np.zeros(n)  # time for which the feet have carried less than ``afloat`` [s]
+        self._since = np.where(self.walking, np.inf, 0.0)  # time since the last change [s]
         self._cycles = np.zeros(n)  # walked so far [cycle]
-        self._grown = np.zeros(n)  # walked without a break [cycle]
+        self._unbroken_cycles = np.zeros(n)  # walked without a break [cycle]
         self._air_fraction = np.ones(n)
-        self._cycle, self._wade_cycle = (np.array([gait.period for gait in each]) for each in (gaits, wades))
-        self._phases, self._wade_phases = (np.array([gait.limb_phases for gait in each]) for each in (gaits, wades))
-        self._heading = Heading([one.heading for one in controls], robots, gaits, period)
+        self._cycle, self._wade_cycle = (
+            np.array([gait.period for gait in batch_gaits]) for batch_gaits in (gaits, wades)
+        )
+        self._phases, self._wade_phases = (
+            np.array([gait.limb_phases for gait in batch_gaits]) for batch_gaits in (gaits, wades)
+        )
+        self._heading = Heading([control.heading for control in controls], robots, gaits, period)
         self._batch, self._wade_batch = Batch(robots, gaits), Batch(robots, wades)
         self._stroke, self._trunk = np.ones((n, limbs)), np.zeros(n)
 
@@ -177,14 +191,19 @@ class Amphibian:
         return self._mixed(self._swims.rest())
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Feel, decide, and go on swimming, walking or changing."""
+        """Return the servo angles and the air fraction of every run for one control period.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings.
+        """
         time = tick * self._period
         if sensed is not None:
             self._feel(sensed)
             if time >= START - _SLACK:
                 self._decide()
-        swum = self._swims.command(tick, sensed).targets
-        targets = self._mixed(swum)
+        swim_targets = self._swims.command(tick, sensed).targets
+        targets = self._mixed(swim_targets)
         phase = self._phase
         if time >= START - _SLACK:
             self._advance()
@@ -195,22 +214,24 @@ class Amphibian:
         return self._cycles[:, None] + self._wade_phases + self._landed[:, None] * (self._phases - self._wade_phases)
 
     def _feel(self, sensed: Sensed) -> None:
+        """Update the filtered loads of ground and feet, and the steering of the walk."""
         feet, belly = finite(sensed.foot_pressure), finite(sensed.belly_pressure)
         stands = feet.sum(axis=1) / self._weight
         load = stands + (belly.sum(axis=1) + finite(sensed.tail_pressure)) / self._weight
-        self._load = load + self._kept * (self._load - load)
-        self._feet = stands + self._kept * (self._feet - stands)
+        self._load = load + self._decay * (self._load - load)
+        self._feet = stands + self._decay * (self._feet - stands)
         walks = self._blend >= 1.0
         steer = self._heading.step(sensed, walking=walks)
         self._stroke, self._trunk = 1.0 + steer.stroke, steer.trunk
 
     def _decide(self) -> None:
-        self._lifted = np.where(self._feet < self._afloat, self._lifted + self._period, 0.0)
-        other = np.where(self.walking, self._lifted >= 1.0 / self._rate, self._load > self._touch)
-        turns = other & (self._since >= self._change + self._patience)
-        self.landing = np.where(turns, ~self.walking, self.landing & (self._load < self._aground))
-        self.walking = self.walking ^ turns
-        self._since = np.where(turns, 0.0, self._since + self._period)
+        """Change between swimming and walking where the loads ask for it, and note who has landed."""
+        self._lifted = np.where(self._feet < self._afloat_load, self._lifted + self._period, 0.0)
+        is_change_due = np.where(self.walking, self._lifted >= 1.0 / self._rate, self._load > self._touch)
+        is_changing = is_change_due & (self._since >= self._change + self._patience)
+        self.landing = np.where(is_changing, ~self.walking, self.landing & (self._load < self._aground))
+        self.walking = self.walking ^ is_changing
+        self._since = np.where(is_changing, 0.0, self._since + self._period)
 
     @property
     def _rate(self) -> np.ndarray:
@@ -218,37 +239,43 @@ class Amphibian:
         return np.asarray((1.0 - self._landed) / self._wade_cycle + self._landed / self._cycle)
 
     def _advance(self) -> None:
-        """Go one control period on: postures, clocks and air."""
+        """Advance postures, clocks and air by one control period."""
         step = self._period / self._change
         walks = self._blend >= 1.0
         self._cycles = self._cycles + walks * self._rate * self._period
-        self._grown = np.where(walks, self._grown + self._rate * self._period, 0.0)
+        self._unbroken_cycles = np.where(walks, self._unbroken_cycles + self._rate * self._period, 0.0)
         self._blend = np.clip(self._blend + np.where(self.walking, step, -step), 0.0, 1.0)
         landed = np.clip(self._landed + np.where(self.landing, -step, step), 0.0, 1.0)
-        self._landed = np.where(walks | ~self.walking, landed, 1.0 - self.landing)  # it stands up to wade
-        asked = 1.0 - self._out * self.landing
-        most = self._pump * self._period
-        self._air_fraction = self._air_fraction + np.clip(asked - self._air_fraction, -most, most)
+        self._landed = np.where(
+            walks | ~self.walking, landed, 1.0 - self.landing
+        )  # a robot that begins to wade stands up
+        air_target = 1.0 - self._air_released * self.landing
+        max_step = self._pump * self._period
+        self._air_fraction = self._air_fraction + np.clip(air_target - self._air_fraction, -max_step, max_step)
 
-    def _mixed(self, swum: np.ndarray) -> np.ndarray:
-        """Return the posture between that of the swim and that of the walk, shape (run, servo) [rad]."""
+    def _mixed(self, swim_targets: np.ndarray) -> np.ndarray:
+        """Return the posture between that of the swim and that of the walk, shape (run, servo) [rad].
+
+        Args:
+            swim_targets: servo angles of the swim, shape (run, servo) [rad].
+        """
         if not self._blend.any():
-            return swum
-        walked = self._walked(self._batch)
+            return swim_targets
+        walk_targets = self._walk_posture(self._batch)
         if (self._landed < 1.0).any():
-            waded = self._walked(self._wade_batch)
-            walked = waded + _eased(self._landed) * (walked - waded)
-        return np.asarray(swum + _eased(self._blend) * (walked - swum))
+            wade_targets = self._walk_posture(self._wade_batch)
+            walk_targets = wade_targets + _eased(self._landed) * (walk_targets - wade_targets)
+        return np.asarray(swim_targets + _eased(self._blend) * (walk_targets - swim_targets))
 
-    def _walked(self, gaits: Batch) -> np.ndarray:
+    def _walk_posture(self, gaits: Batch) -> np.ndarray:
         """Return the postures of gaits at the present phases, shape (run, servo) [rad]."""
-        steer = Steer(size=np.clip(self._grown / _GROWS, 0.0, 1.0), stroke=self._stroke, bend=self._trunk)
+        steer = Steer(size=np.clip(self._unbroken_cycles / _GROWS, 0.0, 1.0), stroke=self._stroke, bend=self._trunk)
         return gaits.targets(self._phase, gaits.axis_phase(self._phase, self._cycles), steer)
 
 
-def _eased(share: np.ndarray) -> np.ndarray:
-    """Return shares that begin and end without a jump of their rate, shape (run, 1)."""
-    return np.asarray(share**2 * (3.0 - 2.0 * share))[:, None]
+def _eased(fraction: np.ndarray) -> np.ndarray:
+    """Return fractions eased by 3 x^2 - 2 x^3, whose rate is zero at both ends, shape (run, 1)."""
+    return np.asarray(fraction**2 * (3.0 - 2.0 * fraction))[:, None]
 
 
 controller = Amphibious

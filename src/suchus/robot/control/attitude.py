@@ -1,4 +1,4 @@
-"""What the IMU says about roll and pitch, answered by the height of the feet."""
+"""Attitude feedback: the height of the feet is changed by the roll and pitch that the IMU measures."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -45,43 +45,55 @@ class AttitudeRule:
 
 
 class Attitude:
-    """The attitude of a batch, and what the feet do about it; each run has its own rule or none."""
+    """The attitude feedback of a batch; each run has its own rule or none."""
 
     def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[Robot], period: float) -> None:
-        given = [rule if rule is not None else _NONE for rule in rules]
-        self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in given]).T[..., None]  # (4, run, 1)
-        self._most = np.array([[rule.most * _size(robot)] for rule, robot in zip(given, robots, strict=True)])
-        self._keep = np.exp(-period / np.array([r.washout for r in given]))
-        self._aside = np.array([[limb.side * limb.girdle.aside for limb in layout(robot).limbs] for robot in robots])
-        self._ahead = np.array([_ahead(robot) for robot in robots])
+        """Gather gains and hip positions of the batch.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            period: of control [s].
+        """
+        active_rules = [rule if rule is not None else _INACTIVE_RULE for rule in rules]
+        # shape (4, run, 1)
+        self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in active_rules]).T[..., None]
+        self._max_lift = np.array(
+            [[rule.most * _size(robot)] for rule, robot in zip(active_rules, robots, strict=True)]
+        )
+        self._keep = np.exp(-period / np.array([r.washout for r in active_rules]))
+        self._lateral_offset = np.array(
+            [[limb.side * limb.girdle.aside for limb in layout(robot).limbs] for robot in robots]
+        )
+        self._forward_offset = np.array([_hips_forward_of_center(robot) for robot in robots])
         self._mean = np.zeros((2, len(robots)))
-        self._felt = False
+        self._is_initialised = False
 
     def lower(self, sensed: Sensed) -> Float[np.ndarray, "run limb"]:
         """Return how much lower each foot goes [m]."""
         tilt = np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)])
-        if not self._felt:
-            self._mean, self._felt = tilt.copy(), True
+        if not self._is_initialised:
+            self._mean, self._is_initialised = tilt.copy(), True
         self._mean = tilt + self._keep * (self._mean - tilt)
         roll, pitch = (tilt - self._mean)[..., None]
         rates = sensed.angular_velocity
         rolled = self._gain[0] * roll + self._gain[1] * rates[:, :1]
         pitched = self._gain[2] * pitch + self._gain[3] * rates[:, 1:2]
-        lower = -self._aside * rolled + self._ahead * pitched
-        return np.asarray(np.clip(np.nan_to_num(lower), -self._most, self._most))
+        foot_lowering = -self._lateral_offset * rolled + self._forward_offset * pitched
+        return np.asarray(np.clip(np.nan_to_num(foot_lowering), -self._max_lift, self._max_lift))
 
 
-_NONE = AttitudeRule(roll=0.0, roll_rate=0.0, pitch=0.0, pitch_rate=0.0)
+_INACTIVE_RULE = AttitudeRule(roll=0.0, roll_rate=0.0, pitch=0.0, pitch_rate=0.0)
 
 
-def _ahead(robot: Robot) -> list[float]:
+def _hips_forward_of_center(robot: Robot) -> list[float]:
     """Return how far each limb's hips are ahead of the middle between the foremost and the hindmost girdle [m]."""
     hips = [hips_ahead(robot, limb.number) for limb in layout(robot).limbs]
-    middle = (hips[0] + hips[-1]) / 2 if hips else 0.0
-    return [one - middle for one in hips]
+    center = (hips[0] + hips[-1]) / 2 if hips else 0.0
+    return [hip - center for hip in hips]
 
 
 def _size(robot: Robot) -> float:
-    """Return how long the hind limbs are beside those of the article's robot [-]."""
+    """Return the reach of the hind limbs over that of the article's robot [-]."""
     limbs = layout(robot).limbs
     return round(limbs[-1].girdle.limb.reach / LIMB_REACH, 9) if limbs else 1.0

@@ -1,4 +1,4 @@
-"""The contract of a controller: a frozen setting that starts a machine for a batch."""
+"""The interface of a controller: a frozen setting that starts the controller of a batch."""
 
 from dataclasses import fields
 from typing import Any, NamedTuple, Protocol, runtime_checkable
@@ -12,7 +12,7 @@ from suchus.robot.motion import Gait
 
 
 class Command(NamedTuple):
-    """What a controller says for one control period."""
+    """The command of a controller for one control period."""
 
     targets: Float[np.ndarray, "run servo"]
     """Servo angles [rad]."""
@@ -38,15 +38,15 @@ SENSED = tuple(field.name for field in fields(Sensed) if field.name != "time")
 """What a robot can sense: the fields of ``Sensed``, the time aside."""
 
 
-def united(*felt: tuple[str, ...]) -> tuple[str, ...]:
-    """Return what several rules feel together, each once, in the order of ``Sensed``."""
-    return tuple(name for name in SENSED if any(name in one for one in felt))
+def united(*rule_needs: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the sensors that any of several rules needs, in the order of ``Sensed``."""
+    return tuple(name for name in SENSED if any(name in names for names in rule_needs))
 
 
 def needs(control: "Control") -> tuple[str, ...]:
-    """Return what a robot must sense for a control: fields of ``Sensed``; all of them where it feels and does not say.
+    """Return the sensors that a control needs: its property ``needs``, else all fields of ``Sensed`` if it reads any.
 
-    A simulated robot senses everything, one that is built what it has sensors for.
+    A simulated robot has all sensors, a real one those that it is built with.
     """
     return tuple(getattr(control, "needs", SENSED if control.feels else ()))
 
@@ -67,20 +67,20 @@ class Runs(NamedTuple):
 
     @classmethod
     def alike(cls, control: Any, robot: Robot, gait: Gait, *, count: int = 1, ticks: int = 1) -> "Runs":
-        """Return runs that differ in nothing, not even in the seed, 0."""
+        """Return several equal runs, all with the seed 0."""
         return cls((control,) * count, (robot,) * count, (gait,) * count, (0,) * count, ticks)
 
 
 @runtime_checkable
 class Control(Protocol):
-    """A controller as a value on a run; the runs of a batch whose controls are of one class share a controller.
+    """A controller as a setting of a run; runs of a batch whose controls have one class share one controller.
 
-    One that feels may say what, in a property ``needs``; see the function of that name.
+    A control that reads sensors may name them in a property ``needs``; see the function of that name.
     """
 
     @property
     def feels(self) -> bool:
-        """Whether it wants to know what the robot senses."""
+        """Whether the controller reads sensors."""
 
     @staticmethod
     def start(runs: Runs, period: float) -> Controller:

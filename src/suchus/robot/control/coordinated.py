@@ -38,7 +38,7 @@ class Kick:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coordinated:
-    """Three feedback rules over the gait's clock, and a heading loop for who wants one.
+    """Three feedback rules over the gait's clock, and an optional heading loop.
 
     With the law ``off`` and no rule the commands are those of ``OpenLoop``, to the bit.
 
@@ -82,7 +82,7 @@ class Coordinated:
         )
 
     def suited(self, robot: Robot, gait: Gait) -> "Coordinated":
-        """Return it with those of its rules that a robot's parts make possible in a gait.
+        """Return the control with those of its rules that the robot's parts allow in a gait.
 
         A law that makes diagonal pairs is switched off in a gait without them.
         """
@@ -104,6 +104,16 @@ class Coordinator:
     """The controllers of limbs, spine and tail of a batch, and the posture that they ask for together."""
 
     def __init__(self, runs: Runs, period: float) -> None:
+        """Start the oscillators and rules of a batch.
+
+        Args:
+            runs: controls, robots, gaits and seeds.
+            period: of control [s].
+
+        Raises:
+            InvalidDesign: a kick has not one phase for each limb.
+            UnsuitedRobot: a robot lacks the parts that one of its rules needs.
+        """
         controls, robots, gaits, seeds, _ = runs
         for gait in gaits:
             gait.needs_steering("the closed loop")
@@ -113,18 +123,18 @@ class Coordinator:
         self._period = period
         self._table = OpenLoop.start(runs._replace(controls=(OpenLoop(),) * len(robots)), period)
         self._gaits = Batch(robots, gaits)
-        ahead = np.zeros((len(robots), limbs))
+        phase_lead = np.zeros((len(robots), limbs))
         self._noise: list[tuple[int, float, np.random.Generator]] = []
         self._kicks: dict[int, list[tuple[int, np.ndarray]]] = {}
         for run, (control, gait, seed) in enumerate(zip(controls, gaits, seeds, strict=True)):
             if control.random_start:
-                ahead[run] = np.random.default_rng([seed, 0]).random(limbs) - gait.limb_phases
+                phase_lead[run] = np.random.default_rng([seed, 0]).random(limbs) - gait.limb_phases
             if control.load_noise > 0.0:
                 self._noise.append((run, control.load_noise, np.random.default_rng([seed, 1])))
             for kick in control.kicks:
                 self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
         self._hears = np.array([control.sharing for control in controls])[:, None]
-        self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
+        self._limbs = Limbs([control.limbs for control in controls], robots, gaits, phase_lead, period)
         self._spine = SpineController([control.spine for control in controls], robots, period)
         self._tail = TailController([control.tail for control in controls], robots, gaits, period)
         steers = any(control.heading is not None for control in controls)
@@ -132,14 +142,14 @@ class Coordinator:
         self._shared = silence(len(robots), limbs)
         self._steering = Steering.none(len(robots), limbs)
 
-    def take_over(self, before: "Coordinator") -> None:
-        """Go on from where another coordinator of the same runs stands, with other gaits or rules."""
-        self._limbs.take_over(before._limbs)
-        self._spine.take_over(before._spine)
-        self._tail.take_over(before._tail)
-        self._shared = before._shared
-        if self._heading is not None and before._heading is not None:
-            self._heading.take_over(before._heading)
+    def take_over(self, predecessor: "Coordinator") -> None:
+        """Continue from another coordinator of the same runs, with other gaits or rules."""
+        self._limbs.take_over(predecessor._limbs)
+        self._spine.take_over(predecessor._spine)
+        self._tail.take_over(predecessor._tail)
+        self._shared = predecessor._shared
+        if self._heading is not None and predecessor._heading is not None:
+            self._heading.take_over(predecessor._heading)
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
@@ -147,10 +157,15 @@ class Coordinator:
         return self._posture(0)
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Let every controller read the shared variables and what it feels, and say what the servos do."""
+        """Return the servo targets after every controller has read the shared variables and its sensors.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None if no rule is on.
+        """
         walking = tick * self._period >= START - _SLACK
-        for run, ahead in self._kicks.get(tick, ()):
-            self._limbs.kick(run, ahead)
+        for run, phase_lead in self._kicks.get(tick, ()):
+            self._limbs.kick(run, phase_lead)
         if sensed is not None and self._noise:
             sensed = self._noisy(sensed)
         self._share(tick, sensed, walking=walking)
@@ -167,21 +182,22 @@ class Coordinator:
         return np.asarray(max(tick * self._period - START, 0.0) / self._gaits.periods)
 
     def _share(self, tick: int, sensed: Sensed | None, *, walking: bool) -> None:
+        """Let limbs, spine and tail write their shared variables, in this order."""
         phases, clock = self._table.command(tick, None).phase, self._clock(tick)
         limbs = self._limbs.step(self._shared, sensed, phases, walking=walking)
-        heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
-        self._axis = self._gaits.axis_phase(heard.limb_phase, clock)
-        bent = self._tail.step(self._spine.step(heard, self._gaits, clock), self._gaits, clock)
-        self._shared = replace(bent, limb_phase=limbs.limb_phase)
+        limb_state = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
+        self._axis = self._gaits.axis_phase(limb_state.limb_phase, clock)
+        axis_state = self._tail.step(self._spine.step(limb_state, self._gaits, clock), self._gaits, clock)
+        self._shared = replace(axis_state, limb_phase=limbs.limb_phase)
 
     def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
-        """Return the servo angles; where nothing is ahead of the clock and nobody steers, those of the table."""
+        """Return the servo angles; those of the table for runs without phase lead and steering."""
         table = self._table.command(tick, None).targets
-        moved = self._limbs.ahead.any(axis=1) | self._steering.any()
-        if not moved.any():
+        is_adjusted = self._limbs.ahead.any(axis=1) | self._steering.any()
+        if not is_adjusted.any():
             return table
         steer = Steer(stroke=1.0 + self._steering.stroke, bend=self._steering.trunk)
-        return np.where(moved[:, None], self._gaits.targets(self._shared.limb_phase, self._axis, steer), table)
+        return np.where(is_adjusted[:, None], self._gaits.targets(self._shared.limb_phase, self._axis, steer), table)
 
     def _noisy(self, sensed: Sensed) -> Sensed:
         pressure = sensed.foot_pressure.copy()
@@ -191,6 +207,12 @@ class Coordinator:
 
 
 def _refuse_others(control: Coordinated, robot: Robot, gait: Gait) -> None:
+    """Refuse a control whose kicks or rules do not fit the robot.
+
+    Raises:
+        InvalidDesign: a kick has not one phase for each limb.
+        UnsuitedRobot: the robot lacks the parts that a rule needs.
+    """
     place = layout(robot)
     for kick in control.kicks:
         if len(kick.ahead) != len(place.limbs):

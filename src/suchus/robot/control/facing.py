@@ -1,4 +1,4 @@
-"""The heading of robots, without the swinging of their own cycle."""
+"""The heading of robots, averaged over their cycle."""
 
 from collections.abc import Sequence
 from math import pi
@@ -22,26 +22,27 @@ class Facing:
     def __init__(self, robots: Sequence[Robot], cycle: Sequence[int]) -> None:
         self._yaw = list(layout(robots[0]).trunk_yaw)
         self._cycle, self._runs = np.array(cycle), np.arange(len(cycle))
-        self._summed = np.zeros((int(self._cycle.max()) + 1, len(cycle)))  # a ring, as long as the longest cycle
+        self._summed = np.zeros((int(self._cycle.max()) + 1, len(cycle)))  # ring buffer of the longest cycle
         self._count = 0
         self._walks = False
-        self._last = np.zeros(len(cycle))
+        self._previous_facing = np.zeros(len(cycle))
         self._turned = np.zeros(len(cycle))
 
     def feel(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
-        """Return how far each robot has turned to the left since the first call, a mean over its last cycle [rad]."""
+        """Return the heading of each robot since the first call, left positive, averaged over its last cycle [rad]."""
         trunk = finite(sensed.servo_position[:, self._yaw]).sum(1)
         facing = rotation.yaw(finite(sensed.orientation)) + trunk / 2
         if self._walks:
-            self._turned = self._turned + (facing - self._last + pi) % (2 * pi) - pi
-        self._walks, self._last = True, facing
+            self._turned = self._turned + (facing - self._previous_facing + pi) % (2 * pi) - pi
+        self._walks, self._previous_facing = True, facing
         self._count += 1
         size = len(self._summed)
-        now, before = self._count % size, (self._count - 1) % size
-        self._summed[now] = self._summed[before] + self._turned
+        slot, previous_slot = self._count % size, (self._count - 1) % size
+        self._summed[slot] = self._summed[previous_slot] + self._turned
         window = np.minimum(self._cycle, self._count)
-        return np.asarray((self._summed[now] - self._summed[(self._count - window) % size, self._runs]) / window)
+        return np.asarray((self._summed[slot] - self._summed[(self._count - window) % size, self._runs]) / window)
 
-    def take_over(self, before: "Facing") -> None:
-        """Go on from where another one of the same runs stands; the mean over the last cycle begins anew."""
-        self._walks, self._last, self._turned = before._walks, before._last, before._turned
+    def take_over(self, predecessor: "Facing") -> None:
+        """Continue from another estimator of the same runs; the mean over the last cycle starts again."""
+        self._walks, self._turned = predecessor._walks, predecessor._turned
+        self._previous_facing = predecessor._previous_facing

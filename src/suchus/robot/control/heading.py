@@ -1,4 +1,4 @@
-"""A heading loop: what the IMU says about the direction of the walk, answered by one side's stroke."""
+"""A heading loop: the stroke of one side is changed by the error of the heading that the IMU measures."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -54,11 +54,11 @@ class Steering(NamedTuple):
 
     @classmethod
     def none(cls, runs: int, limbs: int) -> "Steering":
-        """Return what steers straight ahead."""
+        """Return zero steering for every run."""
         return cls(np.zeros((runs, limbs)), np.zeros(runs))
 
     def any(self) -> Bool[np.ndarray, " run"]:
-        """Tell which runs are steered."""
+        """Return which runs are steered."""
         return self.stroke.any(axis=1) | (self.trunk != 0.0)
 
 
@@ -72,21 +72,29 @@ class Heading:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
-        off = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
-        settings = [rule or off for rule in rules]
+        """Gather the gains of the batch, and the greatest steering that each robot's limbs allow.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            gaits: one for each run.
+            period: of control [s].
+        """
+        neutral_rule = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
+        settings = [rule or neutral_rule for rule in rules]
         self._direction, self._gain, self._integral_gain, self._trunk = (
             np.array([getattr(rule, name) for rule in settings])
             for name in ("direction", "gain", "integral_gain", "trunk")
         )
         self._runs = np.arange(len(gaits))
         self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
-        self._most = np.array([_most(*those) for those in zip(settings, robots, gaits, strict=True)])
+        self._max_steering = np.array([_steering_limit(*setup) for setup in zip(settings, robots, gaits, strict=True)])
         self._facing = Facing(robots, [int(cycle) for cycle in self._cycle])
-        self._left = np.array([limb.side for limb in layout(robots[0]).limbs])
+        self._limb_sides = np.array([limb.side for limb in layout(robots[0]).limbs])
         self._offset = np.zeros(len(gaits))
 
     def step(self, sensed: Sensed, *, walking: bool | Bool[np.ndarray, " run"]) -> Steering:
-        """Answer to the direction that is felt now.
+        """Return the steering that the present heading error demands.
 
         Args:
             sensed: what is felt.
@@ -94,22 +102,27 @@ class Heading:
                 either.
         """
         if walking is False:
-            return Steering.none(len(self._runs), len(self._left))
+            return Steering.none(len(self._runs), len(self._limb_sides))
         error = self._facing.feel(sensed) - self._direction
-        offset = np.clip(self._offset - self._integral_gain * error / self._cycle, -self._most, self._most)
+        offset = np.clip(
+            self._offset - self._integral_gain * error / self._cycle, -self._max_steering, self._max_steering
+        )
         self._offset = np.where(walking, offset, 0.0)
-        steer = np.where(walking, np.clip(self._offset - self._gain * error, -self._most, self._most), 0.0)
-        return Steering(-self._left * steer[:, None], self._trunk * steer)
+        steer = np.where(
+            walking, np.clip(self._offset - self._gain * error, -self._max_steering, self._max_steering), 0.0
+        )
+        return Steering(-self._limb_sides * steer[:, None], self._trunk * steer)
 
-    def take_over(self, before: "Heading") -> None:
-        """Go on from where the loops of the same runs stand; the mean over the last cycle begins anew."""
-        self._facing.take_over(before._facing)
-        self._offset = np.clip(before._offset, -self._most, self._most)
+    def take_over(self, predecessor: "Heading") -> None:
+        """Continue from the loops of the same runs; the mean over the last cycle starts again."""
+        self._facing.take_over(predecessor._facing)
+        self._offset = np.clip(predecessor._offset, -self._max_steering, self._max_steering)
 
 
-def _most(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
+def _steering_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
+    """Return the greatest steering command u that the limbs can follow [-]; 0 in a gait without strokes."""
     if not gait.has("strokes"):
         return 0.0
-    if rule.gain == rule.integral_gain == 0.0:  # nothing steers, and how far the limbs reach takes long to find
+    if rule.gain == rule.integral_gain == 0.0:  # nothing steers; computing the limbs' reach would be slow
         return rule.most
     return min(rule.most, max(longest_strokes(robot, gait) - 1.0, 0.0))

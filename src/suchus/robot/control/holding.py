@@ -47,9 +47,9 @@ class HeadingHold:
 class DepthHold:
     """Keeps a depth by the air in the hull.
 
-    With e how much deeper than asked the root is and w its sinking speed, the share of the air that is kept is that of
-    neutral buoyancy plus gain e + rate_gain w + integral_gain sum(e dt), within 0 and 1, and changes by ``pump`` at
-    most. Errors beyond ``near`` do not add up.
+    Let e be the depth of the root minus its target, and w its sinking speed. The fraction of the air that is kept is
+    that of neutral buoyancy plus gain e + rate_gain w + integral_gain sum(e dt), within 0 and 1. It changes at a rate
+    of ``pump`` at most. Errors beyond ``near`` are not integrated.
     """
 
     depth: float
@@ -76,7 +76,7 @@ class DepthHold:
 
 
 def neutral_air_fraction(robot: Robot) -> float:
-    """Return the share of its hull's air with which a robot under fresh water neither sinks nor rises [-].
+    """Return the fraction of its hull's air with which a robot under fresh water neither sinks nor rises [-].
 
     Raises:
         InvalidDesign: its hull has no air, or not enough of it.
@@ -90,54 +90,72 @@ class Headings:
     def __init__(
         self, rules: Sequence[HeadingHold | None], robots: Sequence[Robot], cycle: Sequence[int], period: float
     ) -> None:
-        off = HeadingHold(gain=0.0, integral_gain=0.0, turn=0.0, trunk_turn=0.0)
-        given = [rule or off for rule in rules]
+        """Gather the gains of the batch.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            cycle: length of each gait's cycle in control periods.
+            period: of control [s].
+        """
+        neutral_rule = HeadingHold(gain=0.0, integral_gain=0.0, turn=0.0, trunk_turn=0.0)
+        active_rules = [rule or neutral_rule for rule in rules]
         self._direction, self._gain, self._integral, self._turn, self._trunk = (
-            np.array([getattr(rule, name) for rule in given])
+            np.array([getattr(rule, name) for rule in active_rules])
             for name in ("direction", "gain", "integral_gain", "turn", "trunk_turn")
         )
         self._facing, self._period = Facing(robots, cycle), period
-        self._offset = np.zeros(len(given))
+        self._offset = np.zeros(len(active_rules))
 
     def bend(self, sensed: Sensed) -> tuple[Float[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return the mean bends of tail and trunk, left positive [rad]."""
         error = self._facing.feel(sensed) - self._direction
         self._offset = np.clip(self._offset - self._integral * error * self._period, -1.0, 1.0)
-        share = np.clip(self._offset - self._gain * error, -1.0, 1.0)
-        return self._turn * share, self._trunk * share
+        bend_fraction = np.clip(self._offset - self._gain * error, -1.0, 1.0)
+        return self._turn * bend_fraction, self._trunk * bend_fraction
 
 
 class Depths:
     """The depth holds of a batch."""
 
     def __init__(self, rules: Sequence[DepthHold | None], robots: Sequence[Robot], period: float) -> None:
-        self._on = np.array([rule is not None for rule in rules])
-        off = DepthHold(depth=0.0)
-        given = [rule or off for rule in rules]
+        """Gather the gains of the batch, and the air with which each robot is neutrally buoyant.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            period: of control [s].
+        """
+        self._is_active = np.array([rule is not None for rule in rules])
+        neutral_rule = DepthHold(depth=0.0)
+        active_rules = [rule or neutral_rule for rule in rules]
         self._rule = {
-            name: np.array([getattr(rule, name) for rule in given]) for name in DepthHold.__dataclass_fields__
+            name: np.array([getattr(rule, name) for rule in active_rules]) for name in DepthHold.__dataclass_fields__
         }
         self._neutral = np.array(
             [1.0 if rule is None else neutral_air_fraction(robot) for rule, robot in zip(rules, robots, strict=True)]
         )
-        self._period, self._kept = period, keep(0.2, period)
-        self._last: np.ndarray | None = None
-        self._sinking, self._offset = np.zeros(len(given)), np.zeros(len(given))
-        self._air_fraction = np.ones(len(given))
+        self._period, self._decay = period, keep(0.2, period)
+        self._previous_depth: np.ndarray | None = None
+        self._sinking, self._offset = np.zeros(len(active_rules)), np.zeros(len(active_rules))
+        self._air_fraction = np.ones(len(active_rules))
 
     def air_fraction(self, sensed: Sensed) -> Float[np.ndarray, " run"] | None:
-        """Return the share of the air that each robot keeps, NaN where none is asked for [-]."""
-        if sensed.depth is None or not self._on.any():
+        """Return the fraction of the air that each robot keeps, NaN for a run without a rule [-]."""
+        if sensed.depth is None or not self._is_active.any():
             return None
         rule, depth = self._rule, finite(sensed.depth)
-        speed = np.zeros_like(depth) if self._last is None else (depth - self._last) / self._period
-        self._last = depth
-        self._sinking = speed + self._kept * (self._sinking - speed)
+        speed = np.zeros_like(depth) if self._previous_depth is None else (depth - self._previous_depth) / self._period
+        self._previous_depth = depth
+        self._sinking = speed + self._decay * (self._sinking - speed)
         error = depth - rule["depth"]
         offset = self._offset + rule["integral_gain"] * error * self._period
-        asked = self._neutral + rule["gain"] * error + rule["rate_gain"] * self._sinking + offset
-        within = (asked >= 0.0) & (asked <= 1.0) & (np.abs(error) <= rule["near"])  # where the air can answer
-        self._offset = np.where(within, offset, self._offset)
-        most = rule["pump"] * self._period
-        self._air_fraction = self._air_fraction + np.clip(np.clip(asked, 0.0, 1.0) - self._air_fraction, -most, most)
-        return np.where(self._on, self._air_fraction, np.nan)
+        target_fraction = self._neutral + rule["gain"] * error + rule["rate_gain"] * self._sinking + offset
+        # anti-windup: integrate only within the limits of the air
+        is_answerable = (target_fraction >= 0.0) & (target_fraction <= 1.0) & (np.abs(error) <= rule["near"])
+        self._offset = np.where(is_answerable, offset, self._offset)
+        max_step = rule["pump"] * self._period
+        self._air_fraction = self._air_fraction + np.clip(
+            np.clip(target_fraction, 0.0, 1.0) - self._air_fraction, -max_step, max_step
+        )
+        return np.where(self._is_active, self._air_fraction, np.nan)

@@ -1,4 +1,4 @@
-"""Limb to limb: one phase oscillator per limb, slowed or hastened by what the feet carry."""
+"""Limb to limb: one phase oscillator per limb, whose rate depends on the loads of the feet."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from suchus.robot.control.shared import Shared
 from suchus.robot.design import GRAVITY, Layout, Robot, layout
 from suchus.robot.motion import Gait
 
-_DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates
+_DIAGONAL = 0.02  # [cycle]; greatest deviation from diagonal pairs in a gait for laws that make such pairs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,7 +93,7 @@ another body). ``wrong_sign``: the cross-load law reversed, which must fail.
 
 
 class Loads:
-    """What the limbs of a batch of equal bodies receive from feet and trunk, of any number.
+    """The filtered loads of feet and trunk of a batch, and their effect on the limbs' clocks.
 
     Args:
         laws: one for each run.
@@ -118,19 +118,19 @@ class Loads:
         self._load: np.ndarray | None = None
         self._twist: np.ndarray | None = None
 
-    def take_over(self, before: "Loads") -> None:
+    def take_over(self, predecessor: "Loads") -> None:
         """Go on with the filtered loads of the same runs."""
-        self._load, self._twist = before._load, before._twist
+        self._load, self._twist = predecessor._load, predecessor._twist
 
     def feel(self, sensed: Sensed) -> None:
-        """Pass what is sensed through the filters."""
+        """Update the low-pass-filtered foot loads and trunk torque."""
         load = np.minimum(finite(sensed.foot_pressure) / self._share, self._clip)
         twist = finite(sensed.servo_torque[:, self._yaw]).sum(axis=1, keepdims=True) / self._torque
         self._load = load if self._load is None else load + self._keep * (self._load - load)
         self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
 
     def brake(self, phase: Float[np.ndarray, "run limb"]) -> Float[np.ndarray, "run limb"]:
-        """Return by which part of its clock each limb is slowed; nothing before anything was felt [-].
+        """Return the fraction by which each limb's clock is slowed [-]; 0 before the first reading.
 
         Args:
             phase: of the limbs [cycle].
@@ -138,32 +138,46 @@ class Loads:
         if self._load is None or self._twist is None:
             return np.zeros_like(phase)
         angle = 2 * pi * (phase + self._middle)
-        heard = (self._weights * self._load[:, None, :]).sum(axis=-1)
-        return np.asarray(np.cos(angle - self._shift) * heard + self._trunk * np.cos(angle) * self._sides * self._twist)
+        load_feedback = (self._weights * self._load[:, None, :]).sum(axis=-1)
+        return np.asarray(
+            np.cos(angle - self._shift) * load_feedback + self._trunk * np.cos(angle) * self._sides * self._twist
+        )
 
 
 class Limbs:
-    """The oscillators of a batch. Their state is how far each limb is ahead of the gait's clock."""
+    """The oscillators of a batch; their state is each limb's phase lead over the gait's clock."""
 
     def __init__(
         self,
         laws: Sequence[LimbLaw],
         robots: Sequence[Robot],
         gaits: Sequence[Gait],
-        ahead: Float[np.ndarray, "run limb"],
+        phase_lead: Float[np.ndarray, "run limb"],
         period: float,
     ) -> None:
+        """Start the oscillators at a phase lead over the clock of the gait.
+
+        Args:
+            laws: one for each run.
+            robots: one for each run.
+            gaits: one for each run.
+            phase_lead: of each limb over the clock [cycle].
+            period: of control [s].
+
+        Raises:
+            OutsideLimits: a law makes diagonal pairs, and the gait has others.
+        """
         for law, gait in set(zip(laws, gaits, strict=True)):
             if law.pairs:
                 _refuse_others(gait, layout(robots[0]))
-        self.ahead = ahead
+        self.ahead = phase_lead
         self._loads = Loads(laws, robots, gaits, period)
         self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
 
     def step(
         self, shared: Shared, sensed: Sensed | None, clock: Float[np.ndarray, "run limb"], *, walking: bool
     ) -> Shared:
-        """Let the oscillators turn for one control period.
+        """Advance the oscillators by one control period.
 
         Args:
             shared: what the others say.
@@ -177,20 +191,20 @@ class Limbs:
                 self.ahead = self.ahead - self._cycles_per_tick * self._loads.brake(shared.limb_phase)
         return shared.written_by("limbs", limb_phase=clock + self.ahead)
 
-    def take_over(self, before: "Limbs") -> None:
-        """Go on from where the oscillators of the same runs stand; limbs that nothing coordinates fall in step."""
+    def take_over(self, predecessor: "Limbs") -> None:
+        """Continue from the oscillators of the same runs; limbs without feedback return to the clock."""
         if self._loads.felt:
-            self.ahead = before.ahead
-            self._loads.take_over(before._loads)
+            self.ahead = predecessor.ahead
+            self._loads.take_over(predecessor._loads)
 
-    def kick(self, run: int, ahead: Float[np.ndarray, " limb"]) -> None:
-        """Let the limbs of one run jump ahead [cycle]."""
+    def kick(self, run: int, phase_lead: Float[np.ndarray, " limb"]) -> None:
+        """Add a phase lead to the limbs of one run [cycle]."""
         self.ahead = self.ahead.copy()
-        self.ahead[run] += ahead
+        self.ahead[run] += phase_lead
 
 
 def _trunk_torque(robot: Robot) -> float:
-    """Return the sum of what the trunk's yaw servos can give, 1 of a robot without any [N m]."""
+    """Return the sum of the torque limits of the trunk's yaw servos; 1 for a robot without any [N m]."""
     place = layout(robot)
     return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw) or 1.0
 
@@ -204,26 +218,27 @@ def _off_pairs(place: Layout, gait: Gait) -> float:
     phases = gait.limb_phases
     pairs = [(i, j, 0.0) for i, limb in enumerate(place.limbs) for j in limb.diagonal]
     pairs += [(i, limb.contralateral, 0.5) for i, limb in enumerate(place.limbs)]
-    return max(abs((phases[i] - phases[j] + apart + 0.5) % 1.0 - 0.5) for i, j, apart in pairs)
+    return max(abs((phases[i] - phases[j] + phase_offset + 0.5) % 1.0 - 0.5) for i, j, phase_offset in pairs)
 
 
 def _refuse_others(gait: Gait, place: Layout) -> None:
-    worst = _off_pairs(place, gait)
-    if worst > _DIAGONAL:
+    """Refuse a gait whose limb phases are too far from diagonal pairs for a law that makes such pairs."""
+    deviation = _off_pairs(place, gait)
+    if deviation > _DIAGONAL:
         raise OutsideLimits(
-            f"gait {gait.name!r} has limb phases {gait.limb_phases}, {worst:.2f} cycle away from diagonal pairs; this "
-            "limb law would turn it into a trot: use the law 'off' or 'own_load'."
+            f"gait {gait.name!r} has limb phases {gait.limb_phases}, {deviation:.2f} cycle away from diagonal pairs; "
+            "this limb law would turn it into a trot: use the law 'off' or 'own_load'."
         )
 
 
 def _weights(law: LimbLaw, place: Layout) -> list[list[float]]:
-    """Return how much each limb (row) listens to each foot (column); limbs with two neighbours hear half of each."""
-    found = np.zeros((len(place.limbs), len(place.limbs)))
+    """Return the weight of each foot's load (column) for each limb (row); two neighbours count half each [-]."""
+    weights = np.zeros((len(place.limbs), len(place.limbs)))
     for i, limb in enumerate(place.limbs):
-        found[i, i] = law.own
-        found[i, limb.contralateral] = law.contralateral
-        for near, weight in ((limb.ipsilateral, law.ipsilateral), (limb.diagonal, law.diagonal)):
-            for other in near:
-                found[i, other] = weight / len(near)
-    rows: list[list[float]] = found.tolist()
+        weights[i, i] = law.own
+        weights[i, limb.contralateral] = law.contralateral
+        for neighbours, weight in ((limb.ipsilateral, law.ipsilateral), (limb.diagonal, law.diagonal)):
+            for neighbour in neighbours:
+                weights[i, neighbour] = weight / len(neighbours)
+    rows: list[list[float]] = weights.tolist()
     return rows

@@ -38,7 +38,7 @@ class OpenLoop:
 
     @staticmethod
     def start(runs: Runs, period: float) -> "GaitTable":
-        """Tabulate every gait; runs whose robots have one skeleton, with the same gait and control, share their rows.
+        """Tabulate every distinct gait; runs with one skeleton, gait and control share their table.
 
         Raises:
             OutsideLimits: a gait of measured curves is to grow over a ramp.
@@ -65,6 +65,13 @@ class GaitTable:
         phase: Float[np.ndarray, "gait tick limb"],
         row: np.ndarray,
     ) -> None:
+        """Hold the tables of a batch.
+
+        Args:
+            targets: servo angles of every distinct gait [rad].
+            phase: phases of the limbs in every distinct gait [cycle].
+            row: index of the gait of each run.
+        """
         self._targets = targets
         self._phase = phase
         self._row = row
@@ -74,7 +81,7 @@ class GaitTable:
         return self._targets[self._row, 0]
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Look up one tick."""
+        """Return the servo angles and phases of one control period from the tables."""
         del sensed
         return Command(self._targets[self._row, tick], self._phase[self._row, tick])
 

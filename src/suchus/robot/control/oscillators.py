@@ -1,4 +1,4 @@
-"""Phase oscillators that are coupled to each other: their numbers, who drives whom, and how they turn.
+"""Coupled phase oscillators: their parameters, their couplings, and their integration.
 
 After Ijspeert, Crespi, Ryczko and Cabelguen 2007 (Science 315, 1416): every oscillator i has a phase and an amplitude,
 
@@ -71,8 +71,8 @@ class Oscillators:
             for name in ("axis_weight", "sides_weight", "limb_axis_weight", "limb_weight"):
                 check.number(name, 0.0, 1e4, "1/s")
             for name, unit in (("frequency", "Hz"), ("amplitude", "")):
-                for what in ("axis", "limb"):
-                    check.each(f"{what}_{name}", ("value", "slope"), 0.0, 100.0, unit)
+                for group in ("axis", "limb"):
+                    check.each(f"{group}_{name}", ("value", "slope"), 0.0, 100.0, unit)
             check.range("axis_drives", 0.0, 100.0, "")
             check.range("limb_drives", 0.0, 100.0, "")
 
@@ -86,12 +86,12 @@ class Oscillators:
 
     @property
     def reference(self) -> float:
-        """The drive in the middle of what moves the limbs; a gait's own period and bends belong to it [-]."""
+        """The mean drive of the limbs' range, at which a gait's own period and bends apply [-]."""
         return (self.limb_drives[0] + self.limb_drives[1]) / 2
 
 
 class Couplings(NamedTuple):
-    """Who drives whom; one entry for each direction of a coupling, sorted by who is driven."""
+    """Couplings of the oscillators, one entry for each direction, sorted by receiver."""
 
     names: tuple[str, ...]
     """Names of the oscillators: ``axis_1_left`` from the head, then those on the right, then the limbs."""
@@ -119,11 +119,11 @@ def couple(
 ) -> Couplings:
     """Return the couplings of a body.
 
-    Neighbours on the axis keep a lag from head to tail, its sides take turns, each limb draws its side of its part of
-    the axis along, and limbs keep the phases of a gait against the limb on the other side and against the next one on
-    their own side. In a diagonal gait these are half a cycle, as published. Along an axis of more segments than the
-    published one the weights of the axis grow with the square of their number, since the time in which a chain of
-    oscillators locks does.
+    Neighbours on the axis keep a lag from head to tail, and left and right sides alternate. Each limb drives its side
+    of its part of the axis. Limbs keep the phases of a gait against the limb on the other side and the next limb on
+    their own side; in a diagonal gait these are half a cycle, as published. On an axis of more segments than the
+    published one the weights of the axis grow with the square of the number of segments, as the locking time of a chain
+    of oscillators does.
 
     Args:
         numbers: of the oscillators.
@@ -134,38 +134,38 @@ def couple(
     """
     n = len(axis)
     stiff = max(1.0, (n / PUBLISHED_SEGMENTS) ** 2)
-    found: list[tuple[int, int, float, float]] = []
+    edges: list[tuple[int, int, float, float]] = []
 
-    def both(one: int, other: int, weight: float, behind: float) -> None:
-        """Couple two oscillators of which the second is behind by so many cycles."""
-        found.append((other, one, weight, 2 * pi * behind))
-        found.append((one, other, weight, -2 * pi * behind))
+    def couple_pair(leader: int, follower: int, weight: float, phase_lag: float) -> None:
+        """Couple two oscillators in both directions; the follower lags the leader by ``phase_lag`` [cycle]."""
+        edges.append((follower, leader, weight, 2 * pi * phase_lag))
+        edges.append((leader, follower, weight, -2 * pi * phase_lag))
 
     for k in range(n):
-        both(k, n + k, stiff * numbers.sides_weight, 0.5)
+        couple_pair(k, n + k, stiff * numbers.sides_weight, 0.5)
     for k in range(1, n):
         for side in (0, n):
-            both(side + k - 1, side + k, stiff * numbers.axis_weight, lag)
+            couple_pair(side + k - 1, side + k, stiff * numbers.axis_weight, lag)
     for i in range(0, len(limbs), 2):
-        both(2 * n + i, 2 * n + i + 1, numbers.limb_weight, phases[i] - phases[i + 1])
+        couple_pair(2 * n + i, 2 * n + i + 1, numbers.limb_weight, phases[i] - phases[i + 1])
     for i in range(2, len(limbs)):
-        both(2 * n + i - 2, 2 * n + i, numbers.limb_weight, phases[i - 2] - phases[i])
-    for k, part in enumerate(axis):
-        for limb in range(len(limbs)):  # those of other girdles too, without weight: equal bodies have equal edges
+        couple_pair(2 * n + i - 2, 2 * n + i, numbers.limb_weight, phases[i - 2] - phases[i])
+    for k, segment in enumerate(axis):
+        for limb in range(len(limbs)):  # limbs of other girdles get weight 0, so that equal bodies have equal edges
             girdle, side = divmod(limb, 2)
-            weight = stiff * numbers.limb_axis_weight if girdle == part.girdle else 0.0
-            found.append((side * n + k, 2 * n + limb, weight, 2 * pi * part.phase_lag))
-    found.sort()
-    receiver, sender, weights, biases = (np.array(column) for column in zip(*found, strict=True))
+            weight = stiff * numbers.limb_axis_weight if girdle == segment.girdle else 0.0
+            edges.append((side * n + k, 2 * n + limb, weight, 2 * pi * segment.phase_lag))
+    edges.sort()
+    receiver, sender, weights, biases = (np.array(column) for column in zip(*edges, strict=True))
     names = [f"axis_{k + 1}_{side}" for side in ("left", "right") for k in range(n)]
     return Couplings((*names, *limbs), receiver, sender, weights.astype(float), biases.astype(float))
 
 
-def cut(whole: Couplings, lesions: Sequence[tuple[str, str]]) -> Couplings:
-    """Return couplings some of which are cut, in both directions.
+def cut(couplings: Couplings, lesions: Sequence[tuple[str, str]]) -> Couplings:
+    """Return the couplings with the weights of some set to zero, in both directions.
 
     Args:
-        whole: the couplings.
+        couplings: the couplings.
         lesions: pairs of names: of an oscillator (``axis_3_left``, ``LF``), of both sides of a segment (``axis_3``), or
             of many (``axis``, ``left``, ``right`` for one side of the axis, ``limbs``).
 
@@ -173,22 +173,28 @@ def cut(whole: Couplings, lesions: Sequence[tuple[str, str]]) -> Couplings:
         UnknownName: there is no such oscillator.
         OutsideLimits: nothing couples the two.
     """
-    weight = whole.weight.copy()
-    for one, other in lesions:
-        a, b = (np.isin(np.arange(len(whole.names)), _meant(whole.names, name)) for name in (one, other))
-        between = (a[whole.receiver] & b[whole.sender]) | (b[whole.receiver] & a[whole.sender])
-        if not whole.weight[between].any():
-            raise OutsideLimits(f"no coupling joins {one!r} and {other!r}, so that none can be cut: name neighbours.")
-        weight[between] = 0.0
-    return whole._replace(weight=weight)
+    weight = couplings.weight.copy()
+    for first_name, second_name in lesions:
+        a, b = (
+            np.isin(np.arange(len(couplings.names)), _select_oscillators(couplings.names, name))
+            for name in (first_name, second_name)
+        )
+        is_cut = (a[couplings.receiver] & b[couplings.sender]) | (b[couplings.receiver] & a[couplings.sender])
+        if not couplings.weight[is_cut].any():
+            raise OutsideLimits(
+                f"no coupling joins {first_name!r} and {second_name!r}, so that none can be cut: name neighbours."
+            )
+        weight[is_cut] = 0.0
+    return couplings._replace(weight=weight)
 
 
-def _meant(names: Sequence[str], name: str) -> list[int]:
-    axis = [i for i, one in enumerate(names) if one.startswith("axis_")]
+def _select_oscillators(names: Sequence[str], name: str) -> list[int]:
+    """Return the indices of the oscillators that a name stands for; see ``cut``."""
+    axis = [i for i, label in enumerate(names) if label.startswith("axis_")]
     sets = {"axis": axis, "limbs": [i for i in range(len(names)) if i not in axis]}
     sets |= {side: [i for i in axis if names[i].endswith(f"_{side}")] for side in ("left", "right")}
     sets |= {f"axis_{k + 1}": [k, len(axis) // 2 + k] for k in range(len(axis) // 2)}
-    sets |= {one: [i] for i, one in enumerate(names)}
+    sets |= {label: [i] for i, label in enumerate(names)}
     if name not in sets:
         raise UnknownName("oscillator", name, sets)
     return sets[name]
@@ -197,7 +203,7 @@ def _meant(names: Sequence[str], name: str) -> list[int]:
 class Rhythm:
     """The oscillators of a batch of equal bodies, integrated by Heun's method.
 
-    Each run takes as many steps as its own couplings need, so that it turns the same alone and beside others.
+    Each run takes as many steps as its own couplings need, so that its result does not depend on the batch.
 
     Args:
         couplings: one for each run; they may differ in weights and biases.
@@ -220,14 +226,15 @@ class Rhythm:
         self.phase = phase
         self.amplitude = amplitude
         self._rise = np.zeros_like(amplitude)
-        first = couplings[0]
-        self._receiver, self._sender = first.receiver, first.sender
-        self._starts = np.searchsorted(first.receiver, np.arange(len(first.names)))
-        self._weight = np.stack([one.weight for one in couplings])
-        self._bias = np.stack([one.bias for one in couplings])
-        self._rate = np.array([one.rate for one in numbers])[:, None]
+        template = couplings[0]
+        self._receiver, self._sender = template.receiver, template.sender
+        self._starts = np.searchsorted(template.receiver, np.arange(len(template.names)))
+        self._weight = np.stack([edges.weight for edges in couplings])
+        self._bias = np.stack([edges.bias for edges in couplings])
+        self._rate = np.array([parameters.rate for parameters in numbers])[:, None]
         self._steps = [
-            steps_needed(one, number, fast, period) for one, number, fast in zip(couplings, numbers, pace, strict=True)
+            steps_needed(edges, parameters, speed, period)
+            for edges, parameters, speed in zip(couplings, numbers, pace, strict=True)
         ]
         self._step = (period * pace / np.array(self._steps))[:, None]
 
@@ -236,34 +243,46 @@ class Rhythm:
         frequency: Float[np.ndarray, "run oscillator"],
         amplitude: Float[np.ndarray, "run oscillator"],
     ) -> None:
-        """Let one period pass, as the published clock counts it times the pace.
+        """Integrate one period of the published clock times the pace.
 
         Args:
             frequency: own frequencies, feedback included [Hz].
             amplitude: own amplitudes [-].
         """
-        own = 2 * pi * frequency
-        taken = np.array(self._steps)[:, None]
+        natural_rate = 2 * pi * frequency
+        step_counts = np.array(self._steps)[:, None]
         for step in range(max(self._steps)):
-            h = np.where(step < taken, self._step, 0.0)
-            one = self._slopes(own, amplitude, self.phase, self.amplitude, self._rise)
-            ahead = (y + h * dy for y, dy in zip((self.phase, self.amplitude, self._rise), one, strict=True))
-            two = self._slopes(own, amplitude, *ahead)
+            h = np.where(step < step_counts, self._step, 0.0)
+            start_slopes = self._slopes(natural_rate, amplitude, self.phase, self.amplitude, self._rise)
+            predicted_state = (
+                y + h * dy for y, dy in zip((self.phase, self.amplitude, self._rise), start_slopes, strict=True)
+            )
+            end_slopes = self._slopes(natural_rate, amplitude, *predicted_state)
             self.phase, self.amplitude, self._rise = (
-                y + h / 2 * (a + b) for y, a, b in zip((self.phase, self.amplitude, self._rise), one, two, strict=True)
+                y + h / 2 * (a + b)
+                for y, a, b in zip((self.phase, self.amplitude, self._rise), start_slopes, end_slopes, strict=True)
             )
 
     def _slopes(
-        self, own: np.ndarray, target: np.ndarray, phase: np.ndarray, amplitude: np.ndarray, rise: np.ndarray
+        self, natural_rate: np.ndarray, target: np.ndarray, phase: np.ndarray, amplitude: np.ndarray, rise: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        apart = phase[:, self._sender] - phase[:, self._receiver] - self._bias
-        pulls = amplitude[:, self._sender] * self._weight * np.sin(apart)
-        turning = own + np.add.reduceat(pulls, self._starts, axis=1)
+        """Return the time derivatives of phase, amplitude and amplitude rate, each of shape (run, oscillator).
+
+        Args:
+            natural_rate: own angular frequency of each oscillator [rad/s].
+            target: own amplitude of each oscillator [-].
+            phase: present phases [rad].
+            amplitude: present amplitudes [-].
+            rise: present rates of the amplitudes [1/s].
+        """
+        phase_difference = phase[:, self._sender] - phase[:, self._receiver] - self._bias
+        pulls = amplitude[:, self._sender] * self._weight * np.sin(phase_difference)
+        turning = natural_rate + np.add.reduceat(pulls, self._starts, axis=1)
         return turning, rise, self._rate * (self._rate / 4 * (target - amplitude) - rise)
 
 
 def steps_needed(couplings: Couplings, numbers: Oscillators, pace: float, period: float) -> int:
-    """Return in how many steps a period must be integrated, by the fastest rate of the network.
+    """Return the number of integration steps of a period, from the fastest rate of the network.
 
     Args:
         couplings: of the network.
@@ -271,15 +290,15 @@ def steps_needed(couplings: Couplings, numbers: Oscillators, pace: float, period
         pace: how many times faster than published it goes [-].
         period: [s].
     """
-    largest = max(
+    max_amplitude = max(
         line[0] + line[1] * drives[1]
         for line, drives in (
             (numbers.axis_amplitude, numbers.axis_drives),
             (numbers.limb_amplitude, numbers.limb_drives),
         )
     )
-    pulled = np.bincount(couplings.receiver, couplings.weight).max() * largest
-    return max(1, int(np.ceil(period * pace * max(numbers.rate, pulled) / _STEP)))
+    max_pull = np.bincount(couplings.receiver, couplings.weight).max() * max_amplitude
+    return max(1, int(np.ceil(period * pace * max(numbers.rate, max_pull) / _STEP)))
 
 
 def _lines(

@@ -28,24 +28,24 @@ class Courses:
     """What changes over time, for a batch; most of it is constant."""
 
     def __init__(self, values: Sequence[Course]) -> None:
-        self._steady = np.array([0.0 if isinstance(one, tuple) else one for one in values], dtype=float)
-        tables = members([one if isinstance(one, tuple) else None for one in values])
+        self._steady = np.array([0.0 if isinstance(value, tuple) else value for value in values], dtype=float)
+        tables = members([value if isinstance(value, tuple) else None for value in values])
         self._tables = [(np.array(table).T, runs) for table, runs in tables if table is not None]
 
     def at(self, time: float) -> Float[np.ndarray, " run"]:
         """Return the values at a time [s]."""
-        found = self._steady.copy()
+        current = self._steady.copy()
         for (times, values), runs in self._tables:
-            found[runs] = np.interp(time, times, values)
-        return found
+            current[runs] = np.interp(time, times, values)
+        return current
 
 
 def members(keys: Sequence[Any]) -> list[tuple[Any, np.ndarray]]:
-    """Return each different key with the numbers of those that have it."""
-    found: dict[Any, list[int]] = {}
+    """Return each distinct key with the indices of its occurrences."""
+    indices: dict[Any, list[int]] = {}
     for i, key in enumerate(keys):
-        found.setdefault(key, []).append(i)
-    return [(key, np.array(runs)) for key, runs in found.items()]
+        indices.setdefault(key, []).append(i)
+    return [(key, np.array(runs)) for key, runs in indices.items()]
 
 
 class Rules:
@@ -59,9 +59,21 @@ class Rules:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
+        """Start the rules of those runs that have one.
+
+        Args:
+            spines: rule of the spine, one for each run; None for a run without one.
+            tails: rule of the tail, one for each run; None for a run without one.
+            robots: one for each run.
+            gaits: one for each run.
+            period: of control [s].
+
+        Raises:
+            UnsuitedRobot: a robot lacks the servos that its rule needs.
+        """
         self._yaw = list(layout(robots[0]).trunk_yaw)
-        self._spined = [i for i, one in enumerate(spines) if one is not None]
-        self._tailed = [i for i, one in enumerate(tails) if one is not None]
+        self._spined = [i for i, rule in enumerate(spines) if rule is not None]
+        self._tailed = [i for i, rule in enumerate(tails) if rule is not None]
         self._spine: SpineController | None = None
         self._tail: TailController | None = None
         if self._spined:
@@ -82,15 +94,18 @@ class Rules:
     def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
         """Return the targets as the rules change them."""
         if self._spine is not None:
-            mine = targets[self._spined]
-            asked = mine[:, self._yaw].sum(axis=1)
-            targets[self._spined] = self._spine.correct(mine, asked, _felt(sensed, self._spined))
+            spine_targets = targets[self._spined]
+            target_bend = spine_targets[:, self._yaw].sum(axis=1)
+            targets[self._spined] = self._spine.correct(
+                spine_targets, target_bend, _sensed_of_runs(sensed, self._spined)
+            )
         if self._tail is not None:
-            targets[self._tailed] = self._tail.correct(targets[self._tailed], _felt(sensed, self._tailed))
+            targets[self._tailed] = self._tail.correct(targets[self._tailed], _sensed_of_runs(sensed, self._tailed))
         return targets
 
 
 def _with_tail(robot: Robot, gait: Gait) -> Gait:
+    """Return the gait if it pitches the tail and the robot can; refuse both otherwise."""
     if not (gait.has("tail pitch") and layout(robot).tail_pitch):
         raise UnsuitedRobot(
             f"the rule tail to tail needs a servo that pitches the tail and a gait that lays it down, as "
@@ -99,13 +114,13 @@ def _with_tail(robot: Robot, gait: Gait) -> Gait:
     return gait
 
 
-def _felt(sensed: Sensed, runs: list[int]) -> Sensed:
+def _sensed_of_runs(sensed: Sensed, runs: list[int]) -> Sensed:
     """Return the readings of some runs, as far as spine and tail read them."""
     return replace(sensed, servo_position=sensed.servo_position[runs], servo_torque=sensed.servo_torque[runs])
 
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
-_LEAST = 1e-9  # [-]; an amplitude below this is none
+_AMPLITUDE_TOLERANCE = 1e-9  # [-]; an amplitude below this is none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,9 +182,9 @@ class PatternGenerator:
                 check.number("lag", -0.5, 0.5, "cycle")
             if self.pace is not None:
                 check.number("pace", 1e-3, 1e3, "")
-            given = isinstance(self.initial, tuple) and all(abs(phase) <= 1e6 for phase in self.initial)
+            has_phases = isinstance(self.initial, tuple) and all(abs(phase) <= 1e6 for phase in self.initial)
             check.that(
-                given or self.initial in ("gait", "random"),
+                has_phases or self.initial in ("gait", "random"),
                 f"pattern_generator.initial is {str(self.initial)[:80]!r}; gait, random or a phase for each oscillator "
                 "is allowed",
             )
@@ -209,9 +224,18 @@ class Generator:
         seeds: Sequence[int],
         period: float,
     ) -> None:
+        """Couple the oscillators of every run and set their first phases.
+
+        Args:
+            controls: settings, one for each run.
+            robots: one for each run, all with the same layout.
+            gaits: one for each run.
+            seeds: of random first phases, one for each run.
+            period: of control [s].
+        """
         self._period = period
         self._groups = _grouped(controls, robots, gaits)
-        self._posture = [one for i in range(len(controls)) for one, runs in self._groups if i in runs]
+        self._posture = [posture for i in range(len(controls)) for posture, runs in self._groups if i in runs]
         limbs = layout(robots[0]).limb_names
         self._limbs = slice(2 * len(self._posture[0].segments), None)
         n = self._limbs.start // 2
@@ -220,30 +244,38 @@ class Generator:
         self._drive, self._asymmetry, self._steering = (
             Courses([getattr(control, name) for control in controls]) for name in ("drive", "asymmetry", "steering")
         )
-        self._shift = np.array([one.shift for one in self._posture])[:, None]
+        self._shift = np.array([posture.shift for posture in self._posture])[:, None]
         self._gradient = np.array([_graded(*pair) for pair in zip(controls, self._posture, strict=True)])
         gains = zip(controls, self._posture, strict=True)
-        self._gain = np.array([[c.steering_gain * one.steers for one in p.segments] for c, p in gains])
-        self._full = [max(float(c.oscillators.axis(np.array(c.oscillators.reference))[1]), _LEAST) for c in controls]
-        self._least = np.array([max(_least(c.oscillators), _LEAST) for c in controls])[:, None]
+        self._gain = np.array([[c.steering_gain * segment.steers for segment in p.segments] for c, p in gains])
+        self._full = [
+            max(float(c.oscillators.axis(np.array(c.oscillators.reference))[1]), _AMPLITUDE_TOLERANCE) for c in controls
+        ]
+        self._min_amplitude = np.array(
+            [max(_min_limb_amplitude(c.oscillators), _AMPLITUDE_TOLERANCE) for c in controls]
+        )[:, None]
         self.couplings = []
         """Of each run; see ``oscillators.Couplings``."""
         phases = []
-        self._felt = FeltDrive([one.load for one in controls], robots, period)
-        _, amplitude = self._own(START)
+        self._sensed_drive = FeltDrive([control.load for control in controls], robots, period)
+        _, amplitude = self._natural_rhythm(START)
         for i, (control, robot, gait, seed) in enumerate(zip(controls, robots, gaits, seeds, strict=True)):
-            parts = [one.part for one in self._posture[i].segments]
+            parts = [segment.part for segment in self._posture[i].segments]
             lag = 1.0 / n if control.lag is None else control.lag
-            whole = couple(control.oscillators, parts, limbs, gait.limb_phases, lag)
-            self.couplings.append(cut(whole, control.lesions))
-            driven = bool(amplitude[i, self._limbs].any())
-            phases.append(_initial(control, robot, gait, seed, self._posture[i], lag, driven=driven))
-        pace = np.array([_pace(*one) for one in zip(controls, robots, gaits, strict=True)])
+            couplings = couple(control.oscillators, parts, limbs, gait.limb_phases, lag)
+            self.couplings.append(cut(couplings, control.lesions))
+            has_active_limbs = bool(amplitude[i, self._limbs].any())
+            phases.append(
+                _initial(control, robot, gait, seed, self._posture[i], lag, has_active_limbs=has_active_limbs)
+            )
+        pace = np.array([_pace(*setup) for setup in zip(controls, robots, gaits, strict=True)])
         self._rhythm = Rhythm(
-            self.couplings, [one.oscillators for one in controls], pace, np.array(phases), amplitude, period
+            self.couplings, [control.oscillators for control in controls], pace, np.array(phases), amplitude, period
         )
-        self._loads = Loads([one.limbs for one in controls], robots, gaits, period)
-        self._rules = Rules([one.spine for one in controls], [one.tail for one in controls], robots, gaits, period)
+        self._loads = Loads([control.limbs for control in controls], robots, gaits, period)
+        self._rules = Rules(
+            [control.spine for control in controls], [control.tail for control in controls], robots, gaits, period
+        )
 
     @property
     def phase(self) -> Float[np.ndarray, "run oscillator"]:
@@ -263,53 +295,68 @@ class Generator:
     @property
     def wave(self) -> Float[np.ndarray, "run segment"]:
         """Bend of each segment of the axis to the left, in amplitudes of the gait [-]."""
-        out = self.amplitude * (1.0 + np.cos(self._rhythm.phase))
+        outputs = self.amplitude * (1.0 + np.cos(self._rhythm.phase))
         n = self._limbs.start // 2
-        return waves(out[:, :n], out[:, n : 2 * n], self._full) * self._gradient
+        return waves(outputs[:, :n], outputs[:, n : 2 * n], self._full) * self._gradient
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
         return self._targets(0.0)
 
     def advance(self, tick: int) -> None:
-        """Let the oscillators turn from the last control period to this one, if the walk has begun by then."""
-        before = (tick - 1) * self._period
-        if before >= START - _SLACK:
-            frequency, amplitude = self._own(before)
+        """Advance the oscillators from the last control period to this one, once the walk has begun.
+
+        Args:
+            tick: number of the control period.
+        """
+        previous_time = (tick - 1) * self._period
+        if previous_time >= START - _SLACK:
+            frequency, amplitude = self._natural_rhythm(previous_time)
             if self._loads.felt:
                 frequency[:, self._limbs] *= 1.0 - self._loads.brake(self.limb_phase)
             self._rhythm.advance(frequency, amplitude)
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Let the oscillators turn, and say what the servos do."""
+        """Advance the oscillators by one control period and return the servo targets.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None if no rule is on.
+        """
         if sensed is not None and self._loads.felt:
             self._loads.feel(sensed)
-        if sensed is not None and self._felt.felt:
-            self._felt.feel(sensed)
+        if sensed is not None and self._sensed_drive.felt:
+            self._sensed_drive.feel(sensed)
         self.advance(tick)
         targets = self._targets(tick * self._period)
         if sensed is not None and tick * self._period >= START - _SLACK:
             targets = self._rules.correct(targets, sensed)
         return Command(targets, self.limb_phase)
 
-    def _own(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+    def _natural_rhythm(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return own frequencies [Hz] and amplitudes [-] of all oscillators at a time."""
-        whole = self._drive.at(time) + self._felt.drive if self._felt.felt else self._drive.at(time)
-        drive = whole[:, None] + self._asymmetry.at(time)[:, None] * self._sides
+        common_drive = (
+            self._drive.at(time) + self._sensed_drive.drive if self._sensed_drive.felt else self._drive.at(time)
+        )
+        drive = common_drive[:, None] + self._asymmetry.at(time)[:, None] * self._sides
         frequency, amplitude = np.empty_like(drive), np.empty_like(drive)
         axis = slice(0, self._limbs.start)
-        for numbers, runs in self._numbers:
-            for part, law in ((axis, numbers.axis), (self._limbs, numbers.limbs)):
-                frequency[runs, part], amplitude[runs, part] = law(drive[runs, part])
+        for parameters, runs in self._numbers:
+            for group, law in ((axis, parameters.axis), (self._limbs, parameters.limbs)):
+                frequency[runs, group], amplitude[runs, group] = law(drive[runs, group])
         return frequency, amplitude
 
     def _targets(self, time: float) -> Float[np.ndarray, "run servo"]:
-        share = np.clip(self.amplitude[:, self._limbs] / self._least, 0.0, 1.0)
+        """Return the servo angles at a time [rad]."""
+        fraction = np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0)
         wave, phase = self.wave, self.limb_phase
         offset = self._steering.at(time)[:, None] * self._gain
-        found = [(runs, one.targets(phase[runs], share[runs], wave[runs], offset[runs])) for one, runs in self._groups]
-        targets = np.empty((len(phase), found[0][1].shape[1]))
-        for runs, angles in found:
+        group_targets = [
+            (runs, posture.targets(phase[runs], fraction[runs], wave[runs], offset[runs]))
+            for posture, runs in self._groups
+        ]
+        targets = np.empty((len(phase), group_targets[0][1].shape[1]))
+        for runs, angles in group_targets:
             targets[runs] = angles
         return targets
 
@@ -317,31 +364,37 @@ class Generator:
 def _grouped(
     controls: Sequence[PatternGenerator], robots: Sequence[Robot], gaits: Sequence[Gait]
 ) -> list[tuple[PatternPosture, np.ndarray]]:
+    """Return each distinct posture rule with the indices of its runs; refuse gaits that a robot cannot follow."""
     for robot, gait in set(zip(robots, gaits, strict=True)):
         check_limits(robot, gait)
-    keys = list(zip(robots, gaits, (one.silent == "standing" for one in controls), strict=True))
+    keys = list(zip(robots, gaits, (control.silent == "standing" for control in controls), strict=True))
     return [(PatternPosture(robot, gait, standing=standing), runs) for (robot, gait, standing), runs in members(keys)]
 
 
 def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
     places, factors = zip(*control.gradient, strict=True)
-    return [float(np.interp(one.place, places, factors)) for one in posture.segments]
+    return [float(np.interp(segment.place, places, factors)) for segment in posture.segments]
 
 
-def _least(numbers: Oscillators) -> float:
+def _min_limb_amplitude(parameters: Oscillators) -> float:
     """Return the amplitude of limbs at the lowest drive that moves them [-]."""
-    return float(numbers.limbs(np.array(numbers.limb_drives[0]))[1])
+    return float(parameters.limbs(np.array(parameters.limb_drives[0]))[1])
 
 
 def _pace(control: PatternGenerator, robot: Robot, gait: Gait) -> float:
+    """Return the factor on the published rates with which the oscillators keep the period of the gait [-].
+
+    Raises:
+        InvalidDesign: the oscillators do not turn at the reference drive.
+    """
     if control.pace is not None:
         return control.pace
-    numbers = control.oscillators
-    law = numbers.limbs if layout(robot).limbs else numbers.axis
-    frequency = float(law(np.array(numbers.reference))[0])
+    parameters = control.oscillators
+    law = parameters.limbs if layout(robot).limbs else parameters.axis
+    frequency = float(law(np.array(parameters.reference))[0])
     if frequency <= 0.0:
         raise InvalidDesign(
-            f"the oscillators do not turn at drive {numbers.reference:g}, so that no pace gives the period of gait "
+            f"the oscillators do not turn at drive {parameters.reference:g}, so that no pace gives the period of gait "
             f"{gait.name!r}: set pattern_generator.pace."
         )
     return 1.0 / (gait.period * frequency)
@@ -355,8 +408,22 @@ def _initial(
     posture: PatternPosture,
     lag: float,
     *,
-    driven: bool,
+    has_active_limbs: bool,
 ) -> np.ndarray:
+    """Return the first phases of a run's oscillators, shape (oscillator,) [rad].
+
+    Args:
+        control: its settings.
+        robot: the design.
+        gait: its gait.
+        seed: of random phases.
+        posture: segments of the axis, and the phase shift between limbs and oscillators.
+        lag: phase lag of each segment behind the one ahead of it [cycle].
+        has_active_limbs: whether the drive moves the limbs.
+
+    Raises:
+        InvalidDesign: phases are given, and not one for each oscillator.
+    """
     count = 2 * len(posture.segments) + len(gait.limb_phases)
     if control.initial == "random":
         return 2 * np.pi * np.random.default_rng([seed, 2]).random(count)
@@ -368,7 +435,7 @@ def _initial(
             )
         return 2 * np.pi * np.array(control.initial, dtype=float)
     limbs = [phase - posture.shift for phase in gait.limb_phases]
-    return initial_phases(posture.segments, limbs, lag, driven=driven)
+    return initial_phases(posture.segments, limbs, lag, driven=has_active_limbs)
 
 
 class OscillatorStates(NamedTuple):
@@ -409,15 +476,15 @@ def oscillate(
     """
     require("oscillate", "duration", duration, 0.0, 86400.0, "s")
     period, runs = control_period(robot), len(controls)
-    first, ticks = round(START / period), round(duration / period)
+    first_tick, ticks = round(START / period), round(duration / period)
     generator = Generator(controls, [robot] * runs, [gait] * runs, [0] * runs if seeds is None else seeds, period)
-    found = []
-    for tick in range(first, first + ticks + 1):
+    samples = []
+    for tick in range(first_tick, first_tick + ticks + 1):
         generator.advance(tick)
-        if (tick - first) % every == 0:
-            found.append((tick * period, generator.phase, generator.amplitude, generator.wave))
-            progress("oscillating", (tick - first) / max(ticks, 1))
-    time, phase, amplitude, wave = zip(*found, strict=True)
+        if (tick - first_tick) % every == 0:
+            samples.append((tick * period, generator.phase, generator.amplitude, generator.wave))
+            progress("oscillating", (tick - first_tick) / max(ticks, 1))
+    time, phase, amplitude, wave = zip(*samples, strict=True)
     return OscillatorStates(
         time=np.array(time),
         phase=np.stack(phase, axis=1),

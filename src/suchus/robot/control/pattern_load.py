@@ -1,4 +1,4 @@
-"""What the ground is felt to carry, as a part of the drive of a pattern generator: one drive in water and on land."""
+"""Feedback of the ground load to the drive of a pattern generator, so that one drive serves water and land."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,11 +13,11 @@ from suchus.robot.design import GRAVITY, Robot
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadRule:
-    """Oscillators get more drive the less the ground is felt to carry.
+    """Oscillators get more drive the smaller the sensed ground load is.
 
-    Above the limbs' highest drive they fall silent and the axis swims: a descending drive that walks on land swims
-    afloat, and nothing but the load changes it. Felt is what feet, belly and tail carry, in shares of the weight,
-    through a low pass.
+    Above the limbs' highest drive the limbs fall silent and the axis swims. So one descending drive walks on land and
+    swims in water. The sensed load is the low-pass-filtered contact force of feet, belly and tail, as a fraction of
+    body weight.
     """
 
     afloat: float = 2.0
@@ -37,25 +37,34 @@ class LoadRule:
 
 
 class FeltDrive:
-    """The load that each run of a batch feels, and the drive that it adds."""
+    """The filtered ground load of each run of a batch, and the drive that it adds."""
 
     def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[Robot], period: float) -> None:
+        """Gather the rules of the batch; a run without one gets no drive from its load.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            period: of control [s].
+        """
         self.felt = any(rule is not None for rule in rules)
         """Whether any run has such a rule."""
-        given = [rule or LoadRule(afloat=0.0) for rule in rules]
-        self._afloat, self._touch = (np.array([getattr(rule, name) for rule in given]) for name in ("afloat", "touch"))
-        self._kept = np.array([keep(rule.memory, period) for rule in given])
+        active_rules = [rule or LoadRule(afloat=0.0) for rule in rules]
+        self._afloat_drive, self._touch = (
+            np.array([getattr(rule, name) for rule in active_rules]) for name in ("afloat", "touch")
+        )
+        self._decay = np.array([keep(rule.memory, period) for rule in active_rules])
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
-        self.load: Float[np.ndarray, " run"] = np.ones(len(given))
+        self.load: Float[np.ndarray, " run"] = np.ones(len(active_rules))
         """Share of the weight that the ground carries, through the low pass; as on land before anything is felt [-]."""
 
     def feel(self, sensed: Sensed) -> None:
-        """Take in what the robots feel now."""
+        """Update the filtered ground load."""
         ground = finite(sensed.foot_pressure).sum(axis=1) + finite(sensed.belly_pressure).sum(axis=1)
         load = (ground + finite(sensed.tail_pressure)) / self._weight
-        self.load = load + self._kept * (self.load - load)
+        self.load = load + self._decay * (self.load - load)
 
     @property
     def drive(self) -> Float[np.ndarray, " run"]:
-        """What the oscillators get beside the descending drive [-]."""
-        return np.asarray(self._afloat * np.clip(1.0 - self.load / self._touch, 0.0, 1.0))
+        """Drive that the load rule adds to the descending drive [-]."""
+        return np.asarray(self._afloat_drive * np.clip(1.0 - self.load / self._touch, 0.0, 1.0))

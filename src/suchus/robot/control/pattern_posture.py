@@ -1,4 +1,4 @@
-"""From oscillators to servo angles: which part of the axis each stands for, and how limbs follow theirs."""
+"""From oscillators to servo angles: the segments of the axis that oscillators drive, and the limbs' paths."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -55,18 +55,20 @@ def axis_segments(robot: Robot, gait: Gait) -> tuple[AxisSegment, ...]:
         )
     steady, amplitude = (yaw.offset / yaw.share)[0], yaw.amplitude()[0]
     segments = []
-    for k, (servo, left, along) in enumerate(zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)):
-        behind = [number for number, hip in enumerate(hips) if hip <= along]
-        girdle = -1 if not hips else behind[-1] if behind else 0
+    for k, (servo, sign, position) in enumerate(
+        zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)
+    ):
+        girdles_ahead = [number for number, hip in enumerate(hips) if hip <= position]
+        girdle = -1 if not hips else girdles_ahead[-1] if girdles_ahead else 0
         segments.append(
             AxisSegment(
-                place=along,
+                place=position,
                 servo=servo,
-                left=left,
+                left=sign,
                 amplitude=float(amplitude[k]),
                 offset=float(steady[k]),
                 part=AxisPart(girdle, _lag(gait, complex(yaw.swing[0, k]), girdle)),
-                steers=not hips or along < hips[-1],
+                steers=not hips or position < hips[-1],
             )
         )
     return tuple(segments)
@@ -89,16 +91,16 @@ class PatternPosture:
         self._limb_servos = [i for limb in self._place.limbs for i in range(limb.servos.start, limb.servos.stop)]
         owner = [n for n, limb in enumerate(self._place.limbs) for _ in range(limb.servos.start, limb.servos.stop)]
         self._owner = np.array(owner, dtype=int)
-        middle = middle_stance(robot, gait)
-        self._rest = (middle if standing else _folded(self._place, gait, middle))[self._limb_servos]
+        center = middle_stance(robot, gait)
+        self._silent_angles = (center if standing else _folded(self._place, gait, center))[self._limb_servos]
         self._turns = np.array([_cranked(self._place, gait, limb) for limb in owner], dtype=bool)
-        self._low, self._high = servo_ranges(robot).T
-        self._steady = middle
+        self._lower_bound, self._upper_bound = servo_ranges(robot).T
+        self._steady = center
 
     def targets(
         self,
         phase: Float[np.ndarray, "run limb"],
-        share: Float[np.ndarray, "run limb"],
+        fraction: Float[np.ndarray, "run limb"],
         wave: Float[np.ndarray, "run segment"],
         offset: Float[np.ndarray, "run segment"],
     ) -> Float[np.ndarray, "run servo"]:
@@ -106,29 +108,35 @@ class PatternPosture:
 
         Args:
             phase: of the limbs in the gait, not wrapped [cycle].
-            share: how far each limb follows its path; 0 at rest, 1 in full [-].
+            fraction: how far each limb follows its path; 0 at rest, 1 in full [-].
             wave: of each segment, 1 where it bends to the left by the gait's amplitude [-].
             offset: steady bend of each segment to the left [rad].
         """
         targets = np.tile(self._steady, (len(phase), 1))
         if self._limb_servos:
             path = self._limbs.targets(phase, np.zeros(len(phase), dtype=complex))[:, self._limb_servos]
-            follows = np.where(self._turns, 1.0, share[:, self._owner])
-            targets[:, self._limb_servos] = self._rest + follows * (path - self._rest)
+            follows = np.where(self._turns, 1.0, fraction[:, self._owner])
+            targets[:, self._limb_servos] = self._silent_angles + follows * (path - self._silent_angles)
         amplitude, steady = np.array([(segment.amplitude, segment.offset) for segment in self.segments]).T
         bend = amplitude * wave + steady + offset
-        for servo in {one.servo for one in self.segments}:
-            mine = [i for i, one in enumerate(self.segments) if one.servo == servo]
-            whole = self.segments[mine[0]].left * bend[:, mine].sum(axis=1)
+        for servo in {segment.servo for segment in self.segments}:
+            segment_indices = [i for i, segment in enumerate(self.segments) if segment.servo == servo]
+            angle = self.segments[segment_indices[0]].left * bend[:, segment_indices].sum(axis=1)
             if servo in self._place.cables:
                 cable = self._place.cable(servo)
-                whole = tail_kinematics.servo_angle(cable, np.clip(whole, -cable.bend_limit, cable.bend_limit))
-            targets[:, servo] = np.clip(whole, self._low[servo], self._high[servo])
+                angle = tail_kinematics.servo_angle(cable, np.clip(angle, -cable.bend_limit, cable.bend_limit))
+            targets[:, servo] = np.clip(angle, self._lower_bound[servo], self._upper_bound[servo])
         return targets
 
 
 def _lag(gait: Gait, swing: complex, girdle: int) -> float:
-    """Return the phase lag of a hinge behind the limbs of a girdle, -1/2 to 1/2; 0 where nothing drives it [cycle]."""
+    """Return the phase lag of a hinge behind the limbs of a girdle, -1/2 to 1/2; 0 where nothing drives it [cycle].
+
+    Args:
+        gait: whose limb phases count.
+        swing: complex amplitude of the hinge's bend [rad].
+        girdle: number of the girdle that drives the hinge; -1 for none.
+    """
     if girdle < 0 or not swing:
         return 0.0
     pulls = gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases)
@@ -137,15 +145,21 @@ def _lag(gait: Gait, swing: complex, girdle: int) -> float:
     return lag - round(lag)
 
 
-def _folded(place: Layout, gait: Gait, middle: np.ndarray) -> np.ndarray:
-    """Return the angles with every limb straight back along the body, as far as its joints go; held limbs as held."""
-    folded, ranges = middle.copy(), servo_ranges(place.robot)
+def _folded(place: Layout, gait: Gait, center: np.ndarray) -> np.ndarray:
+    """Return the servo angles with every limb straight back along the body, within its ranges; held limbs stay held.
+
+    Args:
+        place: layout of the robot.
+        gait: that says which limbs are held.
+        center: servo angles in the middle of the stance, shape (servo,) [rad].
+    """
+    folded, ranges = center.copy(), servo_ranges(place.robot)
     for limb in place.limbs:
         if isinstance(gait.limbs[limb.number], Held):
             continue
-        driven = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
-        yaws = [i for i, hinge in enumerate(driven) if hinge.turn == "yaw"]
-        for i, hinge in enumerate(driven):
+        driven_hinges = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
+        yaws = [i for i, hinge in enumerate(driven_hinges) if hinge.turn == "yaw"]
+        for i, hinge in enumerate(driven_hinges):
             if not isinstance(hinge.drive, Crank):
                 servo = limb.servos.start + i
                 folded[servo] = np.clip(_FOLDED if yaws and i == yaws[0] else 0.0, *ranges[servo])
@@ -153,27 +167,27 @@ def _folded(place: Layout, gait: Gait, middle: np.ndarray) -> np.ndarray:
 
 
 def _cranked(place: Layout, gait: Gait, limb: int) -> bool:
-    """Return whether a limb turns all round, so that it stops where it is."""
+    """Return whether a limb is a crank; a silent crank stops at its present angle."""
     return isinstance(gait.limbs[place.limbs[limb].number], Sweep)
 
 
 def waves(
-    left: Float[np.ndarray, "run segment"], right: Float[np.ndarray, "run segment"], full: Sequence[float]
+    left_output: Float[np.ndarray, "run segment"], right_output: Float[np.ndarray, "run segment"], full: Sequence[float]
 ) -> Float[np.ndarray, "run segment"]:
     """Return how far each segment bends to the left, from the outputs of its two sides [-].
 
     Args:
-        left: outputs of the left oscillators [-].
-        right: outputs of the right oscillators [-].
+        left_output: outputs of the left oscillators [-].
+        right_output: outputs of the right oscillators [-].
         full: of each run, the amplitude at which a gait's own bend is reached [-].
     """
-    return np.asarray((left - right) / (2.0 * np.asarray(full)[:, None]))
+    return np.asarray((left_output - right_output) / (2.0 * np.asarray(full)[:, None]))
 
 
 def initial_phases(
     segments: Sequence[AxisSegment], limbs: Sequence[float], lag: float, *, driven: bool
 ) -> Float[np.ndarray, " oscillator"]:
-    """Return phases in which nothing pulls on anything much: the axis with its limbs, or a wave along it [rad].
+    """Return first phases near equilibrium: the axis in phase with its limbs, or a wave along the axis [rad].
 
     Args:
         segments: of the axis.
@@ -182,8 +196,10 @@ def initial_phases(
         driven: whether the limbs are active.
     """
     if driven and limbs:
-        sides = [[limbs[2 * one.part.girdle + side] - one.part.phase_lag for one in segments] for side in (0, 1)]
+        sides = [
+            [limbs[2 * segment.part.girdle + side] - segment.part.phase_lag for segment in segments] for side in (0, 1)
+        ]
     else:
-        first = limbs[0] if limbs else 0.0
-        sides = [[first - lag * k + 0.5 * side for k in range(len(segments))] for side in (0, 1)]
+        first_phase = limbs[0] if limbs else 0.0
+        sides = [[first_phase - lag * k + 0.5 * side for k in range(len(segments))] for side in (0, 1)]
     return 2 * pi * np.array([*sides[0], *sides[1], *limbs])

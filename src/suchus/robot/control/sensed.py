@@ -1,4 +1,4 @@
-"""What a batch of robots feels at one instant."""
+"""The sensor readings of a batch of robots at one instant."""
 
 from dataclasses import dataclass
 from math import exp
@@ -36,12 +36,12 @@ class Sensed:
 
 
 def finite(values: Float[np.ndarray, "*any"]) -> Float[np.ndarray, "*any"]:
-    """Return readings with zero where a run that diverged left nothing to read."""
+    """Return readings with NaN and infinities of diverged runs replaced by zero."""
     return np.where(np.isfinite(values), values, 0.0)
 
 
 def keep(delay: float, period: float) -> float:
-    """Return what a low-pass filter keeps of its old value over one control period [-].
+    """Return the decay factor of a low-pass filter over one control period, exp(-period / delay) [-].
 
     Args:
         delay: time constant of the filter [s]; 0 for none.

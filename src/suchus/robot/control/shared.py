@@ -43,7 +43,11 @@ class Shared:
     """Bend of the tail a quarter of a cycle from now [rad]; owner: tail."""
 
     def written_by(self, owner: str, **values: np.ndarray) -> "Shared":
-        """Return the shared variables with those of one owner renewed; the arrays can no longer be written to.
+        """Return the shared variables with new values of one owner; the new arrays are read-only.
+
+        Args:
+            owner: the controller that writes.
+            **values: new values of its variables, by name.
 
         Raises:
             OutsideLimits: a variable that belongs to another controller.
@@ -59,8 +63,17 @@ class Shared:
 
 
 def silence(runs: int, limbs: int) -> Shared:
-    """Return the shared variables before anybody has written."""
-    none = np.zeros(runs)
+    """Return the shared variables of a batch before the first control period: zeros.
+
+    Args:
+        runs: number of runs.
+        limbs: number of limbs of each robot.
+    """
+    zeros = np.zeros(runs)
     return Shared(
-        limb_phase=np.zeros((runs, limbs)), trunk_bend=none, trunk_direction=none, tail_bend=none, tail_direction=none
+        limb_phase=np.zeros((runs, limbs)),
+        trunk_bend=zeros,
+        trunk_direction=zeros,
+        tail_bend=zeros,
+        tail_direction=zeros,
     )

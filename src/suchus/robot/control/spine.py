@@ -15,7 +15,7 @@ from suchus.robot.motion import Batch
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpineRule:
-    """Every yaw joint of the trunk takes over a part of what all of them together lack.
+    """Every yaw joint of the trunk adds a fraction of the bend that all of them together lack.
 
     With B the bend that the limbs' phases ask for and q the sensed yaw angles, e is the low-passed B - sum(q), and
     each joint is commanded its part of B, a third in the article's robot, and share e. A joint that is stuck, weak or
@@ -42,12 +42,19 @@ class SpineController:
         robots: Sequence[Robot],
         period: float,
     ) -> None:
-        self._on = np.array([rule is not None for rule in rules])
-        self._part = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
+        """Gather the gains of the batch and the ranges of the trunk's servos.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            period: of control [s].
+        """
+        self._is_active = np.array([rule is not None for rule in rules])
+        self._share = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
         self._keep = np.array([0.0 if rule is None else keep(rule.delay, period) for rule in rules])
         self._yaw = list(layout(robots[0]).trunk_yaw)
         ranges = np.array([servo_ranges(robot)[self._yaw] for robot in robots])
-        self._low, self._high = ranges[..., 0], ranges[..., 1]
+        self._lower_bound, self._upper_bound = ranges[..., 0], ranges[..., 1]
         self._lacking = np.zeros(len(robots))
 
     @staticmethod
@@ -63,25 +70,27 @@ class SpineController:
         bend, direction = gaits.bend_of("trunk", axis), gaits.bend_of("trunk", 1j * axis)
         return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
 
-    def take_over(self, before: "SpineController") -> None:
-        """Go on from where the trunks of the same runs stand."""
-        self._lacking = before._lacking
+    def take_over(self, predecessor: "SpineController") -> None:
+        """Continue from the trunks of the same runs."""
+        self._lacking = predecessor._lacking
 
     def correct(
-        self, targets: Float[np.ndarray, "run servo"], asked: Float[np.ndarray, " run"], sensed: Sensed
+        self, targets: Float[np.ndarray, "run servo"], target_bend: Float[np.ndarray, " run"], sensed: Sensed
     ) -> Float[np.ndarray, "run servo"]:
         """Return the targets with the missing bend shared out.
 
         Args:
             targets: servo angles [rad].
-            asked: bend of the trunk [rad].
+            target_bend: bend of the trunk [rad].
             sensed: what the robots feel.
         """
-        if not self._on.any():
+        if not self._is_active.any():
             return targets
-        lacking = asked - finite(sensed.servo_position[:, self._yaw]).sum(axis=1)
+        lacking = target_bend - finite(sensed.servo_position[:, self._yaw]).sum(axis=1)
         self._lacking = lacking + self._keep * (self._lacking - lacking)
-        commanded = np.clip(targets[:, self._yaw] + self._part * self._lacking[:, None], self._low, self._high)
+        commanded = np.clip(
+            targets[:, self._yaw] + self._share * self._lacking[:, None], self._lower_bound, self._upper_bound
+        )
         corrected = targets.copy()
-        corrected[:, self._yaw] = np.where(self._on[:, None], commanded, targets[:, self._yaw])
+        corrected[:, self._yaw] = np.where(self._is_active[:, None], commanded, targets[:, self._yaw])
         return corrected

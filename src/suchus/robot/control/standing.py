@@ -1,4 +1,4 @@
-"""Standing up, standing, and sitting down again, on what pelvis, feet and tail feel."""
+"""Standing up, standing, and lying down again, with feedback from pelvis, feet and tail."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -21,13 +21,12 @@ from suchus.robot.motion.rising import stand_up
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Balance:
-    """How a standing robot answers what it feels; every gain may be zero.
+    """Gains of the balance feedback of a standing robot; every gain may be zero.
 
-    Two corrections come out: how far the hips go back over the planted feet, all leg servos together, and how far the
-    trunk's first pitch joint bends back. Both are driven by how fast the pelvis pitches forward beyond what is
-    intended, and by how far it has, against its own mean over the last ``washout`` seconds: a steady droop of the
-    servos is no fall. The hips are also driven by the load on the tail: as long as it lacks its share of the weight,
-    they creep back.
+    The feedback has two outputs: the distance by which the hips move back over the planted feet, and the angle by which
+    the trunk's first pitch joint bends back. Its inputs are the error of the pelvis' pitch rate and that of its pitch.
+    The pitch error is compared with its own mean over the last ``washout`` seconds, since a steady droop of the servos
+    is no fall. The hips also creep back while the tail carries less than its share of the weight.
     """
 
     hips_per_pitch: float
@@ -114,8 +113,8 @@ class Standing:
     @property
     def needs(self) -> tuple[str, ...]:
         """What its balance is kept by."""
-        felt = ("orientation", "angular_velocity", "foot_pressure", "tail_pressure")
-        return felt if self.feels else ()
+        sensors = ("orientation", "angular_velocity", "foot_pressure", "tail_pressure")
+        return sensors if self.feels else ()
 
     def upright_from(self, robot: Robot) -> float:
         """Return when rising ends [s]."""
@@ -145,23 +144,30 @@ class Standing:
         unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
         time = np.arange(runs.ticks) * period
         courses = [control._course(robot, gait, time) for control, robot, gait in unique]
-        course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
+        course = Course(*(np.array(quantity) for quantity in zip(*courses, strict=True)))
         legs = [upright(skeleton(robot)).leg for robot in robots]
         balances = [control.balance for control in runs.controls]
         rows = np.array([unique[key] for key in keys])
         return Stander(balances, course, rows, legs, layout(robots[0]), period)
 
     def _course(self, robot: Robot, gait: Gait, time: np.ndarray) -> "Course":
-        up, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
-        way_up = np.minimum(time - self.at - self.blend, up.duration)
-        way_down = up.duration - (time - leave) / self.slower_down
-        planned = plan(robot, up, np.where(time < leave, way_up, way_down))
-        away = np.clip(np.minimum(time - self.at, end - time) / self.blend, 0.0, 1.0)
-        share = (1.0 - np.cos(np.pi * away)) / 2.0
+        """Return the intended motion over time: crawl, rise, stand, lie down, crawl on.
+
+        Args:
+            robot: the design.
+            gait: of the crawl before and after.
+            time: since the beginning of the run, shape (tick,) [s].
+        """
+        rise, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
+        rise_time = np.minimum(time - self.at - self.blend, rise.duration)
+        descent_time = rise.duration - (time - leave) / self.slower_down
+        planned = plan(robot, rise, np.where(time < leave, rise_time, descent_time))
+        blend_progress = np.clip(np.minimum(time - self.at, end - time) / self.blend, 0.0, 1.0)
+        fraction = (1.0 - np.cos(np.pi * blend_progress)) / 2.0
         phase, crawling = intended(robot, gait, np.where(time < end, np.minimum(time, self.at), time - (end - self.at)))
-        pitch = share * planned.pitch
+        pitch = fraction * planned.pitch
         return Course(
-            targets=crawling + share[:, None] * (planned.targets - crawling),
+            targets=crawling + fraction[:, None] * (planned.targets - crawling),
             phase=phase,
             pitch=pitch,
             feet=planned.feet,
@@ -170,7 +176,7 @@ class Standing:
 
 
 class Course(NamedTuple):
-    """What is intended over time, one row per distinct robot and gait."""
+    """Intended motion over time, one row for each distinct robot and gait."""
 
     targets: Float[np.ndarray, "*row tick servo"]
     """Servo angles [rad]."""
@@ -196,55 +202,77 @@ class Stander:
         place: Layout,
         period: float,
     ) -> None:
+        """Prepare the corrections of the batch.
+
+        Args:
+            balances: rule of each run; None for a run that follows its course without feedback.
+            course: intended motion of every distinct robot, gait and control.
+            row: of the course, one for each run.
+            legs: hind leg of each run's robot.
+            place: layout that all robots share.
+            period: of control [s].
+        """
         self._gains = {f.name: np.array([getattr(b or BALANCE, f.name) for b in balances]) for f in fields(Balance)}
         self._answers = np.array([b is not None for b in balances])
         self._course = course
         self._row = row
         self._first_pitch = place.trunk_pitch[0]
         self._hind = [limb.servos for limb in place.limbs[-2:]]
-        self._legs = [(leg, np.array([leg == other for other in legs])) for leg in dict.fromkeys(legs)]
+        self._legs = [(leg, np.array([leg == run_leg for run_leg in legs])) for leg in dict.fromkeys(legs)]
         self._period = period
-        self._mean = np.full(len(row), np.nan)  # of the pitch error [rad]
-        self._crept = np.zeros(len(row))  # of the hips, for the tail's sake [m]
+        self._mean = np.full(len(row), np.nan)  # mean of the pitch error [rad]
+        self._crept = np.zeros(len(row))  # integrated offset of the hips by the load on the tail [m]
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the gait."""
         return np.asarray(self._course.targets[self._row, 0])
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Follow the course, and while upright correct it by what is felt."""
-        now = Course(*(part[self._row, tick] for part in self._course))
+        """Return the servo angles of the course, corrected for balance while the robot is upright.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None without feedback.
+        """
+        planned = Course(*(quantity[self._row, tick] for quantity in self._course))
         if sensed is None:
-            return Command(now.targets, now.phase)
-        upright = self._answers & (now.pitch > self._gains["upright"])
-        back, bend = self._answer(now, sensed, upright)
-        targets = now.targets.copy()
-        feet = now.feet + back[:, None] * np.array([0.0, 1.0, 0.0])
-        for leg, who in self._legs:
-            balancing = who & upright
+            return Command(planned.targets, planned.phase)
+        upright = self._answers & (planned.pitch > self._gains["upright"])
+        back, bend = self._answer(planned, sensed, upright)
+        targets = planned.targets.copy()
+        feet = planned.feet + back[:, None] * np.array([0.0, 1.0, 0.0])
+        for leg, has_leg in self._legs:
+            balancing = has_leg & upright
             if not balancing.any():
                 continue
-            angles = hind_leg(leg, feet[balancing], now.pitch[balancing], clip=True)
+            angles = hind_leg(leg, feet[balancing], planned.pitch[balancing], clip=True)
             for servos in self._hind:
                 targets[balancing, servos] = angles
         targets[upright, self._first_pitch] -= bend[upright]
-        return Command(targets, now.phase)
+        return Command(targets, planned.phase)
 
-    def _answer(self, now: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return how far the hips go back [m] and the trunk bends back [rad]."""
+    def _answer(self, planned: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return how far the hips go back [m] and the trunk bends back [rad].
+
+        Args:
+            planned: intended motion of each run at this tick.
+            sensed: readings.
+            upright: which runs stand upright.
+        """
         g = self._gains
-        low = now.pitch + rotation.steep_pitch(sensed.orientation)  # the course counts upward, the angle downward
-        self._mean = np.where(upright & np.isfinite(self._mean), self._mean, low)
-        self._mean += self._period / g["washout"] * (low - self._mean)
-        beyond = low - self._mean
-        rate = sensed.angular_velocity[:, 1] + now.rate  # about the axis to the left: front end down positive
+        # planned pitch is positive upward, the sensed one downward
+        pitch_error = planned.pitch + rotation.steep_pitch(sensed.orientation)
+        self._mean = np.where(upright & np.isfinite(self._mean), self._mean, pitch_error)
+        self._mean += self._period / g["washout"] * (pitch_error - self._mean)
+        pitch_deviation = pitch_error - self._mean
+        rate = sensed.angular_velocity[:, 1] + planned.rate  # about the axis to the left: front end down positive
         hind, tail = sensed.foot_pressure[:, -2:].sum(axis=1), np.maximum(sensed.tail_pressure, 0.0)
         lacking = g["tail_share"] - tail / np.maximum(hind + tail, 1.0)
         hips, trunk = g["hips_most"], g["trunk_most"]
         crept = self._crept + g["hips_per_tail"] * self._period * lacking
         self._crept = np.where(upright, np.clip(crept, -hips, hips), 0.0)
-        back = g["hips_per_pitch"] * beyond + g["hips_per_rate"] * rate + self._crept
-        bend = g["trunk_per_pitch"] * beyond + g["trunk_per_rate"] * rate
+        back = g["hips_per_pitch"] * pitch_deviation + g["hips_per_rate"] * rate + self._crept
+        bend = g["trunk_per_pitch"] * pitch_deviation + g["trunk_per_rate"] * rate
         return np.clip(back, -hips, hips), np.clip(bend, -trunk, trunk)
 
 

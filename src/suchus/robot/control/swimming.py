@@ -48,7 +48,7 @@ class Swimming:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """What is held is felt."""
+        """Sensors of the rules that are on."""
         return united(
             ("orientation", "servo_position") if self.heading else (),
             ("depth",) if self.depth else (),
@@ -68,46 +68,65 @@ class Swimming:
                 gait.needs_steering("a swim that grows from rest or is held")
             check_speeds(robot, gait)
             for side in (-1.0, 1.0) if control.heading is not None else ():
-                check_limits(robot, _steered(gait, side * control.heading.trunk_turn))
+                check_limits(robot, _with_trunk_bend(gait, side * control.heading.trunk_turn))
         return SwimmingController(runs.controls, runs.robots, runs.gaits, period)
 
 
-def _steered(gait: Gait, bend: float) -> Gait:
+def _with_trunk_bend(gait: Gait, bend: float) -> Gait:
     """Return a gait whose trunk bends more to the left [rad]."""
     return replace(gait, axis=(*gait.axis, Bend(part="trunk", offset=bend)))
 
 
 class SwimmingController:
-    """The running swims of a batch: the postures of their gaits, to which what is felt adds."""
+    """The running swims of a batch: the postures of their gaits, corrected by feedback."""
 
     def __init__(
         self, controls: Sequence[Swimming], robots: Sequence[Robot], gaits: Sequence[Gait], period: float
     ) -> None:
+        """Start the rules of heading, depth and pitch.
+
+        Args:
+            controls: settings, one for each run.
+            robots: one for each run.
+            gaits: one for each run.
+            period: of control [s].
+        """
         self._gaits, self._period = Batch(robots, gaits), period
         self._ramp = np.array([control.ramp for control in controls])
         self._feels = any(control.feels for control in controls)
         cycle = [max(1, round(gait.period / period)) for gait in gaits]
         self._headings = Headings([control.heading for control in controls], robots, cycle, period)
         self._depths = Depths([control.depth for control in controls], robots, period)
-        asked = [np.nan if control.depth is None else control.depth.depth for control in controls]
-        self._pitches = Pitches([control.pitch for control in controls], asked, robots, period)
-        self._still = np.zeros(len(controls))
+        target_depths = [np.nan if control.depth is None else control.depth.depth for control in controls]
+        self._pitches = Pitches([control.pitch for control in controls], target_depths, robots, period)
+        self._zeros = np.zeros(len(controls))
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The first posture."""
-        return self._posture(0.0, self._still, self._still)[0]
+        return self._posture(0.0, self._zeros, self._zeros)[0]
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Go on in the gait, and add what is felt."""
-        tail, trunk, air = self._still, self._still, None
+        """Return the servo angles of the gait with the corrections of heading, depth and pitch.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None if nothing is controlled.
+        """
+        tail, trunk, air = self._zeros, self._zeros, None
         if sensed is not None and self._feels:
             tail, trunk = self._headings.bend(sensed)
-            kept = self._depths.air_fraction(sensed)
-            air = None if kept is None else self._pitches.split(kept, sensed)
+            air_fraction = self._depths.air_fraction(sensed)
+            air = None if air_fraction is None else self._pitches.split(air_fraction, sensed)
         return Command(*self._posture(tick * self._period, tail, trunk), air)
 
     def _posture(self, time: float, tail: np.ndarray, trunk: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return servo angles [rad] and phases of the limbs [cycle] at a time [s]."""
+        """Return servo angles [rad] and phases of the limbs [cycle] at a time [s].
+
+        Args:
+            time: since the beginning of the run [s].
+            tail: steady bend of the tail of each run, left positive [rad].
+            trunk: steady bend of the trunk of each run, left positive [rad].
+        """
         clock = time / self._gaits.periods
         phase = clock[:, None] + self._gaits.phases
         steer = Steer(size=grown(time, self._ramp), bend=trunk, tail=tail)
@@ -115,9 +134,9 @@ class SwimmingController:
 
 
 def grown(time: float, ramp: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
-    """Return how much of a motion has grown at a time [s], over a ramp and smoothly at both ends [-]."""
-    share = np.where(ramp > 0.0, np.clip(time / np.where(ramp > 0.0, ramp, 1.0), 0.0, 1.0), 1.0)
-    return np.asarray(share**2 * (3.0 - 2.0 * share))
+    """Return the fraction of a motion at a time [s]: 0 to 1 over a ramp, smooth at both ends [-]."""
+    fraction = np.where(ramp > 0.0, np.clip(time / np.where(ramp > 0.0, ramp, 1.0), 0.0, 1.0), 1.0)
+    return np.asarray(fraction**2 * (3.0 - 2.0 * fraction))
 
 
 controller = Swimming

@@ -1,4 +1,4 @@
-"""Which posture to walk in, by what is felt and not by a map."""
+"""Choice of the walking posture from sensor readings, without a map."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,18 +13,20 @@ from suchus.robot.control.sensed import Sensed
 from suchus.robot.design import GRAVITY, Robot
 from suchus.robot.motion import Gait
 
-_WASHOUT = 3.0  # [s]; over which tilt is compared with its own mean
-_FOOT_LOADED = 0.02895931795  # of the weight, 1 N of the article's robot; from here on a foot feels the ground
+_WASHOUT = 3.0  # [s]; time constant of the mean tilt
+_FOOT_LOADED = (
+    0.02895931795  # [body weight], 1 N of the article's robot; load from which a foot counts as on the ground
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SwitchRule:
     """A ladder of postures: up when the belly touches, down when the feet stumble or the ground is calm.
 
-    Three quantities are felt, each averaged over the last ``memory`` seconds: the share of the weight that the belly
-    carries; how far the feet contradict the gait, loaded in swing or free in stance; and how much the body tilts
-    against its own mean. A belly that touches asks for the next rung. Feet that contradict the gait too much on a rung
-    above ``home`` ask for the one below, and so does a body that hardly tilts.
+    Three quantities are sensed, each averaged over the last ``memory`` seconds: the fraction of the weight that the
+    belly carries; the fraction of feet that contradict the gait, loaded in swing or free in stance; and the tilt of the
+    body against its own mean. A loaded belly leads to the next higher posture. On a posture above ``home``, too many
+    contradictions of the feet or a calm body lead to the next lower one.
     """
 
     ladder: tuple[Gait, ...]
@@ -54,7 +56,7 @@ class SwitchRule:
 
 
 class Switcher:
-    """What a batch feels of the ground, and the postures that it asks for."""
+    """The filtered ground readings of a batch, and the changes of posture that follow from them."""
 
     def __init__(
         self,
@@ -63,6 +65,17 @@ class Switcher:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
+        """Check the ladders and start with nothing felt.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            gaits: in which the runs begin.
+            period: of control [s].
+
+        Raises:
+            UnknownName: a run's gait is not on its ladder.
+        """
         self._rules, self._period = list(rules), period
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
         for rule, gait in zip(rules, gaits, strict=True):
@@ -72,30 +85,43 @@ class Switcher:
         n = len(rules)
         self._belly, self._stumbling, self._tilt = np.zeros(n), np.zeros(n), np.zeros(n)
         self._mean: np.ndarray | None = None
-        self._since = np.zeros(n)  # in this posture [s]
-        self._calm = np.zeros(n)  # of calm without a break [s]
+        self._since = np.zeros(n)  # time in this posture [s]
+        self._calm = np.zeros(n)  # uninterrupted time of calm [s]
 
     def decide(
         self, sensed: Sensed, phase: Float[np.ndarray, "run limb"], gaits: Sequence[Gait], busy: set[int]
     ) -> list[tuple[int, Gait]]:
-        """Feel, and return which runs begin which gait now; those that are busy feel nothing new."""
+        """Update the filtered readings and return the runs that begin another gait now, with that gait.
+
+        Args:
+            sensed: readings.
+            phase: of the limbs [cycle].
+            gaits: present gait of each run.
+            busy: runs that are changing their gait; their readings do not count.
+        """
         if all(rule is None for rule in self._rules):
             return []
         free = np.array([run not in busy for run in range(len(self._rules))])
         self._feel(sensed, phase, gaits, free)
-        asked = []
+        requests = []
         for run, rule in enumerate(self._rules):
             if rule is not None and free[run]:
                 rung = rule.ladder.index(gaits[run])
                 step = self._step(run, rule, rung)
                 if step:
-                    asked.append((run, rule.ladder[rung + step]))
+                    requests.append((run, rule.ladder[rung + step]))
                     self._since[run] = self._calm[run] = 0.0
                     self._belly[run] = self._stumbling[run] = self._tilt[run] = 0.0
-        return asked
+        return requests
 
     def _step(self, run: int, rule: SwitchRule, rung: int) -> int:
-        """Return how many rungs a run goes up."""
+        """Return by how many rungs of its ladder a run changes its posture: -1, 0 or 1.
+
+        Args:
+            run: index of the run.
+            rule: its rule.
+            rung: present index on the ladder.
+        """
         if self._since[run] < rule.memory:
             return 0
         if self._belly[run] > rule.belly and rung + 1 < len(rule.ladder):
@@ -106,17 +132,25 @@ class Switcher:
         return 0
 
     def _feel(self, sensed: Sensed, phase: np.ndarray, gaits: Sequence[Gait], free: np.ndarray) -> None:
+        """Update the filtered belly load, foot contradiction and tilt of those runs that are free.
+
+        Args:
+            sensed: what the robots feel.
+            phase: of the limbs, shape (run, limb) [cycle].
+            gaits: present gait of each run.
+            free: which runs are not changing their gait.
+        """
         feet, belly = np.nan_to_num(sensed.foot_pressure), np.nan_to_num(sensed.belly_pressure).sum(axis=1)
         total = feet.sum(axis=1) + belly + np.nan_to_num(sensed.tail_pressure)
         duty = np.array([[gait.duty_factor] for gait in gaits])
         contradicts = (feet > _FOOT_LOADED * self._weight[:, None]) != (np.mod(phase, 1.0) >= 1.0 - duty)
         tilt = np.nan_to_num(np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)]))
         self._mean = tilt if self._mean is None else self._mean + self._period / _WASHOUT * (tilt - self._mean)
-        off = np.hypot(*(tilt - self._mean))
-        for mean, now in (
+        deviation = np.hypot(*(tilt - self._mean))
+        for mean, reading in (
             (self._belly, belly / np.maximum(total, _FOOT_LOADED * self._weight)),
             (self._stumbling, contradicts.mean(axis=1)),
-            (self._tilt, off),
+            (self._tilt, deviation),
         ):
-            mean[free] = (now + self._keep * (mean - now))[free]
+            mean[free] = (reading + self._keep * (mean - reading))[free]
         self._since[free] += self._period

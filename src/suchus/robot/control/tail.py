@@ -12,7 +12,7 @@ from suchus.robot.control.shared import Shared
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion import Batch, Gait
 
-_LEAST = 1e-9  # [rad]; a trunk that bends less does not bend
+_BEND_TOLERANCE = 1e-9  # [rad]; smaller bends count as none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,20 +47,28 @@ class TailController:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
-        share = max(len(layout(robots[0]).tail_pitch), 1)
-        self._asked = np.array([gait.number("tail_pitch") / share for gait in gaits])
-        self._pitch = self._asked
-        self._on = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
-        if not self._on.any():
+        """Gather the rates of the batch, and the range within which each tail may pitch.
+
+        Args:
+            rules: one for each run; None for a run without one.
+            robots: one for each run.
+            gaits: one for each run.
+            period: of control [s].
+        """
+        joint_count = max(len(layout(robots[0]).tail_pitch), 1)
+        self._target_pitch = np.array([gait.number("tail_pitch") / joint_count for gait in gaits])
+        self._pitch = self._target_pitch
+        self._is_active = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
+        if not self._is_active.any():
             return
         self._step = period * np.array([0.0 if rule is None else rule.rate for rule in rules])
         self._column = layout(robots[0]).tail_pitch[0]
-        low, high = np.array([servo_ranges(robot)[self._column] for robot in robots]).T
+        lower_bound, upper_bound = np.array([servo_ranges(robot)[self._column] for robot in robots]).T
         for i, rule in enumerate(rules):
             if rule is not None:
-                low[i] = max(low[i], min(rule.highest, self._pitch[i]))
-                high[i] = min(high[i], max(rule.lowest, self._pitch[i]))
-        self._low, self._high = low, high
+                lower_bound[i] = max(lower_bound[i], min(rule.highest, self._pitch[i]))
+                upper_bound[i] = min(upper_bound[i], max(rule.lowest, self._pitch[i]))
+        self._lower_bound, self._upper_bound = lower_bound, upper_bound
 
     @staticmethod
     def step(shared: Shared, gaits: Batch, clock: Float[np.ndarray, " run"]) -> Shared:
@@ -72,23 +80,25 @@ class TailController:
             clock: since the walk began, for bodies without limbs [cycle].
         """
         (trunk, trunk_steady), (tail, steady) = gaits.together("trunk"), gaits.together("tail")
-        bends = np.abs(trunk) > _LEAST
+        bends = np.abs(trunk) > _BEND_TOLERANCE
         # bend and direction together are the trunk's whole wave, swing times order parameter
         wave = shared.trunk_bend - trunk_steady - 1j * (shared.trunk_direction - trunk_steady)
         follows = np.zeros_like(tail) if bends.all() else tail * gaits.axis_phase(shared.limb_phase, clock)
         follows[bends] = tail[bends] / trunk[bends] * wave[bends]
         return shared.written_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
 
-    def take_over(self, before: "TailController") -> None:
-        """Go on from where the tails of the same runs stand, as far as the gait asks for the same pitch."""
-        self._pitch = np.where(self._on & (self._asked == before._asked), before._pitch, self._asked)
+    def take_over(self, predecessor: "TailController") -> None:
+        """Continue from the tails of the same runs where the gait demands the same pitch."""
+        self._pitch = np.where(
+            self._is_active & (self._target_pitch == predecessor._target_pitch), predecessor._pitch, self._target_pitch
+        )
 
     def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
-        """Return the targets with the tail's pitch given way for one control period more."""
-        if not self._on.any():
+        """Return the targets with the tail pitched by the torque feedback of one more control period."""
+        if not self._is_active.any():
             return targets
         gives = self._step * finite(sensed.servo_torque[:, self._column])
-        self._pitch = np.clip(self._pitch - gives, self._low, self._high)
+        self._pitch = np.clip(self._pitch - gives, self._lower_bound, self._upper_bound)
         corrected = targets.copy()
-        corrected[:, self._column] = np.where(self._on, self._pitch, targets[:, self._column])
+        corrected[:, self._column] = np.where(self._is_active, self._pitch, targets[:, self._column])
         return corrected

@@ -1,4 +1,4 @@
-"""Which controller feels, hears and writes what: watched while the code runs, not written down a second time."""
+"""Which sensors and shared variables each controller reads and writes, observed while the code runs."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -31,7 +31,7 @@ class ControlPart(NamedTuple):
 
 
 def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tuple[ControlPart, ...]:
-    """Return what each controller reads and writes when it takes a step, in the order in which they act.
+    """Return the sensors and shared variables that each controller reads and writes, in the order of action.
 
     Args:
         robot: the design.
@@ -46,7 +46,7 @@ def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tu
     if control is None:
         control = Coordinated(heading=HeadingRule()).suited(robot, gait)
     place, period = layout(robot), control_period(robot)
-    robots, gaits, together, begun = [robot], [gait], Batch([robot], [gait]), np.zeros(1)
+    robots, gaits, batch, walk_clock = [robot], [gait], Batch([robot], [gait]), np.zeros(1)
     limbs = Limbs([control.limbs], robots, gaits, np.zeros((1, len(place.limbs))), period)
     spine = SpineController([control.spine], robots, period)
     tail = TailController([control.tail], robots, gaits, period)
@@ -58,11 +58,11 @@ def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tu
 
     def of_spine(shared: Any, sensed: Any) -> Shared:
         spine.correct(targets.copy(), np.zeros(1), sensed)
-        return spine.step(shared, together, begun)
+        return spine.step(shared, batch, walk_clock)
 
     def of_tail(shared: Any, sensed: Any) -> Shared:
         tail.correct(targets.copy(), sensed)
-        return tail.step(shared, together, begun)
+        return tail.step(shared, batch, walk_clock)
 
     steps: dict[str, Callable[[Any, Any], Shared | None]] = {
         "limbs": lambda shared, sensed: limbs.step(shared, sensed, clock, walking=True),
@@ -70,22 +70,35 @@ def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tu
         "tail": of_tail,
         "heading": heading,
     }
-    return tuple(_watched(name, step, place) for name, step in steps.items())
+    return tuple(_observe_step(name, step, place) for name, step in steps.items())
 
 
-def _watched(name: str, step: Callable[[Any, Any], Shared | None], place: Layout) -> ControlPart:
-    """Return what one step read and wrote."""
-    before, heard, felt = silence(1, len(place.limbs)), set[str](), set[str]()
-    after = step(_watching(before, heard), _watching(_quiet(place), felt))
-    written = [] if after is None else [v for v in OWNERS if getattr(after, v) is not getattr(before, v)]
-    return ControlPart(name, frozenset(felt) - {"time"}, frozenset(heard) & frozenset(OWNERS), frozenset(written))
+def _observe_step(name: str, step: Callable[[Any, Any], Shared | None], place: Layout) -> ControlPart:
+    """Return the sensors and shared variables that one step of a controller read and wrote.
+
+    Args:
+        name: of the controller.
+        step: takes the shared variables and the readings.
+        place: layout of the robot.
+    """
+    shared, shared_names, sensed_names = silence(1, len(place.limbs)), set[str](), set[str]()
+    result = step(_watching(shared, shared_names), _watching(_quiet(place), sensed_names))
+    written_names = [] if result is None else [v for v in OWNERS if getattr(result, v) is not getattr(shared, v)]
+    return ControlPart(
+        name, frozenset(sensed_names) - {"time"}, frozenset(shared_names) & frozenset(OWNERS), frozenset(written_names)
+    )
 
 
-def _watching(value: object, read: set[str]) -> Any:
-    """Return what stands for a value, of its own type, and notes which of its attributes are read."""
+def _watching(value: object, read_names: set[str]) -> Any:
+    """Return a proxy of a value, of the same type, that records which attributes are read.
+
+    Args:
+        value: the value.
+        read_names: set to which the names are added.
+    """
 
     def noted(_: object, name: str) -> Any:
-        read.add(name)
+        read_names.add(name)
         return getattr(value, name)
 
     return object.__new__(type("Watched", (type(value),), {"__getattribute__": noted}))
@@ -93,7 +106,7 @@ def _watching(value: object, read: set[str]) -> Any:
 
 def _quiet(place: Layout) -> Sensed:
     """Return the readings of one robot at rest."""
-    servos, none = np.zeros((1, len(place.servos))), np.zeros(1)
+    servos, zeros = np.zeros((1, len(place.servos))), np.zeros(1)
     return Sensed(
         time=1.0,
         servo_position=servos,
@@ -101,7 +114,7 @@ def _quiet(place: Layout) -> Sensed:
         servo_torque=servos,
         foot_pressure=np.ones((1, len(place.limbs))),
         belly_pressure=np.zeros((1, len(place.trunk))),
-        tail_pressure=none,
+        tail_pressure=zeros,
         orientation=np.array([[1.0, 0.0, 0.0, 0.0]]),
         angular_velocity=np.zeros((1, 3)),
         acceleration=np.zeros((1, 3)),

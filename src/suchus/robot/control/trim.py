@@ -19,10 +19,10 @@ from suchus.robot.design.pieces import chambers
 class PitchHold:
     """Keeps the pitch of a swim under water by air that moves between the chambers of the hull.
 
-    With theta the pitch less the asked one, nose down positive, and q its rate, both through a low pass, since a swim
-    pitches to and fro, the share of the hull's air that moves ahead of where it is with all chambers filled alike is
-    gain theta + rate_gain q + integral_gain sum(theta dt), as far as the chambers have air and room, and changes by
-    ``pump`` at most.
+    Let theta be the pitch minus its target, nose down positive, and q its rate, both low-pass-filtered because a
+    swimming robot pitches periodically. The fraction of the hull's air that moves from the rear to the front chambers
+    is gain theta + rate_gain q + integral_gain sum(theta dt), within the limits of the chambers. It changes at a rate
+    of ``pump`` at most.
     """
 
     pitch: float = 0.0
@@ -71,10 +71,11 @@ class Pitches:
     def __init__(
         self, rules: Sequence[PitchHold | None], depths: Sequence[float], robots: Sequence[Robot], period: float
     ) -> None:
-        off = PitchHold(gain=0.0, rate_gain=0.0, integral_gain=0.0)
-        self._on = np.array([rule is not None for rule in rules])
+        neutral_rule = PitchHold(gain=0.0, rate_gain=0.0, integral_gain=0.0)
+        self._is_active = np.array([rule is not None for rule in rules])
         self._rule = {
-            name: np.array([getattr(rule or off, name) for rule in rules]) for name in PitchHold.__dataclass_fields__
+            name: np.array([getattr(rule or neutral_rule, name) for rule in rules])
+            for name in PitchHold.__dataclass_fields__
         }
         for rule, robot in zip(rules, robots, strict=True):
             if rule is not None and min(chambers(robot)) == 0.0:
@@ -86,42 +87,44 @@ class Pitches:
         air[air.sum(axis=1) == 0.0] = 1.0
         self._share = air / air.sum(axis=1, keepdims=True)
         self._asked_depth, self._period = np.array(depths), period
-        self._kept = np.array([keep(value, period) for value in self._rule["memory"]])
-        self._felt: np.ndarray | None = None
-        self._offset, self._moved = np.zeros(len(rules)), np.zeros(len(rules))
+        self._decay = np.array([keep(value, period) for value in self._rule["memory"]])
+        self._filtered: np.ndarray | None = None
+        self._offset, self._air_shift = np.zeros(len(rules)), np.zeros(len(rules))
 
     def split(self, air_fraction: Float[np.ndarray, " run"], sensed: Sensed) -> Float[np.ndarray, "run 2"]:
-        """Return the share of the air that is kept in front and rear chambers [-].
+        """Return the fraction of the air that the front and the rear chambers keep [-].
 
         Args:
             air_fraction: share of the whole air that is kept, NaN where it is not commanded [-].
             sensed: what the robots feel.
         """
         rule, (front, rear) = self._rule, self._share.T
-        error = rotation.pitch(finite(sensed.orientation)) - self._asked(sensed)
-        now = np.stack([error, finite(sensed.angular_velocity)[:, 1]])
-        self._felt = now if self._felt is None else now + self._kept * (self._felt - now)
-        theta, rate = self._felt
+        error = rotation.pitch(finite(sensed.orientation)) - self._target_pitch(sensed)
+        reading = np.stack([error, finite(sensed.angular_velocity)[:, 1]])
+        self._filtered = reading if self._filtered is None else reading + self._decay * (self._filtered - reading)
+        theta, rate = self._filtered
         offset = self._offset + rule["integral_gain"] * theta * self._period
-        asked = offset + rule["gain"] * theta + rule["rate_gain"] * rate
-        most = rule["pump"] * self._period
-        wanted = self._moved + np.clip(asked - self._moved, -most, most)
-        kept = finite(air_fraction)
-        back = np.maximum(-kept * front, -(1.0 - kept) * rear)  # no chamber beyond empty or full
-        ahead = np.minimum((1.0 - kept) * front, kept * rear)
-        self._moved = np.where(self._on, np.clip(wanted, back, ahead), 0.0)
-        within = (asked >= back) & (asked <= ahead)  # what stays adds up only where the chambers can answer
-        self._offset = np.where(within, offset, self._offset)
-        share = np.where(self._share > 0.0, self._share, 1.0)
-        return np.asarray(air_fraction[:, None] + self._moved[:, None] * _TO_AND_FRO / share)
+        target_shift = offset + rule["gain"] * theta + rule["rate_gain"] * rate
+        max_step = rule["pump"] * self._period
+        next_shift = self._air_shift + np.clip(target_shift - self._air_shift, -max_step, max_step)
+        retained_fraction = finite(air_fraction)
+        # chambers cannot be more than empty or full
+        min_shift = np.maximum(-retained_fraction * front, -(1.0 - retained_fraction) * rear)
+        max_shift = np.minimum((1.0 - retained_fraction) * front, retained_fraction * rear)
+        self._air_shift = np.where(self._is_active, np.clip(next_shift, min_shift, max_shift), 0.0)
+        # anti-windup: integrate only within the limits of the chambers
+        is_answerable = (target_shift >= min_shift) & (target_shift <= max_shift)
+        self._offset = np.where(is_answerable, offset, self._offset)
+        fraction = np.where(self._share > 0.0, self._share, 1.0)
+        return np.asarray(air_fraction[:, None] + self._air_shift[:, None] * _TO_AND_FRO / fraction)
 
-    def _asked(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
-        """Return the asked pitches, nose down positive [rad]."""
+    def _target_pitch(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
+        """Return the target pitch of each run, nose down positive [rad]."""
         rule = self._rule
         if sensed.depth is None:
             return np.asarray(rule["pitch"])
-        high = finite(self._asked_depth - finite(sensed.depth))
-        return np.asarray(rule["pitch"] + np.clip(rule["dive"] * high, -rule["steepest"], rule["steepest"]))
+        height_error = finite(self._asked_depth - finite(sensed.depth))
+        return np.asarray(rule["pitch"] + np.clip(rule["dive"] * height_error, -rule["steepest"], rule["steepest"]))
 
 
 _TO_AND_FRO = np.array([1.0, -1.0])

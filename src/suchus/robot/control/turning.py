@@ -57,8 +57,8 @@ def turn(curve: TurningCurve, radius: float, *, attitude: AttitudeRule | None = 
             f"a circle of {radius:.3g} m was asked for; this gait turns no tighter than {curve.tightest:.3g} m: "
             "ask for more, or take another gait."
         )
-    share = float(np.sign(radius) * np.interp(1.0 / abs(radius), curve.curvatures, curve.mixtures))
-    return Walking(bend=share * curve.bend, asymmetry=share * curve.asymmetry, attitude=attitude)
+    fraction = float(np.sign(radius) * np.interp(1.0 / abs(radius), curve.curvatures, curve.mixtures))
+    return Walking(bend=fraction * curve.bend, asymmetry=fraction * curve.asymmetry, attitude=attitude)
 
 
 CURVES: Mapping[str, TurningCurve] = MappingProxyType(

@@ -34,9 +34,9 @@ class Change:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Walking:
-    """The run's gait, with what is asked of it besides; runs that differ share a batch.
+    """The run's gait with steering, attitude feedback and changes of gait; runs that differ share a batch.
 
-    With nothing asked the servo angles are those of ``OpenLoop``.
+    Without any of these the servo angles equal those of ``OpenLoop``.
     """
 
     attitude: AttitudeRule | None = None
@@ -83,26 +83,27 @@ class Walking:
         """
         for control, robot, gait in set(zip(runs.controls, runs.robots, runs.gaits, strict=True)):
             ladder = () if control.switching is None else control.switching.ladder
-            others = (*(change.gait for change in control.changes), *ladder)
-            for steered in (gait, *others) if control != Walking() else ():
-                steered.needs_steering("a walk that is steered and changes its gait")
+            later_gaits = (*(change.gait for change in control.changes), *ladder)
+            for walk_gait in (gait, *later_gaits) if control != Walking() else ():
+                walk_gait.needs_steering("a walk that is steered and changes its gait")
             _check_bend(control, robot, gait)
         return Walker(runs, period)
 
 
 def _check_bend(control: Walking, robot: Robot, gait: Gait) -> None:
+    """Refuse a steering bend for which the trunk has no servo or too little range."""
     place = layout(robot)
     if control.bend and not place.trunk_yaw:
         raise OutsideLimits(
             f"walking.bend is {control.bend:.3f} rad; robot {robot.name!r} has no servo that bends its trunk "
             "sideways: set it to 0, and steer by walking.asymmetry."
         )
-    bent = trunk_amplitude(robot, gait)
-    most = float(np.abs(servo_ranges(robot)[list(place.trunk_yaw)]).min(axis=1, initial=np.inf).sum())
-    if abs(control.bend) + bent > most + 1e-9:
+    gait_bend = trunk_amplitude(robot, gait)
+    max_bend = float(np.abs(servo_ranges(robot)[list(place.trunk_yaw)]).min(axis=1, initial=np.inf).sum())
+    if abs(control.bend) + gait_bend > max_bend + 1e-9:
         raise OutsideLimits(
-            f"gait {gait.name!r} bends the trunk by {bent:.3f} rad and steering by "
-            f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {most:.3f} rad in all: "
+            f"gait {gait.name!r} bends the trunk by {gait_bend:.3f} rad and steering by "
+            f"{abs(control.bend):.3f} rad; robot {robot.name!r} allows {max_bend:.3f} rad in all: "
             "lower walking.bend."
         )
 
@@ -111,13 +112,19 @@ class Walker:
     """The running controller of a batch of walks."""
 
     def __init__(self, runs: Runs, period: float) -> None:
+        """Start every run in its own gait.
+
+        Args:
+            runs: controls, robots and gaits.
+            period: of control [s].
+        """
         controls, robots, gaits = runs.controls, runs.robots, runs.gaits
         self._controls, self._robots, self._gaits = list(controls), list(robots), list(gaits)
         self._period = period
         n = len(robots)
         self._began = np.full(n, START)
-        self._cycles = np.zeros(n)  # walked before the present gait [cycle]
-        self._full = np.zeros(n)  # over which stroke and bends grow [s]; zero: at once
+        self._cycles = np.zeros(n)  # cycles walked before the present gait [cycle]
+        self._full = np.zeros(n)  # duration over which stroke and bends grow [s]; 0: at once
         self._script: dict[int, tuple[float, Transition, np.ndarray]] = {}
         self._bend = np.array([control.bend for control in controls])
         place = layout(robots[0])
@@ -128,56 +135,72 @@ class Walker:
         self._switcher = Switcher([control.switching for control in controls], robots, gaits, period)
         self._lower = np.zeros((n, len(place.limbs)))
         self._batch = Batch(self._robots, self._gaits)
-        self._last = self._walk(0.0)
+        self._previous_command = self._walk(0.0)
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
-        return self._last.targets
+        return self._previous_command.targets
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Walk on, or take another step of a change of gait."""
+        """Return the servo angles of the gait, or of the transition to another gait.
+
+        Args:
+            tick: number of the control period.
+            sensed: readings; None if no rule is on.
+        """
         time = tick * self._period
         if sensed is not None:
             self._lower = self._attitude.lower(sensed) if time >= START - _SLACK else np.zeros_like(self._lower)
         self._finish(time)
-        now = self._walk(time)
-        for run, asked in self._asked(time, sensed, now.phase):
-            course = transition(self._robots[run], self._gaits[run], asked)
-            self._script[run] = (time, course, self._last.targets[run].copy())
+        current = self._walk(time)
+        for run, target_gait in self._requested_gaits(time, sensed, current.phase):
+            course = transition(self._robots[run], self._gaits[run], target_gait)
+            self._script[run] = (time, course, self._previous_command.targets[run].copy())
             self._cycles[run] += np.ceil((time - self._began[run]) / self._gaits[run].period)
-            self._gaits[run] = asked
+            self._gaits[run] = target_gait
             self._batch = Batch(self._robots, self._gaits)
-        for run, (begun, course, start) in self._script.items():
-            now.targets[run] = course.at(time - begun, start)
-            now.phase[run] = self._last.phase[run]
-        self._last = now
-        return Command(now.targets.copy(), now.phase.copy())
+        for run, (start_time, course, start) in self._script.items():
+            current.targets[run] = course.at(time - start_time, start)
+            current.phase[run] = self._previous_command.phase[run]
+        self._previous_command = current
+        return Command(current.targets.copy(), current.phase.copy())
 
     def gait_of(self, run: int) -> Gait:
         """Return the gait in which a run walks, or to which it is changing."""
         return self._gaits[run]
 
-    def _asked(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
-        """Return who begins another gait now."""
+    def _requested_gaits(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
+        """Return the runs that begin another gait now, with that gait.
+
+        Args:
+            time: since the beginning of the run [s].
+            sensed: readings; None if no rule is on.
+            phase: of the limbs, shape (run, limb) [cycle].
+        """
         busy = set(self._script)
-        asked = []
+        requests = []
         for run, control in enumerate(self._controls):
             due = [change.gait for change in control.changes if change.at <= time + _SLACK]
             if run not in busy and due and due[-1] != self._gaits[run]:
-                asked.append((run, due[-1]))
+                requests.append((run, due[-1]))
         if sensed is not None and time >= START - _SLACK:
-            asked += self._switcher.decide(sensed, phase, self._gaits, busy)
-        return asked
+            requests += self._switcher.decide(sensed, phase, self._gaits, busy)
+        return requests
 
     def _finish(self, time: float) -> None:
-        for run, (begun, course, _) in list(self._script.items()):
-            if time >= begun + course.duration - _SLACK:
+        """End the transitions whose time has passed; their new gaits begin now."""
+        for run, (start_time, course, _) in list(self._script.items()):
+            if time >= start_time + course.duration - _SLACK:
                 del self._script[run]
                 self._began[run] = time
                 self._full[run] = _GROWS * self._gaits[run].period
 
     def _walk(self, time: float) -> Command:
-        """Return the intended posture of every run by its clock; those of runs that change their gait do not count."""
+        """Return the intended posture of every run by its clock; runs in a transition ignore it.
+
+        Args:
+            time: since the beginning of the run [s].
+        """
         since = np.maximum(time - self._began, 0.0)
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
         clock = since / self._batch.periods + self._cycles

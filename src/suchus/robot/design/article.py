@@ -20,13 +20,13 @@ PASSIVE_RANGE = 1.2
 SLIM = 0.8
 """Radius of a tibia over that of its femur [-]."""
 _PASSIVE_ARMATURE = 1e-4  # [kg m2]
-_SPARE = 1.5  # a joint may bend by more than its share before the plates touch
+_SPARE = 1.5  # stop of a joint over its share of the greatest bend [-]
 
 
 def crocodile(tables: Tables) -> Robot:
     """Return the robot of the article's kind that has these measures.
 
-    It remembers them, so that ``with_values`` can change one of them and make the robot anew.
+    The robot stores the tables, so that ``with_values`` can change one of their numbers and build the robot again.
 
     Raises:
         InvalidDesign: these measures make no robot.
@@ -35,7 +35,7 @@ def crocodile(tables: Tables) -> Robot:
     robot = Robot(
         name=tables.name,
         root="pelvis",
-        axis=(*_ahead(tables), _pelvis(tables), *_tail(tail)),
+        axis=(*_front_segments(tables), _pelvis(tables), *_tail(tail)),
         girdles=(
             _girdle("F", "thorax", tables.thorax.shoulder, tables.front_leg),
             _girdle("H", "pelvis", 0.0, tables.hind_leg),
@@ -49,20 +49,20 @@ def crocodile(tables: Tables) -> Robot:
 
 
 def remade(robot: Robot, change: Callable[[Any], Any]) -> Robot:
-    """Return a robot with a change in what it was made of: in its tables if it has some, else in itself.
+    """Return a robot with a change in its tables if it has some, else in itself.
 
     Args:
         robot: the robot; it stays as it is.
         change: takes ``Tables`` or a ``Robot`` and returns the same.
     """
     tables = tables_of(robot)
-    changed: Robot = change(robot) if tables is None else crocodile(change(tables))
-    return changed
+    remade_robot: Robot = change(robot) if tables is None else crocodile(change(tables))
+    return remade_robot
 
 
 @lru_cache(maxsize=256)
 def tables_of(robot: Robot) -> Tables | None:
-    """Return the tables that make a robot: those it was made of, or those read from its measures, which must make it.
+    """Return the tables that make a robot, remembered or read back from its measures; None if no tables make it.
 
     None where no tables make it.
     """
@@ -78,13 +78,13 @@ def tables_of(robot: Robot) -> Tables | None:
     try:
         tables = Tables(
             name=robot.name,
-            hind_leg=_read(Leg, legs[1]),
-            front_leg=_read(Leg, legs[0]),
-            pelvis=_read(Pelvis, pelvis),
-            spine=_read(Spine, spine, link_mass=spine.link_masses[0]),
-            thorax=_read(Thorax, thorax),
-            head=_read(Head, head),
-            tail=_read(Tail, tail, plate=tail.plate, **_moved(robot)),
+            hind_leg=_from_measures(Leg, legs[1]),
+            front_leg=_from_measures(Leg, legs[0]),
+            pelvis=_from_measures(Pelvis, pelvis),
+            spine=_from_measures(Spine, spine, link_mass=spine.link_masses[0]),
+            thorax=_from_measures(Thorax, thorax),
+            head=_from_measures(Head, head),
+            tail=_from_measures(Tail, tail, plate=tail.plate, **_cord_drive(robot)),
             contact=robot.contact,
             hull=robot.hull,
         )
@@ -93,16 +93,22 @@ def tables_of(robot: Robot) -> Tables | None:
         return None
 
 
-def _moved(robot: Robot) -> dict[str, object]:
-    """Return what of the tables says how the tail's cords are moved."""
+def _cord_drive(robot: Robot) -> dict[str, object]:
+    """Return the fields of the tables that describe the drive of the tail's cords."""
     linear = robot.cables[0].linear
     return {"drive": "cable"} if linear is None else {"drive": "linear_actuator", "actuator": linear}
 
 
-def _read(kind: type[T], measures: NamedTuple, **more: object) -> T:
-    """Return a part of the tables with the measures that carry the names of its fields."""
+def _from_measures(kind: type[T], measures: NamedTuple, **extra_fields: object) -> T:
+    """Return a part of the tables, filled with the measures of the same names.
+
+    Args:
+        kind: class of the part.
+        measures: read from a robot.
+        **extra_fields: fields that the measures do not have, by name.
+    """
     names = {field.name for field in fields(kind)}  # type: ignore[arg-type]
-    return kind(**{name: value for name, value in measures._asdict().items() if name in names}, **more)
+    return kind(**{name: value for name, value in measures._asdict().items() if name in names}, **extra_fields)
 
 
 def cable_names(tail: Tail) -> tuple[str, ...]:
@@ -115,7 +121,7 @@ def fin_names(tail: Tail) -> tuple[str, ...]:
     return tuple(f"fin_{turn}_{i + 1}" for i in range(tail.fin_segments) for turn in ("yaw", "pitch"))
 
 
-def _ahead(tables: Tables) -> list[Segment]:
+def _front_segments(tables: Tables) -> list[Segment]:
     """Return head with thorax, then the links of the spine back to the pelvis."""
     spine, thorax, head = tables.spine, tables.thorax, tables.head
     hinges = [_spine_hinge(tables, name) for name in spine.names]
@@ -164,6 +170,7 @@ def _spine_hinge(tables: Tables, name: str) -> Hinge:
 
 
 def _pelvis(tables: Tables) -> Segment:
+    """Return the segment of the hind girdle, whose hinge pitches the tail."""
     pelvis, tail = tables.pelvis, tables.tail
     half = (pelvis.length / 2, pelvis.width / 2, pelvis.height / 2)
     return Segment(
@@ -176,17 +183,19 @@ def _pelvis(tables: Tables) -> Segment:
 
 
 def _tail(tail: Tail) -> list[Segment]:
-    joints = [(hinge,) for hinge in _driven(tail)] + [_passive(tail, i) for i in range(tail.fin_segments)]
-    found = []
+    """Return the segments of the tail from its root to its tip."""
+    joints = [(hinge,) for hinge in _driven_hinges(tail)] + [_passive(tail, i) for i in range(tail.fin_segments)]
+    segments = []
     for i, (length, radius, mass) in enumerate(zip(*tail_segments(tail), strict=True)):
         name = f"tail_{i}" if i else "tail_root"
         rod = Rod(name=name, start=(0, 0, 0), end=(-length, 0, 0), radius=radius, mass=mass)
         hinges = joints[i] if i < len(joints) else ()
-        found.append(Segment(name=name, front=0.0, rear=length, shapes=(rod,), hinges=hinges))
-    return found
+        segments.append(Segment(name=name, front=0.0, rear=length, shapes=(rod,), hinges=hinges))
+    return segments
 
 
-def _driven(tail: Tail) -> list[Hinge]:
+def _driven_hinges(tail: Tail) -> list[Hinge]:
+    """Return the yaw hinges that the cable bends, or that have a servo each."""
     limit = _SPARE * tail.bend_limit / tail.joints
     drive: Servo | Spring = tail.cable_servo
     if tail.drive != "servos":
@@ -196,6 +205,12 @@ def _driven(tail: Tail) -> list[Hinge]:
 
 
 def _passive(tail: Tail, number: int) -> tuple[Hinge, Hinge]:
+    """Return the yaw and the pitch hinge of one passive segment; stiffness falls linearly to half at the last segment.
+
+    Args:
+        tail: the measures.
+        number: of the passive segment, from the root [-].
+    """
     softer = 1.0 - 0.5 * number / max(tail.fin_segments - 1, 1)
     names = fin_names(tail)[2 * number : 2 * number + 2]
 
@@ -208,6 +223,7 @@ def _passive(tail: Tail, number: int) -> tuple[Hinge, Hinge]:
 
 
 def _cable(tail: Tail) -> Cable:
+    """Return the cable of the tail with its servo or its linear actuator."""
     cable = Cable(
         name="tail_cable",
         hinges=cable_names(tail),
@@ -223,7 +239,16 @@ def _cable(tail: Tail) -> Cable:
     return replace(cable, servo=tail.actuator or ideal, pulley=0.0)
 
 
-def _girdle(name: str, segment: str, at: float, leg: Leg) -> Girdle:
+def _girdle(name: str, segment: str, position: float, leg: Leg) -> Girdle:
+    """Return a girdle with legs of yaw, pitch and knee.
+
+    Args:
+        name: ending of the limbs' names, ``F`` or ``H``.
+        segment: name of the segment that carries it.
+        position: from the segment's origin forward to the hips [m].
+        leg: the measures of the left leg.
+    """
+
     def hinge(word: str, turn: str, limits: tuple[float, float]) -> Hinge:
         return Hinge(name=word, turn=turn, range=limits, drive=leg.servo)  # type: ignore[arg-type]
 
@@ -243,5 +268,10 @@ def _girdle(name: str, segment: str, at: float, leg: Leg) -> Girdle:
     )
     foot = Foot(radius=leg.foot_radius, mass=LEG_SHARES[2] * leg.mass)
     return Girdle(
-        name=name, segment=segment, at=at, aside=leg.hip_offset, above=0.0, limb=Limb(links=(femur, tibia), foot=foot)
+        name=name,
+        segment=segment,
+        at=position,
+        aside=leg.hip_offset,
+        above=0.0,
+        limb=Limb(links=(femur, tibia), foot=foot),
     )

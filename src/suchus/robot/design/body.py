@@ -77,11 +77,12 @@ class Robot(_Hashed):
             _check_drives(self, check)
 
     def __hash__(self) -> int:
+        """Return the hash of all compared fields, computed once."""
         try:
             return self._hash
         except AttributeError:
-            compared = tuple(getattr(self, one.name) for one in fields(self) if one.compare)
-            object.__setattr__(self, "_hash", hash(compared))
+            compared_values = tuple(getattr(self, definition.name) for definition in fields(self) if definition.compare)
+            object.__setattr__(self, "_hash", hash(compared_values))
             return self._hash
 
     @property
@@ -150,22 +151,22 @@ class Robot(_Hashed):
         """The measures of its shell ``head``; ``UnsuitedRobot`` without one."""
         return self._has(head_of(self), "a shell called head")
 
-    def _has(self, measures: M | None, what: str) -> M:
+    def _has(self, measures: M | None, description: str) -> M:
         if measures is None:
-            raise UnsuitedRobot(f"robot {self.name!r} lacks {what}: choose another robot.")
+            raise UnsuitedRobot(f"robot {self.name!r} lacks {description}: choose another robot.")
         return measures
 
 
 def servos_of(robot: Robot) -> dict[str, Servo]:
     """Return every servo by name, those of limbs first; of a linear actuator the servo that would do the same."""
-    found = {}
+    servos = {}
     for girdle in robot.girdles:
         for side in "LR":
             for hinge in girdle.limb.hinges:
                 if hinge.servo is not None:
-                    found[f"{side}{girdle.name}_{hinge.name}"] = hinge.servo
-    found |= {hinge.name: hinge.servo for hinge in robot.axis_hinges if hinge.servo is not None}
-    return found | {cable.name: cable.turning for cable in robot.cables}
+                    servos[f"{side}{girdle.name}_{hinge.name}"] = hinge.servo
+    servos |= {hinge.name: hinge.servo for hinge in robot.axis_hinges if hinge.servo is not None}
+    return servos | {cable.name: cable.turning for cable in robot.cables}
 
 
 def bends_trunk(hinge: str) -> bool:
@@ -174,6 +175,7 @@ def bends_trunk(hinge: str) -> bool:
 
 
 def _check_names(robot: Robot, check: Checks) -> None:
+    """Report a root or girdle on a segment that does not exist, and names that are used twice."""
     check.that(len(robot.axis) > 0, "the axis has no segment; give it one")
     names = [segment.name for segment in robot.axis]
     check.that(robot.root in names, f"root is {show(robot.root)}, no segment of the axis; there is {', '.join(names)}")
@@ -188,19 +190,23 @@ def _check_names(robot: Robot, check: Checks) -> None:
     ]
     hinges = [hinge.name for hinge in robot.axis_hinges] + [cable.name for cable in robot.cables]
     shapes = [shape.name for segment in robot.axis for shape in segment.shapes]
-    for what, those in (
+    for kind, group_names in (
         ("segments or links", [*names, *bodies]),
         ("limbs", limbs),
         ("hinges or cables", hinges),
         ("shapes", shapes),
     ):
-        twice = [name for name, count in Counter(those).items() if count > 1]
-        check.that(not twice, f"several {what} are called {', '.join(twice)}; each needs a name of its own")
+        duplicates = [name for name, count in Counter(group_names).items() if count > 1]
+        check.that(not duplicates, f"several {kind} are called {', '.join(duplicates)}; each needs a name of its own")
 
 
 def _check_axis(robot: Robot, check: Checks) -> None:
-    last = robot.axis[-1]
-    check.that(not last.hinges, f"segment {last.name} is the last one, so that its hinges join nothing; remove them")
+    """Report girdles out of order, a root in the wrong segment, and yaw hinges with the wrong kind of name."""
+    last_segment = robot.axis[-1]
+    check.that(
+        not last_segment.hinges,
+        f"segment {last_segment.name} is the last one, so that its hinges join nothing; remove them",
+    )
     place = {segment.name: i for i, segment in enumerate(robot.axis)}
     root = robot.root_place
     order = [(place[girdle.segment], -girdle.at) for girdle in robot.girdles]
@@ -215,15 +221,16 @@ def _check_axis(robot: Robot, check: Checks) -> None:
         yaws = {h.name for s in robot.axis[front:root] for h in s.hinges if h.turn == "yaw"}
     else:
         yaws = {h.name for s in robot.axis[:root] for h in s.hinges if h.turn == "yaw"}
-    named = {hinge.name for hinge in robot.axis_hinges if bends_trunk(hinge.name)}
+    named_yaws = {hinge.name for hinge in robot.axis_hinges if bends_trunk(hinge.name)}
     check.that(
-        yaws == named,
+        yaws == named_yaws,
         f"the yaw hinges between root and foremost girdle are {', '.join(sorted(yaws)) or 'none'}, those whose names "
-        f"begin with {_TRUNK_YAW} {', '.join(sorted(named)) or 'none'}: name these hinges so, and no others",
+        f"begin with {_TRUNK_YAW} {', '.join(sorted(named_yaws)) or 'none'}: name these hinges so, and no others",
     )
 
 
 def _check_limbs(robot: Robot, check: Checks) -> None:
+    """Report girdles off their segment, and limbs that are too short to carry the belly."""
     segments = {segment.name: segment for segment in robot.axis}
     for girdle in robot.girdles:
         segment = segments[girdle.segment]
@@ -233,7 +240,7 @@ def _check_limbs(robot: Robot, check: Checks) -> None:
             f"{-segment.rear:g} to {segment.front:g} m: the parts do not join; move it there",
         )
         depth = girdle.limb.reach + girdle.limb.foot.radius
-        belly = max(shape.bottom for one in robot.axis for shape in one.shapes) + girdle.above
+        belly = max(shape.bottom for axis_segment in robot.axis for shape in axis_segment.shapes) + girdle.above
         check.that(
             depth > belly,
             f"limb {girdle.name} reaches {depth:.3g} m below its hip but the belly hangs {belly:.3g} m below it: the "
@@ -242,9 +249,10 @@ def _check_limbs(robot: Robot, check: Checks) -> None:
 
 
 def _check_drives(robot: Robot, check: Checks) -> None:
+    """Report cables over hinges that do not fit, hinges with two drives, and servos of the wrong size."""
     order = [hinge.name for hinge in robot.axis_hinges]
     by_name = {hinge.name: hinge for hinge in robot.axis_hinges}
-    taken: dict[str, str] = {}
+    drive_of_hinge: dict[str, str] = {}
     for cable in robot.cables:
         unknown = [name for name in cable.hinges if name not in by_name]
         check.that(not unknown, f"cable {cable.name} bends {', '.join(unknown)}, no hinge of the axis")
@@ -252,18 +260,18 @@ def _check_drives(robot: Robot, check: Checks) -> None:
             continue
         places = [order.index(name) for name in cable.hinges]
         follow = all(abs(b - a) == 1 and b - a == places[1] - places[0] for a, b in pairwise(places))
-        alike = len({by_name[name].turn for name in cable.hinges}) == 1
+        has_one_turn = len({by_name[name].turn for name in cable.hinges}) == 1
         check.that(
-            follow and alike,
+            follow and has_one_turn,
             f"cable {cable.name} bends {', '.join(cable.hinges)}, which do not follow each other along the axis as "
             "hinges of one turn; name neighbours",
         )
         for name in cable.hinges:
-            second = taken.get(name) or ("a servo of its own" if by_name[name].servo is not None else "")
+            second = drive_of_hinge.get(name) or ("a servo of its own" if by_name[name].servo is not None else "")
             check.that(
                 not second, f"hinge {name} has two drives, cable {cable.name} and {second}; take one of them away"
             )
-            taken[name] = f"cable {cable.name}"
+            drive_of_hinge[name] = f"cable {cable.name}"
     servos = servos_of(robot)
     check.that(
         1 <= len(servos) <= MOST_SERVOS,
@@ -285,12 +293,12 @@ def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float
         length: of the robot [m].
     """
     for name, servo in servos.items():
-        share = servo.armature / (mass * length**2)
+        inertia_ratio = servo.armature / (mass * length**2)
         check.that(
-            share <= 0.1,
-            f"servo {name} of {robot} has an armature of {servo.armature:.3g} kg m2, {share:.3g} of mass times length "
-            f"squared ({mass:.3g} kg, {length:.3g} m), where up to 0.1 makes sense: it belongs to a larger robot; "
-            "see suchus.robot.design.scale.scaled",
+            inertia_ratio <= 0.1,
+            f"servo {name} of {robot} has an armature of {servo.armature:.3g} kg m2, {inertia_ratio:.3g} of mass "
+            f"times length squared ({mass:.3g} kg, {length:.3g} m), where up to 0.1 makes sense: it belongs to a "
+            "larger robot; see suchus.robot.design.scale.scaled",
         )
-        if share > 0.1:
+        if inertia_ratio > 0.1:
             break

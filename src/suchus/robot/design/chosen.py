@@ -17,7 +17,7 @@ _STEP = re.compile(r"(\w+)|\[(\d+)\]")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chosen:
-    """Why a field holds what it holds, and how far it could plausibly be off."""
+    """The reason for the value of a field, and its plausible range."""
 
     field: str
     """Dotted path of the field from the robot or gait, as ``spine.pitch_servo.torque``."""
@@ -44,7 +44,7 @@ class Numbered(Protocol):
 
 
 def value_at(design: Any, path: str) -> Any:
-    """Return what a field of a robot or gait holds.
+    """Return the value of a field of a robot or gait.
 
     Args:
         design: the robot, the gait, or a part.
@@ -78,25 +78,26 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
     branches: dict[str | int, dict[str, Any]] = {}
     numbers: dict[str, Any] = {}
     for path, value in values.items():
-        first, *rest = _steps(path)
-        if not rest and first in _numbers(design):
-            numbers[str(first)] = value
+        head, *remainder = _steps(path)
+        if not remainder and head in _numbers(design):
+            numbers[str(head)] = value
             continue
-        _step(design, first)
-        branches.setdefault(first, {})["".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in rest)] = value
-    changed = {
-        step: below[""] if "" in below else with_values(_step(design, step), below) for step, below in branches.items()
+        _step(design, head)
+        branches.setdefault(head, {})["".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in remainder)] = value
+    new_values = {
+        step: subvalues[""] if "" in subvalues else with_values(_step(design, step), subvalues)
+        for step, subvalues in branches.items()
     }
     if isinstance(design, tuple):
-        return type(design)(changed.get(i, item) for i, item in enumerate(design))
-    derived = [f.name for f in fields(design) if not f.init and f.name in changed]  # type: ignore[arg-type]
+        return type(design)(new_values.get(i, item) for i, item in enumerate(design))
+    derived = [f.name for f in fields(design) if not f.init and f.name in new_values]  # type: ignore[arg-type]
     if derived:
         raise InvalidDesign(
             f"{derived[0]} follows from what a {type(design).__name__} was made of, and is not set: change the other "
             "fields."
         )
-    fitted: Any = replace(design, **{str(step): value for step, value in changed.items()})  # type: ignore[type-var]
-    return fitted.with_numbers(**numbers) if numbers else fitted
+    new_design: Any = replace(design, **{str(step): value for step, value in new_values.items()})  # type: ignore[type-var]
+    return new_design.with_numbers(**numbers) if numbers else new_design
 
 
 def unit_at(design: Any, path: str) -> str:
@@ -110,8 +111,8 @@ def unit_at(design: Any, path: str) -> str:
         UnknownName: there is no such field.
     """
     value_at(design, path)
-    above, _, name = path.rpartition(".")
-    holder = value_at(design, above) if above else design
+    parent_path, _, name = path.rpartition(".")
+    holder = value_at(design, parent_path) if parent_path else design
     if name in _numbers(holder):
         return _numbers(holder)[name]
     owner, name = type(_holder(holder, name)), name.partition("[")[0]
@@ -127,7 +128,7 @@ def _steps(path: str) -> list[str | int]:
 
 def _numbers(design: Any) -> Mapping[str, str]:
     """Return the names and units of the numbers that a value has besides its fields."""
-    if not _numbered(design.__class__):
+    if not _has_numbers(design.__class__):
         return {}
     return {name: unit for name, unit in design.numbers().items() if not hasattr(design, name)}
 
@@ -135,11 +136,16 @@ def _numbers(design: Any) -> Mapping[str, str]:
 def _holder(design: Any, step: str | int) -> Any:
     """Return the tables of a robot where they, and not the robot itself, have a field; else the design."""
     tables = tables_of(design) if isinstance(design, Robot) else None
-    own = isinstance(design, Robot) and step in {field.name for field in fields(design) if field.init}
-    return design if tables is None or own else tables
+    is_own_field = isinstance(design, Robot) and step in {field.name for field in fields(design) if field.init}
+    return design if tables is None or is_own_field else tables
 
 
 def _step(design: Any, step: str | int) -> Any:
+    """Return the value of a field, an element or a number of a design.
+
+    Raises:
+        UnknownName: the design has nothing of that name.
+    """
     names: Sequence[str | int] = _field_names(design.__class__)
     if isinstance(step, int):
         names = range(len(design)) if isinstance(design, tuple) else ()
@@ -157,6 +163,6 @@ def _field_names(kind: type) -> tuple[str, ...]:
 
 
 @cache
-def _numbered(kind: type) -> bool:
+def _has_numbers(kind: type) -> bool:
     """Return whether the values of a class are ``Numbered``: to ask each value takes longer than to change it."""
     return issubclass(kind, Numbered)

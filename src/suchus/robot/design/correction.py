@@ -1,4 +1,4 @@
-"""Factors on what the sections of a body feel, as a flow around it has found them at its Reynolds number."""
+"""Factors on added mass and drag of the section model, fitted to a flow simulation at one Reynolds number."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -30,8 +30,11 @@ class LinkFactors:
             check.that(bool(self.bodies), "a link of a correction has no bodies; name those that it is made of")
             for name in ("added", "drag"):
                 check.number(name, 0.0, MOST, "")
-                low, high = getattr(self, f"{name}_interval")
-                check.that(low <= high, f"{name}_interval goes from {low:g} to {high:g}; give the lower end first")
+                lower_bound, upper_bound = getattr(self, f"{name}_interval")
+                check.that(
+                    lower_bound <= upper_bound,
+                    f"{name}_interval goes from {lower_bound:g} to {upper_bound:g}; give the lower end first",
+                )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,14 +50,16 @@ class SectionCorrection:
 
     def __post_init__(self) -> None:
         with Checks("correction", self) as check:
-            low, high = self.reynolds
+            lower_bound, upper_bound = self.reynolds
             check.that(
-                1e-3 <= low <= high <= 1e12,
+                1e-3 <= lower_bound <= upper_bound <= 1e12,
                 f"correction.reynolds is {self.reynolds}; two numbers from 0.001 to 1e12 that do not fall are allowed",
             )
             bodies = [body for link in self.links for body in link.bodies]
-            twice = sorted({body for body in bodies if bodies.count(body) > 1})
-            check.that(not twice, f"a correction has factors twice for {', '.join(twice)}; give each body one link")
+            duplicates = sorted({body for body in bodies if bodies.count(body) > 1})
+            check.that(
+                not duplicates, f"a correction has factors twice for {', '.join(duplicates)}; give each body one link"
+            )
             check.that(bool(self.links), "a correction has no link with factors; leave it out")
 
     @property
@@ -63,15 +68,19 @@ class SectionCorrection:
         return {body: link for link in self.links for body in link.bodies}
 
     def outside(self, reynolds: float) -> str:
-        """Return what is to be said of a Reynolds number that it was not found for; nothing of one that it was."""
-        low, high = self.reynolds
-        if low * (1 - 1e-6) <= reynolds <= high * (1 + 1e-6):
+        """Return a warning for a Reynolds number outside the range of the correction; an empty text inside it.
+
+        Args:
+            reynolds: frequency times length squared over viscosity [-].
+        """
+        lower_bound, upper_bound = self.reynolds
+        if lower_bound * (1 - 1e-6) <= reynolds <= upper_bound * (1 + 1e-6):
             return ""
-        found = f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
+        valid_range = f"{lower_bound:.3g}" if lower_bound == upper_bound else f"{lower_bound:.3g} to {upper_bound:.3g}"
         return (
-            f"the correction {self.name!r} of the section model was found at f L2 / nu = {found}, and this swim is at "
-            f"{reynolds:.3g}: layers and wakes differ there, so that its factors may mislead; leave it out, or take "
-            "water of the viscosity that it was found in."
+            f"the correction {self.name!r} of the section model was found at f L2 / nu = {valid_range}, and this swim "
+            f"is at {reynolds:.3g}: layers and wakes differ there, so that its factors may mislead; leave it out, or "
+            "take water of the viscosity that it was found in."
         )
 
     def check(self, bodies: tuple[str, ...], robot: str) -> None:

@@ -78,24 +78,29 @@ class Drawing:
         Raises:
             InvalidDesign: no sections of these proportions have the volume.
         """
-        wanted, grown = self.mass / self.density, 1.0
+        target_volume, scale = self.mass / self.density, 1.0
         for _ in range(30):
-            robot = self._robot(grown, servo)
+            robot = self._robot(scale, servo)
             volume = sum(volumes(robot).values())
-            if abs(volume / wanted - 1.0) < 1e-9:
+            if abs(volume / target_volume - 1.0) < 1e-9:
                 return robot
-            grown *= (wanted / volume) ** 0.5
+            scale *= (target_volume / volume) ** 0.5
         raise InvalidDesign(
-            f"drawing {self.name} would need sections {grown:.2g} times as wide as drawn for {wanted:.3g} m3 of "
-            f"volume; "
-            "check mass, density and length."
+            f"drawing {self.name} would need sections {scale:.2g} times as wide as drawn for {target_volume:.3g} m3 of "
+            "volume; check mass, density and length."
         )
 
-    def _robot(self, grown: float, servo: Servo | None) -> Robot:
+    def _robot(self, scale: float, servo: Servo | None) -> Robot:
+        """Return the robot with its sections scaled.
+
+        Args:
+            scale: factor on width and height of the drawn sections [-].
+            servo: in every joint; None for one that holds the water.
+        """
         ends = (0.0, *self.joints, 1.0)
         drive = servo or swim_servo_for(self.mass, self.length)
         root = len(ends) // 2 - 1 if len(ends) > 2 else 0
-        shells = [self._shells(i, ends, grown) for i in range(len(ends) - 1)]
+        shells = [self._shells(i, ends, scale) for i in range(len(ends) - 1)]
         total = sum(size for row in shells for _, _, size in row)
         axis = tuple(
             Segment(
@@ -114,53 +119,77 @@ class Drawing:
         word, count = ("spine", root - number) if number < root else ("tail", number - root + 1)
         return Hinge(name=f"{word}_yaw_{count}", turn="yaw", drive=drive, range=(-self.bend, self.bend))
 
-    def _shells(self, number: int, ends: tuple[float, ...], grown: float) -> list[tuple[float, np.ndarray, float]]:
-        """Return place, half axes, both [body length], and size of the ellipsoids of a segment."""
+    def _shells(self, number: int, ends: tuple[float, ...], scale: float) -> list[tuple[float, np.ndarray, float]]:
+        """Return place and half axes, both [body length], and relative size of each ellipsoid of a segment.
+
+        Args:
+            number: of the segment, from the snout [-].
+            ends: places of the joints with both ends of the body [body length].
+            scale: factor on width and height [-].
+        """
         a, b = ends[number], ends[number + 1]
         count = max(2, round((b - a) * 24))
         step = (b - a) / count
         places = list(a + step * (np.arange(count) + 0.5))
         if number == len(ends) - 2:
-            places.append(b)  # the trailing edge: half of this one lies behind the tip, and is cut off there
-        found = []
+            places.append(b)  # trailing edge: half of this ellipsoid lies behind the tip, and its size counts half
+        ellipsoids = []
         for place in places:
-            wide, high = (np.interp(place, self.places, values) for values in (self.half_width, self.half_height))
-            long = _OVERLAP * step
+            half_width, half_height = (
+                np.interp(place, self.places, values) for values in (self.half_width, self.half_height)
+            )
+            half_length = _OVERLAP * step
             if place != b and number == len(ends) - 2:
-                long = min(long, b - place)
+                half_length = min(half_length, b - place)
             if number == 0:
-                long = min(long, place) if place < long else long
-            half = np.array([long, grown * wide, grown * high])
-            found.append((float(place), half, float(wide * high * step * (0.5 if place == b else 1.0))))
-        return found
+                half_length = min(half_length, place) if place < half_length else half_length
+            half = np.array([half_length, scale * half_width, scale * half_height])
+            ellipsoids.append(
+                (float(place), half, float(half_width * half_height * step * (0.5 if place == b else 1.0)))
+            )
+        return ellipsoids
 
     def _shapes(
-        self, number: int, shells: list[tuple[float, np.ndarray, float]], middle: float, total: float, long: float
+        self,
+        number: int,
+        shells: list[tuple[float, np.ndarray, float]],
+        center: float,
+        total: float,
+        segment_length: float,
     ) -> tuple[Rod | Shell, ...]:
+        """Return the ellipsoids of one segment, and its keel if there is one.
+
+        Args:
+            number: of the segment, from the snout [-].
+            shells: place [body length], half axes [body length] and relative size of each ellipsoid.
+            center: of the segment, from the snout [body length].
+            total: sum of the relative sizes of all segments.
+            segment_length: length of the segment [body length].
+        """
         length = self.length
-        found: list[Rod | Shell] = []
+        shapes: list[Rod | Shell] = []
         weight = sum(size for _, _, size in shells) / total * self.mass
         for k, (place, half, size) in enumerate(shells):
-            found.append(
+            shapes.append(
                 Shell(
                     name=f"segment_{number + 1}_{k + 1}",
-                    at=((middle - place) * length, 0.0, 0.0),
+                    at=((center - place) * length, 0.0, 0.0),
                     half=tuple(float(value) for value in half * length),  # type: ignore[arg-type]
                     mass=(1.0 - self.keel) * size / total * self.mass,
                 )
             )
         if self.keel > 0.0:
-            high = min(half[2] for _, half, _ in shells) * length
-            thin = 0.2 * min(min(half[1] for _, half, _ in shells) * length, high)
-            reach = 0.3 * long * length
-            low = -(0.8 * high - thin)
-            found.append(
+            half_height = min(half[2] for _, half, _ in shells) * length
+            radius = 0.2 * min(min(half[1] for _, half, _ in shells) * length, half_height)
+            reach = 0.3 * segment_length * length
+            keel_z = -(0.8 * half_height - radius)
+            shapes.append(
                 Rod(
                     name=f"segment_{number + 1}_keel",
-                    start=(reach, 0.0, low),
-                    end=(-reach, 0.0, low),
-                    radius=thin,
+                    start=(reach, 0.0, keel_z),
+                    end=(-reach, 0.0, keel_z),
+                    radius=radius,
                     mass=self.keel * weight,
                 )
             )
-        return tuple(found)
+        return tuple(shapes)

@@ -16,8 +16,8 @@ def float_hull(
 ) -> Hull:
     """Return a hull that lets every body that is too heavy for its water displace its own weight and no more.
 
-    A bent body floats level only if its parts float by themselves. Where light bodies displace more than they weigh,
-    the foam of all others is a little less, so that the whole floats with the share above that is asked for.
+    A bent body floats level only if each part floats by itself. Light bodies displace more than their weight; the foam
+    of all others is then reduced, so that the whole robot floats with the demanded fraction above the surface.
 
     Args:
         robot: a robot without a hull.
@@ -33,21 +33,28 @@ def float_hull(
     require("float_hull", "density", density, 0.0, 0.9 * (1 - above) * WATER_DENSITY, "kg/m3")
     if robot.hull is not None:
         raise InvalidDesign(f"robot {robot.name!r} has a hull; take it off first, with replace(robot, hull=None).")
-    afloat = (1.0 - above) * WATER_DENSITY
-    own, heavy = volumes(robot), masses(robot)
-    lacking = {name: max(heavy[name] / afloat - own[name], 0.0) / (1 - density / afloat) for name in own}
-    needed = (sum(heavy.values()) / afloat - sum(own.values())) / (1 - density / afloat)
-    if needed < 0:
+    supported_density = (1.0 - above) * WATER_DENSITY
+    body_volumes, body_masses = volumes(robot), masses(robot)
+    lacking = {
+        name: max(body_masses[name] / supported_density - body_volumes[name], 0.0) / (1 - density / supported_density)
+        for name in body_volumes
+    }
+    foam_volume = (sum(body_masses.values()) / supported_density - sum(body_volumes.values())) / (
+        1 - density / supported_density
+    )
+    if foam_volume < 0:
         raise InvalidDesign(
-            f"robot {robot.name!r} displaces {1e3 * sum(own.values()):.3g} l and floats with more than {above:g} of it "
+            f"robot {robot.name!r} displaces {1e3 * sum(body_volumes.values()):.3g} l and floats with more than "
+            f"{above:g} of it "
             "above the surface without any foam: ask for a greater share above."
         )
-    share = needed / sum(lacking.values()) if needed > 0 else 0.0
+    fraction = foam_volume / sum(lacking.values()) if foam_volume > 0 else 0.0
     for name, volume in lacking.items():
-        if own[name] + share * volume > THICKEST * own[name]:
+        if body_volumes[name] + fraction * volume > THICKEST * body_volumes[name]:
             raise InvalidDesign(
-                f"{name} of robot {robot.name!r} would need {1e3 * share * volume:.3g} l of foam around "
-                f"{1e3 * own[name]:.3g} l, which makes it more than three times as thick: make it lighter or larger."
+                f"{name} of robot {robot.name!r} would need {1e3 * fraction * volume:.3g} l of foam around "
+                f"{1e3 * body_volumes[name]:.3g} l, which makes it more than three times as thick: make it "
+                "lighter or larger."
             )
-    foam = tuple(Foam(body=name, volume=share * v, raised=raised) for name, v in lacking.items() if share * v > 0)
+    foam = tuple(Foam(body=name, volume=fraction * v, raised=raised) for name, v in lacking.items() if fraction * v > 0)
     return Hull(foam=foam, density=density, air=air)

@@ -20,8 +20,8 @@ ASIDE = 1.4
 CELL = 0.025
 """Between the points of a height field [m]; about the size of a foot."""
 _RAMP = 0.15  # [m]; over which bumps grow from nothing
-_LEAST = 1e-5  # [m]; of heights, lengths and widths
-_OUTER = (0.02, 0.98)  # between these shares of a field's heights lies what is called its height
+_MIN_SIZE = 1e-5  # [m]; of heights, lengths and widths
+_OUTER = (0.02, 0.98)  # quantiles between which the height of a field is measured
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +36,7 @@ class Step:
     def __post_init__(self) -> None:
         with Checks("step", self) as checks:
             checks.number("at", *REACH, "m")
-            checks.number("height", _LEAST, 0.5, "m")
+            checks.number("height", _MIN_SIZE, 0.5, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,9 +58,9 @@ class Stone:
         with Checks("stone", self) as checks:
             checks.number("at", *REACH, "m")
             checks.number("aside", -ASIDE, ASIDE, "m")
-            checks.number("height", _LEAST, 0.5, "m")
-            checks.number("length", _LEAST, 1.0, "m")
-            checks.number("width", _LEAST, 1.0, "m")
+            checks.number("height", _MIN_SIZE, 0.5, "m")
+            checks.number("length", _MIN_SIZE, 1.0, "m")
+            checks.number("width", _MIN_SIZE, 1.0, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +96,7 @@ class Bumps:
 
     def __post_init__(self) -> None:
         with Checks("bumps", self) as checks:
-            checks.number("height", _LEAST, 0.5, "m")
+            checks.number("height", _MIN_SIZE, 0.5, "m")
             checks.number("scale", 1e-3, 100.0, "")
             checks.number("correlation", CELL * self.scale, 1.0 * self.scale, "m")
             checks.number("start", *self.reach, "m")
@@ -113,13 +113,15 @@ def field(bumps: Bumps) -> Float[np.ndarray, "across along"]:
 
     Smoothing white noise with a Gaussian of half the correlation length leaves a correlation of 1/e at that length.
     """
-    across, along = round(2 * ASIDE / CELL) + 1, round((REACH[1] - REACH[0]) / CELL) + 1
-    noise = np.random.default_rng(bumps.seed).standard_normal((across, along))
+    lateral_cells, axial_cells = round(2 * ASIDE / CELL) + 1, round((REACH[1] - REACH[0]) / CELL) + 1
+    noise = np.random.default_rng(bumps.seed).standard_normal((lateral_cells, axial_cells))
     smooth = gaussian_filter(noise, bumps.correlation / 2 / bumps.cell, mode="wrap")
-    low, high = np.quantile(smooth, _OUTER)
-    ahead = bumps.reach[0] + bumps.cell * np.arange(along) - bumps.start
-    grown = np.clip(ahead / (_RAMP * bumps.scale), 0.0, 1.0)
-    heights = np.asarray((smooth - (low + high) / 2) / (high - low) * bumps.height * grown)
+    lower_quantile, upper_quantile = np.quantile(smooth, _OUTER)
+    distance = bumps.reach[0] + bumps.cell * np.arange(axial_cells) - bumps.start
+    ramp = np.clip(distance / (_RAMP * bumps.scale), 0.0, 1.0)
+    heights = np.asarray(
+        (smooth - (lower_quantile + upper_quantile) / 2) / (upper_quantile - lower_quantile) * bumps.height * ramp
+    )
     heights.flags.writeable = False
     return heights
 
@@ -135,12 +137,12 @@ def heights(relief: Relief | None, x: Float[np.ndarray, "*b"], y: Float[np.ndarr
     if isinstance(relief, Step):
         return np.where((x >= relief.at) & (x <= REACH[1]) & (np.abs(y) <= ASIDE), relief.height, 0.0)
     if isinstance(relief, Stone):
-        inside = (np.abs(x - relief.at) <= relief.length / 2) & (np.abs(y - relief.aside) <= relief.width / 2)
-        return np.where(inside, relief.height, 0.0)
+        is_on_stone = (np.abs(x - relief.at) <= relief.length / 2) & (np.abs(y - relief.aside) <= relief.width / 2)
+        return np.where(is_on_stone, relief.height, 0.0)
     if isinstance(relief, Bumps):
         grid = field(relief)
-        at = np.stack([(y + relief.aside) / relief.cell, (x - relief.reach[0]) / relief.cell])
-        return np.asarray(map_coordinates(grid, at, order=1, cval=float(grid.min())))
+        grid_index = np.stack([(y + relief.aside) / relief.cell, (x - relief.reach[0]) / relief.cell])
+        return np.asarray(map_coordinates(grid, grid_index, order=1, cval=float(grid.min())))
     return np.zeros_like(x)
 
 
@@ -199,9 +201,9 @@ class Ground:
             check.number("uphill", -1.0, 1.0, "rad")
             check.number("sideways", -1.0, 1.0, "rad")
 
-    def looks_like(self, other: "Ground") -> bool:
+    def looks_like(self, ground: "Ground") -> bool:
         """Return whether another ground has the same slopes and relief, whatever its friction."""
-        return (self.uphill, self.sideways, self.relief) == (other.uphill, other.sideways, other.relief)
+        return (self.uphill, self.sideways, self.relief) == (ground.uphill, ground.sideways, ground.relief)
 
 
 def slope(uphill: float, sideways: float) -> Float[np.ndarray, "4"]:
@@ -211,8 +213,9 @@ def slope(uphill: float, sideways: float) -> Float[np.ndarray, "4"]:
         uphill: along the walk, up positive [rad].
         sideways: left side up positive [rad].
     """
-    up, aside = about(np.array([0.0, 1.0, 0.0]), -uphill), about(np.array([1.0, 0.0, 0.0]), sideways)
-    return multiply(up, aside)
+    pitch_rotation = about(np.array([0.0, 1.0, 0.0]), -uphill)
+    roll_rotation = about(np.array([1.0, 0.0, 0.0]), sideways)
+    return multiply(pitch_rotation, roll_rotation)
 
 
 BEFORE = 0.42

@@ -65,7 +65,7 @@ class Servo:
         return self.speed / (1.0 - self._idle / self.torque)
 
     def given(self, speed: Float[np.ndarray, "..."], supply: float = 1.0) -> Float[np.ndarray, "..."]:
-        """Return the greatest torque that its motor gives in the direction of a torque [N m].
+        """Return the greatest torque of the motor at a speed, in the direction of that torque [N m].
 
         Args:
             speed: of the shaft in that direction; negative where it is driven backwards [rad/s].
@@ -79,9 +79,9 @@ class Servo:
     def of(motor: Motor, volts: float | None = None, *, like: Optional["Servo"] = None) -> "Servo":
         """Return a servo that is bought, at a supply.
 
-        Torque, speed and winding are the motor's. No data sheet gives the numbers of the loop and of the gear, since
-        the first are set and the second differ from one to the next: they are those of another servo, or, without one,
-        those of the article's robot's servos in proportion to the torque. ``suchus calibrate`` measures them.
+        Torque, speed and winding are those of the motor. Data sheets do not give the gains of the loop and the friction
+        of the gear. These are taken from another servo, or, without one, from the servos of the article's robot in
+        proportion to the torque. ``suchus calibrate`` measures them.
 
         Args:
             motor: as it is bought.
@@ -92,8 +92,8 @@ class Servo:
             InvalidFields: the supply is not one that the motor bears.
         """
         volts = motor.volts if volts is None else volts
-        winding, share = motor.winding(volts), volts / motor.volts
-        torque, speed = share * motor.stall_torque, share * motor.no_load_speed
+        winding, supply_ratio = motor.winding(volts), volts / motor.volts
+        torque, speed = supply_ratio * motor.stall_torque, supply_ratio * motor.no_load_speed
         if like is not None:
             return replace(like, torque=torque, speed=speed, winding=winding)
         return Servo(
@@ -238,7 +238,7 @@ class LinearActuator:
 
     @classmethod
     def of(cls, servo: Servo, radius: float, travel: float) -> Self:
-        """Return the actuator that gives the cords what a servo gives them by a pulley.
+        """Return the actuator that moves the cords as a servo with a pulley does.
 
         Args:
             servo: the servo.
@@ -260,7 +260,11 @@ class LinearActuator:
         )
 
     def on(self, radius: float) -> Servo:
-        """Return the servo that gives the cords the same by a pulley of a radius [m]."""
+        """Return the servo that moves the cords in the same way by a pulley.
+
+        Args:
+            radius: of the pulley [m].
+        """
         return Servo(
             kp=self.kp * radius**2,
             ki=self.ki * radius**2,
@@ -279,9 +283,9 @@ class LinearActuator:
 class Cable:
     """Two cords that bend hinges which follow each other, all by the same angle where nothing resists.
 
-    A servo pulls them over one pulley, or a linear actuator moves them directly. All that is said of servos in radians
-    and newton metres, as commands and records, says of a linear actuator what a servo on a pulley of the radius
-    ``pulley`` would turn and give; its travel is the angle times that radius.
+    A servo pulls the cords over one pulley, or a linear actuator moves them directly. Commands and records give angles
+    and torques for both: those of a linear actuator are the angle and torque of an equivalent servo on a pulley of the
+    radius ``pulley``; its travel is the angle times that radius.
 
     Paper: Eqs (16) to (18).
     """
@@ -311,12 +315,12 @@ class Cable:
             if isinstance(self.servo, LinearActuator) and self.hinges:
                 if self.pulley == 0.0:
                     object.__setattr__(self, "pulley", self.cord_spacing / 2)
-                asked = self.cord_at(self.bend_limit)
+                required_travel = self.cord_at(self.bend_limit)
                 check.that(
-                    asked <= self.servo.travel * (1 + 1e-9),
-                    f"cable {self.name} bends up to {self.bend_limit:.4g} rad, for which its linear actuator must move "
-                    f"{asked:.4g} m to either side, and its travel is {self.servo.travel:.4g} m: let it bend less, "
-                    "give more travel, or cords that are closer together",
+                    required_travel <= self.servo.travel * (1 + 1e-9),
+                    f"cable {self.name} bends up to {self.bend_limit:.4g} rad, for which its linear actuator must "
+                    f"move {required_travel:.4g} m to either side, and its travel is {self.servo.travel:.4g} m: let "
+                    "it bend less, give more travel, or cords that are closer together",
                 )
             check.number("pulley", 1e-5, 10.0, "m")
 

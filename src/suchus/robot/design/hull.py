@@ -60,10 +60,12 @@ class Hull:
         with Checks("hull", self) as check:
             check.number("density", 0.0, 1e3, "kg/m3")
             check.number("air", 0.0, 1e3, "m3")
-            names = [one.body for one in self.foam]
-            twice = sorted({name for name in names if names.count(name) > 1})
-            check.that(not twice, f"hull.foam names {', '.join(twice)} more than once; give each body one foam")
-            bodies, total = [one.body for one in self.chambers], sum(one.share for one in self.chambers)
+            names = [foam.body for foam in self.foam]
+            duplicates = sorted({name for name in names if names.count(name) > 1})
+            check.that(
+                not duplicates, f"hull.foam names {', '.join(duplicates)} more than once; give each body one foam"
+            )
+            bodies, total = [chamber.body for chamber in self.chambers], sum(chamber.share for chamber in self.chambers)
             check.that(
                 len(set(bodies)) == len(bodies), "hull.chambers names a body more than once; give each body one chamber"
             )
@@ -75,7 +77,7 @@ class Hull:
     @property
     def volume(self) -> float:
         """Volume of the foam [m3]."""
-        return sum(one.volume for one in self.foam)
+        return sum(foam.volume for foam in self.foam)
 
     @property
     def mass(self) -> float:

@@ -18,8 +18,8 @@ from suchus.robot.design.limb import Girdle, Limb
 from suchus.robot.design.segment import Inertia
 
 Axis = tuple[float, float, float]
-_AHEAD: dict[str, Axis] = {"yaw": (0.0, 0.0, 1.0), "pitch": (0.0, 1.0, 0.0), "roll": (1.0, 0.0, 0.0)}
-_BEHIND: dict[str, Axis] = {"yaw": (0.0, 0.0, 1.0), "pitch": (0.0, -1.0, 0.0), "roll": (-1.0, 0.0, 0.0)}
+_FORWARD_AXES: dict[str, Axis] = {"yaw": (0.0, 0.0, 1.0), "pitch": (0.0, 1.0, 0.0), "roll": (1.0, 0.0, 0.0)}
+_BACKWARD_AXES: dict[str, Axis] = {"yaw": (0.0, 0.0, 1.0), "pitch": (0.0, -1.0, 0.0), "roll": (-1.0, 0.0, 0.0)}
 LIMB_AXES: Mapping[str, Axis] = {"yaw": (0.0, 0.0, -1.0), "pitch": (-1.0, 0.0, 0.0), "roll": (0.0, -1.0, 0.0)}
 """Axes of the turns of a left limb at zero posture."""
 
@@ -144,31 +144,31 @@ class Layout:
 def layout(robot: Robot) -> Layout:
     """Return the layout of a robot."""
     root = robot.root_place
-    ahead = [_ahead_body(robot, i) for i in range(root - 1, -1, -1)]
-    behind = [_behind_body(robot, i) for i in range(root + 1, len(robot.axis))]
+    forward_bodies = [_ahead_body(robot, i) for i in range(root - 1, -1, -1)]
+    backward_bodies = [_behind_body(robot, i) for i in range(root + 1, len(robot.axis))]
     bodies = [LayoutBody(robot.root, -1, (0.0, 0.0, 0.0), 0.0, (), robot.axis[root].inertia)]
-    bodies += [_placed(one, i) for i, one in enumerate(ahead)]
+    bodies += [_with_parent(body, i) for i, body in enumerate(forward_bodies)]
     tips = []
     for girdle, name, side in _pairs(robot):
-        parent = [one.name for one in bodies].index(girdle.segment)
+        parent = [body.name for body in bodies].index(girdle.segment)
         bodies += _limb_bodies(girdle, name, side, parent, len(bodies), bodies[parent].shift)
         tips.append(len(bodies) - 1)
-    bodies += [_placed(one, -1 if i == 0 else len(bodies) - 1 + i) for i, one in enumerate(behind)]
+    bodies += [_with_parent(body, -1 if i == 0 else len(bodies) - 1 + i) for i, body in enumerate(backward_bodies)]
     limb_hinges = [(f"{name}_{hinge.name}", hinge) for girdle, name, _ in _pairs(robot) for hinge in girdle.limb.hinges]
-    axis_ahead = [(h.name, h) for one in ahead for h, _, _ in one.hinges]
-    axis_behind = [(h.name, h) for one in behind for h, _, _ in one.hinges]
+    axis_ahead = [(h.name, h) for body in forward_bodies for h, _, _ in body.hinges]
+    axis_behind = [(h.name, h) for body in backward_bodies for h, _, _ in body.hinges]
     all_hinges = [*limb_hinges, *axis_ahead, *axis_behind]
     hinges = tuple(name for name, _ in all_hinges)
     servos = (*(name for name, hinge in all_hinges if hinge.servo is not None), *(cable.name for cable in robot.cables))
     turn = {name: hinge.turn for name, hinge in all_hinges}
     by_head = [name for name, _ in [*reversed(axis_ahead), *axis_behind]]
 
-    def among(names: list[str], what: str) -> tuple[int, ...]:
-        return tuple(servos.index(name) for name in names if name in servos and turn[name] == what)
+    def servos_with_turn(names: list[str], kind: str) -> tuple[int, ...]:
+        return tuple(servos.index(name) for name in names if name in servos and turn[name] == kind)
 
     front, back = [name for name, _ in axis_ahead], [name for name, _ in axis_behind]
-    yaws = among(by_head, "yaw")
-    first = len(limb_hinges)
+    yaws = servos_with_turn(by_head, "yaw")
+    first_axis_hinge = len(limb_hinges)
     return Layout(
         robot=robot,
         bodies=tuple(bodies),
@@ -176,16 +176,16 @@ def layout(robot: Robot) -> Layout:
         servos=servos,
         limbs=_limbs(robot, hinges, servos, tips),
         servo_hinges=tuple(hinges.index(name) if name in hinges else -1 for name in servos),
-        ahead=slice(first, first + len(front)),
-        behind=slice(first + len(front), len(hinges)),
+        ahead=slice(first_axis_hinge, first_axis_hinge + len(front)),
+        behind=slice(first_axis_hinge + len(front), len(hinges)),
         axial_yaw=yaws,
-        axial_pitch=among(by_head, "pitch"),
+        axial_pitch=servos_with_turn(by_head, "pitch"),
         axial_left=tuple(1.0 if servos[i] in front else -1.0 for i in yaws),
         axial_place=tuple(_place(robot, servos[i]) for i in yaws),
-        trunk_yaw=tuple(i for i in among(front, "yaw") if bends_trunk(servos[i])),
-        trunk_pitch=among(_within(robot, front), "pitch"),
-        tail_yaw=among(back, "yaw"),
-        tail_pitch=among(back, "pitch"),
+        trunk_yaw=tuple(i for i in servos_with_turn(front, "yaw") if bends_trunk(servos[i])),
+        trunk_pitch=servos_with_turn(_trunk_hinges(robot, front), "pitch"),
+        tail_yaw=servos_with_turn(back, "yaw"),
+        tail_pitch=servos_with_turn(back, "pitch"),
         cables=tuple(range(len(servos) - len(robot.cables), len(servos))),
         passive=tuple(i for i, (_, hinge) in enumerate(all_hinges) if hinge.servo is None),
         trunk=tuple(segment.name for segment in reversed(robot.axis[: root + 1])),
@@ -194,21 +194,21 @@ def layout(robot: Robot) -> Layout:
 
 
 def servo_ranges(robot: Robot) -> np.ndarray:
-    """Return the range of what each servo turns, shape (servo, 2) [rad]; a crank has none, for a cable see the pulley.
+    """Return the range of each servo, shape (servo, 2) [rad]: infinite for a crank, of the pulley for a cable.
 
     A pulley that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
     """
-    found, place = [], layout(robot)
+    ranges, place = [], layout(robot)
     by_name = {name: hinge for body in place.bodies for hinge, name, _ in body.hinges}
     for i, name in enumerate(place.servos):
         if i in place.cables:
             cable = place.cable(i)
             half = np.float64(cable.bend_limit) / (2 * cable.joints)
-            most = float(cable.joints * cable.cord_spacing * np.sin(half) / cable.pulley)
-            found.append((-most, most))
+            max_angle = float(cable.joints * cable.cord_spacing * np.sin(half) / cable.pulley)
+            ranges.append((-max_angle, max_angle))
         else:
-            found.append(by_name[name].range or (-np.inf, np.inf))
-    return np.array(found)
+            ranges.append(by_name[name].range or (-np.inf, np.inf))
+    return np.array(ranges)
 
 
 def front_segment(robot: Robot) -> str:
@@ -217,13 +217,18 @@ def front_segment(robot: Robot) -> str:
 
 
 def hips_behind_snout(robot: Robot, girdle: int) -> float:
-    """Return how far a girdle's hips are behind the tip of the snout with a straight axis [m]."""
-    ahead = 0.0
+    """Return the distance from a girdle's hips forward to the tip of the snout with a straight axis [m].
+
+    Args:
+        robot: the design.
+        girdle: number of the girdle, from the front [-].
+    """
+    distance = 0.0
     for segment in robot.axis:
         if segment.name == robot.girdles[girdle].segment:
-            return ahead + segment.front - robot.girdles[girdle].at
-        ahead += segment.front + segment.rear
-    raise UnknownName("segment", robot.girdles[girdle].segment, [one.name for one in robot.axis])
+            return distance + segment.front - robot.girdles[girdle].at
+        distance += segment.front + segment.rear
+    raise UnknownName("segment", robot.girdles[girdle].segment, [segment.name for segment in robot.axis])
 
 
 def behind_hips(robot: Robot) -> float:
@@ -232,7 +237,12 @@ def behind_hips(robot: Robot) -> float:
 
 
 def hips_ahead(robot: Robot, girdle: int) -> float:
-    """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m]."""
+    """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m].
+
+    Args:
+        robot: the design.
+        girdle: number of the girdle, from the front [-].
+    """
     if girdle == len(robot.girdles) - 1:
         return 0.0
     names, distance = [segment.name for segment in robot.axis], -robot.girdles[-1].at
@@ -245,30 +255,38 @@ def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:
     return [(girdle, word + girdle.name, side) for girdle in robot.girdles for word, side in (("L", 1.0), ("R", -1.0))]
 
 
-def _placed(body: LayoutBody, parent: int) -> LayoutBody:
+def _with_parent(body: LayoutBody, parent: int) -> LayoutBody:
     return replace(body, parent=0 if parent == -1 else parent)
 
 
 def _ahead_body(robot: Robot, i: int) -> LayoutBody:
-    segment, before = robot.axis[i], robot.axis[i + 1]
-    shift = 0.0 if before.name == robot.root else before.rear
-    offset = shift + before.front
-    hinges = tuple((hinge, hinge.name, _AHEAD[hinge.turn]) for hinge in segment.hinges)
+    """Return the body of segment ``i`` of the axis, which lies ahead of the root; its parent is set later."""
+    segment, parent = robot.axis[i], robot.axis[i + 1]
+    shift = 0.0 if parent.name == robot.root else parent.rear
+    offset = shift + parent.front
+    hinges = tuple((hinge, hinge.name, _FORWARD_AXES[hinge.turn]) for hinge in segment.hinges)
     inertia = _framed(segment.inertia, segment.rear, 1.0)
     return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), segment.rear, hinges, inertia)
 
 
 def _behind_body(robot: Robot, i: int) -> LayoutBody:
-    segment, before = robot.axis[i], robot.axis[i - 1]
-    shift = 0.0 if before.name == robot.root else 0.0 - before.front
-    offset = shift - before.rear
-    hinges = tuple((hinge, hinge.name, _BEHIND[hinge.turn]) for hinge in before.hinges)
+    """Return the body of segment ``i`` of the axis, which lies behind the root; its parent is set later."""
+    segment, parent = robot.axis[i], robot.axis[i - 1]
+    shift = 0.0 if parent.name == robot.root else 0.0 - parent.front
+    offset = shift - parent.rear
+    hinges = tuple((hinge, hinge.name, _BACKWARD_AXES[hinge.turn]) for hinge in parent.hinges)
     inertia = _framed(segment.inertia, -segment.front, 1.0)
     return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), 0.0 - segment.front, hinges, inertia)
 
 
 def _framed(inertia: Inertia | None, shift: float, side: float) -> Inertia | None:
-    """Return where a body's mass lies in the frame at its hinges; on the right side, its mirror image."""
+    """Return the inertia of a body in the frame at its hinges; on the right side, the mirror image.
+
+    Args:
+        inertia: of the left body; None if its design has none.
+        shift: of the frame against the origin of the segment [m].
+        side: 1 left, -1 right [-].
+    """
     if inertia is None:
         return None
     (x, y, z), (xy, xz, yz) = inertia.centre, inertia.products
@@ -280,64 +298,86 @@ def mirrored(axis: Axis, side: float) -> Axis:
     return side * axis[0] + 0.0, axis[1], side * axis[2] + 0.0
 
 
-def _limb_bodies(girdle: Girdle, name: str, side: float, parent: int, first: int, shift: float) -> list[LayoutBody]:
-    found, offset = [], (shift + girdle.at, side * girdle.aside, girdle.above)
+def _limb_bodies(
+    girdle: Girdle, name: str, side: float, parent: int, first_index: int, shift: float
+) -> list[LayoutBody]:
+    """Return the bodies of one limb from the hip to the foot.
+
+    Args:
+        girdle: that carries the limb.
+        name: of the limb.
+        side: 1 left, -1 right [-].
+        parent: index of the body that carries the girdle.
+        first_index: index that the limb's first body will have.
+        shift: of the parent's frame against the origin of its segment [m].
+    """
+    bodies, offset = [], (shift + girdle.at, side * girdle.aside, girdle.above)
     for i, link in enumerate(girdle.limb.links):
         hinges = tuple((h, f"{name}_{h.name}", mirrored(LIMB_AXES[h.turn], side)) for h in link.hinges)
-        before, inertia = parent if i == 0 else first + i - 1, _framed(link.inertia, 0.0, side)
-        found.append(LayoutBody(f"{name}_{link.name}", before, offset, 0.0, hinges, inertia))
+        parent_index, inertia = parent if i == 0 else first_index + i - 1, _framed(link.inertia, 0.0, side)
+        bodies.append(LayoutBody(f"{name}_{link.name}", parent_index, offset, 0.0, hinges, inertia))
         offset = (link.end[0], side * link.end[1], link.end[2])
-    return found
+    return bodies
 
 
-def _driven(limb: Limb) -> slice | tuple[int, ...]:
+def _driven_hinges(limb: Limb) -> slice | tuple[int, ...]:
     """Return which of a limb's hinges servos turn; of all of them a slice, which copies nothing."""
     with_servo = tuple(i for i, hinge in enumerate(limb.hinges) if hinge.servo is not None)
     return slice(None) if len(with_servo) == len(limb.hinges) else with_servo
 
 
 def _limbs(robot: Robot, hinges: tuple[str, ...], servos: tuple[str, ...], tips: list[int]) -> tuple[LimbPlace, ...]:
-    pairs, found = _pairs(robot), []
+    """Return the limbs in order, each with its hinges, servos and neighbours.
+
+    Args:
+        robot: the design.
+        hinges: names of all hinges.
+        servos: names of all servos.
+        tips: index of each limb's last body.
+    """
+    pairs, limbs = _pairs(robot), []
     for i, (girdle, name, side) in enumerate(pairs):
         number, right = divmod(i, 2)
-        near = [n for n in (number - 1, number + 1) if 0 <= n < len(robot.girdles)]
-        mine = [hinges.index(f"{name}_{hinge.name}") for hinge in girdle.limb.hinges]
-        driven = [servos.index(f"{name}_{hinge.name}") for hinge in girdle.limb.hinges if hinge.servo is not None]
-        start = driven[0] if driven else 0
-        found.append(
+        neighbours = [n for n in (number - 1, number + 1) if 0 <= n < len(robot.girdles)]
+        hinge_indices = [hinges.index(f"{name}_{hinge.name}") for hinge in girdle.limb.hinges]
+        servo_indices = [
+            servos.index(f"{name}_{hinge.name}") for hinge in girdle.limb.hinges if hinge.servo is not None
+        ]
+        start = servo_indices[0] if servo_indices else 0
+        limbs.append(
             LimbPlace(
                 name=name,
                 girdle=girdle,
                 number=number,
                 side=side,
-                hinges=slice(mine[0], mine[-1] + 1),
-                servos=slice(start, start + len(driven)),
-                driven=_driven(girdle.limb),
+                hinges=slice(hinge_indices[0], hinge_indices[-1] + 1),
+                servos=slice(start, start + len(servo_indices)),
+                driven=_driven_hinges(girdle.limb),
                 contralateral=2 * number + 1 - right,
-                ipsilateral=tuple(2 * n + right for n in near),
-                diagonal=tuple(2 * n + 1 - right for n in near),
+                ipsilateral=tuple(2 * n + right for n in neighbours),
+                diagonal=tuple(2 * n + 1 - right for n in neighbours),
                 tip=tips[i],
             )
         )
-    return tuple(found)
+    return tuple(limbs)
 
 
-def _within(robot: Robot, ahead: list[str]) -> list[str]:
-    """Return those of the hinges ahead of the root that lie behind the foremost girdle, or all without one."""
+def _trunk_hinges(robot: Robot, forward_hinges: list[str]) -> list[str]:
+    """Return the hinges between the root and the foremost girdle; without limbs all hinges ahead of the root."""
     if not robot.girdles:
-        return ahead
+        return forward_hinges
     names = [segment.name for segment in robot.axis]
-    beyond = robot.axis[: names.index(robot.girdles[0].segment)]
-    neck = {hinge.name for segment in beyond for hinge in segment.hinges}
-    return [name for name in ahead if name not in neck]
+    neck_segments = robot.axis[: names.index(robot.girdles[0].segment)]
+    neck = {hinge.name for segment in neck_segments for hinge in segment.hinges}
+    return [name for name in forward_hinges if name not in neck]
 
 
 def _place(robot: Robot, hinge: str) -> float:
-    """Return where a hinge of the axis is, as a share of the length from the snout."""
+    """Return the distance of a hinge from the snout over the length of the body [-]."""
     distance = 0.0
     for segment in robot.axis:
         distance += segment.front + segment.rear
-        if any(one.name == hinge for one in segment.hinges):
+        if any(candidate.name == hinge for candidate in segment.hinges):
             return distance / robot.length
     raise UnknownName("hinge", hinge, [h.name for h in robot.axis_hinges])
 

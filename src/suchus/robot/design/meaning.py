@@ -1,4 +1,4 @@
-"""What the fields of a frozen value mean: the docstring under each, read from its source."""
+"""The meaning of the fields of a frozen value: the docstring below each, read from the source."""
 
 import ast
 import inspect
@@ -10,16 +10,16 @@ from itertools import pairwise
 
 def meanings(kind: type) -> dict[str, str]:
     """Return the docstring of each field by name, inherited ones first; empty where the source is not at hand."""
-    found: dict[str, str] = {}
-    for one in reversed(kind.__mro__):
-        found |= _own(one)
-    return found
+    docstrings: dict[str, str] = {}
+    for base in reversed(kind.__mro__):
+        docstrings |= _own_meanings(base)
+    return docstrings
 
 
 def unit(meaning: str) -> str:
     """Return the unit that a meaning names last in brackets, as ``m`` in ``From hip to knee [m].``."""
-    found = re.findall(r"\[([^\]]*)\]", meaning)
-    return str(found[-1]) if found else ""
+    units = re.findall(r"\[([^\]]*)\]", meaning)
+    return str(units[-1]) if units else ""
 
 
 def _is_text(node: ast.stmt) -> bool:
@@ -27,16 +27,16 @@ def _is_text(node: ast.stmt) -> bool:
 
 
 @cache
-def _own(kind: type) -> dict[str, str]:
-    """Return what a class's own body says; to find it in the source takes 10 ms."""
+def _own_meanings(kind: type) -> dict[str, str]:
+    """Return the docstrings of the fields that a class itself defines; cached, since parsing takes 10 ms."""
     try:
         source = textwrap.dedent(inspect.getsource(kind))
     except (OSError, TypeError):
         return {}
     (definition,) = ast.parse(source).body
     body = definition.body if isinstance(definition, ast.ClassDef) else []
-    found = {}
+    docstrings = {}
     for field, text in pairwise(body):
         if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and _is_text(text):
-            found[field.target.id] = inspect.cleandoc(ast.literal_eval(text.value))  # type: ignore[attr-defined]
-    return found
+            docstrings[field.target.id] = inspect.cleandoc(ast.literal_eval(text.value))  # type: ignore[attr-defined]
+    return docstrings

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Range = tuple[float, float]
 _ENDLESS: Range = (-inf, inf)
-_ALIKE = 1e-12  # of a length; what is equal but for rounding
+_LENGTH_TOLERANCE = 1e-12  # of a length; what is equal but for rounding
 
 
 class LegMeasures(NamedTuple):
@@ -250,27 +250,27 @@ def spine_of(robot: "Robot") -> SpineMeasures | None:
     if not robot.girdles:
         return None
     front = [segment.name for segment in robot.axis].index(robot.girdles[0].segment)
-    ahead = robot.axis[front : robot.root_place][::-1]
-    hinges = [segment.hinges[0] for segment in ahead if len(segment.hinges) == 1]
+    segments = robot.axis[front : robot.root_place][::-1]
+    hinges = [segment.hinges[0] for segment in segments if len(segment.hinges) == 1]
     servos = [hinge.servo for hinge in hinges]
     turns = [hinge.turn for hinge in hinges]
-    lengths = [segment.front + segment.rear for segment in ahead[:-1]]
+    lengths = [segment.front + segment.rear for segment in segments[:-1]]
     fits = (
-        len(hinges) == len(ahead) > 0
-        and turns == ["pitch" if i % 2 else "yaw" for i in range(len(ahead))]
-        and all(abs(length - lengths[0]) <= _ALIKE * lengths[0] for length in lengths)
-        and ahead[-1].rear == 0.0
+        len(hinges) == len(segments) > 0
+        and turns == ["pitch" if i % 2 else "yaw" for i in range(len(segments))]
+        and all(abs(length - lengths[0]) <= _LENGTH_TOLERANCE * lengths[0] for length in lengths)
+        and segments[-1].rear == 0.0
     )
     if not fits or servos[0] is None or None in servos:
         return None
-    rods = [shape.radius for segment in ahead[:-1] for shape in segment.shapes if isinstance(shape, Rod)]
+    rods = [shape.radius for segment in segments[:-1] for shape in segment.shapes if isinstance(shape, Rod)]
     pitched = hinges[1] if len(hinges) > 1 else hinges[0]
     return SpineMeasures(
         base=robot.axis[robot.root_place].front,
         link=lengths[0] if lengths else 0.0,
         joints=len(hinges),
         radius=max(rods, default=0.0),
-        link_masses=tuple(fsum(shape.mass for shape in segment.shapes) for segment in ahead[:-1]),
+        link_masses=tuple(fsum(shape.mass for shape in segment.shapes) for segment in segments[:-1]),
         yaw_range=hinges[0].range or _ENDLESS,
         pitch_range=pitched.range or _ENDLESS,
         yaw_servo=servos[0],
@@ -281,58 +281,67 @@ def spine_of(robot: "Robot") -> SpineMeasures | None:
 @lru_cache(maxsize=256)
 def tail_of(robot: "Robot") -> TailMeasures | None:
     """Return the measures of the tail behind the root, None of another chain."""
-    root, behind = robot.axis[robot.root_place], robot.axis[robot.root_place + 1 :]
-    if len(root.hinges) != 1 or len(behind) < 2 or root.hinges[0].turn != "pitch" or root.hinges[0].servo is None:
+    root, segments = robot.axis[robot.root_place], robot.axis[robot.root_place + 1 :]
+    if len(root.hinges) != 1 or len(segments) < 2 or root.hinges[0].turn != "pitch" or root.hinges[0].servo is None:
         return None
-    driven = [s.hinges[0] for s in behind[:-1] if [h.turn for h in s.hinges] == ["yaw"]]
-    passive = [s.hinges for s in behind[:-1] if [h.turn for h in s.hinges] == ["yaw", "pitch"]]
-    count = len(driven)
-    rods = [s.shapes[0] for s in behind if len(s.shapes) == 1 and isinstance(s.shapes[0], Rod)]
-    if count == 0 or not passive or count + len(passive) + 1 != len(behind) or len(rods) != len(behind):
+    driven_hinges = [s.hinges[0] for s in segments[:-1] if [h.turn for h in s.hinges] == ["yaw"]]
+    passive = [s.hinges for s in segments[:-1] if [h.turn for h in s.hinges] == ["yaw", "pitch"]]
+    count = len(driven_hinges)
+    rods = [s.shapes[0] for s in segments if len(s.shapes) == 1 and isinstance(s.shapes[0], Rod)]
+    if count == 0 or not passive or count + len(passive) + 1 != len(segments) or len(rods) != len(segments):
         return None
-    names = tuple(hinge.name for hinge in driven)
+    names = tuple(hinge.name for hinge in driven_hinges)
     cable = next((cable for cable in robot.cables if cable.hinges == names), None)
-    servo = cable.turning if cable is not None else driven[0].servo
+    servo = cable.turning if cable is not None else driven_hinges[0].servo
     springs = [hinge.drive for pair in passive for hinge in pair]
-    in_order = [[h.turn for h in s.hinges] for s in behind[:-1]] == count * [["yaw"]] + len(passive) * [
+    in_order = [[h.turn for h in s.hinges] for s in segments[:-1]] == count * [["yaw"]] + len(passive) * [
         ["yaw", "pitch"]
     ]
     if servo is None or not in_order or not all(isinstance(spring, Spring) for spring in springs):
         return None
-    return _plates(behind, root, driven, cable, servo, rods)
+    return _plates(segments, root, driven_hinges, cable, servo, rods)
 
 
 def _plates(
-    behind: tuple[Segment, ...],
+    segments: tuple[Segment, ...],
     root: Segment,
-    driven: list[Hinge],
+    driven_hinges: list[Hinge],
     cable: Cable | None,
     servo: Servo,
     rods: list[Rod],
 ) -> TailMeasures | None:
-    """Return the measures of a tail whose hinges fit; None where its segments are not equal."""
-    count, lengths = len(driven), [segment.front + segment.rear for segment in behind]
+    """Return the measures of a tail whose hinges fit; None where its segments are not equal.
+
+    Args:
+        segments: behind the root.
+        root: segment whose hinge pitches the tail.
+        driven_hinges: yaw hinges under the cable or with servos.
+        cable: over these hinges; None if each has a servo.
+        servo: that drives them.
+        rods: shape of each segment.
+    """
+    count, lengths = len(driven_hinges), [segment.front + segment.rear for segment in segments]
     # the last driven joint is followed by half a joint's distance, then the passive end begins
     pitch = lengths[1] if count > 1 else _tidy(2 * lengths[count])
     ends = lengths[count + 1 :]
-    wanted = [*(count - 1) * [pitch], pitch / 2, *len(ends) * [ends[0]]]
-    if any(abs(a - b) > _ALIKE * b for a, b in zip(lengths[1:], wanted, strict=True)):
+    expected_lengths = [*(count - 1) * [pitch], pitch / 2, *len(ends) * [ends[0]]]
+    if any(abs(a - b) > _LENGTH_TOLERANCE * b for a, b in zip(lengths[1:], expected_lengths, strict=True)):
         return None
-    first, upright = (hinge.drive for hinge in behind[count].hinges)
-    assert isinstance(first, Spring)
-    assert isinstance(upright, Spring)
-    middles = [fsum(lengths[:i]) + length / 2 for i, length in enumerate(lengths)]
-    taper = (rods[-1].radius - rods[0].radius) / (middles[-1] - middles[0])
-    under = driven[0].drive
-    limit = fsum(abs((hinge.range or _ENDLESS)[1]) for hinge in driven) if cable is None else cable.bend_limit
+    lateral_spring, vertical_spring = (hinge.drive for hinge in segments[count].hinges)
+    assert isinstance(lateral_spring, Spring)
+    assert isinstance(vertical_spring, Spring)
+    centers = [fsum(lengths[:i]) + length / 2 for i, length in enumerate(lengths)]
+    taper = (rods[-1].radius - rods[0].radius) / (centers[-1] - centers[0])
+    first_drive = driven_hinges[0].drive
+    limit = fsum(abs((hinge.range or _ENDLESS)[1]) for hinge in driven_hinges) if cable is None else cable.bend_limit
     pitching = root.hinges[0]
     assert pitching.servo is not None
     return TailMeasures(
         offset=root.rear,
         root=_tidy(lengths[0] - pitch / 2),
         joints=count,
-        driven=tuple(hinge.name for hinge in driven),
-        passive=tuple(hinge.name for segment in behind[count:] for hinge in segment.hinges),
+        driven=tuple(hinge.name for hinge in driven_hinges),
+        passive=tuple(hinge.name for segment in segments[count:] for hinge in segment.hinges),
         lengths=tuple(lengths),
         radii=tuple(rod.radius for rod in rods),
         masses=tuple(rod.mass for rod in rods),
@@ -341,15 +350,15 @@ def _plates(
         cord_spacing=nan if cable is None else cable.cord_spacing,
         pulley=nan if cable is None else cable.pulley,
         bend_limit=limit,
-        joint_stiffness=under.stiffness if isinstance(under, Spring) else nan,
-        joint_damping=under.damping if isinstance(under, Spring) else nan,
+        joint_stiffness=first_drive.stiffness if isinstance(first_drive, Spring) else nan,
+        joint_damping=first_drive.damping if isinstance(first_drive, Spring) else nan,
         fin_segments=len(ends),
         fin_length=_tidy(fsum(ends)),
-        fin_stiffness_lateral=first.stiffness,
-        fin_stiffness_vertical=upright.stiffness,
-        fin_damping=first.damping,
-        radius_root=_tidy(rods[0].radius - taper * middles[0]),
-        radius_tip=_tidy(rods[-1].radius + taper * (fsum(lengths) - middles[-1])),
+        fin_stiffness_lateral=lateral_spring.stiffness,
+        fin_stiffness_vertical=vertical_spring.stiffness,
+        fin_damping=lateral_spring.damping,
+        radius_root=_tidy(rods[0].radius - taper * centers[0]),
+        radius_tip=_tidy(rods[-1].radius + taper * (fsum(lengths) - centers[-1])),
         mass=_tidy(fsum(rod.mass for rod in rods)),
         pitch_range=pitching.range or _ENDLESS,
         pitch_servo=pitching.servo,
@@ -369,5 +378,5 @@ def shell_of(robot: "Robot", name: str) -> Shell | None:
 
 
 def _tidy(value: float) -> float:
-    """Return a number without what sums and differences of decimal fractions add in the last digits."""
+    """Return a number rounded to 14 digits, which removes rounding errors of decimal fractions."""
     return float(f"{value:.14g}")

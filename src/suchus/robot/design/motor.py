@@ -43,25 +43,27 @@ class Heat:
             check.that(self.limit > self.ambient, f"limit is {self.limit:g} degC, not above the air's {self.ambient:g}")
 
     def steady(self, loss: float) -> float:
-        """Return the temperature at which a servo stays that turns so much into heat [degC]; infinite if it runs away.
+        """Return the steady temperature of a servo at a constant loss [degC]; infinite for thermal runaway.
 
         Args:
             loss: what it would turn into heat with its winding at ``ROOM`` [W].
         """
         cold = self.resistance * loss
-        left = 1.0 - COPPER * cold  # a warm winding resists more, which warms it further
-        if left <= 0.0:
+        margin = 1.0 - COPPER * cold  # a warm winding resists more, which warms it further
+        if margin <= 0.0:
             return float("inf")
-        return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM)) / left
+        return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM)) / margin
 
     def reached_after(self, loss: float) -> float:
-        """Return how long a cold servo that turns so much into heat takes to its limit; infinite if never [s].
+        """Return the time in which a cold servo reaches its temperature limit [s]; infinite if it never does.
 
         Args:
             loss: what it would turn into heat with its winding at ``ROOM`` [W].
         """
         cold = loss * (1.0 + COPPER * (self.ambient - ROOM))
-        cools = (1.0 / self.resistance - COPPER * loss) * (self.limit - self.ambient)  # at the limit [W]
+        cools = (1.0 / self.resistance - COPPER * loss) * (
+            self.limit - self.ambient
+        )  # heat flow to the air at the limit [W]
         if cold <= cools:
             return inf
         time = self.capacity * (self.limit - self.ambient)
@@ -171,13 +173,14 @@ class Motor:
                 self.continuous_torque <= self.stall_torque,
                 f"continuous_torque is {self.continuous_torque:g} N m, above stall_torque, {self.stall_torque:g} N m",
             )
-            low, high = self.volts_range
+            min_volts, max_volts = self.volts_range
             check.that(
-                low <= self.volts <= high, f"volts is {self.volts:g} V, outside volts_range, {low:g} to {high:g} V"
+                min_volts <= self.volts <= max_volts,
+                f"volts is {self.volts:g} V, outside volts_range, {min_volts:g} to {max_volts:g} V",
             )
 
     def source(self, field: str) -> str:
-        """Return where a number comes from; empty where it is not said."""
+        """Return the source of a number; empty if none is given."""
         return dict(self.sources).get(field, "")
 
     @property
@@ -187,7 +190,7 @@ class Motor:
 
     @property
     def heat(self) -> Heat:
-        """How it warms up: so that it stays at its limit when it gives its continuous torque all the time."""
+        """Thermal model by which the servo stays at its temperature limit at continuous torque."""
         cold = self.volts * self.stall_current * (self.continuous_torque / self.stall_torque) ** 2
         hot = cold * (1.0 + COPPER * (self.temperature_limit - ROOM))
         resistance = (self.temperature_limit - ROOM) / hot
@@ -200,14 +203,15 @@ class Motor:
             InvalidFields: the supply is not one that it bears.
         """
         with Checks(f"motor {self.name}", self) as check:
-            low, high = self.volts_range
+            min_volts, max_volts = self.volts_range
             check.that(
-                low <= volts <= high, f"{volts:g} V is no supply for {self.name}; {low:g} to {high:g} V is allowed"
+                min_volts <= volts <= max_volts,
+                f"{volts:g} V is no supply for {self.name}; {min_volts:g} to {max_volts:g} V is allowed",
             )
-        share = volts / self.volts
+        supply_ratio = volts / self.volts
         return Winding(
             volts=volts,
-            stall_current=share * self.stall_current,
+            stall_current=supply_ratio * self.stall_current,
             idle_current=self.idle_current,
             heat=self.heat,
             motor=self.name,

@@ -1,4 +1,4 @@
-"""What is asked of a robot before something is done with it, as data: who lacks it is refused in one sentence."""
+"""Requirements that a robot must meet for a task, and the error that names those it does not meet."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
@@ -32,8 +32,8 @@ def _trunk(robot: Robot) -> bool:
 
 def _tail_yaw(robot: Robot) -> bool:
     place = layout(robot)
-    bent = [place.hinges.index(place.cable(servo).hinges[0]) for servo in place.cables]
-    return bool(place.tail_yaw) or any(hinge >= place.behind.start for hinge in bent)
+    cable_hinges = [place.hinges.index(place.cable(servo).hinges[0]) for servo in place.cables]
+    return bool(place.tail_yaw) or any(hinge >= place.behind.start for hinge in cable_hinges)
 
 
 def _legs(robot: Robot) -> bool:
@@ -41,6 +41,7 @@ def _legs(robot: Robot) -> bool:
 
 
 def _hind_legs(robot: Robot) -> bool:
+    """Return whether the root carries legs of yaw, pitch and knee with a servo at every hinge."""
     hind = robot.girdles[-1] if robot.girdles else None
     return (
         hind is not None
@@ -117,13 +118,13 @@ def lacking(robot: Robot, needs: Sequence[str]) -> list[str]:
     return [name for name in needs if not NEEDS[name].met(robot)]
 
 
-def check_needs(robot: Robot, needs: Sequence[str], what: str) -> Robot:
+def check_needs(robot: Robot, needs: Sequence[str], consumer: str) -> Robot:
     """Return a robot that has what is needed; refuse one that lacks something.
 
     Args:
         robot: any robot.
         needs: names of ``NEEDS``.
-        what: needs it, as the beginning of a sentence.
+        consumer: needs it, as the beginning of a sentence.
 
     Raises:
         UnsuitedRobot: it lacks something; the message names it.
@@ -131,5 +132,5 @@ def check_needs(robot: Robot, needs: Sequence[str], what: str) -> Robot:
     missing = lacking(robot, needs)
     if missing:
         words = ", and ".join(NEEDS[name].words for name in missing)
-        raise UnsuitedRobot(f"{what} needs {words}; robot {robot.name!r} lacks that: choose another robot.")
+        raise UnsuitedRobot(f"{consumer} needs {words}; robot {robot.name!r} lacks that: choose another robot.")
     return robot

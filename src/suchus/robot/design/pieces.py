@@ -18,7 +18,7 @@ from suchus.robot.design.water_table import BALL, COLUMNS, DISC, WIDTH, column
 
 FINENESS = 20
 """Strips of an axis at least [-]; see docs/amphibious.md for what finer ones change."""
-_WITHIN = 24
+_SAMPLES_PER_STRIP = 24
 """Stations within a strip over which its section is averaged [-]."""
 _BONES = 2
 """Sections of each link of a limb [-]."""
@@ -59,13 +59,13 @@ def volumes(robot: Robot) -> dict[str, float]:
 def masses(robot: Robot) -> dict[str, float]:
     """Return the mass of each body, without foam [kg]."""
     place = layout(robot)
-    found = {segment.name: sum(shape.mass for shape in segment.shapes) for segment in place.robot.axis}
+    body_masses = {segment.name: sum(shape.mass for shape in segment.shapes) for segment in place.robot.axis}
     for limb in place.limbs:
         design = limb.girdle.limb
         for link in design.links:
-            found[f"{limb.name}_{link.name}"] = link.mass
-        found[f"{limb.name}_{design.links[-1].name}"] += design.foot.mass
-    return found
+            body_masses[f"{limb.name}_{link.name}"] = link.mass
+        body_masses[f"{limb.name}_{design.links[-1].name}"] += design.foot.mass
+    return body_masses
 
 
 def _row(**parts: float | tuple[float, ...] | np.ndarray) -> np.ndarray:
@@ -77,48 +77,63 @@ def _row(**parts: float | tuple[float, ...] | np.ndarray) -> np.ndarray:
 
 def _strips(place: Layout) -> list[np.ndarray]:
     """Return strips of the axis, from head to tail."""
-    robot, found = place.robot, []
+    robot, strips = place.robot, []
     number = {body.name: i for i, body in enumerate(place.bodies)}
     for segment, (start, end) in zip(robot.axis, stations(robot), strict=True):
         count = max(1, ceil((end - start) / robot.length * FINENESS - 1e-9))
-        long = (end - start) / count
-        s = start + long * (np.arange(count * _WITHIN) + 0.5) / _WITHIN
-        part = [values.reshape(count, _WITHIN) for values in profile(robot, s)]
+        length = (end - start) / count
+        s = start + length * (np.arange(count * _SAMPLES_PER_STRIP) + 0.5) / _SAMPLES_PER_STRIP
+        sections = [values.reshape(count, _SAMPLES_PER_STRIP) for values in profile(robot, s)]
         shift = place.bodies[number[segment.name]].shift
-        for i, (wide, high, area, middle) in enumerate(zip(*part, strict=True)):
-            x = shift + segment.front - (i + 0.5) * long
-            found.append(_strip(number[segment.name], x, long, (wide, high, area, middle)))
-    last = found[-1]
-    a, b, c = last[slice(*COLUMNS["half"])]
-    last[slice(*COLUMNS["shed"])], last[COLUMNS["shed_at"][0]] = (pi * b**2, pi * a**2), -c
-    found[0][COLUMNS["end"][0]] = _NOSE * max(row[COLUMNS["volume"][0]] / (2 * row[16]) for row in found)
-    return found
+        for i, (half_width, half_height, area, center) in enumerate(zip(*sections, strict=True)):
+            x = shift + segment.front - (i + 0.5) * length
+            strips.append(_strip(number[segment.name], x, length, (half_width, half_height, area, center)))
+    tail_strip = strips[-1]
+    a, b, c = tail_strip[slice(*COLUMNS["half"])]
+    tail_strip[slice(*COLUMNS["shed"])], tail_strip[COLUMNS["shed_at"][0]] = (pi * b**2, pi * a**2), -c
+    strips[0][COLUMNS["end"][0]] = _NOSE * max(row[COLUMNS["volume"][0]] / (2 * row[16]) for row in strips)
+    return strips
 
 
-def _strip(body: int, x: float, long: float, part: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Return an elliptic section with the mean area, and the proportions of the mean width and height."""
-    wide, high, area, middle = part
-    volume = float(area.mean()) * long
-    scale = sqrt(float(area.mean()) / (pi * float(wide.mean()) * float(high.mean())))
-    half = scale * float(wide.mean()), scale * float(high.mean()), long / 2
-    at = x, 0.0, float(np.average(middle, weights=area))
-    return _disc(body, at, ((0, 1, 0), (0, 0, 1), (1, 0, 0)), half, volume)
+def _strip(body: int, x: float, length: float, section: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Return one strip of the axis as an elliptic section of the mean area and the mean proportions.
+
+    Args:
+        body: index of the body that carries it.
+        x: of its centre in the frame of the body, forward [m].
+        length: along the axis [m].
+        section: half widths, half heights, areas and centre heights at its stations [m], [m2].
+    """
+    half_width, half_height, area, middle = section
+    volume = float(area.mean()) * length
+    scale = sqrt(float(area.mean()) / (pi * float(half_width.mean()) * float(half_height.mean())))
+    half = scale * float(half_width.mean()), scale * float(half_height.mean()), length / 2
+    center = x, 0.0, float(np.average(middle, weights=area))
+    return _disc(body, center, ((0, 1, 0), (0, 0, 1), (1, 0, 0)), half, volume)
 
 
 def _disc(
     body: int,
-    at: tuple[float, float, float] | np.ndarray,
+    center: tuple[float, float, float] | np.ndarray,
     axes: tuple[tuple[float, ...] | np.ndarray, ...],
     half: tuple[float, float, float],
     volume: float,
 ) -> np.ndarray:
-    """Return an elliptic section: added mass of potential flow, girth of an ellipse after Ramanujan."""
+    """Return an elliptic section with the added mass of potential flow and the girth of an ellipse (Ramanujan).
+
+    Args:
+        body: index of the body that carries it.
+        center: in the frame of the body [m].
+        axes: unit vectors across, upward and forward.
+        half: half axes along them [m].
+        volume: [m3].
+    """
     a, b, c = half
     girth = pi * (3 * (a + b) - sqrt((3 * a + b) * (a + 3 * b)))
     return _row(
         body=body,
         kind=DISC,
-        at=at,
+        at=center,
         across=axes[0],
         upward=axes[1],
         forward=axes[2],
@@ -131,39 +146,51 @@ def _disc(
     )
 
 
-def ball(body: int, at: tuple[float, float, float] | np.ndarray, radius: float) -> np.ndarray:
-    """Return a sphere as a piece: half its volume of added mass, drag of a sphere."""
+def ball(body: int, center: tuple[float, float, float] | np.ndarray, radius: float) -> np.ndarray:
+    """Return a sphere as a piece: added mass of half its volume, drag of a sphere.
+
+    Args:
+        body: index of the body that carries it.
+        center: in the frame of the body [m].
+        radius: [m].
+    """
     volume = 4 / 3 * pi * radius**3
     area = _BALL_DRAG * pi * radius**2
     return _row(
-        body=body, kind=BALL, at=at, across=(0, 1, 0), upward=(0, 0, 1), forward=(1, 0, 0), half=3 * (radius,),
+        body=body, kind=BALL, at=center, across=(0, 1, 0), upward=(0, 0, 1), forward=(1, 0, 0), half=3 * (radius,),
         volume=volume, added=3 * (volume / 2,), area=(area, area), end=0.47 * pi * radius**2,
     )  # fmt: skip
 
 
 def _limb(limb: LimbPlace) -> list[np.ndarray]:
     """Return the sections of a limb's links, and its foot."""
-    design, found = limb.girdle.limb, []
-    first = limb.tip - len(design.links) + 1
+    design, rows = limb.girdle.limb, []
+    first_body = limb.tip - len(design.links) + 1
     for i, link in enumerate(design.links):
         end = np.array([link.end[0], limb.side * link.end[1], link.end[2]])
         forward = end / link.length
-        across = np.cross(forward, (0, 0, 1) if abs(forward[2]) < 0.9 else (1, 0, 0))
-        across /= hypot(*across)
-        axes = across, np.cross(forward, across), forward
-        last = i == len(design.links) - 1
-        inside = sqrt(max(design.foot.radius**2 - link.radius**2, 0.0)) if last else 0.0
-        long = max(link.length - inside, 1e-6) / _BONES
+        lateral_axis = np.cross(forward, (0, 0, 1) if abs(forward[2]) < 0.9 else (1, 0, 0))
+        lateral_axis /= hypot(*lateral_axis)
+        axes = lateral_axis, np.cross(forward, lateral_axis), forward
+        is_last_link = i == len(design.links) - 1
+        overlap = sqrt(max(design.foot.radius**2 - link.radius**2, 0.0)) if is_last_link else 0.0
+        length = max(link.length - overlap, 1e-6) / _BONES
         for k in range(_BONES):
-            half = link.radius, link.radius, long / 2
-            found.append(_disc(first + i, (k + 0.5) * long * forward, axes, half, pi * link.radius**2 * long))
-        if last:
-            found.append(ball(first + i, end, design.foot.radius))
-    return found
+            half = link.radius, link.radius, length / 2
+            rows.append(_disc(first_body + i, (k + 0.5) * length * forward, axes, half, pi * link.radius**2 * length))
+        if is_last_link:
+            rows.append(ball(first_body + i, end, design.foot.radius))
+    return rows
 
 
 def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
-    """Let every body swell to the volume that it has with its foam, and lift it as far as the foam's centre says."""
+    """Add foam and air to the pieces: bodies grow to their volume with foam, shifted by its offset.
+
+    Args:
+        place: layout of the robot.
+        table: of the pieces, changed in place.
+        hull: of the robot.
+    """
     number = {body.name: i for i, body in enumerate(place.bodies)}
     for foam in hull.foam:
         if foam.body not in number:
@@ -171,21 +198,21 @@ def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
                 f"hull.foam is on {foam.body!r}, and robot {place.robot.name!r} has no such body; it has "
                 f"{', '.join(number)}."
             )
-        mine = table[:, 0] == number[foam.body]
-        part = table[mine]
-        own = part[:, COLUMNS["volume"][0]].sum()
-        factor = 1.0 + foam.volume / own
-        table[mine] = swollen(part, factor)
-        column(table, "at")[mine, 2] += foam.raised * foam.volume / (own + foam.volume)
+        is_in_body = table[:, 0] == number[foam.body]
+        body_pieces = table[is_in_body]
+        own_volume = body_pieces[:, COLUMNS["volume"][0]].sum()
+        factor = 1.0 + foam.volume / own_volume
+        table[is_in_body] = swollen(body_pieces, factor)
+        column(table, "at")[is_in_body, 2] += foam.raised * foam.volume / (own_volume + foam.volume)
     if hull.air == 0.0:
         return
-    for body, volume in (_given if hull.chambers else _in_foam)(place, hull).items():
-        mine = table[:, 0] == number[body]
-        here = table[mine, COLUMNS["volume"][0]]
+    for body, volume in (_air_in_chambers if hull.chambers else _in_foam)(place, hull).items():
+        is_in_body = table[:, 0] == number[body]
+        piece_volumes = table[is_in_body, COLUMNS["volume"][0]]
         if hull.chambers:
-            _check_hollow(place, body, volume, here.sum())
+            _check_hollow(place, body, volume, piece_volumes.sum())
         kind = FRONT if body in place.trunk[1:] else REAR
-        table[mine, COLUMNS["air"][0] + kind] = volume * here / here.sum()
+        table[is_in_body, COLUMNS["air"][0] + kind] = volume * piece_volumes / piece_volumes.sum()
 
 
 def _in_foam(place: Layout, hull: Hull) -> dict[str, float]:
@@ -201,7 +228,7 @@ def _in_foam(place: Layout, hull: Hull) -> dict[str, float]:
     return {body: hull.air * volume / total for body, volume in on_axis.items()}
 
 
-def _given(place: Layout, hull: Hull) -> dict[str, float]:
+def _air_in_chambers(place: Layout, hull: Hull) -> dict[str, float]:
     """Return the air in each chamber [m3]."""
     axis = [segment.name for segment in place.robot.axis]
     for chamber in hull.chambers:
@@ -214,12 +241,19 @@ def _given(place: Layout, hull: Hull) -> dict[str, float]:
 
 
 def _check_hollow(place: Layout, body: str, air: float, volume: float) -> None:
-    """Refuse a chamber larger than what a body displaces, foam included, beside what is solid in it."""
-    most = max(volume - masses(place.robot)[body] / SOLID, 0.0)
-    if air > most + 1e-12:
+    """Refuse a chamber that is larger than the volume of its body, foam included, minus its solid parts.
+
+    Args:
+        place: layout of the robot.
+        body: that holds the chamber.
+        air: in the chamber [m3].
+        volume: of the body with its foam [m3].
+    """
+    max_air = max(volume - masses(place.robot)[body] / SOLID, 0.0)
+    if air > max_air + 1e-12:
         raise InvalidDesign(
             f"the chamber in {body} of robot {place.robot.name!r} has {1e3 * air:.3g} l; it displaces "
-            f"{1e3 * volume:.3g} l with its foam, of which at most {1e3 * most:.3g} l can be air: make the chamber "
+            f"{1e3 * volume:.3g} l with its foam, of which at most {1e3 * max_air:.3g} l can be air: make the chamber "
             "smaller, or give the body more foam."
         )
 
@@ -228,12 +262,12 @@ def foam_centres(robot: Robot) -> dict[str, tuple[float, float, float]]:
     """Return where the centre of the foam of each body is that has some, in the frame of that body [m]."""
     place, table = layout(robot), pieces(robot)
     number = {body.name: i for i, body in enumerate(place.bodies)}
-    found = {}
+    centers = {}
     for foam in () if place.robot.hull is None else place.robot.hull.foam:
-        mine = table[table[:, 0] == number[foam.body]]
-        x, y, z = np.average(column(mine, "at"), axis=0, weights=column(mine, "volume")[:, 0])
-        found[foam.body] = (float(x), float(y), float(z))
-    return found
+        body_pieces = table[table[:, 0] == number[foam.body]]
+        x, y, z = np.average(column(body_pieces, "at"), axis=0, weights=column(body_pieces, "volume")[:, 0])
+        centers[foam.body] = (float(x), float(y), float(z))
+    return centers
 
 
 def chambers(robot: Robot) -> tuple[float, float]:
@@ -242,23 +276,23 @@ def chambers(robot: Robot) -> tuple[float, float]:
     return float(front), float(rear)
 
 
-def swollen(part: Float[np.ndarray, "piece column"], factor: float) -> Float[np.ndarray, "piece column"]:
+def swollen(body_pieces: Float[np.ndarray, "piece column"], factor: float) -> Float[np.ndarray, "piece column"]:
     """Return pieces of so many times their volume: sections thicker, balls larger.
 
     Args:
-        part: some pieces.
+        body_pieces: some pieces.
         factor: on volume [-].
     """
-    out = np.array(part)
-    round_ = part[:, 1] == BALL
-    across = np.where(round_, factor ** (1 / 3), factor**0.5)[:, None]
-    along = np.where(round_, factor ** (1 / 3), 1.0)[:, None]
-    column(out, "volume")[:] *= factor
-    column(out, "half")[:] *= np.hstack([across, across, along])
-    column(out, "added")[:] *= across**2 * along
-    column(out, "area")[:] *= across * np.where(round_[:, None], across, 1.0)
-    column(out, "skin")[:] *= across * np.where(round_[:, None], across, 1.0)
-    column(out, "end")[:] *= across**2
-    column(out, "roll")[:] *= across**4
-    column(out, "shed")[:] *= across**2
-    return out
+    swollen_pieces = np.array(body_pieces)
+    round_ = body_pieces[:, 1] == BALL
+    lateral_scale = np.where(round_, factor ** (1 / 3), factor**0.5)[:, None]
+    axial_scale = np.where(round_, factor ** (1 / 3), 1.0)[:, None]
+    column(swollen_pieces, "volume")[:] *= factor
+    column(swollen_pieces, "half")[:] *= np.hstack([lateral_scale, lateral_scale, axial_scale])
+    column(swollen_pieces, "added")[:] *= lateral_scale**2 * axial_scale
+    column(swollen_pieces, "area")[:] *= lateral_scale * np.where(round_[:, None], lateral_scale, 1.0)
+    column(swollen_pieces, "skin")[:] *= lateral_scale * np.where(round_[:, None], lateral_scale, 1.0)
+    column(swollen_pieces, "end")[:] *= lateral_scale**2
+    column(swollen_pieces, "roll")[:] *= lateral_scale**4
+    column(swollen_pieces, "shed")[:] *= lateral_scale**2
+    return swollen_pieces

@@ -31,8 +31,8 @@ class _Section(NamedTuple):
 
     y: np.ndarray
     z: np.ndarray
-    wide: np.ndarray
-    high: np.ndarray
+    half_width: np.ndarray
+    half_height: np.ndarray
 
 
 def profile(robot: Robot, s: Float[np.ndarray, " station"]) -> Profile:
@@ -42,55 +42,61 @@ def profile(robot: Robot, s: Float[np.ndarray, " station"]) -> Profile:
         robot: in the general form; its rods lie along the axis.
         s: from the tip of the snout [m].
     """
-    placed, start = [], 0.0
+    shape_sections, start = [], 0.0
     for segment in robot.axis:
         origin = start + segment.front
-        placed += [_section(shape, origin - s) for shape in segment.shapes]
+        shape_sections += [_section(shape, origin - s) for shape in segment.shapes]
         start += segment.front + segment.rear
-    part = _Section(*(np.stack(columns, axis=-1) for columns in zip(*placed, strict=True)))
-    wide = (np.abs(part.y) + part.wide).max(axis=-1, where=part.wide > 0, initial=0.0)
-    top = (part.z + part.high).max(axis=-1, where=part.wide > 0, initial=-np.inf)
-    low = (part.z - part.high).min(axis=-1, where=part.wide > 0, initial=np.inf)
-    top, low = np.where(wide > 0, top, 0.0), np.where(wide > 0, low, 0.0)
+    section = _Section(*(np.stack(columns, axis=-1) for columns in zip(*shape_sections, strict=True)))
+    half_width = (np.abs(section.y) + section.half_width).max(axis=-1, where=section.half_width > 0, initial=0.0)
+    top = (section.z + section.half_height).max(axis=-1, where=section.half_width > 0, initial=-np.inf)
+    bottom = (section.z - section.half_height).min(axis=-1, where=section.half_width > 0, initial=np.inf)
+    top, bottom = np.where(half_width > 0, top, 0.0), np.where(half_width > 0, bottom, 0.0)
     # Gauss-Chebyshev: exact for an ellipse that fills the section
     angle = (np.arange(_LEVELS) + 0.5) * np.pi / _LEVELS
-    z = (0.5 * (top + low))[:, None] + (0.5 * (top - low))[:, None] * np.cos(angle)
-    length = _union(part, z) * np.sin(angle) * (np.pi / _LEVELS) * (0.5 * (top - low))[:, None]
+    z = (0.5 * (top + bottom))[:, None] + (0.5 * (top - bottom))[:, None] * np.cos(angle)
+    length = _union(section, z) * np.sin(angle) * (np.pi / _LEVELS) * (0.5 * (top - bottom))[:, None]
     area = length.sum(axis=-1)
-    middle = np.divide((length * z).sum(axis=-1), area, out=np.zeros_like(area), where=area > 0)
-    return Profile(wide, 0.5 * (top - low), area, middle)
+    center = np.divide((length * z).sum(axis=-1), area, out=np.zeros_like(area), where=area > 0)
+    return Profile(half_width, 0.5 * (top - bottom), area, center)
 
 
 def _section(shape: Rod | Shell, x: np.ndarray) -> _Section:
     """Return where planes at x, in the frame of its segment, cut a shape."""
     if isinstance(shape, Shell):
         round_ = np.sqrt(np.clip(1.0 - ((x - shape.at[0]) / shape.half[0]) ** 2, 0.0, None))
-        at = np.ones_like(x)
-        return _Section(shape.at[1] * at, shape.at[2] * at, shape.half[1] * round_, shape.half[2] * round_)
+        unit_array = np.ones_like(x)
+        return _Section(
+            shape.at[1] * unit_array, shape.at[2] * unit_array, shape.half[1] * round_, shape.half[2] * round_
+        )
     (x0, y0, z0), (x1, y1, z1) = sorted((shape.start, shape.end))
-    along = np.clip((x - x0) / (x1 - x0), 0.0, 1.0) if x1 > x0 else np.full_like(x, 0.5)
-    beyond = np.maximum(np.maximum(x0 - x, x - x1), 0.0)
-    reach = np.sqrt(np.clip(shape.radius**2 - beyond**2, 0.0, None))
-    return _Section(y0 + along * (y1 - y0), z0 + along * (z1 - z0), reach, reach)
+    fraction = np.clip((x - x0) / (x1 - x0), 0.0, 1.0) if x1 > x0 else np.full_like(x, 0.5)
+    overshoot = np.maximum(np.maximum(x0 - x, x - x1), 0.0)
+    reach = np.sqrt(np.clip(shape.radius**2 - overshoot**2, 0.0, None))
+    return _Section(y0 + fraction * (y1 - y0), z0 + fraction * (z1 - z0), reach, reach)
 
 
-def _union(part: _Section, z: np.ndarray) -> np.ndarray:
+def _union(section: _Section, z: np.ndarray) -> np.ndarray:
     """Return how wide the union of the ellipses is at heights z, shape (station, level)."""
-    high = np.where(part.high > 0, part.high, 1.0)[:, None, :]
-    inside = 1.0 - ((z[:, :, None] - part.z[:, None, :]) / high) ** 2
-    half = np.where(part.high[:, None, :] > 0, part.wide[:, None, :] * np.sqrt(np.clip(inside, 0.0, None)), 0.0)
-    left, right = part.y[:, None, :] - half, part.y[:, None, :] + half
-    order = np.argsort(left, axis=-1)
-    left, right = np.take_along_axis(left, order, -1), np.take_along_axis(right, order, -1)
-    reached = np.maximum.accumulate(right, axis=-1)
-    before = np.concatenate([np.full_like(left[..., :1], -np.inf), reached[..., :-1]], axis=-1)
-    return np.asarray(np.clip(right - np.maximum(left, before), 0.0, None).sum(axis=-1))
+    half_height = np.where(section.half_height > 0, section.half_height, 1.0)[:, None, :]
+    chord_squared = 1.0 - ((z[:, :, None] - section.z[:, None, :]) / half_height) ** 2
+    half = np.where(
+        section.half_height[:, None, :] > 0,
+        section.half_width[:, None, :] * np.sqrt(np.clip(chord_squared, 0.0, None)),
+        0.0,
+    )
+    left_edge, right_edge = section.y[:, None, :] - half, section.y[:, None, :] + half
+    order = np.argsort(left_edge, axis=-1)
+    left_edge, right_edge = np.take_along_axis(left_edge, order, -1), np.take_along_axis(right_edge, order, -1)
+    covered_edge = np.maximum.accumulate(right_edge, axis=-1)
+    previous_edge = np.concatenate([np.full_like(left_edge[..., :1], -np.inf), covered_edge[..., :-1]], axis=-1)
+    return np.asarray(np.clip(right_edge - np.maximum(left_edge, previous_edge), 0.0, None).sum(axis=-1))
 
 
 def stations(robot: Robot) -> Sequence[tuple[float, float]]:
     """Return where each segment of the axis begins and ends, from the tip of the snout [m]."""
-    found, start = [], 0.0
+    intervals, start = [], 0.0
     for segment in robot.axis:
-        found.append((start, start + segment.front + segment.rear))
-        start = found[-1][1]
-    return found
+        intervals.append((start, start + segment.front + segment.rear))
+        start = intervals[-1][1]
+    return intervals

@@ -10,7 +10,7 @@ from suchus.robot.design.chosen import Chosen
 
 
 class Reason(NamedTuple):
-    """Why the numbers whose paths match a pattern are what they are."""
+    """The reason for all numbers whose paths match a pattern."""
 
     pattern: str
     """Regular expression, searched for in the path."""
@@ -30,8 +30,8 @@ def numbers(design: Any, path: str = "") -> Iterator[tuple[str, float]]:
                 continue
             yield from numbers(getattr(design, field.name), f"{path}.{field.name}".lstrip("."))
     elif isinstance(design, tuple):
-        for i, part in enumerate(design):
-            yield from numbers(part, f"{path}[{i}]")
+        for i, element in enumerate(design):
+            yield from numbers(element, f"{path}[{i}]")
     elif isinstance(design, (int, float)) and not isinstance(design, bool) and design != 0:
         yield path, design
 
@@ -47,15 +47,15 @@ def chosen_numbers(design: Any, reasons: Sequence[Reason], published: Sequence[s
     Raises:
         InvalidDesign: a number has no reason.
     """
-    found = []
+    choices = []
     for path, value in numbers(design):
         if any(re.search(pattern, path) for pattern in published):
             continue
-        reason = next((one for one in reasons if re.search(one.pattern, path)), None)
+        reason = next((candidate for candidate in reasons if re.search(candidate.pattern, path)), None)
         if reason is None:
             raise InvalidDesign(
                 f"{path} of {design.name!r} is {value:g} without a reason; give one, or say its source."
             )
-        low, high = sorted((reason.low * value, reason.high * value))
-        found.append(Chosen(field=path, low=low, high=high, why=reason.why))
-    return tuple(found)
+        lower_bound, upper_bound = sorted((reason.low * value, reason.high * value))
+        choices.append(Chosen(field=path, low=lower_bound, high=upper_bound, why=reason.why))
+    return tuple(choices)

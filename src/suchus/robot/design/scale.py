@@ -30,7 +30,7 @@ COARSEST = 20.0
 _POWERS = {
     "kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "Hz": (0, 0, -1), "rad": (0, 0, 0),
     "N": (1, 1, -2), "J": (1, 2, -2), "W": (1, 2, -3),
-    "V": (0, 0, 0), "A": (1, 2, -3), "K": (0, 0, 0),  # motors of one supply, as warm
+    "V": (0, 0, 0), "A": (1, 2, -3), "K": (0, 0, 0),  # scaled motors keep supply and temperature
 }  # fmt: skip
 _UNIT = re.compile(r"^(kg|rad|Hz|N|J|W|V|A|K|m|s)(\d*)$")
 
@@ -45,9 +45,9 @@ def control_period(robot: Robot) -> float:
 
     It is 10 ms for bodies of 0.4 to 1.6 m.
     """
-    most = gravity_time(robot.length) / PERIODS
-    power = floor(log10(most))
-    digit = max(one for one in (1, 2, 5) if one * 10.0**power <= most)
+    max_period = gravity_time(robot.length) / PERIODS
+    power = floor(log10(max_period))
+    digit = max(candidate for candidate in (1, 2, 5) if candidate * 10.0**power <= max_period)
     return round(digit * 10.0**power, 12)
 
 
@@ -70,11 +70,11 @@ def check_step(robot: Robot, timestep: float) -> None:
     Raises:
         InvalidDesign: it is above a twentieth of the gravity time.
     """
-    most = gravity_time(robot.length) / COARSEST
-    if timestep > most:
+    max_step = gravity_time(robot.length) / COARSEST
+    if timestep > max_step:
         raise InvalidDesign(
             f"simulate.timestep is {timestep:g} s; robot {robot.name!r} is {robot.length:.3g} m long and needs at most "
-            f"{most:.2g} s, a twentieth of sqrt(length / g): take {physics_step(robot):g} s, its own."
+            f"{max_step:.2g} s, a twentieth of sqrt(length / g): take {physics_step(robot):g} s, its own."
         )
 
 
@@ -114,14 +114,13 @@ _WATER = 2.0
 def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Servo:
     """Return the servo that holds a limbless body of a size in the water, at whatever phase.
 
-    A servo in proportion to weight, as that of ``servo_for``, is a spring on which body and water swing: at the
-    frequency of a swim near their natural one the joint overshoots. Here stiffness follows from the
-    inertia that it moves: half of the body and its water, ``_WATER m / 2 (L / 2)^2 / 3``, is to swing at ``SWIM`` times
-    the beat. Damping is what makes a joint late, by ``kd / kp`` times its rate, and follows from ``BEHIND``; it is far
-    below the critical one of half of the body, whose swing the water damps. More of it would hold no better, but on a
-    segment alone, little more than the servo's own inertia, it decays in less than a step of explicit physics
-    (``model.longest_step``) and makes a servo rattle that meets its limit. Torque and speed are never short: what the
-    water asks of them stands in the record.
+    A servo in proportion to weight, as that of ``servo_for``, resonates with the inertia of body and water near the
+    frequency of a swim. Here the stiffness follows from the moved inertia: half of the body and its water,
+    ``_WATER m / 2 (L / 2)^2 / 3``, has a natural frequency of ``SWIM`` times the beat. Damping delays a joint by
+    ``kd / kp`` times its rate; it follows from ``BEHIND`` and is far below the critical damping of half of the body,
+    whose motion the water damps. More damping would not help: on a single segment it decays within a step of explicit
+    physics (``model.longest_step``), and a servo at its limit would chatter. Torque and speed limits are never reached;
+    the record has the torque that the water demands.
 
     Args:
         mass: of the whole body [kg].
@@ -131,9 +130,9 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
     """
     require("swim_servo_for", "mass", mass, 1e-6, 1e5, "kg")
     require("swim_servo_for", "length", length, 1e-3, 100.0, "m")
-    often = 1.5 / sqrt(length) if beat is None else beat
-    require("swim_servo_for", "beat", often, 0.01, 100.0, "Hz")
-    inertia, omega = _WATER * mass * length**2 / 24.0, tau * often
+    frequency = 1.5 / sqrt(length) if beat is None else beat
+    require("swim_servo_for", "beat", frequency, 0.01, 100.0, "Hz")
+    inertia, omega = _WATER * mass * length**2 / 24.0, tau * frequency
     stiffness = inertia * (SWIM * omega) ** 2
     return Servo(
         kp=stiffness,
@@ -148,18 +147,18 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
     )
 
 
-def spring_for(mass: float, length: float, share: float) -> Spring:
+def spring_for(mass: float, length: float, mass_ratio: float) -> Spring:
     """Return a passive joint that suits a body of a size.
 
     Args:
         mass: of the whole body [kg].
         length: of the whole body [m].
-        share: the mass of the segment over that of the heaviest one [-].
+        mass_ratio: the mass of the segment over that of the heaviest one [-].
     """
     torque = mass * GRAVITY * length
     return Spring(
-        stiffness=0.2 * torque * share,
-        damping=0.02 * torque * gravity_time(length) * share,
+        stiffness=0.2 * torque * mass_ratio,
+        damping=0.02 * torque * gravity_time(length) * mass_ratio,
         armature=2.8e-5 * mass * length**2,
     )
 
@@ -197,9 +196,9 @@ def scaled(design: T, *, length_factor: float, mass_factor: float | None = None)
         InvalidDesign: a factor is not positive, or the scaled value cannot be.
     """
     require("scaled", "length_factor", length_factor, 1e-4, 1e4, "")
-    heavier = length_factor**3 if mass_factor is None else mass_factor
-    require("scaled", "mass_factor", heavier, 1e-12, 1e12, "")
-    return _scaled(design, (heavier, length_factor, sqrt(length_factor)))
+    mass_scale = length_factor**3 if mass_factor is None else mass_factor
+    require("scaled", "mass_factor", mass_scale, 1e-12, 1e12, "")
+    return _scaled(design, (mass_scale, length_factor, sqrt(length_factor)))
 
 
 def scaled_fields(design: Any, names: Iterable[str], *, length_factor: float, mass_factor: float) -> dict[str, Any]:
@@ -211,51 +210,61 @@ def scaled_fields(design: Any, names: Iterable[str], *, length_factor: float, ma
         length_factor: on lengths [-].
         mass_factor: on masses [-].
     """
-    about = meanings(type(design))
-    found = {}
+    field_meanings = meanings(type(design))
+    resized = {}
     for name in names:
-        value, factor = (
-            getattr(design, name),
-            _factor(unit(about.get(name, "")), (mass_factor, length_factor, sqrt(length_factor))),
+        value = getattr(design, name)
+        factor = _factor(unit(field_meanings.get(name, "")), (mass_factor, length_factor, sqrt(length_factor)))
+        is_numeric = isinstance(value, float) or (
+            _numbers(value) and any(isinstance(component, float) for component in value)
         )
-        numbers = isinstance(value, float) or (_numbers(value) and any(isinstance(one, float) for one in value))
-        if numbers and factor != 1.0:
-            found[name] = tuple(factor * one for one in value) if isinstance(value, tuple) else factor * value
-    return found
+        if is_numeric and factor != 1.0:
+            resized[name] = (
+                tuple(factor * component for component in value) if isinstance(value, tuple) else factor * value
+            )
+    return resized
 
 
 def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
+    """Return a value with every number scaled by its unit.
+
+    Args:
+        design: a frozen value, a tuple of such values, or anything else, which stays as it is.
+        factors: on mass, length and time [-].
+    """
     if isinstance(design, tuple):
         return tuple(_scaled(item, factors) for item in design)
     if not is_dataclass(design):
         return design
-    about = meanings(type(design))
-    changed = {}
+    field_meanings = meanings(type(design))
+    new_values = {}
     for field in (field for field in fields(design) if field.init):
         value = getattr(design, field.name)
         if is_dataclass(value) or (isinstance(value, tuple) and value and is_dataclass(value[0])):
-            changed[field.name] = _scaled(value, factors)
+            new_values[field.name] = _scaled(value, factors)
         elif isinstance(value, float) or _numbers(value):
-            factor = _factor(unit(about.get(field.name, "")), factors)
+            factor = _factor(unit(field_meanings.get(field.name, "")), factors)
             if factor != 1.0:
-                changed[field.name] = tuple(factor * one for one in value) if _numbers(value) else factor * value
-    if isinstance(design, Winding) and changed:
-        changed["motor"] = ""  # in another size it is none that is sold
-    return replace(design, **changed)
+                new_values[field.name] = (
+                    tuple(factor * component for component in value) if _numbers(value) else factor * value
+                )
+    if isinstance(design, Winding) and new_values:
+        new_values["motor"] = ""  # no maker sells it in another size
+    return replace(design, **new_values)
 
 
 def _numbers(value: Any) -> bool:
-    return isinstance(value, tuple) and bool(value) and all(isinstance(one, (int, float)) for one in value)
+    return isinstance(value, tuple) and bool(value) and all(isinstance(element, (int, float)) for element in value)
 
 
 def _factor(name: str, factors: tuple[float, float, float]) -> float:
-    """Return the factor on numbers of a unit as docstrings write it, ``N m s/rad`` or ``kg m2``; 1 for one unknown."""
+    """Return the factor on numbers of a unit as docstrings write it, ``N m s/rad`` or ``kg m2``; 1 if unknown."""
     factor = 1.0
-    above, _, below = name.partition("/")
-    for part, sign in ((above, 1), (below.strip("()"), -1)):
-        for word in part.split():
-            found = _UNIT.match(word)
-            if found:
-                for one, power in zip(factors, _POWERS[found[1]], strict=True):
-                    factor *= one ** (sign * power * int(found[2] or 1))
+    numerator, _, denominator = name.partition("/")
+    for units, sign in ((numerator, 1), (denominator.strip("()"), -1)):
+        for word in units.split():
+            unit_match = _UNIT.match(word)
+            if unit_match:
+                for base_factor, power in zip(factors, _POWERS[unit_match[1]], strict=True):
+                    factor *= base_factor ** (sign * power * int(unit_match[2] or 1))
     return factor

@@ -91,7 +91,7 @@ class Shell:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inertia:
-    """Where the mass of a stiff body lies, where that is known and is not what its shapes would make of it."""
+    """Measured inertia of a rigid body, in place of that of its shapes."""
 
     centre: Point
     """Centre of mass: forward, left, up in the frame of its segment; of a left limb's link, from its beginning [m]."""
@@ -105,10 +105,11 @@ class Inertia:
             check.each("centre", _AXES, -100.0, 100.0, "m")
             check.each("moments", ("xx", "yy", "zz"), 1e-18, 1e9, "kg m2")
             check.each("products", ("xy", "xz", "yz"), -1e9, 1e9, "kg m2")
-            least, middle, most = np.linalg.eigvalsh(self.tensor)
+            min_moment, mid_moment, max_moment = np.linalg.eigvalsh(self.tensor)
             check.that(
-                least > 0 and most <= (least + middle) * (1 + 1e-9),
-                f"inertia has the principal moments {least:.4g}, {middle:.4g} and {most:.4g} kg m2, which no body has: "
+                min_moment > 0 and max_moment <= (min_moment + mid_moment) * (1 + 1e-9),
+                f"inertia has the principal moments {min_moment:.4g}, {mid_moment:.4g} and {max_moment:.4g} kg "
+                "m2, which no body has: "
                 "each must be positive and at most the sum of the other two; check moments and products",
             )
 
@@ -120,7 +121,7 @@ class Inertia:
 
 
 def together(parts: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return what several stiff bodies are as one, by the theorem of parallel axes.
+    """Return mass, centre and inertia of several rigid bodies joined to one, by the parallel-axis theorem.
 
     Args:
         parts: of each its mass [kg], its centre of mass, shape (3,) [m], and its tensor of inertia about that,
@@ -129,13 +130,13 @@ def together(parts: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> tuple[flo
     Returns:
         The same three of all together; a body without mass has its centre in the first one's.
     """
-    mass = fsum(one for one, _, _ in parts)
-    centre = np.sum([one * place for one, place, _ in parts], axis=0) / mass if mass > 0 else parts[0][1]
-    whole = np.zeros((3, 3))
-    for one, place, tensor in parts:
-        off = place - centre
-        whole += tensor + one * ((off @ off) * np.eye(3) - np.outer(off, off))
-    return mass, centre, whole
+    mass = fsum(part_mass for part_mass, _, _ in parts)
+    centre = np.sum([part_mass * place for part_mass, place, _ in parts], axis=0) / mass if mass > 0 else parts[0][1]
+    tensor_sum = np.zeros((3, 3))
+    for part_mass, place, tensor in parts:
+        offset = place - centre
+        tensor_sum += tensor + part_mass * ((offset @ offset) * np.eye(3) - np.outer(offset, offset))
+    return mass, centre, tensor_sum
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,9 +173,9 @@ class Segment:
             )
             check.that(bool(self.shapes), f"segment {self.name} has no shape, so no mass; give it a rod or a shell")
             for shape in self.shapes:
-                low, high = shape.span
+                rear_end, front_end = shape.span
                 check.that(
-                    low <= self.front and high >= -self.rear,
-                    f"{shape.name} lies {low:g} to {high:g} m along segment {self.name}, which reaches from "
+                    rear_end <= self.front and front_end >= -self.rear,
+                    f"{shape.name} lies {rear_end:g} to {front_end:g} m along segment {self.name}, which reaches from "
                     f"{-self.rear:g} to {self.front:g} m: the parts do not join; move it there",
                 )

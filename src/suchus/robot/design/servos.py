@@ -20,13 +20,15 @@ def with_leg_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
 
     def in_limbs(design: Any) -> Any:
         parts = {field.name: getattr(design, field.name) for field in fields(design) if field.name in _LIMBS}
-        return replace(design, **{name: _changed(part, change) for name, part in parts.items()})
+        return replace(
+            design, **{name: _with_changed_servos(limb_design, change) for name, limb_design in parts.items()}
+        )
 
     return remade(robot, in_limbs)
 
 
 def with_speed_line(servo: Servo) -> Servo:
-    """Return a servo whose torque falls to nothing at its speed; one that has a winding already stays as it is.
+    """Return a servo whose torque falls linearly to zero at its speed; one with a winding stays as it is.
 
     The viscous friction of its gear is in that line.
     """
@@ -34,7 +36,7 @@ def with_speed_line(servo: Servo) -> Servo:
 
 
 def with_full_torque(servo: Servo) -> Servo:
-    """Return a servo that gives its torque at any speed and heat, up to its speed: one without a motor."""
+    """Return a servo without a motor model, which gives its full torque at any speed and temperature."""
     return replace(servo, winding=None)
 
 
@@ -45,7 +47,7 @@ def with_speed_lines(robot: Robot) -> Robot:
 
 def with_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
     """Return a robot with each of its servos changed; a linear actuator as the servo that would do the same."""
-    return remade(robot, lambda design: _changed(design, change))
+    return remade(robot, lambda design: _with_changed_servos(design, change))
 
 
 def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
@@ -57,26 +59,35 @@ def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
             becomes one that does what the servo would on the cable's ``pulley``.
     """
 
-    def other(hinge: Hinge, names: Collection[str]) -> Hinge:
-        found = sorted((servos[name] for name in names if name in servos), key=lambda servo: servo.torque)
-        if not found or hinge.servo is None:
+    def with_servo(hinge: Hinge, names: Collection[str]) -> Hinge:
+        """Return a hinge with the strongest of the servos that are given for its names."""
+        matching_servos = sorted((servos[name] for name in names if name in servos), key=lambda servo: servo.torque)
+        if not matching_servos or hinge.servo is None:
             return hinge
         return replace(
-            hinge, drive=replace(hinge.drive, servo=found[-1]) if isinstance(hinge.drive, Crank) else found[-1]
+            hinge,
+            drive=replace(hinge.drive, servo=matching_servos[-1])
+            if isinstance(hinge.drive, Crank)
+            else matching_servos[-1],
         )
 
     def limb(girdle: Girdle) -> Girdle:
+        """Return a girdle whose limbs have the new servos."""
         links = tuple(
             replace(
-                link, hinges=tuple(other(h, [f"{side}{girdle.name}_{h.name}" for side in "LR"]) for h in link.hinges)
+                link,
+                hinges=tuple(with_servo(h, [f"{side}{girdle.name}_{h.name}" for side in "LR"]) for h in link.hinges),
             )
             for link in girdle.limb.links
         )
         return replace(girdle, limb=replace(girdle.limb, links=links))
 
-    axis = tuple(replace(one, hinges=tuple(other(hinge, [hinge.name]) for hinge in one.hinges)) for one in robot.axis)
-    cables = tuple(_pulled(one, servos[one.name]) if one.name in servos else one for one in robot.cables)
-    return replace(robot, axis=axis, girdles=tuple(limb(one) for one in robot.girdles), cables=cables)
+    axis = tuple(
+        replace(segment, hinges=tuple(with_servo(hinge, [hinge.name]) for hinge in segment.hinges))
+        for segment in robot.axis
+    )
+    cables = tuple(_with_drive(cable, servos[cable.name]) if cable.name in servos else cable for cable in robot.cables)
+    return replace(robot, axis=axis, girdles=tuple(limb(girdle) for girdle in robot.girdles), cables=cables)
 
 
 def with_spring(robot: Robot, hinges: Collection[str], stiffness: float) -> Robot:
@@ -88,40 +99,46 @@ def with_spring(robot: Robot, hinges: Collection[str], stiffness: float) -> Robo
         stiffness: of each [N m/rad].
     """
 
-    def with_other(hinge: Hinge) -> Hinge:
+    def with_stiffness(hinge: Hinge) -> Hinge:
         if hinge.name not in hinges or not isinstance(hinge.drive, Spring):
             return hinge
         return replace(hinge, drive=replace(hinge.drive, stiffness=stiffness))
 
-    axis = tuple(replace(one, hinges=tuple(with_other(hinge) for hinge in one.hinges)) for one in robot.axis)
+    axis = tuple(
+        replace(segment, hinges=tuple(with_stiffness(hinge) for hinge in segment.hinges)) for segment in robot.axis
+    )
     return replace(robot, axis=axis)
 
 
-def _pulled(cable: Cable, servo: Servo) -> Cable:
-    """Return a cable whose drive does what a servo does on its pulley."""
+def _with_drive(cable: Cable, servo: Servo) -> Cable:
+    """Return a cable with another drive: the servo itself, or the linear actuator that is equivalent to it."""
     linear = cable.linear
-    other = servo if linear is None else LinearActuator.of(servo, cable.pulley, linear.travel)
-    return replace(cable, servo=other)
+    drive = servo if linear is None else LinearActuator.of(servo, cable.pulley, linear.travel)
+    return replace(cable, servo=drive)
 
 
-def _changed(part: Any, change: Callable[[Servo], Servo], radius: float = 1.0) -> Any:
+def _with_changed_servos(design: Any, change: Callable[[Servo], Servo], radius: float = 1.0) -> Any:
     """Return a part with its servos changed; a linear actuator as a servo on a pulley of a radius [m]."""
-    if isinstance(part, Servo):
-        return change(part)
-    if isinstance(part, LinearActuator):
-        servo = part.on(radius)
-        other = change(servo)
-        return part if other == servo else LinearActuator.of(other, radius, part.travel)
-    if isinstance(part, Tail):
-        radius = part.cord_spacing / 2
-    elif isinstance(part, Cable):
-        radius = part.pulley
-    if isinstance(part, tuple):
-        ones = [_changed(one, change, radius) for one in part]
-        return tuple(ones) if any(new is not old for new, old in zip(ones, part, strict=True)) else part
-    if is_dataclass(part) and not isinstance(part, type):
-        found = {f.name: getattr(part, f.name) for f in fields(part) if f.init}
-        changed = {name: _changed(value, change, radius) for name, value in found.items()}
-        changed = {name: value for name, value in changed.items() if value is not found[name]}
-        return replace(part, **changed) if changed else part
-    return part
+    if isinstance(design, Servo):
+        return change(design)
+    if isinstance(design, LinearActuator):
+        servo = design.on(radius)
+        new_servo = change(servo)
+        return design if new_servo == servo else LinearActuator.of(new_servo, radius, design.travel)
+    if isinstance(design, Tail):
+        radius = design.cord_spacing / 2
+    elif isinstance(design, Cable):
+        radius = design.pulley
+    if isinstance(design, tuple):
+        new_elements = [_with_changed_servos(element, change, radius) for element in design]
+        return (
+            tuple(new_elements)
+            if any(new is not old for new, old in zip(new_elements, design, strict=True))
+            else design
+        )
+    if is_dataclass(design) and not isinstance(design, type):
+        old_fields = {f.name: getattr(design, f.name) for f in fields(design) if f.init}
+        new_fields = {name: _with_changed_servos(value, change, radius) for name, value in old_fields.items()}
+        new_fields = {name: value for name, value in new_fields.items() if value is not old_fields[name]}
+        return replace(design, **new_fields) if new_fields else design
+    return design

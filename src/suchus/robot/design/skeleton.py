@@ -1,4 +1,4 @@
-"""What of a robot decides how a gait moves it, and nothing else: one for all robots that are built of a design."""
+"""The part of a robot's design that decides how a gait moves it: shapes, hinges and ranges, without masses."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -21,31 +21,33 @@ def skeleton(robot: Robot) -> Robot:
     Robots with equal skeletons do the same in a gait as long as nothing resists: postures, ranges and reaches are those
     of all of them. It is for telling that, and no robot to simulate.
     """
-    return _first(
+    return _intern(
         replace(
             robot,
-            axis=tuple(_segment(one) for one in robot.axis),
-            girdles=tuple(_girdle(one) for one in robot.girdles),
-            cables=tuple(_cable(one) for one in robot.cables),
+            axis=tuple(_segment(segment) for segment in robot.axis),
+            girdles=tuple(_girdle(girdle) for girdle in robot.girdles),
+            cables=tuple(_cable(cable) for cable in robot.cables),
         )
     )
 
 
 @lru_cache(maxsize=1024)
-def _first(one: Robot) -> Robot:
-    """Return the first of equal robots, which is told from others at once."""
-    return one
+def _intern(robot: Robot) -> Robot:
+    """Return the first of equal robots, so that equal robots are one object."""
+    return robot
 
 
 def _segment(segment: Segment) -> Segment:
     shapes = tuple(replace(shape, mass=_MASS) for shape in segment.shapes)
-    return replace(segment, shapes=shapes, inertia=None, hinges=tuple(_hinge(one) for one in segment.hinges))
+    return replace(segment, shapes=shapes, inertia=None, hinges=tuple(_hinge(hinge) for hinge in segment.hinges))
 
 
 def _girdle(girdle: Girdle) -> Girdle:
+    """Return a girdle whose links and feet have unit mass and whose servos are all equal."""
     limb = girdle.limb
     links = tuple(
-        replace(link, mass=_MASS, inertia=None, hinges=tuple(_hinge(one) for one in link.hinges)) for link in limb.links
+        replace(link, mass=_MASS, inertia=None, hinges=tuple(_hinge(hinge) for hinge in link.hinges))
+        for link in limb.links
     )
     return replace(girdle, limb=replace(limb, links=links, foot=replace(limb.foot, mass=_MASS)))
 

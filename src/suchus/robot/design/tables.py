@@ -238,8 +238,8 @@ def tail_segments(tail: Tail) -> TailSegments:
         tail.pitch / 2,
         *([tail.fin_length / tail.fin_segments] * tail.fin_segments),
     ]
-    middles = np.cumsum(lengths) - 0.5 * np.array(lengths)
-    radii = np.interp(middles, [0.0, float(np.sum(lengths))], [tail.radius_root, tail.radius_tip])
+    centers = np.cumsum(lengths) - 0.5 * np.array(lengths)
+    radii = np.interp(centers, [0.0, float(np.sum(lengths))], [tail.radius_root, tail.radius_tip])
     volumes = radii**2 * lengths
     return TailSegments(lengths, radii.tolist(), (tail.mass * volumes / volumes.sum()).tolist())
 

@@ -16,23 +16,28 @@ from suchus.robot.motion import Gait, divided, draft_gait, form_of, suits
 from suchus.robot.robots import ROBOTS
 
 
-def _read(path: Path) -> Gait:
+def _read_gait(path: Path) -> Gait:
+    """Return the gait that a file describes, for the robot that its base was made for.
+
+    Raises:
+        UnreadableFile: the file gives lengths in metres or places along the body, and its base belongs to no robot.
+    """
     from suchus.robot import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
     data = read_toml(path)
     base = data.get("base")
-    made_for = GAITS.beside(base, "made_for", ()) if isinstance(base, str) and base in GAITS else ()
-    if form_of(data) is not None and not made_for:
+    robot_names = GAITS.beside(base, "made_for", ()) if isinstance(base, str) and base in GAITS else ()
+    if form_of(data) is not None and not robot_names:
         raise UnreadableFile(
             f"{path.name} gives metres or places along the body, which are those of a robot: start it from a gait that "
             "is made for one (base), give the file's path with its robot, or write the gait in limbs and axis, whose "
             "lengths are shares of the limbs' reach."
         )
-    return blueprint.read_gait(path, ROBOTS[made_for[0] if made_for else "caiman"], GAITS)
+    return blueprint.read_gait(path, ROBOTS[robot_names[0] if robot_names else "caiman"], GAITS)
 
 
 GAITS: Catalog[Gait] = Catalog(
-    "gait", "suchus.robot.gaits", "suchus.robot.motion:Gait", named=attrgetter("name"), read=_read
+    "gait", "suchus.robot.gaits", "suchus.robot.motion:Gait", named=attrgetter("name"), read=_read_gait
 )
 """The gaits of the shelf."""
 
@@ -48,13 +53,13 @@ ALIKE = 1.5
 
 
 def own_gait(robot: Robot) -> Gait:
-    """Return the gait in which a robot moves unless another one is asked for.
+    """Return the default gait of a robot.
 
-    A gait made for a robot of its name comes first, then one made for another robot whose limbs turn about the same
-    axes, in the size of this robot (``in_size``): of a robot that pitches its tail those first that lay it down, of any
-    other robot those that leave it alone. For which robots a gait was made its module says by ``made_for``, and nothing
-    else does. For a robot that none of them suits one is drafted, ``DRAFTED``: a walk in which every other limb steps,
-    or a wave along a body without limbs.
+    A gait made for a robot of this name comes first. Next come gaits made for other robots whose limbs turn about the
+    same axes, in the size of this robot (``in_size``): for a robot that pitches its tail first those that lay the tail
+    down, for any other robot first those that do not. Only ``made_for`` in the module of a gait says for which robots
+    it was made. If none of these gaits suits the robot, one is drafted, ``DRAFTED``: a walk in which every other limb
+    steps, or a wave along a body without limbs.
 
     Args:
         robot: on the shelf or not.
@@ -62,13 +67,13 @@ def own_gait(robot: Robot) -> Gait:
     Raises:
         UnsuitedRobot: no gait of the shelf suits it, and none can be drafted.
     """
-    made = {name: tuple(GAITS.beside(name, "made_for", ())) for name in GAITS}
-    named = [name for name, robots in made.items() if robot.name in robots]
+    robots_by_gait = {name: tuple(GAITS.beside(name, "made_for", ())) for name in GAITS}
+    own_names = [name for name, robots in robots_by_gait.items() if robot.name in robots]
     pitches = bool(layout(robot).tail_pitch)
-    others = [name for name, robots in made.items() if robots and name not in named]
-    others.sort(key=lambda name: GAITS[name].has("tail pitch") != pitches)
-    for name in named + others:
-        maker: Robot = ROBOTS[robot.name if robot.name in ROBOTS and name in named else made[name][0]]
+    other_names = [name for name, robots in robots_by_gait.items() if robots and name not in own_names]
+    other_names.sort(key=lambda name: GAITS[name].has("tail pitch") != pitches)
+    for name in own_names + other_names:
+        maker: Robot = ROBOTS[robot.name if robot.name in ROBOTS and name in own_names else robots_by_gait[name][0]]
         gait = in_size(GAITS[name], robot, maker)
         if _turns(robot) == _turns(maker) and suits(robot, gait):
             return gait
@@ -133,35 +138,35 @@ def _drafted(robot: Robot) -> Gait:
     return draft_gait(robot, DRAFTED)
 
 
-def control_group(gait: Gait, given: Gait | None = None) -> Gait:
+def control_group(gait: Gait, replacement: Gait | None = None) -> Gait:
     """Return the control group of a gait: the same legs, its axis still.
 
     Args:
         gait: with all of the axis.
-        given: what stands for it instead; None for the gait without the motion of its axis.
+        replacement: gait to use as control group; None for the gait without the motion of its axis.
 
     Raises:
-        OutsideLimits: the one given has other legs, so that more than the axis would differ.
+        OutsideLimits: the replacement has other legs, so that more than the axis would differ.
     """
-    if given is None:
+    if replacement is None:
         return gait.without("axis", name="limbs_only")
     legs = ("period", "duty_factor", "limb_phases", "limbs", "height")
-    other = [name for name in legs if getattr(gait, name) != getattr(given, name)]
-    if [c for c in gait.curves if c.part == "limb"] != [c for c in given.curves if c.part == "limb"]:
-        other.append("measured curves of the limbs")
-    if other:
+    differences = [name for name in legs if getattr(gait, name) != getattr(replacement, name)]
+    if [c for c in gait.curves if c.part == "limb"] != [c for c in replacement.curves if c.part == "limb"]:
+        differences.append("measured curves of the limbs")
+    if differences:
         raise OutsideLimits(
-            f"the control group {given.name!r} has other legs than gait {gait.name!r}: they differ in "
-            f"{', '.join(other)}, and only the axis may differ; leave control out for the gait with its axis still."
+            f"the control group {replacement.name!r} has other legs than gait {gait.name!r}: they differ in "
+            f"{', '.join(differences)}, and only the axis may differ; leave control out for the gait with its "
+            "axis still."
         )
-    return given
+    return replacement
 
 
 def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
     """Return the gaits of those of ``CONDITIONS`` that a robot's parts make possible, in their order.
 
-    Without a servo that pitches the tail nothing lifts it; without one that bends the tail, or the trunk, that part
-    has no swing to be taken away.
+    The tail is lifted only if a servo pitches it. The swing of tail or trunk is removed only if servos bend that part.
 
     Args:
         robot: the design.
@@ -169,21 +174,21 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
         control: with limbs only.
     """
     place, gait = layout(robot), divided(robot, gait)
-    behind = {*place.tail_yaw, *place.tail_pitch, *place.cables}
-    ahead = set(place.axial_yaw) - behind
+    tail_servos = {*place.tail_yaw, *place.tail_pitch, *place.cables}
+    front_servos = set(place.axial_yaw) - tail_servos
     lifts = place.tail_pitch and gait.has("steering")
-    found = {"coordinated": gait}
-    if behind or ahead:
-        found["limbs_only"] = control
+    conditions = {"coordinated": gait}
+    if tail_servos or front_servos:
+        conditions["limbs_only"] = control
         if lifts:
-            found["limbs_tail_lifted"] = control.lifted(LIFTED, name="limbs_tail_lifted")
-    if behind and ahead:
-        still = gait.without("tail", name="tail_still")
-        found["tail_still"] = still
+            conditions["limbs_tail_lifted"] = control.lifted(LIFTED, name="limbs_tail_lifted")
+    if tail_servos and front_servos:
+        still_gait = gait.without("tail", name="tail_still")
+        conditions["tail_still"] = still_gait
         if lifts:
-            found["spine_only"] = still.lifted(LIFTED, name="spine_only")
-        found["tail_drag"] = gait.straightened("neck", "trunk", name="tail_drag")
-    return found
+            conditions["spine_only"] = still_gait.lifted(LIFTED, name="spine_only")
+        conditions["tail_drag"] = gait.straightened("neck", "trunk", name="tail_drag")
+    return conditions
 
 
 __all__ = [

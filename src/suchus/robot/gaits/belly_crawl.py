@@ -35,20 +35,20 @@ gait = metres.gait(LIMBS)
 made_for = ("caiman", "floating_caiman", "long_tail")
 """Robots of the shelf whose gait it is."""
 
-_FITTED = (
+_FIT_REASON = (
     "leg stroke and trunk bend are the two numbers chosen so that both displacements come out as printed, "
     "all else being equal; the map of their ratio shows what other values give"
 )
-_LOST = "Fig. 12 is lost; "
+_MISSING_FIGURE = "Fig. 12 is lost; "
 _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("duty_factor", 0.5, 0.75, "a diagonal walk without flight"),
-    ("stroke", 0.0, 0.1 / FRONT, _FITTED),
-    ("trunk_bend", 0.0, 1.75, _FITTED),
+    ("stroke", 0.0, 0.1 / FRONT, _FIT_REASON),
+    ("trunk_bend", 0.0, 1.75, _FIT_REASON),
     (
         "axis_lag",
         -0.15,
         0.15,
-        _LOST + "zero carries each girdle's swing foot farthest ahead at touch-down",
+        _MISSING_FIGURE + "zero carries each girdle's swing foot farthest ahead at touch-down",
     ),
     ("lift", 0.015 / FRONT, 0.05 / FRONT, "clears the sag of the diagonal pair under load"),
     ("limbs[0].outward", 0.07 / FRONT, 0.11 / FRONT, "the shank stands upright in mid-stance"),
@@ -56,9 +56,12 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("limbs[0].ahead", -0.03 / FRONT, 0.03 / FRONT, "the foot's path is centred on the hip"),
     ("limbs[1].ahead", -0.03 / HIND, 0.03 / HIND, "the foot's path is centred on the hip"),
     ("height", 0.07 / HIND, 0.12 / HIND, "level femur and upright shank, the sprawl of the article's Fig. 3a"),
-    ("tail_bend", 0.0, 1.2, _LOST + "it changes the displacement by less than 0.03 m"),
-    ("tail_lag", 0.5, 1.0, _LOST + "against the trunk, which keeps the heading best"),
+    ("tail_bend", 0.0, 1.2, _MISSING_FIGURE + "it changes the displacement by less than 0.03 m"),
+    ("tail_lag", 0.5, 1.0, _MISSING_FIGURE + "against the trunk, which keeps the heading best"),
     ("tail_pitch", 0.1, 0.3, "the tail drags without lifting the hind feet"),
 )
-chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)
+chosen = tuple(
+    Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+    for field, lower_bound, upper_bound, reason in _ROWS
+)
 """Every number of the gait that the article does not give, with its plausible range and the reason."""

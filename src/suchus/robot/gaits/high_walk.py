@@ -27,7 +27,7 @@ gait = GaitInMetres(
 ).gait(LIMBS)
 """A walking trot, each hind foot a little after its diagonal front foot."""
 
-_AFTER = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls less"
+_HIND_LAG_REASON = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls less"
 _ROWS: tuple[tuple[str, float, float, str], ...] = (
     (
         "period",
@@ -37,8 +37,8 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ),
     ("limb_phases[0]", 0.0, 0.0, "phases count from the left front foot"),
     ("limb_phases[1]", 0.5, 0.5, "left and right alternate, as in the article's diagonal gait"),
-    ("limb_phases[2]", 0.375, 0.5, _AFTER),
-    ("limb_phases[3]", -0.125, 0.0, _AFTER),
+    ("limb_phases[2]", 0.375, 0.5, _HIND_LAG_REASON),
+    ("limb_phases[3]", -0.125, 0.0, _HIND_LAG_REASON),
     ("duty_factor", 0.65, 0.72, "with less the body rolls more; longer stance asks for faster swings"),
     ("stroke", 0.033 / FRONT, 0.045 / FRONT, "longer ones ask more speed of the knee than its servo has"),
     ("lift", 0.022 / FRONT, 0.045 / FRONT, "clears bumps of 40 mm up and down; on even ground it costs power alone"),
@@ -68,5 +68,8 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
         "the tail carries some weight: lifted, the body rolls more and loses speed",
     ),
 )
-chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)
+chosen = tuple(
+    Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+    for field, lower_bound, upper_bound, reason in _ROWS
+)
 """The article shows the posture and gives no number: every number with its plausible range and the reason."""

@@ -9,7 +9,7 @@ from suchus.robot.gaits.belly_crawl import FRONT, HIND, LIMBS
 gait = replace(belly_crawl.metres, name="low_crawl", period=2.0, stroke=0.050, lift=0.030, hip_height=0.055).gait(LIMBS)
 """Between belly and ground are 20 mm."""
 
-_OWN = {
+_OWN_RANGES = {
     "period": (1.2, 3.0, "0.35 m/s at 1.2 s, 0.14 m/s at 3 s; the body rolls by 8 degrees throughout"),
     "stroke": (0.03 / FRONT, 0.06 / FRONT, "long enough for 0.2 m/s, short enough to stay within reach"),
     "lift": (0.02 / FRONT, 0.05 / FRONT, "clears the sag of the diagonal pair under load"),
@@ -20,7 +20,10 @@ _OWN = {
     ),
 }
 chosen = (
-    *(Chosen(field=field, low=low, high=high, why=why) for field, (low, high, why) in _OWN.items()),
-    *(entry for entry in belly_crawl.chosen if entry.field not in _OWN),
+    *(
+        Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+        for field, (lower_bound, upper_bound, reason) in _OWN_RANGES.items()
+    ),
+    *(entry for entry in belly_crawl.chosen if entry.field not in _OWN_RANGES),
 )
 """Every number of the gait that the article does not give, with its plausible range and the reason."""

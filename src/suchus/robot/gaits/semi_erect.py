@@ -27,13 +27,15 @@ gait = GaitInMetres(
 ).gait(LIMBS)
 """A walking trot between crawl and high walk."""
 
-_AFTER = "after its diagonal front foot, a trot within an eighth of a cycle; 0.19 earlier costs a quarter of the speed"
+_HIND_LAG_REASON = (
+    "after its diagonal front foot, a trot within an eighth of a cycle; 0.19 earlier costs a quarter of the speed"
+)
 _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("period", 0.9, 2.0, "0.24 m/s at 1 s, 0.12 m/s at 2 s; in shorter ones knees reach what their servos can give"),
     ("limb_phases[0]", 0.0, 0.0, "phases count from the left front foot"),
     ("limb_phases[1]", 0.5, 0.5, "left and right alternate, as in the article's diagonal gait"),
-    ("limb_phases[2]", 0.375, 0.5, _AFTER),
-    ("limb_phases[3]", -0.125, 0.0, _AFTER),
+    ("limb_phases[2]", 0.375, 0.5, _HIND_LAG_REASON),
+    ("limb_phases[3]", -0.125, 0.0, _HIND_LAG_REASON),
     ("duty_factor", 0.55, 0.65, "a walk without flight whose swing stays within 7 rad/s"),
     ("stroke", 0.033 / FRONT, 0.045 / FRONT, "longer ones ask more speed of the knee than its servo has"),
     (
@@ -63,5 +65,8 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("tail_lag", 0.5, 1.0, "against the trunk, which keeps the heading best"),
     ("tail_pitch", 0.3, 0.4, "the tail carries some weight and keeps the body from rolling"),
 )
-chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)
+chosen = tuple(
+    Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+    for field, lower_bound, upper_bound, reason in _ROWS
+)
 """The article gives no number of it: every number with its plausible range and the reason."""

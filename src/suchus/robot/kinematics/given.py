@@ -1,4 +1,4 @@
-"""What is given to the closed forms: arrays of finite numbers of the right shape, or a sentence that says otherwise."""
+"""Validation of the arguments of closed forms: arrays of finite numbers of the right shape."""
 
 from typing import Any
 
@@ -8,12 +8,12 @@ from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
 
 
-def numbers(values: Any, what: str, *, finite: bool = True) -> np.ndarray:
+def numbers(values: Any, label: str, *, finite: bool = True) -> np.ndarray:
     """Return numbers as an array in double precision.
 
     Args:
         values: a number, or an array of any shape.
-        what: what they are, for the message.
+        label: what they are, for the message.
         finite: whether those that are not finite are refused.
 
     Raises:
@@ -22,46 +22,46 @@ def numbers(values: Any, what: str, *, finite: bool = True) -> np.ndarray:
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidDesign(f"{what} is {show(values)}; a number or an array of numbers is needed.") from error
+        raise InvalidDesign(f"{label} is {show(values)}; a number or an array of numbers is needed.") from error
     if finite and not np.isfinite(array).all():
         bad = array[~np.isfinite(array)].flat[0]
-        raise InvalidDesign(f"{what} holds {bad}; finite numbers are needed.")
+        raise InvalidDesign(f"{label} holds {bad}; finite numbers are needed.")
     return array
 
 
-def check_sign(value: Any, what: str) -> None:
+def check_sign(value: Any, label: str) -> None:
     """Refuse what is neither 1 nor -1.
 
     Raises:
         InvalidDesign: it is something else, or several.
     """
     if not (isinstance(value, int) and value in (1, -1)):
-        raise InvalidDesign(f"{what} is {show(value)}; 1 or -1 is allowed.")
+        raise InvalidDesign(f"{label} is {show(value)}; 1 or -1 is allowed.")
 
 
-def number(value: Any, what: str) -> float:
+def number(value: Any, label: str) -> float:
     """Return one finite number.
 
     Raises:
         InvalidDesign: it is none, or more than one.
     """
-    array = numbers(value, what)
+    array = numbers(value, label)
     if array.ndim:
-        raise InvalidDesign(f"{what} has the shape {array.shape}; a single number is needed.")
+        raise InvalidDesign(f"{label} has the shape {array.shape}; a single number is needed.")
     return float(array)
 
 
-def spread_over(values: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
-    """Return finite numbers as an array of a given shape: one for all, or one for each.
+def spread_over(values: Any, shape: tuple[int, ...], label: str) -> np.ndarray:
+    """Return finite numbers broadcast to a shape.
 
     Raises:
         InvalidDesign: they are no numbers, one of them is not finite, or there are more or fewer than can be.
     """
-    array = numbers(values, what)
+    array = numbers(values, label)
     try:
         return np.broadcast_to(array, shape)
     except ValueError as error:
-        raise InvalidDesign(f"{what} has the shape {array.shape}; one number, or {shape}, is needed.") from error
+        raise InvalidDesign(f"{label} has the shape {array.shape}; one number, or {shape}, is needed.") from error
 
 
 def together(*arrays: np.ndarray, what: str) -> None:
@@ -77,13 +77,13 @@ def together(*arrays: np.ndarray, what: str) -> None:
         raise InvalidDesign(f"{what} have the shapes {shapes}, which do not go together; give one each.") from error
 
 
-def rows(values: Any, count: int, what: str) -> np.ndarray:
+def rows(values: Any, count: int, label: str) -> np.ndarray:
     """Return an array whose last axis has so many numbers; those that are not finite pass.
 
     Args:
         values: shape (..., count).
         count: how many numbers one row has.
-        what: what they are, for the message.
+        label: what they are, for the message.
 
     Raises:
         InvalidDesign: they are no numbers, or of another shape.
@@ -91,7 +91,7 @@ def rows(values: Any, count: int, what: str) -> np.ndarray:
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidDesign(f"{what} is {show(values)}; an array of numbers is needed.") from error
+        raise InvalidDesign(f"{label} is {show(values)}; an array of numbers is needed.") from error
     if array.ndim == 0 or array.shape[-1] != count:
-        raise InvalidDesign(f"{what} has the shape {array.shape}; {count} numbers are needed along the last axis.")
+        raise InvalidDesign(f"{label} has the shape {array.shape}; {count} numbers are needed along the last axis.")
     return array

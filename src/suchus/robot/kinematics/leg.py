@@ -21,7 +21,7 @@ ROUNDING = 1e-12
 
 
 def forward(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.ndarray, "*batch 3"]:
-    """Return where the foot's centre is.
+    """Return the position of the foot's centre.
 
     Args:
         leg: the lengths.
@@ -82,11 +82,11 @@ def inverse(
     foot = rows(foot, 3, "the foot's place")
     points = np.ascontiguousarray(foot).reshape(-1, 3)
     angles = np.empty_like(points)
-    reached = True
+    is_reachable = True
     with np.errstate(invalid="ignore", over="ignore"):
-        for part in _chunks(len(points)):
-            reached &= _solve(leg, points[part], angles[part], knee, side)
-    if not reached:
+        for chunk in _chunks(len(points)):
+            is_reachable &= _solve(leg, points[chunk], angles[chunk], knee, side)
+    if not is_reachable:
         raise _unreachable(leg, points)
     return angles.reshape(foot.shape)
 
@@ -104,11 +104,11 @@ def jacobian(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.n
     yaw, pitch, knee = np.moveaxis(rows(angles, 3, "the leg's angles"), -1, 0)
     shank = pitch + knee
     s1, c1 = np.sin(yaw), np.cos(yaw)
-    down, out = leg.tibia * np.sin(shank), leg.tibia * np.cos(shank)
+    down, outward = leg.tibia * np.sin(shank), leg.tibia * np.cos(shank)
     z = leg.femur * np.sin(pitch) + down
-    r = leg.femur * np.cos(pitch) + out
+    r = leg.femur * np.cos(pitch) + outward
     zero = np.zeros_like(r)
-    partial = [[-s1 * r, -c1 * z, -c1 * down], [c1 * r, -s1 * z, -s1 * down], [zero, r, out]]
+    partial = [[-s1 * r, -c1 * z, -c1 * down], [c1 * r, -s1 * z, -s1 * down], [zero, r, outward]]
     return np.stack([np.stack(row, axis=-1) for row in partial], axis=-2)
 
 
@@ -135,7 +135,7 @@ def _solve(leg: LegLinks, foot: np.ndarray, angles: np.ndarray, knee: int, side:
     np.sqrt(rho, out=rho)
     c3 -= leg.femur**2 + leg.tibia**2
     c3 /= 2.0 * leg.femur * leg.tibia
-    reached = bool(c3.min() >= -1.0 - ROUNDING and c3.max() <= 1.0 + ROUNDING)  # NaN fails
+    is_within_reach = bool(c3.min() >= -1.0 - ROUNDING and c3.max() <= 1.0 + ROUNDING)  # NaN fails
     np.clip(c3, -1.0, 1.0, out=c3)
     s3 = 1.0 - c3
     s3 *= 1.0 + c3
@@ -147,25 +147,26 @@ def _solve(leg: LegLinks, foot: np.ndarray, angles: np.ndarray, knee: int, side:
     s3 *= leg.tibia  # across the femur
     c3 *= leg.tibia
     c3 += leg.femur  # along the femur
-    up = z * c3  # pitch = atan2(z, rho) - atan2(s3, c3), as one angle
-    up -= rho * s3
+    pitch_sine = z * c3  # pitch = atan2(z, rho) - atan2(s3, c3), as one angle
+    pitch_sine -= rho * s3
     rho *= c3
     z *= s3
     rho += z
-    np.arctan2(up, rho, out=angles[:, 1])
-    return reached
+    np.arctan2(pitch_sine, rho, out=angles[:, 1])
+    return is_within_reach
 
 
 def _unreachable(leg: LegLinks, points: np.ndarray) -> Unreachable:
+    """Return the error that names the first of the points that the foot cannot reach."""
     bad = points[~reachable(leg, points)]
-    near, far = abs(leg.femur - leg.tibia), leg.femur + leg.tibia
+    min_reach, max_reach = abs(leg.femur - leg.tibia), leg.femur + leg.tibia
     hip = np.array([leg.hip_offset, 0.0, 0.0])
     with np.errstate(invalid="ignore", over="ignore"):
         distance = float(np.linalg.norm(bad[0] - hip))
-    first = ", ".join(f"{c:.4g}" for c in bad[0])
+    first_point = ", ".join(f"{c:.4g}" for c in bad[0])
     return Unreachable(
-        f"{len(bad)} of {len(points)} foot points are out of reach; the first, ({first}) m, is {distance:.4g}"
-        f" m from the hip, and {near:.4g} to {far:.4g} m can be reached: move it there.",
+        f"{len(bad)} of {len(points)} foot points are out of reach; the first, ({first_point}) m, is {distance:.4g}"
+        f" m from the hip, and {min_reach:.4g} to {max_reach:.4g} m can be reached: move it there.",
         points=bad,
-        reach=(near, far),
+        reach=(min_reach, max_reach),
     )

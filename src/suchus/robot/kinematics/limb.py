@@ -20,7 +20,11 @@ from suchus.robot.kinematics.tree import rotation
 
 STEPS = 60
 """Gauss-Newton steps at most [-]; along a gait 2 to 5 are needed."""
-_STEP, _DAMPING, _NEAR = 0.6, 0.01, 1e-10  # rad; most that damps; error in limb lengths that ends
+_STEP, _DAMPING, _ERROR_TOLERANCE = (
+    0.6,
+    0.01,
+    1e-10,
+)  # greatest step [rad]; greatest damping [-]; error at which a point is done [limb reach]
 SEEDS = 40
 """Starts for those that get stuck, most of them on a joint limit near the hip [-]."""
 
@@ -102,109 +106,143 @@ def inverse(
     """
     points = rows(foot, 3, "the foot's place")
     _refuse_far(limb, points)
-    which = kind(limb)
-    if which == "leg":
+    method = kind(limb)
+    if method == "leg":
         links = limb.links
         base = np.stack([points[..., 1], points[..., 0], -points[..., 2]], axis=-1)
         return closed.inverse(PlainLeg(0.0, links[0].length, links[1].length, 0.0, 0.0), base)
-    if which == "arm":
+    if method == "arm":
         return _arm(limb, points, spread_over(plane, points.shape[:-1], "the plane of the limb"))
     return _numeric(limb, points, start, tries)
 
 
 def _refuse_far(limb: Limb, points: np.ndarray) -> None:
-    near, far = reach(limb)
-    away = np.linalg.norm(points, axis=-1)
-    bad = ~((away >= near * (1 - 1e-9) - 1e-12 * far) & (away <= far * (1 + 1e-9)))
+    """Refuse points that are nearer to the hip or farther from it than the limb can reach."""
+    min_reach, max_reach = reach(limb)
+    distance = np.linalg.norm(points, axis=-1)
+    bad = ~((distance >= min_reach * (1 - 1e-9) - 1e-12 * max_reach) & (distance <= max_reach * (1 + 1e-9)))
     if bad.any():
-        lost = points[bad]
-        first = ", ".join(f"{c:.4g}" for c in lost[0])
+        unreachable = points[bad]
+        first_point = ", ".join(f"{c:.4g}" for c in unreachable[0])
         raise Unreachable(
-            f"{len(lost)} of {away.size} foot points are out of reach; the first, ({first}) m from the hip, is "
-            f"{np.linalg.norm(lost[0]):.4g} m away, and {near:.4g} to {far:.4g} m can be reached: move it there.",
-            points=lost,
-            reach=(near, far),
+            f"{len(unreachable)} of {distance.size} foot points are out of reach; the first, ({first_point}) m "
+            "from the hip, is "
+            f"{np.linalg.norm(unreachable[0]):.4g} m away, and {min_reach:.4g} to {max_reach:.4g} m can be "
+            "reached: move it there.",
+            points=unreachable,
+            reach=(min_reach, max_reach),
         )
 
 
 def _arm(limb: Limb, foot: np.ndarray, plane: np.ndarray) -> np.ndarray:
     """Solve yaw, pitch, roll and elbow: the elbow by the cosine law, its place on a circle by the plane."""
-    upper, lower = limb.links[0].length, limb.links[1].length
+    upper_length, lower_length = limb.links[0].length, limb.links[1].length
     x, y, z = np.moveaxis(foot, -1, 0)
     squared = x * x + y * y + z * z
-    far = np.sqrt(squared)
-    bend = np.arccos(np.clip((squared - upper**2 - lower**2) / (2.0 * upper * lower), -1.0, 1.0))
+    distance = np.sqrt(squared)
+    bend = np.arccos(
+        np.clip((squared - upper_length**2 - lower_length**2) / (2.0 * upper_length * lower_length), -1.0, 1.0)
+    )
     flat = np.hypot(x, y)
     level = np.maximum(flat, 1e-300)
-    along = (upper**2 - lower**2 + squared) / (2.0 * far)  # of the elbow, on the line from hip to foot
-    across = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
-    ux, uy, uz = x / far, y / far, z / far
-    rise, side = across * np.cos(plane), across * np.sin(plane)
+    # position of the elbow along the line from hip to foot
+    axial_offset = (upper_length**2 - lower_length**2 + squared) / (2.0 * distance)
+    radial_offset = np.sqrt(np.maximum(upper_length**2 - axial_offset**2, 0.0))
+    ux, uy, uz = x / distance, y / distance, z / distance
+    rise, side = radial_offset * np.cos(plane), radial_offset * np.sin(plane)
     # up, across the line, and forward, across both; for a foot straight below the hip they are outward and forward
-    out = np.where(flat > 0, y / level, 1.0)
-    ex = along * ux - rise * uz * x / level + side * out
-    ey = along * uy - rise * uz * out - side * x / level
-    ez = along * uz + rise * flat / far
+    outward = np.where(flat > 0, y / level, 1.0)
+    ex = axial_offset * ux - rise * uz * x / level + side * outward
+    ey = axial_offset * uy - rise * uz * outward - side * x / level
+    ez = axial_offset * uz + rise * flat / distance
     yaw, pitch = np.arctan2(ex, ey), np.arctan2(-ez, np.hypot(ex, ey))
     s, c, sp, cp = np.sin(yaw), np.cos(yaw), np.sin(pitch), np.cos(pitch)
     lx, ly, lz = x - ex, y - ey, z - ez
-    ahead = c * lx - s * ly
+    forward_part = c * lx - s * ly
     down = -(s * sp * lx + c * sp * ly + cp * lz)
-    return np.stack([yaw, pitch, np.arctan2(ahead, down), bend], axis=-1)
+    return np.stack([yaw, pitch, np.arctan2(forward_part, down), bend], axis=-1)
 
 
 def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: int = SEEDS) -> np.ndarray:
-    """Take damped Gauss-Newton steps within the joints' ranges; who gets stuck begins again elsewhere."""
+    """Solve by damped Gauss-Newton steps within the joints' ranges; points without a solution start again elsewhere.
+
+    Args:
+        limb: the design.
+        points: of the foot from the hip, shape (*batch, 3) [m].
+        start: angles near the answer [rad]; the middle of the ranges if None.
+        tries: how often a point may start again [-].
+    """
     count = len(limb.hinges)
-    low, high = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
+    lower_bound, upper_bound = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
     flat = points.reshape(-1, 3)
-    middle = np.where(np.isfinite(low), (low + high) / 2.0, 0.0)
-    given = spread_over(middle if start is None else start, (*points.shape[:-1], count), "the start").reshape(-1, count)
-    found, error = _descend(limb, flat, np.clip(given, low, high), low, high)
+    center = np.where(np.isfinite(lower_bound), (lower_bound + upper_bound) / 2.0, 0.0)
+    start_angles = spread_over(center if start is None else start, (*points.shape[:-1], count), "the start").reshape(
+        -1, count
+    )
+    angles, error = _descend(limb, flat, np.clip(start_angles, lower_bound, upper_bound), lower_bound, upper_bound)
     rng = np.random.default_rng(0)
     for _ in range(tries):
         stuck = np.flatnonzero(error > 1e-7)
         if not stuck.size:
             break
-        ends = np.where(np.isfinite(low), low, -np.pi), np.where(np.isfinite(high), high, np.pi)
-        again, left = _descend(limb, flat[stuck], rng.uniform(*ends, (stuck.size, count)), low, high)
-        better = left < error[stuck]
-        found[stuck[better]], error[stuck[better]] = again[better], left[better]
+        ends = (
+            np.where(np.isfinite(lower_bound), lower_bound, -np.pi),
+            np.where(np.isfinite(upper_bound), upper_bound, np.pi),
+        )
+        new_angles, new_error = _descend(
+            limb, flat[stuck], rng.uniform(*ends, (stuck.size, count)), lower_bound, upper_bound
+        )
+        better = new_error < error[stuck]
+        angles[stuck[better]], error[stuck[better]] = new_angles[better], new_error[better]
     if (error > 1e-7).any():
-        worst = int(np.argmax(error))
-        at = ", ".join(f"{c:.4g}" for c in flat[worst])
+        worst_index = int(np.argmax(error))
+        coordinates = ", ".join(f"{c:.4g}" for c in flat[worst_index])
         raise NotConverged(
             f"{int((error > 1e-7).sum())} of {len(flat)} foot points were not reached within the joints' ranges; the "
-            f"worst, ({at}) m from the hip, is missed by {error[worst] * limb.reach:.3g} m: move it, or widen a range."
+            f"worst, ({coordinates}) m from the hip, is missed by {error[worst_index] * limb.reach:.3g} m: move "
+            "it, or widen a range."
         )
-    return found.reshape(*points.shape[:-1], count)
+    return angles.reshape(*points.shape[:-1], count)
 
 
 def _descend(
-    limb: Limb, points: np.ndarray, angles: np.ndarray, low: np.ndarray, high: np.ndarray
+    limb: Limb, points: np.ndarray, angles: np.ndarray, lower_bound: np.ndarray, upper_bound: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the angles reached from a start and the errors left, in lengths of the limb."""
+    """Return angles and remaining errors after damped Gauss-Newton steps from a start.
+
+    Args:
+        limb: the design.
+        points: of the foot from the hip, shape (point, 3) [m].
+        angles: at the start, shape (point, hinge) [rad].
+        lower_bound: of each hinge [rad].
+        upper_bound: of each hinge [rad].
+    """
     size, angles = limb.reach, angles.copy()
     error = np.full(len(points), np.inf)
-    going = np.arange(len(points))
+    active = np.arange(len(points))
     for _ in range(STEPS):
-        foot, jacobian = _chain(limb, angles[going])
-        miss = (points[going] - foot) / size
-        error[going] = np.linalg.norm(miss, axis=-1)
-        left = error[going] > _NEAR
-        going, miss, jacobian = going[left], miss[left], jacobian[left] / size
-        if not going.size:
+        foot, jacobian = _chain(limb, angles[active])
+        miss = (points[active] - foot) / size
+        error[active] = np.linalg.norm(miss, axis=-1)
+        is_unfinished = error[active] > _ERROR_TOLERANCE
+        active, miss, jacobian = active[is_unfinished], miss[is_unfinished], jacobian[is_unfinished] / size
+        if not active.size:
             break
-        damping = np.minimum(_DAMPING, error[going] ** 2)  # it dies with the error; a fixed one slows the end
+        damping = np.minimum(_DAMPING, error[active] ** 2)  # it falls with the error; a constant one slows convergence
         normal = jacobian.transpose(0, 2, 1) @ jacobian + damping[:, None, None] * np.eye(angles.shape[1])
         normal += 1e-12 * np.eye(angles.shape[1])
         step = np.linalg.solve(normal, np.einsum("bij,bi->bj", jacobian, miss)[..., None])[..., 0]
-        angles[going] = np.clip(angles[going] + np.clip(step, -_STEP, _STEP), low, high)
+        angles[active] = np.clip(angles[active] + np.clip(step, -_STEP, _STEP), lower_bound, upper_bound)
     return angles, error
 
 
 def _chain(limb: Limb, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the foot [m] and how it moves with the hinges [m/rad], by cross products."""
+    """Return the foot's position [m] and its Jacobian over the hinges [m/rad].
+
+    Args:
+        limb: the design.
+        angles: of the hinges, shape (*batch, hinge) [rad].
+    """
     batch = angles.shape[:-1]
     turn = np.broadcast_to(np.eye(3), (*batch, 3, 3))
     place, pivots, axes, i = np.zeros((*batch, 3)), [], [], 0

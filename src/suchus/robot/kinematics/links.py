@@ -1,4 +1,4 @@
-"""What the kinematics needs to know of a robot: a few lengths, whoever holds them."""
+"""The lengths that kinematics needs of a robot, as protocols."""
 
 from typing import Protocol, TypeAlias, runtime_checkable
 

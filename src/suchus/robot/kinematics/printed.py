@@ -1,4 +1,4 @@
-"""The article's formulas letter by letter, misprints and all: only to be shown beside the right ones.
+"""The article's formulas as printed, misprints included, for comparison with the right ones.
 
 Nothing else in suchus may compute with them. Where a printed formula has no value, NaN comes out.
 """
@@ -125,7 +125,7 @@ def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batc
     theta = numbers(bend, "the bend", finite=False)[..., None]
     i = np.arange(1, tail.joints + 1)
     pitch = tail.plate + tail.gap
-    both = (i - 1) * pitch * np.cos(i * theta / tail.joints)
-    places = np.stack([both, both], axis=-1)
+    coordinate = (i - 1) * pitch * np.cos(i * theta / tail.joints)
+    places = np.stack([coordinate, coordinate], axis=-1)
     places[..., 0, 0] = pitch / 2
     return places

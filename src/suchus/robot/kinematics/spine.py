@@ -48,13 +48,13 @@ def forward(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> Float[n
     c, s = np.cos(angles), np.sin(angles)
     c1, c2, c3, c4, c5 = (c[..., i, None] for i in range(5))
     s1, s2, s3, s4, s5 = (s[..., i, None] for i in range(5))
-    up = np.array([0.0, 0.0, 1.0])
+    vertical = np.array([0.0, 0.0, 1.0])
     x1 = np.concatenate([c1, s1, 0.0 * c1], axis=-1)
-    left = np.concatenate(
+    lateral = np.concatenate(
         [-s1, c1, 0.0 * c1], axis=-1
     )  # the first pitch joint's axis; the others follow the body: x along, y left, z up
-    x2, z2 = c2 * x1 - s2 * up, s2 * x1 + c2 * up
-    x3, y3 = c3 * x2 + s3 * left, c3 * left - s3 * x2
+    x2, z2 = c2 * x1 - s2 * vertical, s2 * x1 + c2 * vertical
+    x3, y3 = c3 * x2 + s3 * lateral, c3 * lateral - s3 * x2
     x4, z4 = c4 * x3 - s4 * z2, s4 * x3 + c4 * z2
     T = np.zeros((*angles.shape[:-1], 4, 4))
     T[..., :3, 0], T[..., :3, 1], T[..., :3, 2] = c5 * x4 + s5 * y3, c5 * y3 - s5 * x4, z4
@@ -117,9 +117,11 @@ def inverse(
     """
     check_sign(branch, "branch")
     angles = candidates(spine, point, azimuth, first_yaw=first_yaw, branch=branch)
-    lost = np.isnan(angles).any(axis=-1)
-    if lost.any():
-        raise _unreachable(spine, np.broadcast_to(point, (*lost.shape, 3))[lost], "with this first yaw angle")
+    is_unreachable = np.isnan(angles).any(axis=-1)
+    if is_unreachable.any():
+        raise _unreachable(
+            spine, np.broadcast_to(point, (*is_unreachable.shape, 3))[is_unreachable], "with this first yaw angle"
+        )
     return angles
 
 
@@ -131,7 +133,7 @@ def candidates(
     first_yaw: Numbers,
     branch: Numbers,
 ) -> Float[np.ndarray, "*batch 5"]:
-    """Return what ``inverse`` returns, but NaN where nothing can be reached; the branch may be an array, too."""
+    """Return the angles of ``inverse``, with NaN for points that cannot be reached; the branch may be an array."""
     point = rows(point, 3, "the point")
     azimuth, first_yaw = numbers(azimuth, "the azimuth"), numbers(first_yaw, "the first yaw angle")
     branch = numbers(branch, "the branch")
@@ -158,21 +160,27 @@ def least_bending(
     point = rows(point, 3, "the point")
     points = point.reshape(-1, 3)
     heading = spread_over(azimuth, point.shape[:-1], "the azimuth").reshape(-1, 1)
-    parts = range(0, max(len(points), 1), CHUNK)
-    solved = [_least_bent(spine, points[i : i + CHUNK], heading[i : i + CHUNK]) for i in parts]
-    return np.concatenate(solved).reshape(*point.shape[:-1], 5)
+    starts = range(0, max(len(points), 1), CHUNK)
+    solutions = [_minimise_bending(spine, points[i : i + CHUNK], heading[i : i + CHUNK]) for i in starts]
+    return np.concatenate(solutions).reshape(*point.shape[:-1], 5)
 
 
-def _least_bent(spine: SpineLinks, points: np.ndarray, heading: np.ndarray) -> np.ndarray:
-    """Return the least bent angles, shape (point, 5); headings have the shape (point, 1)."""
-    aim, low, high, lost = _feasible_yaw(spine, points)
-    if lost.any():
-        raise _unreachable(spine, points[lost], "by any posture")
+def _minimise_bending(spine: SpineLinks, points: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Return the angles with the least sum of squares, shape (point, 5) [rad].
+
+    Args:
+        spine: the lengths.
+        points: of joint 5 in frame 0, shape (point, 3) [m].
+        heading: azimuth of the head, shape (point, 1) [rad].
+    """
+    aim, lower_bound, upper_bound, is_unreachable = _feasible_yaw(spine, points)
+    if is_unreachable.any():
+        raise _unreachable(spine, points[is_unreachable], "by any posture")
 
     def posture(t: np.ndarray, case: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the closed form, (point, trial, 5), with the first yaw at ``sin(t)`` along an arc."""
-        away = (low + high) / 2 + (high - low) / 2 * np.sin(t)
-        yaw = aim + np.where(case % 2, away, -away)
+        yaw_offset = (lower_bound + upper_bound) / 2 + (upper_bound - lower_bound) / 2 * np.sin(t)
+        yaw = aim + np.where(case % 2, yaw_offset, -yaw_offset)
         return _closed_form(spine, points[:, None], heading, yaw, np.where(case < 2, 1, -1))
 
     def bending(t: np.ndarray, case: np.ndarray) -> np.ndarray:
@@ -183,10 +191,10 @@ def _least_bent(spine: SpineLinks, points: np.ndarray, heading: np.ndarray) -> n
     trials = np.tile(np.linspace(-np.pi / 2, np.pi / 2, TRIALS), 4)  # two arcs of the yaw times two branches
     cases = np.repeat(np.arange(4), TRIALS)
     best = np.argmin(bending(trials[None], cases[None]), axis=-1)
-    case, middle = cases[best][:, None], trials[best][:, None]
+    case, center = cases[best][:, None], trials[best][:, None]
     step = np.pi / (TRIALS - 1)
-    t = _golden_section(lambda at: bending(at, case), middle - step, middle + step)
-    t = np.where(bending(t, case) <= bending(middle, case), t, middle)
+    t = _golden_section(lambda trial: bending(trial, case), center - step, center + step)
+    t = np.where(bending(t, case) <= bending(center, case), t, center)
     return posture(t, case)[0][:, 0]
 
 
@@ -194,7 +202,15 @@ def _least_bent(spine: SpineLinks, points: np.ndarray, heading: np.ndarray) -> n
 def _closed_form(
     spine: SpineLinks, point: np.ndarray, azimuth: np.ndarray, first_yaw: np.ndarray, branch: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the angles for a given first yaw, NaN where there are none; and how level the head is, to 1."""
+    """Return the angles for a given first yaw, NaN where there are none, and the cosine of the head's tilt.
+
+    Args:
+        spine: the lengths.
+        point: of joint 5 in frame 0 [m].
+        azimuth: of the head [rad].
+        first_yaw: the first angle [rad].
+        branch: sign of the second pitch angle.
+    """
     s1, c1 = np.sin(first_yaw), np.cos(first_yaw)
     x, y = point[..., 0] - spine.base, point[..., 1]
     wx = (c1 * x + s1 * y) / spine.link - 1.0  # from joint 2 to joint 5, in links, seen from link 1
@@ -214,37 +230,58 @@ def _closed_form(
     fifth = np.arctan2(ca * x4[1] - sa * x4[0], sa * z4[0] - ca * z4[1])
     level = np.cos(fifth) * (ca * x4[0] + sa * x4[1]) + np.sin(fifth) * (ca * z4[0] + sa * z4[1])
     fifth = np.where(level < 0, _wrapped(fifth + np.pi), fifth)
-    first = np.where(np.isnan(u), np.nan, _wrapped(first_yaw))
-    angles = np.broadcast_arrays(first, second, third, np.arctan2(s4, c4), fifth)
+    first_angle = np.where(np.isnan(u), np.nan, _wrapped(first_yaw))
+    angles = np.broadcast_arrays(first_angle, second, third, np.arctan2(s4, c4), fifth)
     return np.stack(angles, axis=-1), np.asarray(np.abs(level))
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def _feasible_yaw(spine: SpineLinks, points: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return each point's azimuth, how far the first yaw must and may lie off it, and which have none."""
+    """Return each point's azimuth, the bounds of the first yaw's distance from it [rad], and which points have none.
+
+    Args:
+        spine: the lengths.
+        points: of joint 5 in frame 0, shape (point, 3) [m].
+    """
     x, y, z = ((points - [spine.base, 0.0, 0.0]) / spine.link).T[..., None]
     rho, M = np.hypot(x, y), (x * x + y * y + z * z) / 2.0
     bound = ((M - 2.0) ** 2 + rho * rho - 4.0) / (2.0 * (M - 2.0) * rho)
-    nearest = np.where(M < 2.0, np.minimum(bound, M / rho), M / rho)
-    farthest = np.where(M > 2.0, bound, -1.0)
-    lost = ~(farthest <= 1.0 + ROUNDING) | ~(nearest >= -1.0 - ROUNDING) | ((M == 2.0) & (rho > 2.0))
-    low, high = np.arccos(np.clip(nearest, -1.0, 1.0)), np.arccos(np.clip(farthest, -1.0, 1.0))
-    return np.arctan2(y, x), low, high, (lost | (low > high + ROUNDING))[:, 0]
+    nearest_cosine = np.where(M < 2.0, np.minimum(bound, M / rho), M / rho)
+    farthest_cosine = np.where(M > 2.0, bound, -1.0)
+    is_unreachable = (
+        ~(farthest_cosine <= 1.0 + ROUNDING) | ~(nearest_cosine >= -1.0 - ROUNDING) | ((M == 2.0) & (rho > 2.0))
+    )
+    lower_bound = np.arccos(np.clip(nearest_cosine, -1.0, 1.0))
+    upper_bound = np.arccos(np.clip(farthest_cosine, -1.0, 1.0))
+    return np.arctan2(y, x), lower_bound, upper_bound, (is_unreachable | (lower_bound > upper_bound + ROUNDING))[:, 0]
 
 
-def _golden_section(cost: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return where each cost is least between ``low`` and ``high``, all at once."""
+def _golden_section(
+    cost: Callable[[np.ndarray], np.ndarray], lower_bound: np.ndarray, upper_bound: np.ndarray
+) -> np.ndarray:
+    """Return where each cost is least between its bounds, by golden section, all elements at once.
+
+    Args:
+        cost: returns the cost at arguments of the shape of the bounds.
+        lower_bound: of each interval.
+        upper_bound: of each interval.
+    """
     golden = (np.sqrt(5.0) - 1.0) / 2.0
-    left, right = high - golden * (high - low), low + golden * (high - low)
-    at_left, at_right = cost(left), cost(right)
+    inner_lower = upper_bound - golden * (upper_bound - lower_bound)
+    inner_upper = lower_bound + golden * (upper_bound - lower_bound)
+    lower_cost, upper_cost = cost(inner_lower), cost(inner_upper)
     for _ in range(REFINEMENTS):
-        falls = at_left > at_right
-        low, high = np.where(falls, left, low), np.where(falls, high, right)
-        probe = np.where(falls, low + golden * (high - low), high - golden * (high - low))
-        at_probe = cost(probe)
-        left, right = np.where(falls, right, probe), np.where(falls, probe, left)
-        at_left, at_right = np.where(falls, at_right, at_probe), np.where(falls, at_probe, at_left)
-    return np.asarray((low + high) / 2.0)
+        falls = lower_cost > upper_cost
+        lower_bound, upper_bound = np.where(falls, inner_lower, lower_bound), np.where(falls, upper_bound, inner_upper)
+        probe = np.where(
+            falls,
+            lower_bound + golden * (upper_bound - lower_bound),
+            upper_bound - golden * (upper_bound - lower_bound),
+        )
+        probe_cost = cost(probe)
+        inner_lower, inner_upper = np.where(falls, inner_upper, probe), np.where(falls, probe, inner_lower)
+        lower_cost, upper_cost = np.where(falls, upper_cost, probe_cost), np.where(falls, probe_cost, lower_cost)
+    return np.asarray((lower_bound + upper_bound) / 2.0)
 
 
 def _wrapped(angle: Numbers) -> np.ndarray:
@@ -252,15 +289,22 @@ def _wrapped(angle: Numbers) -> np.ndarray:
     return np.asarray(np.arctan2(np.sin(angle), np.cos(angle)))
 
 
-def _unreachable(spine: SpineLinks, points: np.ndarray, how: str) -> Unreachable:
-    far = 4.0 * spine.link
+def _unreachable(spine: SpineLinks, points: np.ndarray, condition: str) -> Unreachable:
+    """Return the error that names the first of some points.
+
+    Args:
+        spine: the lengths.
+        points: that cannot be reached [m].
+        condition: under which they cannot, as the end of a clause.
+    """
+    max_reach = 4.0 * spine.link
     with np.errstate(invalid="ignore", over="ignore"):
         distance = float(np.linalg.norm(points[0] - [spine.base, 0.0, 0.0]))
-    first = ", ".join(f"{c:.4g}" for c in points[0])
+    first_point = ", ".join(f"{c:.4g}" for c in points[0])
     return Unreachable(
-        f"{len(points)} points cannot be reached {how}; the first, ({first}) m, is {distance:.4g} m from "
-        f"joint 1, and {far:.4g} m can be reached straight ahead, less up and down: move the point nearer "
+        f"{len(points)} points cannot be reached {condition}; the first, ({first_point}) m, is {distance:.4g} m from "
+        f"joint 1, and {max_reach:.4g} m can be reached straight ahead, less up and down: move the point nearer "
         "or turn the first joint towards it.",
         points=points,
-        reach=(0.0, far),
+        reach=(0.0, max_reach),
     )

@@ -35,9 +35,9 @@ def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[Float[np.ndarray, "*
     theta = numbers(bend, "the bend")
     limit = bend_limit(tail)
     if not np.all(np.abs(theta) <= limit):
-        worst = float(theta.flat[np.argmax(~(np.abs(theta.ravel()) <= limit))])
+        worst_bend = float(theta.flat[np.argmax(~(np.abs(theta.ravel()) <= limit))])
         raise OutsideLimits(
-            f"a tail bend of {worst:.4g} rad closes the gaps between the plates; -{limit:.4g} to {limit:.4g} "
+            f"a tail bend of {worst_bend:.4g} rad closes the gaps between the plates; -{limit:.4g} to {limit:.4g} "
             "rad is allowed: bend less, or choose wider gaps or a narrower cord spacing."
         )
     count = tail.joints
@@ -47,7 +47,7 @@ def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[Float[np.ndarray, "*
 
 
 def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
-    """Return the cord that a bend sets free [m]: both cords on one pulley cannot stay taut.
+    """Return the length by which both cords together get slack in a bend [m]: on one pulley they cannot stay taut.
 
     Args:
         tail: the measures of the cable section.
@@ -56,8 +56,8 @@ def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     Raises:
         OutsideLimits: a bend closes the gaps between the plates.
     """
-    toward, away = cable_changes(tail, bend)
-    return np.asarray(-(toward + away))
+    inner_change, outer_change = cable_changes(tail, bend)
+    return np.asarray(-(inner_change + outer_change))
 
 
 def servo_angle(tail: Cords, bend: Numbers) -> Float[np.ndarray, "*batch"]:
@@ -86,9 +86,9 @@ def bend_of_servo(tail: Cords, angle: Numbers) -> Float[np.ndarray, "*batch"]:
     sine = numbers(angle, "the pulley's angle") * tail.pulley / (tail.joints * tail.cord_spacing)
     if not np.all(np.abs(sine) <= 1.0):
         limit = tail.joints * tail.cord_spacing / tail.pulley
-        worst = float(np.asarray(angle).flat[np.argmax(~(np.abs(sine.ravel()) <= 1.0))])
+        worst_angle = float(np.asarray(angle).flat[np.argmax(~(np.abs(sine.ravel()) <= 1.0))])
         raise OutsideLimits(
-            f"a pulley angle of {worst:.4g} rad pulls more cord than the tail takes up; -{limit:.4g} to "
+            f"a pulley angle of {worst_angle:.4g} rad pulls more cord than the tail takes up; -{limit:.4g} to "
             f"{limit:.4g} rad is allowed: turn it less or choose a smaller pulley."
         )
     return np.asarray(2 * tail.joints * np.arcsin(sine))
@@ -105,8 +105,8 @@ def joint_positions(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batc
     """
     theta = numbers(bend, "the bend")[..., None]
     pitch = tail.plate + tail.gap
-    turned = np.arange(tail.joints) * theta / tail.joints  # of the plate before each joint
-    steps = np.stack([np.cos(turned), np.sin(turned)], axis=-1) * pitch
+    plate_angles = np.arange(tail.joints) * theta / tail.joints  # angle of the plate ahead of each joint
+    steps = np.stack([np.cos(plate_angles), np.sin(plate_angles)], axis=-1) * pitch
     steps[..., 0, :] /= 2  # the first joint is half a pitch from the middle of its plate
     return np.cumsum(steps, axis=-2)
 

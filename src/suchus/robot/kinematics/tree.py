@@ -1,4 +1,4 @@
-"""Where every part of a robot is: its bodies, its feet, its centre of mass, for any tree of hinges.
+"""Forward kinematics of any tree of hinges: bodies, feet and centre of mass.
 
 Everything is in the frame of the root: x forward, y left, z up. Angles come in the order of
 ``suchus.robot.design.joint_names``.
@@ -48,7 +48,7 @@ def frames(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrame
     """
     place = layout(robot)
     angles = rows(angles, len(place.hinges), f"the posture of {robot.name}, an angle for each hinge,")
-    where, batch = {name: i for i, name in enumerate(place.hinges)}, angles.shape[:-1]
+    hinge_index, batch = {name: i for i, name in enumerate(place.hinges)}, angles.shape[:-1]
     sines, cosines = np.sin(angles)[..., None], np.cos(angles)[..., None]
     places = np.zeros((*batch, len(place.bodies), 3))
     turns = np.zeros((*batch, len(place.bodies), 3, 3))
@@ -57,14 +57,17 @@ def frames(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrame
             turns[..., i, :, :] = np.eye(3)
             continue
         x, y, z = (turns[..., body.parent, :, k] for k in range(3))
-        ahead, left, up = body.offset
-        places[..., i, :] = places[..., body.parent, :] + ahead * x + left * y + up * z
+        dx, dy, dz = body.offset
+        places[..., i, :] = places[..., body.parent, :] + dx * x + dy * y + dz * z
         columns = [x, y, z]
-        for _, name, axis in body.hinges:  # about one of them: the next turns towards the one after it
-            about = next(k for k in range(3) if axis[k])
-            s, c = axis[about] * sines[..., where[name], :], cosines[..., where[name], :]
-            following, last = columns[about - 2], columns[about - 1]
-            columns[about - 2], columns[about - 1] = c * following + s * last, c * last - s * following
+        for _, name, axis in body.hinges:  # each turns about one axis of the frame, in cyclic order
+            axis_index = next(k for k in range(3) if axis[k])
+            s, c = axis[axis_index] * sines[..., hinge_index[name], :], cosines[..., hinge_index[name], :]
+            first_column, second_column = columns[axis_index - 2], columns[axis_index - 1]
+            columns[axis_index - 2], columns[axis_index - 1] = (
+                c * first_column + s * second_column,
+                c * second_column - s * first_column,
+            )
         for k, column in enumerate(columns):
             turns[..., i, :, k] = column
     return BodyFrames(places, turns)
@@ -89,27 +92,27 @@ def landmarks(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Landma
     Raises:
         InvalidDesign: no array of numbers, or not one for each of the robot's hinges.
     """
-    place, found = layout(robot), frames(robot, angles)
-    feet = np.zeros((*found.places.shape[:-2], len(place.limbs), 3))
+    place, body_frames = layout(robot), frames(robot, angles)
+    feet = np.zeros((*body_frames.places.shape[:-2], len(place.limbs), 3))
     for i, limb in enumerate(place.limbs):
         end = limb.girdle.limb.links[-1].end
-        feet[..., i, :] = _point(found, limb.tip, (end[0], limb.side * end[1], end[2]))
+        feet[..., i, :] = _point(body_frames, limb.tip, (end[0], limb.side * end[1], end[2]))
     front, rear = place.robot.axis[0], place.robot.axis[-1]
     names = [body.name for body in place.bodies]
     nose, tip = names.index(front.name), names.index(rear.name)
     return Landmarks(
         feet=feet,
-        snout=_point(found, nose, (place.bodies[nose].shift + front.front, 0.0, 0.0)),
-        tail=_point(found, tip, (place.bodies[tip].shift - rear.rear, 0.0, 0.0)),
+        snout=_point(body_frames, nose, (place.bodies[nose].shift + front.front, 0.0, 0.0)),
+        tail=_point(body_frames, tip, (place.bodies[tip].shift - rear.rear, 0.0, 0.0)),
     )
 
 
 def centre_of_mass(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass of a posture [m]; arguments as for ``landmarks``."""
     masses, moments = body_masses(robot)
-    found, whole = frames(robot, angles), masses.sum()
-    turned = np.einsum("...bij,bj->...i", found.turns, moments / whole, optimize=True)
-    return np.asarray(np.einsum("b,...bi->...i", masses / whole, found.places) + turned)
+    body_frames, total_mass = frames(robot, angles), masses.sum()
+    rotated = np.einsum("...bij,bj->...i", body_frames.turns, moments / total_mass, optimize=True)
+    return np.asarray(np.einsum("b,...bi->...i", masses / total_mass, body_frames.places) + rotated)
 
 
 @lru_cache(maxsize=64)
@@ -144,5 +147,5 @@ def body_masses(robot: Robot) -> tuple[np.ndarray, np.ndarray]:
     return masses, moments
 
 
-def _point(found: BodyFrames, body: int, at: Axis) -> np.ndarray:
-    return np.asarray(found.places[..., body, :] + found.turns[..., body, :, :] @ np.array(at))
+def _point(body_frames: BodyFrames, body: int, offset: Axis) -> np.ndarray:
+    return np.asarray(body_frames.places[..., body, :] + body_frames.turns[..., body, :, :] @ np.array(offset))

@@ -15,10 +15,10 @@ def level_chambers(
 ) -> tuple[Chamber, Chamber]:
     """Return two chambers with which a robot at neutral buoyancy has no trim moment in a level posture.
 
-    Let V be its volume and x_B the centre of that, both with all air, x_G the centre of mass, and s = V - m / rho the
-    air that it lets out to hover. What is displaced then has the moment V x_B - s x_A about the root, with x_A the
-    centre of the air that is let out, and must have (V - s) x_G. So x_A = x_G + V (x_B - x_G) / s; and the lever rule
-    says how two chambers that are emptied alike share the air for their centre to be there.
+    Let V be the volume of the robot and x_B the centre of that volume, both with all air, x_G the centre of mass, and s
+    = V - m / rho the air that it lets out to hover. The displaced water then has the moment V x_B - s x_A about the
+    root, with x_A the centre of the released air. For zero trim moment it must equal (V - s) x_G, so that x_A = x_G + V
+    (x_B - x_G) / s. The lever rule gives the fractions of two chambers whose common centre is x_A.
 
     Args:
         robot: a design with air in its hull.
@@ -35,19 +35,19 @@ def level_chambers(
     for body in (front, rear):
         if body not in names:
             raise UnknownName("body", body, names)
-    ids, found = table[:, 0].astype(int), frames(robot, angles)
-    x = found.places[ids, 0] + np.einsum("nj,nj->n", found.turns[ids, 0], column(table, "at"))
-    ahead, behind = (np.average(x, weights=volume * (ids == names.index(body))) for body in (front, rear))
+    ids, body_frames = table[:, 0].astype(int), frames(robot, angles)
+    x = body_frames.places[ids, 0] + np.einsum("nj,nj->n", body_frames.turns[ids, 0], column(table, "at"))
+    front_center, rear_center = (np.average(x, weights=volume * (ids == names.index(body))) for body in (front, rear))
     mass, buoyancy = centre_of_mass(robot, angles)[0], np.average(x, weights=volume)
-    needed = mass + volume.sum() * (buoyancy - mass) / spare_volume(robot)
-    if not behind < needed < ahead:
+    target_center = mass + volume.sum() * (buoyancy - mass) / spare_volume(robot)
+    if not rear_center < target_center < front_center:
         raise InvalidDesign(
-            f"the air that robot {robot.name!r} lets out to hover must have its centre {needed:.3f} m ahead of the "
-            f"root for it to be level; {front} is at {ahead:.3f} m and {rear} at {behind:.3f} m: choose chambers "
-            "before and behind that point."
+            f"the air that robot {robot.name!r} lets out to hover must have its centre {target_center:.3f} m ahead of "
+            f"the root for it to be level; {front} is at {front_center:.3f} m and {rear} at {rear_center:.3f} m: "
+            "choose chambers before and behind that point."
         )
-    share = float((needed - behind) / (ahead - behind))
-    return Chamber(body=front, share=share), Chamber(body=rear, share=1.0 - share)
+    fraction = float((target_center - rear_center) / (front_center - rear_center))
+    return Chamber(body=front, share=fraction), Chamber(body=rear, share=1.0 - fraction)
 
 
 def spare_volume(robot: Robot) -> float:
@@ -58,10 +58,10 @@ def spare_volume(robot: Robot) -> float:
     """
     hull = robot.hull
     air = 0.0 if hull is None else hull.air
-    spare = sum(volumes(robot).values()) - robot.mass / WATER_DENSITY
-    if not 0.0 < spare <= air:
+    spare_air = sum(volumes(robot).values()) - robot.mass / WATER_DENSITY
+    if not 0.0 < spare_air <= air:
         raise InvalidDesign(
-            f"robot {robot.name!r} would have to let out {1e3 * spare:.3g} l of air to hover, and has {1e3 * air:.3g} "
-            "l: give it a design.Hull with as much air, and foam enough to float with it."
+            f"robot {robot.name!r} would have to let out {1e3 * spare_air:.3g} l of air to hover, and has "
+            f"{1e3 * air:.3g} l: give it a design.Hull with as much air, and foam enough to float with it."
         )
-    return spare
+    return spare_air

@@ -22,7 +22,7 @@ from suchus.robot.kinematics.given import number, numbers, together
 from suchus.robot.kinematics.links import Numbers
 
 MILLIMETRE, CENTIMETRE = 1e-3, 1e-2
-_MOST = 1e12  # of a wave's numbers in SI units
+_MAX_COEFFICIENT = 1e12  # of a wave's numbers in SI units
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +44,7 @@ class TravellingWave:
         with Checks("wave", self) as check:
             check.that(self.sign in (1, -1), f"wave.sign is {show(self.sign)}; 1 or -1 is allowed")
             for name in ("linear", "quadratic", "wave_number", "angular_frequency"):
-                check.number(name, -_MOST, _MOST, "")
+                check.number(name, -_MAX_COEFFICIENT, _MAX_COEFFICIENT, "")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,9 +110,9 @@ def reading(
         raise InvalidDesign(
             f"length is {length!r} m and waves_per_body {waves_per_body!r}; both must be positive and finite."
         )
-    how = READINGS[name]
-    if how.envelope_unit:
-        quadratic, k = C2 / how.envelope_unit, how.wave_number
+    unit_reading = READINGS[name]
+    if unit_reading.envelope_unit:
+        quadratic, k = C2 / unit_reading.envelope_unit, unit_reading.wave_number
     else:
         wavelength = 2 * pi / PER_MM  # the body of 0.273 m for which c2 would have been found [m]
         quadratic, k = C2 * wavelength / length, 2 * pi * waves_per_body / length

@@ -19,20 +19,39 @@ from suchus.robot.motion.limbs import foot_path
 from suchus.robot.motion.limits import check_limits, shortest_period
 from suchus.robot.motion.parts import Bend, FootPath, Sweep
 
-_STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
-_HEIGHTS = (0.5, 0.55, 0.6, 0.45, 0.65, 0.7, 0.4, 0.75, 0.8, 0.85, 0.35, 0.3, 0.9)  # of the reach, the first that fits
+_STROKES = (0.2, 0.15, 0.1, 0.06)  # [limb reach]; the longest stroke that all girdles can follow is chosen
+_HEIGHTS = (
+    0.5,
+    0.55,
+    0.6,
+    0.45,
+    0.65,
+    0.7,
+    0.4,
+    0.75,
+    0.8,
+    0.85,
+    0.35,
+    0.3,
+    0.9,
+)  # [limb reach]; the first feasible one is chosen
 _LIFT = 0.7  # of the stroke
-_WIDE = 0.3  # of the reach; limbs that hang down stand so far outside their hips at least, or the body rolls
+_MIN_OUTWARD = 0.3  # [limb reach]; limbs that hang down stand at least so far outside their hips, or the body rolls
 _OUTWARD = (0.55, 0.45, 0.35, 0.25, 0.15, 0.05, 0.65, 0.75, 0.0)
-_AHEAD = (0.0, 0.1, -0.1, 0.2, -0.2)
+_FORWARD_OFFSETS = (0.0, 0.1, -0.1, 0.2, -0.2)
 _DUTY = 0.6
 _PERIOD = 6.0  # in gravity times; the shelf's walks take 4 to 10
-_STANCE = radians(80)  # that a crank turns through
-_BEND, _SHARE = radians(10), 0.3  # of a trunk joint; and at most this part of its range
-_CLOUD, _NEAR = 16000, 0.05  # postures that show what a limb reaches; how near a path comes to them, in reaches
-_SAMPLES, _JUMP, _MARGIN = 24, 0.7, 0.02  # of a path; rad between two of them; rad from a joint's stop
+_STANCE = radians(80)  # angle that a crank turns through in stance
+_BEND, _SHARE = radians(10), 0.3  # amplitude of a trunk joint [rad]; its greatest fraction of the joint's range [-]
+# random postures that sample a limb's reach [-]; greatest distance of a path from them [limb reach]
+_CLOUD, _CLOUD_TOLERANCE = 16000, 0.05
+_SAMPLES, _JUMP, _MARGIN = (
+    24,
+    0.7,
+    0.02,
+)  # samples of a path [-]; greatest jump between two of them [rad]; distance from a joint's stop [rad]
 _TRIES, _PATHS = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
-_SPEED = 0.6  # of its servo's speed that a joint is asked for at most
+_SPEED = 0.6  # greatest speed of a joint over that of its servo [-]
 _PLANAR = 2  # hinges of a limb whose foot moves on a surface only
 
 
@@ -61,7 +80,7 @@ def draft_gait(robot: Robot, name: str) -> Gait:
             robot, name=name, period=period, duty_factor=_DUTY, phases=phases, axis=_axis(robot), path=_cycle()
         )
     try:
-        gait = _slow_enough(robot, gait)
+        gait = _with_feasible_period(robot, gait)
         check_limits(robot, gait)
     except NotConverged as error:
         raise OutsideLimits(f"no walk was found for robot {robot.name!r}: {error}") from error
@@ -69,25 +88,32 @@ def draft_gait(robot: Robot, name: str) -> Gait:
 
 
 def _walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> Gait:
-    """Return the first walk of those that are tried, the longest strokes first."""
+    """Return the first walk of those that are tried, the longest strokes first.
+
+    Args:
+        robot: the design.
+        name: of the gait.
+        phases: of the limbs [cycle].
+        period: of a cycle [s].
+    """
     girdles = robot.girdles
     clouds, budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_PATHS))
     axis = _axis(robot)
     for stroke in _STROKES:
         for height in _heights(robot):
-            found = []
+            limb_motions = []
             for girdle, cloud in zip(girdles, clouds, strict=True):
-                one = _does(robot, girdle, cloud, height, stroke, budget)
-                if one is None:
+                limb_motion = _does(robot, girdle, cloud, height, stroke, budget)
+                if limb_motion is None:
                     break
-                found.append(one)
-            if len(found) == len(girdles):
+                limb_motions.append(limb_motion)
+            if len(limb_motions) == len(girdles):
                 return Gait(
                     name=name,
                     period=period,
                     duty_factor=_DUTY,
                     limb_phases=phases,
-                    limbs=tuple(found),
+                    limbs=tuple(limb_motions),
                     height=height,
                     axis=axis,
                 )
@@ -99,8 +125,8 @@ def _walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> 
 
 def _undulation(robot: Robot, name: str, period: float) -> Gait:
     """Return a wave along the whole axis that grows toward the tail."""
-    least, count = float(np.abs(servo_ranges(robot)).min()), len(yaw_hinges(robot).servos)
-    amplitude = (count * min(radians(15), _SHARE * least), count * min(radians(35), 0.5 * least))
+    min_range, count = float(np.abs(servo_ranges(robot)).min()), len(yaw_hinges(robot).servos)
+    amplitude = (count * min(radians(15), _SHARE * min_range), count * min(radians(35), 0.5 * min_range))
     wave = Bend(part="axis", amplitude=amplitude, lag=(0.0, 1.0))
     return Gait(name=name, period=period, duty_factor=_DUTY, axis=(wave,))
 
@@ -119,7 +145,16 @@ def _heights(robot: Robot) -> list[float]:
 def _does(
     robot: Robot, girdle: Girdle, cloud: cKDTree, height: float, stroke: float, budget: Iterator[int]
 ) -> FootPath | Sweep | None:
-    """Return what a girdle's limbs do at a height of the hindmost hips, if they can."""
+    """Return a foot path or crank sweep that a girdle's limbs can do at a hip height; None if they cannot.
+
+    Args:
+        robot: the design.
+        girdle: that carries the limbs.
+        cloud: points that the foot can reach, from the hip [m].
+        height: of the hindmost hips [reach of their limb].
+        stroke: half of the path's length [limb reach].
+        budget: an iterator that ends when no more paths may be solved.
+    """
     limb = girdle.limb
     if _is_crank(limb):
         return Sweep(stance=_STANCE, down=_down(limb)[0])
@@ -127,25 +162,27 @@ def _does(
     down = height * hind.limb.reach - hind.above + girdle.above - limb.foot.radius
     lift = round(_LIFT * stroke, 4)
     closed = limb_kinematics.kind(limb) != "other"
-    forward, up = np.array([[stroke], [lift]]) * _cycle() * limb.reach
-    for outward, ahead in _beside(limb):
-        feet = np.stack([forward + ahead * limb.reach, np.full(_SAMPLES, outward * limb.reach), up - down], axis=-1)
-        near = closed or float(np.max(cloud.query(feet[:: _SAMPLES // 4])[0])) < _NEAR * limb.reach
-        if near and (closed or next(budget, None) is not None) and _follows(limb, feet):
-            return FootPath(stroke=stroke, lift=lift, outward=outward, ahead=ahead)
+    forward, upward = np.array([[stroke], [lift]]) * _cycle() * limb.reach
+    for outward, forward_offset in _foot_positions(limb):
+        feet = np.stack(
+            [forward + forward_offset * limb.reach, np.full(_SAMPLES, outward * limb.reach), upward - down], axis=-1
+        )
+        is_near = closed or float(np.max(cloud.query(feet[:: _SAMPLES // 4])[0])) < _CLOUD_TOLERANCE * limb.reach
+        if is_near and (closed or next(budget, None) is not None) and _follows(limb, feet):
+            return FootPath(stroke=stroke, lift=lift, outward=outward, ahead=forward_offset)
     return None
 
 
-def _beside(limb: Limb) -> Iterator[tuple[float, float]]:
+def _foot_positions(limb: Limb) -> Iterator[tuple[float, float]]:
     """Yield how far outside and ahead of the hip a foot may stand [limb reach]: as it is drawn first, if it stands."""
-    rest = limb_kinematics.forward(limb, np.zeros(len(limb.hinges))) / limb.reach
-    if rest[2] < -0.4:
-        for ahead in (0.0, 0.1, -0.1):
-            for outward in (max(rest[1], _WIDE), rest[1]):
-                yield float(np.clip(outward, -1, 1)), float(np.clip(rest[0] + ahead, -1, 1))
-    for ahead in _AHEAD:
+    resting_foot = limb_kinematics.forward(limb, np.zeros(len(limb.hinges))) / limb.reach
+    if resting_foot[2] < -0.4:
+        for forward_offset in (0.0, 0.1, -0.1):
+            for outward in (max(resting_foot[1], _MIN_OUTWARD), resting_foot[1]):
+                yield float(np.clip(outward, -1, 1)), float(np.clip(resting_foot[0] + forward_offset, -1, 1))
+    for forward_offset in _FORWARD_OFFSETS:
         for outward in _OUTWARD:
-            yield outward, ahead
+            yield outward, forward_offset
 
 
 @lru_cache(maxsize=1)
@@ -160,15 +197,15 @@ def _follows(limb: Limb, feet: np.ndarray) -> bool:
         angles = limb_kinematics.inverse(limb, feet, tries=_TRIES)
     except (Unreachable, NotConverged):
         return False
-    low, high = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
-    inside = (angles > low + _MARGIN).all() and (angles < high - _MARGIN).all()
-    return bool(inside and np.abs(np.diff(angles, axis=0, append=angles[:1])).max() < _JUMP)
+    lower_bound, upper_bound = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
+    is_within_range = (angles > lower_bound + _MARGIN).all() and (angles < upper_bound - _MARGIN).all()
+    return bool(is_within_range and np.abs(np.diff(angles, axis=0, append=angles[:1])).max() < _JUMP)
 
 
 def _cloud(limb: Limb) -> cKDTree:
     """Return where a limb's foot can be, from the hip."""
-    low, high = np.array([hinge.range or (-pi, pi) for hinge in limb.hinges]).T
-    angles = np.random.default_rng(0).uniform(low, high, (_CLOUD, len(low)))
+    lower_bound, upper_bound = np.array([hinge.range or (-pi, pi) for hinge in limb.hinges]).T
+    angles = np.random.default_rng(0).uniform(lower_bound, upper_bound, (_CLOUD, len(lower_bound)))
     return cKDTree(limb_kinematics.forward(limb, angles))
 
 
@@ -195,6 +232,6 @@ def _axis(robot: Robot) -> tuple[Bend, ...]:
     return (Bend(part="trunk", amplitude=amplitude),) if amplitude else ()
 
 
-def _slow_enough(robot: Robot, gait: Gait) -> Gait:
-    """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
+def _with_feasible_period(robot: Robot, gait: Gait) -> Gait:
+    """Return a gait whose period keeps every servo below a fraction of its speed."""
     return replace(gait, period=float(np.round(max(gait.period, shortest_period(robot, gait)[0] / _SPEED), 4)))

@@ -25,8 +25,11 @@ DIAGONAL = (0.0, 0.5, 0.5, 0.0)
 """Phases at which LF, RF, LH and RH pull on the trunk in the article's law [cycle]."""
 _ERECT = (-pi / 2, pi / 2)  # [rad]; the elbow behind, the knee ahead
 _METRES = 12  # digits of a metre that a share of the reach gives back
-_MOST_WAVES = 10.0  # along the body [-]
-_NOTHING, _NEAR = 1e-12, 1e-6  # [rad], below which a hinge does not bend; [cycle] or [rad], by which a wave may be off
+_MAX_WAVES = 10.0  # along the body [-]
+_MIN_BEND, _WAVE_TOLERANCE = (
+    1e-12,
+    1e-6,
+)  # [rad], below which a hinge does not bend; [cycle] or [rad], by which a wave may be off
 _ALLOWED = {
     "period": (1e-3, 3600.0, "s"),
     "duty_factor": (0.05, 0.95, ""),
@@ -47,7 +50,7 @@ _ALLOWED = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaitInMetres:
-    """A gait of four legs, a trunk and a tail in metres, as one speaks of the article's robot."""
+    """A gait of four legs, a trunk and a tail, in metres."""
 
     name: str
     """Name, as messages, tables and files show it."""
@@ -87,8 +90,8 @@ class GaitInMetres:
 
     def __post_init__(self) -> None:
         with Checks("gait", self) as checks:
-            for field, (low, high, unit) in _ALLOWED.items():
-                checks.number(field, low, high, unit)
+            for field, (lower_bound, upper_bound, unit) in _ALLOWED.items():
+                checks.number(field, lower_bound, upper_bound, unit)
             checks.each("limb_phases", LEGS, -1.0, 1.0, "cycle")
             checks.that(
                 self.legs != "erect" or (self.front_reach, self.hind_reach) == (0.0, 0.0),
@@ -104,7 +107,7 @@ class GaitInMetres:
         """
         front, hind = reaches
         swivels = _ERECT if self.legs == "erect" else (0.0, 0.0)
-        outward, ahead = (self.front_reach, self.hind_reach), (self.front_ahead, self.hind_ahead)
+        outward, forward = (self.front_reach, self.hind_reach), (self.front_ahead, self.hind_ahead)
         tail_lag = self.spine_phase + self.tail_phase + 0.5  # behind the limbs; head and tail to opposite sides
         return Gait(
             name=self.name,
@@ -116,7 +119,7 @@ class GaitInMetres:
                     stroke=self.stroke / reach,
                     lift=self.lift / reach,
                     outward=outward[i] / reach,
-                    ahead=ahead[i] / reach,
+                    ahead=forward[i] / reach,
                     swivel=swivels[i],
                 )
                 for i, reach in enumerate((front, hind))
@@ -132,7 +135,7 @@ class GaitInMetres:
 
     @classmethod
     def near(cls, gait: Gait, reaches: Sequence[float]) -> Self:
-        """Return the numbers of a gait in metres, of its first limbs and knots where it has more to say.
+        """Return a gait in metres with the numbers of a gait, of its first limbs and knots where it has several.
 
         Args:
             gait: of foot paths for two girdles.
@@ -148,7 +151,7 @@ class GaitInMetres:
                 f"gait {gait.name!r} has no foot paths of two pairs of limbs, which alone can be given in metres: "
                 "write limbs and axis instead."
             )
-        trunk, tail = (_first(gait, part, "yaw") for part in ("trunk", "tail"))
+        trunk, tail = (_first_bend(gait, region, "yaw") for region in ("trunk", "tail"))
         return cls(
             name=gait.name,
             period=gait.period,
@@ -166,54 +169,58 @@ class GaitInMetres:
             spine_phase=_wrapped(trunk.lag[0]),
             tail_bend=tail.amplitude[0],
             tail_phase=_wrapped(tail.lag[0] - trunk.lag[0] - 0.5),
-            tail_pitch=_first(gait, "tail", "pitch").offset,
+            tail_pitch=_first_bend(gait, "tail", "pitch").offset,
         )
 
-    def onto(self, base: Gait, named: Collection[str], reaches: Sequence[float]) -> Gait:
-        """Return a gait of which some numbers are these, and the rest is another gait's.
+    def onto(self, base: Gait, field_names: Collection[str], reaches: Sequence[float]) -> Gait:
+        """Return a gait with some numbers of this one and all others of a base.
 
         Args:
             base: gait of foot paths for two girdles.
-            named: fields to take from here.
+            field_names: fields to take from here.
             reaches: lengths of the front and of the hind limbs [m].
         """
-        mine = self.gait(reaches)
-        fields: dict[str, Any] = {name: getattr(mine, name) for name in ("period", "duty_factor") if name in named}
-        if "limb_phases" in named:
-            fields |= {"limb_phases": mine.limb_phases, "coupling": mine.coupling}
-        if "hip_height" in named:
-            fields["height"] = mine.height
+        own_gait = self.gait(reaches)
+        fields: dict[str, Any] = {
+            name: getattr(own_gait, name) for name in ("period", "duty_factor") if name in field_names
+        }
+        if "limb_phases" in field_names:
+            fields |= {"limb_phases": own_gait.limb_phases, "coupling": own_gait.coupling}
+        if "hip_height" in field_names:
+            fields["height"] = own_gait.height
         limbs = []
-        for girdle, theirs, ours in zip(("front", "hind"), base.limbs, mine.limbs, strict=True):
+        for girdle, base_limb, own_limb in zip(("front", "hind"), base.limbs, own_gait.limbs, strict=True):
             sources = {"stroke": "stroke", "lift": "lift", "outward": f"{girdle}_reach", "ahead": f"{girdle}_ahead"}
             sources["swivel"] = "legs"
-            taken = {name: getattr(ours, name) for name, source in sources.items() if source in named}
-            limbs.append(replace(theirs, **taken))
+            new_fields = {name: getattr(own_limb, name) for name, source in sources.items() if source in field_names}
+            limbs.append(replace(base_limb, **new_fields))
         axis = {(bend.part, bend.turn): bend for bend in base.axis}
-        for bend in mine.axis:
-            there = axis.get((bend.part, bend.turn), Bend(part=bend.part, turn=bend.turn))
+        for bend in own_gait.axis:
+            base_bend = axis.get((bend.part, bend.turn), Bend(part=bend.part, turn=bend.turn))
             if bend.turn == "pitch":
-                changed = replace(there, offset=bend.offset) if "tail_pitch" in named else there
+                new_bend = replace(base_bend, offset=bend.offset) if "tail_pitch" in field_names else base_bend
             else:
-                changed = replace(there, amplitude=bend.amplitude) if f"{bend.part}_bend" in named else there
-                later = {"spine_phase"} if bend.part == "trunk" else {"spine_phase", "tail_phase"}
-                changed = replace(changed, lag=bend.lag) if later & set(named) else changed
-            if changed != Bend(part=bend.part, turn=bend.turn) or (bend.part, bend.turn) in axis:
-                axis[bend.part, bend.turn] = changed
+                new_bend = (
+                    replace(base_bend, amplitude=bend.amplitude) if f"{bend.part}_bend" in field_names else base_bend
+                )
+                lag_fields = {"spine_phase"} if bend.part == "trunk" else {"spine_phase", "tail_phase"}
+                new_bend = replace(new_bend, lag=bend.lag) if lag_fields & set(field_names) else new_bend
+            if new_bend != Bend(part=bend.part, turn=bend.turn) or (bend.part, bend.turn) in axis:
+                axis[bend.part, bend.turn] = new_bend
         return replace(base, name=self.name, limbs=tuple(limbs), axis=tuple(axis.values()), **fields)
 
 
 def in_metres(gait: Gait) -> bool:
-    """Return whether a gait moves and bends what a gait in metres does, and nothing else."""
+    """Return whether a gait has exactly the limbs and bends of a gait in metres."""
     bends = [(bend.part, bend.turn) for bend in gait.axis]
     paths = len(gait.limbs) == 2 and all(isinstance(limb, FootPath) for limb in gait.limbs)
     return paths and not gait.curves and bends == [("trunk", "yaw"), ("tail", "yaw"), ("tail", "pitch")]
 
 
-def _first(gait: Gait, part: str, turn: str) -> Bend:
+def _first_bend(gait: Gait, region: str, turn: str) -> Bend:
     """Return the first bend of a part, or none at all."""
-    still = Bend(part=part, turn=turn)  # type: ignore[arg-type]
-    return next((bend for bend in gait.axis if (bend.part, bend.turn) == (part, turn)), still)
+    zero_bend = Bend(part=region, turn=turn)  # type: ignore[arg-type]
+    return next((bend for bend in gait.axis if (bend.part, bend.turn) == (region, turn)), zero_bend)
 
 
 def _wrapped(lag: float) -> float:
@@ -245,7 +252,7 @@ class AxialWave:
 
     def __post_init__(self) -> None:
         with Checks("wave", self) as check:
-            check.number("waves", -_MOST_WAVES, _MOST_WAVES, "")
+            check.number("waves", -_MAX_WAVES, _MAX_WAVES, "")
             check.number("phase", -1.0, 1.0, "cycle")
             check.number("offset", -pi, pi, "rad")
             knots = self.amplitude
@@ -253,7 +260,7 @@ class AxialWave:
             check.that(
                 shaped
                 and all(0.0 <= s <= 1.0 and abs(a) <= pi for s, a in knots)
-                and all(first[0] < second[0] for first, second in pairwise(knots)),
+                and all(lower_knot[0] < upper_knot[0] for lower_knot, upper_knot in pairwise(knots)),
                 f"wave.amplitude is {str(knots)[:80]}; pairs of a place that increases from 0 to 1 and an angle of "
                 "-3.14 to 3.14 rad are needed",
             )
@@ -261,27 +268,27 @@ class AxialWave:
     def bends(self, robot: Robot) -> tuple[Bend, ...]:
         """Return the bends of the parts of a robot's axis, each with a knot for every hinge."""
         places, angles = zip(*self.amplitude, strict=True)
-        hinges, found = yaw_hinges(robot), []
+        hinges, region_bends = yaw_hinges(robot), []
         parts: tuple[Literal["neck", "trunk", "tail"], ...] = ("neck", "trunk", "tail")
-        for part in parts:
-            among = hinges.within(part)
-            along = [hinges.places[k] for k in among]
-            amplitude = [len(among) * float(np.interp(place, places, angles)) for place in along]
-            if not (any(amplitude) or (among and self.offset)):
+        for region in parts:
+            hinge_indices = hinges.within(region)
+            positions = [hinges.places[k] for k in hinge_indices]
+            amplitude = [len(hinge_indices) * float(np.interp(place, places, angles)) for place in positions]
+            if not (any(amplitude) or (hinge_indices and self.offset)):
                 continue
             lag = [
                 self.phase + self.waves * place + (0.5 if a < 0.0 else 0.0)
-                for a, place in zip(amplitude, along, strict=True)
+                for a, place in zip(amplitude, positions, strict=True)
             ]
-            found.append(
+            region_bends.append(
                 Bend(
-                    part=part,
+                    part=region,
                     amplitude=_plain([abs(a) for a in amplitude]),
                     lag=_plain(lag),
-                    offset=len(among) * self.offset,
+                    offset=len(hinge_indices) * self.offset,
                 )
             )
-        return tuple(found)
+        return tuple(region_bends)
 
     @classmethod
     def of(cls, gait: Gait, robot: Robot) -> Self:
@@ -291,37 +298,42 @@ class AxialWave:
             OutsideLimits: its hinges bend as no such wave does.
         """
         hinges = yaw_hinges(robot)
-        asked, places = Waves(hinges, "yaw", [gait]), np.array(hinges.places)
-        swings, offsets = asked.swing[0] / asked.share[0], asked.offset[0] / asked.share[0]
-        bent = np.abs(swings) > _NOTHING
-        lags = np.where(bent, np.mod(-np.angle(-swings) / (2 * pi), 1.0), 0.0)
-        waves = _slope(places[bent], lags[bent])
+        gait_waves, places = Waves(hinges, "yaw", [gait]), np.array(hinges.places)
+        swings, offsets = gait_waves.swing[0] / gait_waves.share[0], gait_waves.offset[0] / gait_waves.share[0]
+        is_bent = np.abs(swings) > _MIN_BEND
+        lags = np.where(is_bent, np.mod(-np.angle(-swings) / (2 * pi), 1.0), 0.0)
+        waves = _slope(places[is_bent], lags[is_bent])
         steady = float(offsets[0]) if len(offsets) else 0.0
-        if waves is None or np.any(np.abs(offsets - steady) > _NEAR):
+        if waves is None or np.any(np.abs(offsets - steady) > _WAVE_TOLERANCE):
             raise OutsideLimits(
                 f"gait {gait.name!r} bends robot {robot.name!r} as no wave of one phase does: give the whole wave, "
                 "amplitude, waves and phase."
             )
-        late = float((lags - waves * places)[bent][0]) if bent.any() else 0.0
-        signed = np.abs(swings) * np.where(np.cos(2 * pi * (lags - waves * places - late)) < 0.0, -1.0, 1.0)
+        phase_lag = float((lags - waves * places)[is_bent][0]) if is_bent.any() else 0.0
+        signed = np.abs(swings) * np.where(np.cos(2 * pi * (lags - waves * places - phase_lag)) < 0.0, -1.0, 1.0)
         knots = tuple((float(place), float(angle)) for place, angle in zip(places, signed, strict=True))
-        return cls(amplitude=knots or ((0.0, 0.0),), waves=waves, phase=late - round(late), offset=steady)
+        return cls(amplitude=knots or ((0.0, 0.0),), waves=waves, phase=phase_lag - round(phase_lag), offset=steady)
 
 
 def _slope(places: np.ndarray, lags: np.ndarray) -> float | None:
-    """Return how much the lag grows along the body, apart from half cycles, by the slowest such growth [cycle]."""
+    """Return the smallest growth of the lag along the body, half cycles aside [cycle]; None if no wave fits.
+
+    Args:
+        places: of the hinges along the body [body length].
+        lags: of their bends [cycle].
+    """
     if len(places) < 2:
         return 0.0
-    first = np.subtract(lags[1] - lags[0], np.arange(-2, 3) / 2) / (places[1] - places[0])
-    for slope in sorted(first, key=abs):
+    slopes = np.subtract(lags[1] - lags[0], np.arange(-2, 3) / 2) / (places[1] - places[0])
+    for slope in sorted(slopes, key=abs):
         halves = 2 * (lags - lags[0] - slope * (places - places[0]))
-        if abs(slope) <= _MOST_WAVES and np.all(np.abs(halves - np.round(halves)) < _NEAR):
+        if abs(slope) <= _MAX_WAVES and np.all(np.abs(halves - np.round(halves)) < _WAVE_TOLERANCE):
             return float(slope)
     return None
 
 
 def _plain(row: list[float]) -> tuple[float, ...]:
-    """Return a row of knots, or one where all are alike."""
+    """Return a row of knots, shortened to one knot where all are equal."""
     return (row[0],) if len(set(row)) == 1 else tuple(row)
 
 
@@ -349,7 +361,7 @@ class FootPathByPlane:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaitByPlaces:
-    """A gait of any body: what the limbs of each girdle do, and a wave by places along the axis."""
+    """A gait of any body: the movement of each girdle's limbs, and a wave by places along the axis."""
 
     name: str
     """Name, as messages, tables and files show it."""
@@ -407,6 +419,7 @@ class GaitByPlaces:
 
 
 def _check_girdles(robot: Robot, name: str, count: int) -> None:
+    """Refuse a robot that has another number of girdles than the gait."""
     girdles = robot.girdles
     if len(girdles) != count:
         raise OutsideLimits(

@@ -66,18 +66,18 @@ class Gait:
                 "limb needs one, or none is given",
             )
             servos = [curve.servo for curve in self.curves]
-            twice = next((name for name in servos if servos.count(name) > 1), "")
-            check.that(not twice, f"gait {self.name} has two curves for {twice}; leave one")
+            duplicate = next((name for name in servos if servos.count(name) > 1), "")
+            check.that(not duplicate, f"gait {self.name} has two curves for {duplicate}; leave one")
 
-    def has(self, what: Ability) -> bool:
-        """Return whether a gait has what may be changed in it."""
-        if what == "foot paths":
+    def has(self, ability: Ability) -> bool:
+        """Return whether a gait has an ability, see ``Ability``."""
+        if ability == "foot paths":
             return any(isinstance(limb, FootPath) for limb in self.limbs)
-        if what == "strokes":
+        if ability == "strokes":
             return any(isinstance(limb, Sweep) or (isinstance(limb, FootPath) and limb.stroke) for limb in self.limbs)
-        if what == "wave":
+        if ability == "wave":
             return any(bend.turn == "yaw" and any(bend.amplitude) for bend in self.axis)
-        if what == "tail pitch":
+        if ability == "tail pitch":
             return any(bend.turn == "pitch" and bend.part == "tail" for bend in self.axis)
         return not self.curves
 
@@ -91,19 +91,19 @@ class Gait:
         """Whether limbs stand erect below their hips, elbows behind and knees ahead; see ``FootPath.swivel``."""
         return any(isinstance(limb, FootPath) and abs(limb.swivel) > pi / 4 for limb in self.limbs)
 
-    def needs_steering(self, what: str) -> None:
+    def needs_steering(self, consumer: str) -> None:
         """Refuse a gait whose strokes, heights and bends cannot be changed while it goes.
 
         Args:
-            what: needs it, as the beginning of a sentence.
+            consumer: needs it, as the beginning of a sentence.
 
         Raises:
             OutsideLimits: it has measured curves.
         """
         if not self.has("steering"):
             raise OutsideLimits(
-                f"{what} needs a gait of foot paths and bends; gait {self.name!r} has measured curves: choose a gait "
-                "without, or an experiment that walks it in open loop."
+                f"{consumer} needs a gait of foot paths and bends; gait {self.name!r} has measured curves: choose a "
+                "gait without, or an experiment that walks it in open loop."
             )
 
     def scaled(self, length: float) -> "Gait":
@@ -112,10 +112,15 @@ class Gait:
         return replace(self, period=sqrt(length) * self.period)
 
     def straightened(self, *parts: Part, name: str = "") -> "Gait":
-        """Return the gait with parts of the axis held straight, all of them if none is named; a steady bend stays."""
+        """Return the gait with regions of the axis held straight, all of them if none is named; a steady bend stays.
 
-        def within(part: str) -> bool:
-            return not parts or part in parts or "axis" in parts
+        Args:
+            *parts: the regions.
+            name: of the new gait; that of this one if empty.
+        """
+
+        def is_selected(region: str) -> bool:
+            return not parts or region in parts or "axis" in parts
 
         if parts and "axis" not in parts and any(bend.part == "axis" and any(bend.amplitude) for bend in self.axis):
             raise OutsideLimits(
@@ -125,49 +130,63 @@ class Gait:
         return replace(
             self,
             name=name or self.name,
-            axis=tuple(replace(bend, amplitude=(0.0,)) if within(bend.part) else bend for bend in self.axis),
-            curves=tuple(curve for curve in self.curves if curve.part == "limb" or not within(curve.part)),
+            axis=tuple(replace(bend, amplitude=(0.0,)) if is_selected(bend.part) else bend for bend in self.axis),
+            curves=tuple(curve for curve in self.curves if curve.part == "limb" or not is_selected(curve.part)),
         )
 
-    def without(self, what: Literal["axis", "neck", "trunk", "tail", "limbs"], name: str = "") -> "Gait":
+    def without(self, region: Literal["axis", "neck", "trunk", "tail", "limbs"], name: str = "") -> "Gait":
         """Return the control group that lacks the motion of a part and differs in nothing else.
 
-        Without ``limbs`` the feet stay where the middle of their stance is; limbs with curves are held at the mean.
+        Without ``limbs`` the feet stay at the middle of their stance; limbs with curves are held at their mean angles.
         """
-        if what != "limbs":
-            return self.straightened(what, name=name)
-        still = tuple(
+        if region != "limbs":
+            return self.straightened(region, name=name)
+        held_curves = tuple(
             replace(curve, angles=(sum(curve.angles) / len(curve.angles),)) if curve.part == "limb" else curve
             for curve in self.curves
         )
-        return replace(self, name=name or self.name, limbs=tuple(_standing(limb) for limb in self.limbs), curves=still)
+        return replace(
+            self, name=name or self.name, limbs=tuple(_standing(limb) for limb in self.limbs), curves=held_curves
+        )
 
     def lifted(self, angle: float, name: str = "") -> "Gait":
         """Return the gait with another steady pitch of the tail, down positive [rad]."""
         return replace(self.with_numbers(tail_pitch=angle), name=name or self.name)
 
-    def strode(self, share: float) -> "Gait":
-        """Return the gait whose limbs stride by a share of what they do [-]; held limbs and curves stay as they are."""
-        return replace(self, limbs=tuple(_strode(limb, share) for limb in self.limbs))
+    def strode(self, fraction: float) -> "Gait":
+        """Return the gait with all strokes scaled; held limbs and curves stay as they are.
 
-    def bent(self, share: float) -> "Gait":
-        """Return the gait whose axis bends sideways by a share of what it does [-]; a steady bend stays."""
+        Args:
+            fraction: factor on the strokes [-].
+        """
+        return replace(self, limbs=tuple(_strode(limb, fraction) for limb in self.limbs))
+
+    def bent(self, fraction: float) -> "Gait":
+        """Return the gait with all lateral bends scaled; a steady bend stays.
+
+        Args:
+            fraction: factor on the bends [-].
+        """
         return replace(
             self,
             axis=tuple(
-                replace(bend, amplitude=tuple(share * angle for angle in bend.amplitude))
+                replace(bend, amplitude=tuple(fraction * angle for angle in bend.amplitude))
                 if bend.turn == "yaw"
                 else bend
                 for bend in self.axis
             ),
             curves=tuple(
-                curve if curve.part == "limb" else replace(curve, angles=tuple(share * a for a in curve.angles))
+                curve if curve.part == "limb" else replace(curve, angles=tuple(fraction * a for a in curve.angles))
                 for curve in self.curves
             ),
         )
 
     def lagged(self, lag: float) -> "Gait":
-        """Return the gait whose axis lags the limbs by so much more than it does now [cycle]."""
+        """Return the gait whose axis follows the limbs later than it does now.
+
+        Args:
+            lag: additional phase lag [cycle].
+        """
         return replace(
             self,
             axis=tuple(_lagged(bend, lag) for bend in self.axis),
@@ -176,8 +195,8 @@ class Gait:
 
     def reversed(self) -> "Gait":
         """Return the gait whose waves run the other way along the axis."""
-        turned = tuple(replace(bend, lag=tuple(0.0 - lag for lag in bend.lag)) for bend in self.axis)
-        return replace(self, axis=turned)
+        reversed_bends = tuple(replace(bend, lag=tuple(0.0 - lag for lag in bend.lag)) for bend in self.axis)
+        return replace(self, axis=reversed_bends)
 
     def mirrored(self) -> "Gait":
         """Return the gait with left and right swapped.
@@ -212,7 +231,7 @@ class Gait:
         Raises:
             UnknownName: there is no such number.
         """
-        return _named(name).read(self)
+        return _number_of(name).read(self)
 
     def with_numbers(self, **numbers: float) -> "Gait":
         """Return the gait with other ``NUMBERS``, as ``gait.with_numbers(stroke=0.2, axis_lag=0.5)``.
@@ -221,15 +240,15 @@ class Gait:
             UnknownName: there is no such number.
             OutsideLimits: the gait has nothing that the number could change.
         """
-        changed = self
+        new_gait = self
         for name, value in numbers.items():
-            if not _named(name).there(self):
+            if not _number_of(name).there(self):
                 raise OutsideLimits(
                     f"gait {self.name!r} has nothing that {name!r} could change ({NUMBERS[name].what}): choose another "
                     "number, or a gait that has it."
                 )
-            changed = NUMBERS[name].write(changed, value)
-        return changed
+            new_gait = NUMBERS[name].write(new_gait, value)
+        return new_gait
 
 
 class Number(NamedTuple):
@@ -253,83 +272,91 @@ def _standing(limb: Limbs) -> Limbs:
     return Held(angles=(limb.down,)) if isinstance(limb, Sweep) else limb
 
 
-def _strode(limb: Limbs, share: float) -> Limbs:
+def _strode(limb: Limbs, fraction: float) -> Limbs:
     if isinstance(limb, FootPath):
-        return replace(limb, stroke=share * limb.stroke)
-    return replace(limb, stance=share * limb.stance) if isinstance(limb, Sweep) else limb
+        return replace(limb, stroke=fraction * limb.stroke)
+    return replace(limb, stance=fraction * limb.stance) if isinstance(limb, Sweep) else limb
 
 
 def _lagged(bend: Bend, lag: float) -> Bend:
-    """Return a bend that lags by so much more, its first lag brought back to -1/2 to 1/2 [cycle] where it leaves it."""
+    """Return a bend with an additional lag, its first lag wrapped to -1/2 to 1/2.
+
+    Args:
+        bend: the bend.
+        lag: additional phase lag [cycle].
+    """
     if lag == 0.0:
         return bend
     turns = round(bend.lag[0] + lag)
     return replace(bend, lag=tuple(value + lag - turns for value in bend.lag))
 
 
-def _named(name: str) -> Number:
+def _number_of(name: str) -> Number:
     if name not in NUMBERS:
         raise UnknownName("number of a gait", name, NUMBERS)
     return NUMBERS[name]
 
 
-def _plain(name: str, unit: str, what: str) -> Number:
+def _plain(name: str, unit: str, description: str) -> Number:
     """Return a number that is a field of the gait."""
     return Number(
         unit,
-        what,
+        description,
         lambda gait: True,  # noqa: ARG005
         lambda gait: float(getattr(gait, name)),
         lambda gait, value: replace(gait, **{name: value}),  # type: ignore[arg-type]
     )
 
 
-def _of_limbs(kind: type[FootPath] | type[Sweep], name: str, unit: str, what: str) -> Number:
+def _of_limbs(kind: type[FootPath] | type[Sweep], name: str, unit: str, description: str) -> Number:
     """Return a number that all limbs of a kind have; it is that of the foremost, others keep their proportion to it."""
 
-    def mine(gait: Gait) -> list[Any]:
+    def matching_limbs(gait: Gait) -> list[Any]:
         return [limb for limb in gait.limbs if isinstance(limb, kind)]
 
-    def read(gait: Gait) -> float:
-        return float(getattr(mine(gait)[0], name)) if mine(gait) else 0.0
+    def current_number(gait: Gait) -> float:
+        return float(getattr(matching_limbs(gait)[0], name)) if matching_limbs(gait) else 0.0
 
     def write(gait: Gait, value: float) -> Gait:
-        now = read(gait)
+        """Return the gait with another value at the foremost limbs; the other limbs keep their proportion."""
+        current = current_number(gait)
 
-        def changed(limb: Any) -> Any:
-            if not isinstance(limb, kind) or now == value:
+        def scaled_limb(limb: Any) -> Any:
+            if not isinstance(limb, kind) or current == value:
                 return limb
-            change: dict[str, Any] = {name: getattr(limb, name) / now * value if now else value}
+            change: dict[str, Any] = {name: getattr(limb, name) / current * value if current else value}
             return replace(limb, **change)
 
-        return replace(gait, limbs=tuple(changed(limb) for limb in gait.limbs))
+        return replace(gait, limbs=tuple(scaled_limb(limb) for limb in gait.limbs))
 
-    return Number(unit, what, lambda gait: bool(mine(gait)), read, write)
-
-
-def _yaw_of(gait: Gait, part: Part) -> list[Bend]:
-    return [bend for bend in gait.axis if bend.turn == "yaw" and bend.part == part]
+    return Number(unit, description, lambda gait: bool(matching_limbs(gait)), current_number, write)
 
 
-def _bend_of(part: Part, what: str) -> Number:
+def _yaw_of(gait: Gait, region: Part) -> list[Bend]:
+    return [bend for bend in gait.axis if bend.turn == "yaw" and bend.part == region]
+
+
+def _bend_of(region: Part, description: str) -> Number:
     """Return the amplitude of a part's lateral bend: the mean of its knots, which keep their proportion."""
 
-    def read(gait: Gait) -> float:
-        return sum(sum(bend.amplitude) / len(bend.amplitude) for bend in _yaw_of(gait, part))
+    def current_amplitude(gait: Gait) -> float:
+        return sum(sum(bend.amplitude) / len(bend.amplitude) for bend in _yaw_of(gait, region))
 
     def write(gait: Gait, value: float) -> Gait:
-        now = read(gait)
+        """Return the gait with another mean amplitude; the knots keep their proportion."""
+        current = current_amplitude(gait)
 
-        def changed(bend: Bend) -> Bend:
-            if bend.turn != "yaw" or bend.part != part or now == value:
+        def scaled_bend(bend: Bend) -> Bend:
+            """Return a bend of the region with scaled amplitudes; other bends stay as they are."""
+            if bend.turn != "yaw" or bend.part != region or current == value:
                 return bend
-            if len(bend.amplitude) == 1 and bend.amplitude[0] == now:
+            if len(bend.amplitude) == 1 and bend.amplitude[0] == current:
                 return replace(bend, amplitude=(value,))
-            return replace(bend, amplitude=tuple(a / now * value if now else value for a in bend.amplitude))
+            return replace(bend, amplitude=tuple(a / current * value if current else value for a in bend.amplitude))
 
-        return replace(gait, axis=tuple(changed(bend) for bend in gait.axis))
+        return replace(gait, axis=tuple(scaled_bend(bend) for bend in gait.axis))
 
-    return Number("rad", what, lambda gait: bool(_yaw_of(gait, part)), read, write)
+    return Number("rad", description, lambda gait: bool(_yaw_of(gait, region)), current_amplitude, write)
 
 
 def _first_lag(gait: Gait, *parts: Part) -> float:
@@ -337,15 +364,21 @@ def _first_lag(gait: Gait, *parts: Part) -> float:
     return next((float(bend.lag[0]) for bend in gait.axis if bend.turn == "yaw" and bend.part in parts), 0.0)
 
 
-def _with_lag(gait: Gait, more: float, *parts: Part) -> Gait:
-    """Return a gait whose lateral bends of some parts lag by so much more [cycle]."""
+def _with_lag(gait: Gait, extra_lag: float, *parts: Part) -> Gait:
+    """Return a gait whose lateral bends of some regions lag more.
 
-    def moved(bend: Bend) -> Bend:
-        if bend.turn != "yaw" or bend.part not in parts or more == 0.0:
+    Args:
+        gait: the gait.
+        extra_lag: additional phase lag [cycle].
+        *parts: the regions.
+    """
+
+    def shifted_bend(bend: Bend) -> Bend:
+        if bend.turn != "yaw" or bend.part not in parts or extra_lag == 0.0:
             return bend
-        return replace(bend, lag=tuple(lag + more for lag in bend.lag))
+        return replace(bend, lag=tuple(lag + extra_lag for lag in bend.lag))
 
-    return replace(gait, axis=tuple(moved(bend) for bend in gait.axis))
+    return replace(gait, axis=tuple(shifted_bend(bend) for bend in gait.axis))
 
 
 def _axis_lag(gait: Gait) -> float:
@@ -373,31 +406,40 @@ def _waves(gait: Gait) -> float:
 
 
 def _with_waves(gait: Gait, value: float) -> Gait:
-    def changed(bend: Bend) -> Bend:
+    """Return a gait with another number of wavelengths along the axis; the lag at the snout stays."""
+
+    def stretched_bend(bend: Bend) -> Bend:
         if bend.turn != "yaw" or bend.part != "axis":
             return bend
         return replace(bend, lag=(bend.lag[0], bend.lag[0] + value))
 
-    return replace(gait, axis=tuple(changed(bend) for bend in gait.axis))
+    return replace(gait, axis=tuple(stretched_bend(bend) for bend in gait.axis))
 
 
-def _steady(gait: Gait, part: Part, turn: Turn) -> float:
-    return sum(bend.offset for bend in gait.axis if bend.turn == turn and bend.part == part)
+def _steady(gait: Gait, region: Part, turn: Turn) -> float:
+    return sum(bend.offset for bend in gait.axis if bend.turn == turn and bend.part == region)
 
 
-def _with_steady(gait: Gait, part: Part, turn: Turn, value: float) -> Gait:
-    """Return a gait with another steady bend of a part: in the first bend of it, or in one more."""
-    mine = [i for i, bend in enumerate(gait.axis) if bend.turn == turn and bend.part == part]
-    axis = [replace(bend, offset=0.0) if i in mine else bend for i, bend in enumerate(gait.axis)]
-    if mine:
-        axis[mine[0]] = replace(axis[mine[0]], offset=value)
+def _with_steady(gait: Gait, region: Part, turn: Turn, value: float) -> Gait:
+    """Return a gait with another steady bend of a region, in its first bend or in an additional one.
+
+    Args:
+        gait: the gait.
+        region: of the axis.
+        turn: ``yaw`` or ``pitch``.
+        value: the steady bend [rad].
+    """
+    indices = [i for i, bend in enumerate(gait.axis) if bend.turn == turn and bend.part == region]
+    axis = [replace(bend, offset=0.0) if i in indices else bend for i, bend in enumerate(gait.axis)]
+    if indices:
+        axis[indices[0]] = replace(axis[indices[0]], offset=value)
     else:
-        axis.append(Bend(part=part, turn=turn, offset=value))
+        axis.append(Bend(part=region, turn=turn, offset=value))
     return replace(gait, axis=tuple(axis))
 
 
-def _path_number(name: str, what: str) -> Number:
-    return _of_limbs(FootPath, name, "limb reach", what)
+def _path_number(name: str, description: str) -> Number:
+    return _of_limbs(FootPath, name, "limb reach", description)
 
 
 NUMBERS: Mapping[str, Number] = MappingProxyType(

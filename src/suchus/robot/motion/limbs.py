@@ -17,14 +17,16 @@ from suchus.robot.kinematics.limb import PlainLeg
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.parts import FootPath, Held, Limbs, Sweep
 
-_PICOMETRE = 12  # digits of a metre to which lengths of a gait are rounded: a share of a reach of 0.175 m gives 0.027 m
-_INSIDE = 1e-6  # how far inside its reach a foot that is drawn into it stays: [m] for a leg, [reach] for other limbs
-_LEAST, _MOST = 0.02, 2 * np.pi - 0.02  # [rad]; of the angle that a crank turns through in stance
+_PICOMETRE = 12  # decimals of a metre to which lengths are rounded, so that fractions of a reach give round numbers
+# distance inside its reach to which a foot is drawn: [m] for a leg, [reach] for other limbs
+_REACH_MARGIN = 1e-6
+# bounds of the angle that a crank turns through in stance [rad]
+_MIN_STANCE_ANGLE, _MAX_STANCE_ANGLE = 0.02, 2 * np.pi - 0.02
 _SIDEWAYS = 2 / np.pi  # quarter turns of swivel a radian
 
 
 class Steer(NamedTuple):
-    """What is asked of a gait besides; every field broadcasts over runs, and limbs where it has them."""
+    """Changes of a gait while it runs; every field broadcasts over runs, and over limbs where it has them."""
 
     size: Float[np.ndarray, "*batch"] | float = 1.0
     """Factor on strokes and bends, 0 where a robot stands [-]."""
@@ -47,9 +49,9 @@ class LimbMotion:
         among: the limbs, in the order of the robot's.
     """
 
-    def __init__(self, robot: Robot, gaits: Sequence[Gait], among: Sequence[int]) -> None:
-        self.robot, self.gaits, self.among = robot, tuple(gaits), tuple(among)
-        self.limb = layout(robot).limbs[among[0]]
+    def __init__(self, robot: Robot, gaits: Sequence[Gait], limb_indices: Sequence[int]) -> None:
+        self.robot, self.gaits, self.among = robot, tuple(gaits), tuple(limb_indices)
+        self.limb = layout(robot).limbs[limb_indices[0]]
         self._duty = np.array([gait.duty_factor for gait in gaits])
         self._numbers = _numbers(robot, gaits, self.limb.number)
 
@@ -61,7 +63,7 @@ class LimbMotion:
     def angles(
         self, limbs: Float[np.ndarray, "*batch limb"], steer: Steer | None, *, draw: bool
     ) -> list[Float[np.ndarray, "*batch servo"]]:
-        """Return the servo angles of each of the limbs, nothing where the gaits say nothing of limbs [rad].
+        """Return the servo angles of each of the limbs [rad]; an empty list for gaits without limb movements.
 
         Args:
             limbs: phases of all limbs of the robot [cycle].
@@ -71,20 +73,24 @@ class LimbMotion:
         Raises:
             OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
         """
-        phase, numbers = _limbs_first(limbs, self.among), self._numbers
-        if numbers is None:
+        phase, parameters = _limbs_first(limbs, self.among), self._numbers
+        if parameters is None:
             return []
-        if isinstance(numbers, np.ndarray):  # held
-            return [numbers] * len(self.among)
-        if isinstance(numbers, _Crank):
-            stance = numbers.stance
+        if isinstance(parameters, np.ndarray):  # held
+            return [parameters] * len(self.among)
+        if isinstance(parameters, _Crank):
+            stance = parameters.stance
             if steer is not None:
-                stance = np.clip(np.asarray(steer.size) * _of_limbs(steer.stroke, self.among) * stance, _LEAST, _MOST)
-            return list(self._turned(phase, stance, numbers.down)[..., None])
+                stance = np.clip(
+                    np.asarray(steer.size) * _of_limbs(steer.stroke, self.among) * stance,
+                    _MIN_STANCE_ANGLE,
+                    _MAX_STANCE_ANGLE,
+                )
+            return list(self._crank_angle(phase, stance, parameters.down)[..., None])
         try:
-            return list(self._reached(numbers, *self._feet(numbers, phase, steer), draw=draw))
+            return list(self._angles_at(parameters, *self._feet(parameters, phase, steer), draw=draw))
         except Unreachable as error:
-            if len(self.among) > 1:  # say it of the first limb that it is true of
+            if len(self.among) > 1:  # name the first limb that fails
                 for i in self.among:
                     LimbMotion(self.robot, self.gaits, [i]).angles(limbs, steer, draw=draw)
             names = ", ".join(dict.fromkeys(repr(gait.name) for gait in self.gaits))
@@ -110,32 +116,53 @@ class LimbMotion:
         return np.stack(self._feet(self._numbers, _limbs_first(limbs, self.among), None))
 
     def _feet(
-        self, numbers: "_Path", phase: np.ndarray, steer: Steer | None
+        self, parameters: "_Path", phase: np.ndarray, steer: Steer | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return how far feet are ahead of their hips, outside them and below them, each (limb, *batch) [m]."""
         forward, lifted = foot_path(phase, self._duty)
-        stroke, lower = numbers.stroke, np.zeros(())
+        stroke, lowering = parameters.stroke, np.zeros(())
         if steer is not None:
             stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, self.among)
-            lower = _of_limbs(steer.lower, self.among)
-        ahead = numbers.ahead + stroke * forward
-        return ahead, np.broadcast_to(numbers.outward, ahead.shape), numbers.down + lower - numbers.lift * lifted
+            lowering = _of_limbs(steer.lower, self.among)
+        forward_position = parameters.ahead + stroke * forward
+        return (
+            forward_position,
+            np.broadcast_to(parameters.outward, forward_position.shape),
+            parameters.down + lowering - parameters.lift * lifted,
+        )
 
-    def _reached(
-        self, numbers: "_Path", ahead: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
+    def _angles_at(
+        self, parameters: "_Path", forward: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
     ) -> np.ndarray:
-        """Return the servo angles that bring feet to their places, shape (limb, *batch, servo) [rad]."""
-        if numbers.leg is not None:
-            foot = np.stack([numbers.leg.hip_offset + outward, ahead, down], axis=-1)
-            return _leg_angles(numbers.leg, numbers.side, foot, draw=draw)
-        foot = np.stack([ahead, outward, -down], axis=-1)
+        """Return the servo angles that bring feet to their places, shape (limb, *batch, servo) [rad].
+
+        Args:
+            parameters: of the foot paths.
+            forward: of the feet from their hips [m].
+            outward: of the feet from their hips [m].
+            down: of the feet below their hips [m].
+            draw: draw feet into what limbs reach.
+        """
+        if parameters.leg is not None:
+            foot = np.stack([parameters.leg.hip_offset + outward, forward, down], axis=-1)
+            return _leg_angles(parameters.leg, parameters.side, foot, draw=draw)
+        foot = np.stack([forward, outward, -down], axis=-1)
         limb = self.limb.girdle.limb
         if draw:
-            near, far = limb_kinematics.reach(limb)
-            foot = _drawn(foot, np.zeros(3), (near + _INSIDE * far, far - _INSIDE * far))
-        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(numbers.swivel, ahead.shape))
+            min_reach, max_reach = limb_kinematics.reach(limb)
+            foot = _clip_to_reach(
+                foot, np.zeros(3), (min_reach + _REACH_MARGIN * max_reach, max_reach - _REACH_MARGIN * max_reach)
+            )
+        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(parameters.swivel, forward.shape))
 
-    def _turned(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
-        """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above."""
+    def _crank_angle(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
+        """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above.
+
+        Args:
+            phase: of the limbs, shape (limb, *batch) [cycle].
+            stance: angle turned through in stance [rad].
+            down: angle at which the foot points straight down [rad].
+        """
         swing = 1.0 - self._duty
         turns, cycle = np.floor(phase), np.mod(phase, 1.0)
         half = stance / 2
@@ -145,13 +172,13 @@ class LimbMotion:
 
 
 def hip_height(robot: Robot, gait: Gait) -> float:
-    """Return how high the root's axis is above the ground in a gait [m]; 0 where the gait does not say."""
+    """Return the height of the root's axis above the ground in a gait [m]; 0 if the gait has none."""
     girdles = robot.girdles
     return _metres(gait.height, girdles[-1].limb.reach) - girdles[-1].above if girdles and gait.limbs else 0.0
 
 
-def _metres(share: float, reach: float) -> float:
-    return round(share * reach, _PICOMETRE)
+def _metres(fraction: float, reach: float) -> float:
+    return round(fraction * reach, _PICOMETRE)
 
 
 def foot_path(phase: Float[np.ndarray, "*batch"], duty: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -171,8 +198,8 @@ def girdles(place: Layout) -> list[list[int]]:
     """Return the limbs that are worked out together: those of a girdle, where its chain has a closed form."""
     groups: dict[tuple[int, int], list[int]] = {}
     for i, limb in enumerate(place.limbs):
-        alone = i if limb_kinematics.kind(limb.girdle.limb) == "other" else -1
-        groups.setdefault((limb.number, alone), []).append(i)
+        separate_index = i if limb_kinematics.kind(limb.girdle.limb) == "other" else -1
+        groups.setdefault((limb.number, separate_index), []).append(i)
     return list(groups.values())
 
 
@@ -190,10 +217,10 @@ def check_limbs(robot: Robot, gait: Gait) -> None:
     """
     place = layout(robot)
     if len(gait.limb_phases) != len(place.limbs):
-        told = f" ({', '.join(place.limb_names)})" if place.limbs else ""
+        limb_list = f" ({', '.join(place.limb_names)})" if place.limbs else ""
         raise OutsideLimits(
             f"gait {gait.name!r} has phases for {len(gait.limb_phases)} limbs; robot {robot.name!r} has "
-            f"{len(place.limbs)}{told}: choose a gait made for it, or leave the gait out for the robot's own."
+            f"{len(place.limbs)}{limb_list}: choose a gait made for it, or leave the gait out for the robot's own."
         )
     for curve in gait.curves:
         if curve.servo not in place.servos:
@@ -206,6 +233,14 @@ _MOVES: dict[type, str] = {FootPath: "leads feet along a path", Sweep: "turns li
 
 
 def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> None:
+    """Refuse a movement that the limbs of a girdle cannot do.
+
+    Args:
+        place: layout of the robot.
+        gait: to which the movement belongs.
+        girdle: that carries the limbs.
+        limb: the movement.
+    """
     robot = place.robot
     drives = [hinge.drive for hinge in girdle.limb.hinges]
     cranks = len(drives) == 1 and isinstance(drives[0], Crank)
@@ -215,17 +250,17 @@ def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> Non
             f"{'are' if cranks else 'are not'} cranks: choose a gait made for it, or leave the gait out for the "
             "robot's own."
         )
-    driven = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
-    if isinstance(limb, Held) and len(limb.angles) > driven:
+    servo_count = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
+    if isinstance(limb, Held) and len(limb.angles) > servo_count:
         raise OutsideLimits(
-            f"gait {gait.name!r} holds {len(limb.angles)} angles of girdle {girdle.name}; its limbs have {driven} "
+            f"gait {gait.name!r} holds {len(limb.angles)} angles of girdle {girdle.name}; its limbs have {servo_count} "
             "servos: give one for each."
         )
-    outside = isinstance(limb, FootPath) and quarter(limb.swivel) != 0 and limb.outward
-    if outside and limb_kinematics.kind(girdle.limb) == "leg":
+    outward = isinstance(limb, FootPath) and quarter(limb.swivel) != 0 and limb.outward
+    if outward and limb_kinematics.kind(girdle.limb) == "leg":
         raise OutsideLimits(
             f"gait {gait.name!r} stands the limbs of girdle {girdle.name} of robot {robot.name!r} erect and "
-            f"{outside:g} of their reach outside their hips; legs of yaw, pitch and knee that stand erect stand "
+            f"{outward:g} of their reach outside their hips; legs of yaw, pitch and knee that stand erect stand "
             "below their hips: set outward to 0, or swivel."
         )
 
@@ -251,7 +286,7 @@ class _Crank(NamedTuple):
 
 
 def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Crank | np.ndarray | None":
-    """Return what the gaits say of the limbs of a girdle."""
+    """Return the movement of a girdle's limbs in all gaits as arrays over runs; None without limb movements."""
     if not gaits[0].limbs:
         return None
     limbs: list[Any] = [gait.limbs[number] for gait in gaits]
@@ -275,36 +310,51 @@ def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Cran
     )
 
 
-def _limbs_first(values: Float[np.ndarray, "*batch limb"], among: Sequence[int]) -> np.ndarray:
-    """Return what is said of some limbs, shape (limb, *batch)."""
-    return np.stack([values[..., i] for i in among])
+def _limbs_first(values: Float[np.ndarray, "*batch limb"], limb_indices: Sequence[int]) -> np.ndarray:
+    """Return the values of some limbs, shape (limb, *batch)."""
+    return np.stack([values[..., i] for i in limb_indices])
 
 
-def _of_limbs(field: np.ndarray | float, among: Sequence[int]) -> np.ndarray:
-    """Return what a field of a ``Steer`` says of some limbs, shape (limb, *batch), or () where it is one number."""
-    return _limbs_first(np.asarray(field), among) if np.ndim(field) else np.asarray(field)
+def _of_limbs(field: np.ndarray | float, limb_indices: Sequence[int]) -> np.ndarray:
+    """Return a field of a ``Steer`` for some limbs, shape (limb, *batch), or () where it is one number."""
+    return _limbs_first(np.asarray(field), limb_indices) if np.ndim(field) else np.asarray(field)
 
 
 def _leg_angles(leg: PlainLeg, side: int, foot: np.ndarray, *, draw: bool) -> np.ndarray:
-    """Return yaw, pitch and knee that bring a foot to its place, sprawled or erect [rad]."""
+    """Return yaw, pitch and knee that bring a foot to its place, sprawled or erect [rad].
+
+    Args:
+        leg: the lengths.
+        side: 0 sprawled, 1 erect with the knee ahead, -1 erect with the elbow behind.
+        foot: outward, forward, down in the leg's base frame [m].
+        draw: draw the foot into what the leg reaches.
+    """
     if draw:
-        near, far = leg.reach
-        foot = _drawn(foot, np.array([leg.hip_offset, 0.0, 0.0]), (near + _INSIDE, far - _INSIDE))
+        min_reach, max_reach = leg.reach
+        foot = _clip_to_reach(
+            foot, np.array([leg.hip_offset, 0.0, 0.0]), (min_reach + _REACH_MARGIN, max_reach - _REACH_MARGIN)
+        )
     if side == 0:
         return leg_kinematics.inverse(leg, foot)
     # the plane of an erect leg faces back or forward; in it the foot may lie to either side of the hip
-    along = float(side) * foot[..., 1]
-    flat = np.stack([leg.hip_offset + along, np.zeros_like(along), foot[..., 2]], axis=-1)
+    in_plane = float(side) * foot[..., 1]
+    flat = np.stack([leg.hip_offset + in_plane, np.zeros_like(in_plane), foot[..., 2]], axis=-1)
     angles = np.where(
-        along[..., None] < 0.0, leg_kinematics.inverse(leg, flat, side=-1), leg_kinematics.inverse(leg, flat)
+        in_plane[..., None] < 0.0, leg_kinematics.inverse(leg, flat, side=-1), leg_kinematics.inverse(leg, flat)
     )
     angles[..., 0] = float(side) * np.pi / 2
     return angles
 
 
-def _drawn(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
-    """Return foot points drawn along the line to the hip into what a limb reaches; others stay as they are [m]."""
-    away, (near, far) = foot - hip, reach
-    length = np.linalg.norm(away, axis=-1, keepdims=True)
-    moved = hip + away * np.clip(length, near, far) / np.maximum(length, _INSIDE)
-    return np.asarray(np.where((length < near) | (length > far), moved, foot))
+def _clip_to_reach(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
+    """Return foot points moved along the line to the hip into the reach of a limb; others stay as they are [m].
+
+    Args:
+        foot: shape (*batch, 3) [m].
+        hip: shape (3,) [m].
+        reach: nearest and farthest distance of the foot from the hip [m].
+    """
+    offset, (min_reach, max_reach) = foot - hip, reach
+    length = np.linalg.norm(offset, axis=-1, keepdims=True)
+    clipped = hip + offset * np.clip(length, min_reach, max_reach) / np.maximum(length, _REACH_MARGIN)
+    return np.asarray(np.where((length < min_reach) | (length > max_reach), clipped, foot))

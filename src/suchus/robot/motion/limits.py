@@ -1,4 +1,4 @@
-"""What a gait asks of joints and servos, and whether a robot can give it."""
+"""The angles and speeds that a gait demands of joints and servos, and whether a robot can follow it."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -14,10 +14,11 @@ from suchus.robot.motion.parts import MOST_ANGLES, Bend, Curve, Part, ServoPart
 
 SAMPLES = 128
 """Looks over a cycle [-]."""
-_SPEED_SAMPLES = 200  # of a cycle, to see how fast servos turn in it
-_MOST, _NEAR = 8.0, 1e-3  # greatest factor on strokes that is tried, and how near to the greatest possible one it ends
-_LENGTH, _ANGLE, _SPEED = 0.01, 0.1, 1.0  # [m], [rad], [rad/s]; what counts as one of the excess
-_ROUNDING = 1e-9  # [rad]; by which a bend may leave its limit
+_SPEED_SAMPLES = 200  # of a cycle, for the servos' speeds
+# greatest factor on strokes that is tried [-]; width of the bracket at which the bisection stops [-]
+_MAX_STROKE_FACTOR, _STROKE_TOLERANCE = 8.0, 1e-3
+_LENGTH, _ANGLE, _SPEED = 0.01, 0.1, 1.0  # [m], [rad], [rad/s]; an excess of this size counts as 1
+_ROUNDING = 1e-9  # [rad]; tolerance of a bend beyond its limit
 
 
 def check_limits(robot: Robot, gait: Gait) -> None:
@@ -28,44 +29,52 @@ def check_limits(robot: Robot, gait: Gait) -> None:
             its range; the message names it, the angle and the range.
         UnknownName: a curve is for a servo that the robot lacks.
     """
-    here, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
-    _check_cables(here)
-    targets, direct = cycle_targets(robot, gait, clock), len(here.place.servos) - len(here.place.cables)
-    targets = np.vstack([targets, _lateral_ends(here, targets[0])])
-    for name, column, (low, high) in zip(
-        here.place.servos[:direct], targets.T[:direct], servo_ranges(robot)[:direct], strict=True
+    gait_movement, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
+    _check_cables(gait_movement)
+    targets = cycle_targets(robot, gait, clock)
+    direct = len(gait_movement.place.servos) - len(gait_movement.place.cables)
+    targets = np.vstack([targets, _lateral_ends(gait_movement, targets[0])])
+    for name, column, (lower_bound, upper_bound) in zip(
+        gait_movement.place.servos[:direct], targets.T[:direct], servo_ranges(robot)[:direct], strict=True
     ):
-        worst = column[np.argmax(np.maximum(low - column, column - high))]
-        if not low <= worst <= high:
+        worst_angle = column[np.argmax(np.maximum(lower_bound - column, column - upper_bound))]
+        if not lower_bound <= worst_angle <= upper_bound:
             raise OutsideLimits(
-                f"gait {gait.name!r} asks {name} of robot {robot.name!r} for {worst:.3f} rad; "
-                f"{low:.3f} to {high:.3f} rad is allowed."
+                f"gait {gait.name!r} asks {name} of robot {robot.name!r} for {worst_angle:.3f} rad; "
+                f"{lower_bound:.3f} to {upper_bound:.3f} rad is allowed."
             )
 
 
-def _lateral_ends(here: Movement, posture: np.ndarray) -> np.ndarray:
-    """Return a posture twice, with the least and the greatest angles of what waves bend sideways, (2, servo) [rad]."""
-    ends, follows = np.array([posture, posture]), float(np.abs(here.axis_of_clock(np.zeros(1)))[0])
-    measured = {here.place.servos.index(curve.servo) for curve in here.gaits[0].curves}
-    hinges, share = here.yaw.hinges, here.yaw.share[0]
+def _lateral_ends(gait_movement: Movement, posture: np.ndarray) -> np.ndarray:
+    """Return a posture with the smallest and the greatest angles of the lateral wave, shape (2, servo) [rad].
+
+    Args:
+        gait_movement: the gait, worked out for the robot.
+        posture: servo angles at any time, shape (servo,) [rad].
+    """
+    ends, follows = np.array([posture, posture]), float(np.abs(gait_movement.axis_of_clock(np.zeros(1)))[0])
+    measured = {gait_movement.place.servos.index(curve.servo) for curve in gait_movement.gaits[0].curves}
+    hinges, hinge_counts = gait_movement.yaw.hinges, gait_movement.yaw.share[0]
     for k, (servo, sign) in enumerate(zip(hinges.servos, hinges.signs, strict=True)):
-        if servo not in here.place.cables and servo not in measured:
-            swing = max(follows * float(np.abs(here.yaw.swing[0, k])) / share[k] - _ROUNDING, 0.0)
-            ends[:, servo] = sign * here.yaw.offset[0, k] / share[k] + np.array([-swing, swing])
+        if servo not in gait_movement.place.cables and servo not in measured:
+            swing = max(follows * float(np.abs(gait_movement.yaw.swing[0, k])) / hinge_counts[k] - _ROUNDING, 0.0)
+            ends[:, servo] = sign * gait_movement.yaw.offset[0, k] / hinge_counts[k] + np.array([-swing, swing])
     return ends
 
 
-def _check_cables(here: Movement) -> None:
-    """Refuse bends beyond what cables allow; the pulleys' angles are clipped, and would not show it."""
-    follows = float(np.abs(here.axis_of_clock(np.zeros(1)))[0])
-    for servo in here.place.cables:
-        among = [k for k, mine in enumerate(here.yaw.hinges.servos) if mine == servo]
-        swing, steady = here.yaw.together(among)
-        most, limit = float(follows * np.abs(swing[0]) + np.abs(steady[0])), here.place.cable(servo).bend_limit
-        if most > limit + _ROUNDING:
+def _check_cables(gait_movement: Movement) -> None:
+    """Refuse bends beyond the limits of cables; the clipped angles of the pulleys would not show them."""
+    follows = float(np.abs(gait_movement.axis_of_clock(np.zeros(1)))[0])
+    for servo in gait_movement.place.cables:
+        hinge_indices = [k for k, hinge_servo in enumerate(gait_movement.yaw.hinges.servos) if hinge_servo == servo]
+        swing, steady = gait_movement.yaw.together(hinge_indices)
+        max_bend = float(follows * np.abs(swing[0]) + np.abs(steady[0]))
+        limit = gait_movement.place.cable(servo).bend_limit
+        if max_bend > limit + _ROUNDING:
             raise OutsideLimits(
-                f"gait {here.gaits[0].name!r} asks the hinges of cable {here.place.servos[servo]} of robot "
-                f"{here.robot.name!r} for a bend of {most:.3f} rad together; up to {limit:.3f} rad is allowed: let "
+                f"gait {gait_movement.gaits[0].name!r} asks the hinges of cable {gait_movement.place.servos[servo]} of "
+                f"robot {gait_movement.robot.name!r} for a bend of {max_bend:.3f} rad together; up to {limit:.3f} "
+                "rad is allowed: let "
                 "its axis bend less."
             )
 
@@ -89,9 +98,9 @@ def shortest_period(robot: Robot, gait: Gait) -> tuple[float, str]:
     targets = cycle_targets(robot, gait, np.arange(_SPEED_SAMPLES + 1) / _SPEED_SAMPLES)
     turns = np.abs(np.diff(targets, axis=0)).max(axis=0) * _SPEED_SAMPLES  # [rad/cycle]
     servos = layout(robot).servos
-    needed = turns / np.array([robot.servo(servo).speed for servo in servos])
-    slowest = int(np.argmax(needed))
-    return float(needed[slowest]), servos[slowest]
+    min_periods = turns / np.array([robot.servo(servo).speed for servo in servos])
+    slowest = int(np.argmax(min_periods))
+    return float(min_periods[slowest]), servos[slowest]
 
 
 def check_speeds(robot: Robot, gait: Gait) -> None:
@@ -100,36 +109,36 @@ def check_speeds(robot: Robot, gait: Gait) -> None:
     Raises:
         OutsideLimits: a servo is too slow; the message names it and the shortest period.
     """
-    shortest, servo = shortest_period(robot, gait)
-    if shortest > gait.period:
+    min_period, servo = shortest_period(robot, gait)
+    if min_period > gait.period:
         limit = robot.servo(servo).speed
         raise OutsideLimits(
-            f"gait {gait.name!r} asks {servo} of robot {robot.name!r} for {limit * shortest / gait.period:.2f} rad/s; "
-            f"the servo turns at {limit:.2f} rad/s at most: make the period {shortest:.3g} s, or bend less."
+            f"gait {gait.name!r} asks {servo} of robot {robot.name!r} for {limit * min_period / gait.period:.2f} "
+            f"rad/s; the servo turns at {limit:.2f} rad/s at most: make the period {min_period:.3g} s, or bend less."
         )
 
 
 @lru_cache(maxsize=256)
 def longest_strokes(robot: Robot, gait: Gait) -> float:
-    """Return the greatest share of its strokes that a robot's limbs can follow, up to eight times [-]."""
+    """Return the greatest factor on a gait's strokes that a robot's limbs can follow, up to 8 [-]."""
     if not gait.has("strokes"):
         return 1.0
-    low, high = 1.0, _MOST
-    while high - low > _NEAR:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if _strides(robot, gait, middle) else (low, middle)
-    return low
+    lower_bound, upper_bound = 1.0, _MAX_STROKE_FACTOR
+    while upper_bound - lower_bound > _STROKE_TOLERANCE:
+        trial = 0.5 * (lower_bound + upper_bound)
+        lower_bound, upper_bound = (trial, upper_bound) if _strides(robot, gait, trial) else (lower_bound, trial)
+    return lower_bound
 
 
-def _strides(robot: Robot, gait: Gait, share: float) -> bool:
+def _strides(robot: Robot, gait: Gait, fraction: float) -> bool:
     try:
-        return suits(robot, gait.strode(share))
+        return suits(robot, gait.strode(fraction))
     except InvalidDesign:
         return False
 
 
 def excess(robot: Robot, gait: Gait) -> float:
-    """Return how far a gait is from what a robot can follow; zero where it can [-].
+    """Return by how much a gait exceeds reach, ranges and speeds of a robot; zero for a feasible gait [-].
 
     Counted are the distance by which feet lie outside their limbs' reach, in centimetres, the angles by which joints
     leave their range, in tenths of a radian, and the speeds by which servos turn too fast, in radians a second.
@@ -137,22 +146,25 @@ def excess(robot: Robot, gait: Gait) -> float:
     Raises:
         SuchusError: the gait is for other limbs.
     """
-    here, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
+    gait_movement, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
     limbs = clock[:, None] + np.array(gait.limb_phases)
-    targets, away = here.targets(limbs, here.axis_of_clock(clock), draw=True), here.out_of_reach(limbs)
+    targets = gait_movement.targets(limbs, gait_movement.axis_of_clock(clock), draw=True)
+    foot_distance = gait_movement.out_of_reach(limbs)
     ranges = servo_ranges(robot)
-    beyond = np.maximum(np.maximum(ranges[:, 0] - targets, targets - ranges[:, 1]), 0.0).max(axis=0)
+    range_excess = np.maximum(np.maximum(ranges[:, 0] - targets, targets - ranges[:, 1]), 0.0).max(axis=0)
     turns = np.diff(targets, axis=0, append=targets[:1])
     endless = np.isinf(ranges).any(axis=1)
     turns[:, endless] = (turns[:, endless] + np.pi) % (2 * np.pi) - np.pi  # a crank's angle jumps once a turn
-    turned = np.abs(turns).max(axis=0) * SAMPLES / gait.period
-    fast = np.array([robot.servo(name).speed for name in here.place.servos])
-    far = float(away.max(axis=0).sum()) if limbs.shape[1] else 0.0
-    return float(far / _LENGTH + beyond.sum() / _ANGLE + np.maximum(turned - fast, 0.0).sum() / _SPEED)
+    servo_speed = np.abs(turns).max(axis=0) * SAMPLES / gait.period
+    speed_limit = np.array([robot.servo(name).speed for name in gait_movement.place.servos])
+    reach_excess = float(foot_distance.max(axis=0).sum()) if limbs.shape[1] else 0.0
+    return float(
+        reach_excess / _LENGTH + range_excess.sum() / _ANGLE + np.maximum(servo_speed - speed_limit, 0.0).sum() / _SPEED
+    )
 
 
 def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
-    """Return a gait as measured curves: what every servo does over one cycle, to be changed by hand or in a file.
+    """Return a gait as curves of every servo over one cycle.
 
     Between the samples a curve is smooth where a gait may have a corner, at lift-off and touch-down of a foot; with
     64 samples the crawl's angles differ by less than 0.002 rad.
@@ -167,8 +179,8 @@ def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
     """
     samples = min(samples, MOST_ANGLES)
     clock = np.arange(samples) / samples
-    named = zip(layout(robot).servos, cycle_targets(robot, gait, clock).T, strict=True)
-    moved = {name: curve[:1] if np.ptp(curve) < 1e-9 else curve for name, curve in named}
+    servo_curves = zip(layout(robot).servos, cycle_targets(robot, gait, clock).T, strict=True)
+    short_curves = {name: curve[:1] if np.ptp(curve) < 1e-9 else curve for name, curve in servo_curves}
     parts = servo_parts(robot)
     return replace(
         gait,
@@ -178,7 +190,7 @@ def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
         height=0.0,
         curves=tuple(
             Curve(servo=name, part=parts[name], angles=tuple(float(round(angle, 6)) for angle in curve))
-            for name, curve in moved.items()
+            for name, curve in short_curves.items()
             if np.any(np.abs(curve) > 1e-12)
         ),
     )
@@ -186,13 +198,13 @@ def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
 
 def servo_parts(robot: Robot) -> dict[str, ServoPart]:
     """Return the part of the body that each servo moves: ``limb``, ``neck``, ``trunk`` or ``tail``."""
-    here = layout(robot)
-    trunk = {*here.trunk_yaw, *here.trunk_pitch}
+    place = layout(robot)
+    trunk = {*place.trunk_yaw, *place.trunk_pitch}
     parts: dict[str, ServoPart] = {}
-    for i, name in enumerate(here.servos):
-        if any(i in range(limb.servos.start, limb.servos.stop) for limb in here.limbs):
+    for i, name in enumerate(place.servos):
+        if any(i in range(limb.servos.start, limb.servos.stop) for limb in place.limbs):
             parts[name] = "limb"
-        elif i in here.cables or here.servo_hinges[i] >= here.behind.start:
+        elif i in place.cables or place.servo_hinges[i] >= place.behind.start:
             parts[name] = "tail"
         else:
             parts[name] = "trunk" if i in trunk else "neck"
@@ -200,7 +212,7 @@ def servo_parts(robot: Robot) -> dict[str, ServoPart]:
 
 
 def divided(robot: Robot, gait: Gait) -> Gait:
-    """Return a gait whose bends of the whole axis are given part by part, a knot for each hinge, so that one may go."""
+    """Return a gait whose bends of the whole axis are split into neck, trunk and tail, with a knot for each hinge."""
     hinges, axis = yaw_hinges(robot), []
     parts: tuple[Part, ...] = ("neck", "trunk", "tail")
     for bend in gait.axis:
@@ -208,16 +220,16 @@ def divided(robot: Robot, gait: Gait) -> Gait:
             axis.append(bend)
             continue
         count = len(hinges.servos)
-        for part in parts:
-            among = hinges.within(part)
-            share = len(among) / count
-            if among:
+        for region in parts:
+            hinge_indices = hinges.within(region)
+            fraction = len(hinge_indices) / count
+            if hinge_indices:
                 axis.append(
                     Bend(
-                        part=part,
-                        amplitude=tuple(share * at_knot(bend.amplitude, k, count) for k in among),
-                        lag=tuple(at_knot(bend.lag, k, count) for k in among),
-                        offset=share * bend.offset,
+                        part=region,
+                        amplitude=tuple(fraction * at_knot(bend.amplitude, k, count) for k in hinge_indices),
+                        lag=tuple(at_knot(bend.lag, k, count) for k in hinge_indices),
+                        offset=fraction * bend.offset,
                     )
                 )
     return replace(gait, axis=tuple(axis))
@@ -225,5 +237,5 @@ def divided(robot: Robot, gait: Gait) -> Gait:
 
 def servo_range(robot: Robot, name: str) -> tuple[float, float]:
     """Return the range of the joint that a servo turns [rad]; for a cable, of the pulley."""
-    low, high = servo_ranges(robot)[layout(robot).servos.index(name)]
-    return float(low), float(high)
+    lower_bound, upper_bound = servo_ranges(robot)[layout(robot).servos.index(name)]
+    return float(lower_bound), float(upper_bound)

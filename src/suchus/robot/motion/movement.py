@@ -55,12 +55,12 @@ class Movement:
         self._duty = np.array([gait.duty_factor for gait in gaits])
         self._phases = np.array([gait.limb_phases for gait in gaits], dtype=float)
         self._touch_down = 0.75 - self._duty / 2  # a quarter of a cycle before mid-stance
-        self._signs, self._behind = _references(gaits)
+        self._signs, self._phase_remainder = _references(gaits)
         servos, cables = self.yaw.hinges.servos, self.place.cables
         self._direct = [k for k, servo in enumerate(servos) if servo not in cables]
-        self._limbs = [LimbMotion(robot, gaits, among) for among in girdles(self.place)]
+        self._limbs = [LimbMotion(robot, gaits, limb_indices) for limb_indices in girdles(self.place)]
         self._curves = [_Measured(self.place, gaits, i) for i in range(len(gaits[0].curves))]
-        self._low, self._high = servo_ranges(robot).T
+        self._lower_bound, self._upper_bound = servo_ranges(robot).T
 
     def axis_phase(self, limbs: Float[np.ndarray, "*batch limb"]) -> Complex[np.ndarray, "*batch"]:
         """Return the order parameter of the limbs, which the axis follows: their mean on the unit circle [-].
@@ -70,11 +70,11 @@ class Movement:
         Args:
             limbs: phases of the limbs [cycle].
         """
-        angle = 2 * np.pi * (limbs - self._touch_down[:, None] - self._behind)
+        angle = 2 * np.pi * (limbs - self._touch_down[:, None] - self._phase_remainder)
         return np.asarray(self._mean(np.cos(angle)) + 1j * self._mean(np.sin(angle)))
 
     def _mean(self, pulls: np.ndarray) -> np.ndarray:
-        """Return the mean over the limbs with their signs, summed in one order so that no batch changes a bit."""
+        """Return the signed mean over the limbs, summed in a fixed order so that the batch size changes no bit."""
         terms = [pulls[..., i] * sign for i, sign in enumerate(self._signs)]
         while len(terms) > 1:
             half = (len(terms) + 1) // 2
@@ -82,7 +82,7 @@ class Movement:
         return np.asarray(terms[0] / len(self._signs))
 
     def axis_of_clock(self, clock: Float[np.ndarray, "*batch"]) -> Complex[np.ndarray, "*batch"]:
-        """Return what the axis follows at times since the beginning [cycle], without asking the limbs."""
+        """Return the order parameter that the axis follows at times since the beginning [cycle]."""
         if len(self._signs):
             return self.axis_phase(np.asarray(clock)[..., None] + self._phases)
         return np.asarray(np.exp(2j * np.pi * (np.asarray(clock) - self._touch_down)))
@@ -108,15 +108,15 @@ class Movement:
             OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
         """
         targets = np.zeros((*np.broadcast_shapes(np.shape(limbs)[:-1], np.shape(axis)), len(self.place.servos)))
-        for alike in self._limbs:
+        for group in self._limbs:
             for i, of_limb in zip(
-                alike.among, alike.angles(limbs, steer, draw=draw or steer is not None), strict=False
+                group.among, group.angles(limbs, steer, draw=draw or steer is not None), strict=False
             ):
                 limb = self.place.limbs[i]
                 targets[..., limb.servos] = of_limb[..., limb.driven]
         self._bend(targets, axis, steer)
         self._curve(targets, limbs, axis)
-        return np.clip(targets, self._low, self._high) if steer is not None else targets
+        return np.clip(targets, self._lower_bound, self._upper_bound) if steer is not None else targets
 
     def harmonics(self) -> Complex[np.ndarray, "run hinge"]:
         """Return h of the hinges that bend sideways, whose angles are a mean plus ``Re(h exp(2 pi i clock))`` [rad].
@@ -126,19 +126,19 @@ class Movement:
         start = self.axis_of_clock(np.zeros(len(self.gaits)))
         return np.asarray(self.yaw.swing * start[:, None] / self.yaw.share)
 
-    def bend_of(self, part: Part, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
+    def bend_of(self, region: Part, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
         """Return how far a part bends sideways, left positive, measured curves aside [rad]."""
-        return self.yaw.whole(self.yaw.hinges.within(part), self.yaw.bends(axis))
+        return self.yaw.whole(self.yaw.hinges.within(region), self.yaw.bends(axis))
 
     def out_of_reach(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb"]:
         """Return how far each foot's place lies outside what its limb reaches; 0 without a foot path [m]."""
-        away = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.place.limbs))))
-        for alike in self._limbs:
-            if alike.has_paths:
-                near, most = limb_kinematics.reach(alike.limb.girdle.limb)
-                for i, far in zip(alike.among, np.linalg.norm(alike.feet(limbs), axis=0), strict=True):
-                    away[..., i] = np.maximum(np.maximum(near - far, far - most), 0.0)
-        return away
+        reach_error = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.place.limbs))))
+        for group in self._limbs:
+            if group.has_paths:
+                min_reach, max_reach = limb_kinematics.reach(group.limb.girdle.limb)
+                for i, distance in zip(group.among, np.linalg.norm(group.feet(limbs), axis=0), strict=True):
+                    reach_error[..., i] = np.maximum(np.maximum(min_reach - distance, distance - max_reach), 0.0)
+        return reach_error
 
     def foot_places(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb 3"]:
         """Return the intended foot centres, each in the D-H base frame of its limb (outward, forward, down) [m].
@@ -150,46 +150,62 @@ class Movement:
             OutsideLimits: a gait has limbs without a foot path.
         """
         places: dict[int, np.ndarray] = {}
-        for alike in self._limbs:
-            ahead, outward, down = alike.feet(limbs)
-            places |= zip(alike.among, np.stack([alike.limb.girdle.aside + outward, ahead, down], axis=-1), strict=True)
+        for group in self._limbs:
+            forward, outward, down = group.feet(limbs)
+            places |= zip(
+                group.among, np.stack([group.limb.girdle.aside + outward, forward, down], axis=-1), strict=True
+            )
         return np.stack([places[i] for i in range(len(places))], axis=-2)
 
     def _bend(self, targets: np.ndarray, axis: np.ndarray, steer: Steer | None) -> None:
+        """Write the servo angles of the axis that its bends ask for.
+
+        Args:
+            targets: servo angles, written to [rad].
+            axis: what the axis follows, as ``axis_phase`` returns it [-].
+            steer: what is asked besides.
+        """
         size = None if steer is None else steer.size
         tail = 0.0 if steer is None else steer.tail
         if self.yaw.moves or np.any(tail):
             hinges, bends, direct = self.yaw.hinges, self.yaw.bends(axis, size), self._direct
             if np.any(tail):
                 bends = bends + self._of_tail(tail)
-            turned = np.array(hinges.signs)[direct] * bends[..., direct] / self.yaw.share[:, direct]
-            targets[..., np.array(hinges.servos, dtype=int)[direct]] = turned
+            servo_angles = np.array(hinges.signs)[direct] * bends[..., direct] / self.yaw.share[:, direct]
+            targets[..., np.array(hinges.servos, dtype=int)[direct]] = servo_angles
             for servo in self.place.cables:
-                among = [k for k, mine in enumerate(hinges.servos) if mine == servo]
-                most = self.place.cable(servo).bend_limit
-                whole = hinges.signs[among[0]] * self.yaw.whole(among, bends)
+                hinge_indices = [k for k, hinge_servo in enumerate(hinges.servos) if hinge_servo == servo]
+                bend_limit = self.place.cable(servo).bend_limit
+                total_bend = hinges.signs[hinge_indices[0]] * self.yaw.whole(hinge_indices, bends)
                 if steer is not None:
-                    whole = np.clip(whole, -most, most)
-                targets[..., servo] = tail_kinematics.servo_angle(self.place.cable(servo), whole)
+                    total_bend = np.clip(total_bend, -bend_limit, bend_limit)
+                targets[..., servo] = tail_kinematics.servo_angle(self.place.cable(servo), total_bend)
         if self.pitch.moves:
             targets[..., list(self.pitch.hinges.servos)] = self.pitch.bends(axis, size) / self.pitch.share
         if steer is not None and self.place.trunk_yaw:
             targets[..., list(self.place.trunk_yaw)] += (np.asarray(steer.bend) / len(self.place.trunk_yaw))[..., None]
 
     def _of_tail(self, bend: np.ndarray | float) -> np.ndarray:
-        """Return what a steady bend of the tail adds to the bends of all hinges, as ``Waves.bends`` has them [rad]."""
-        within = self.yaw.hinges.within("tail")
-        each = np.zeros(len(self.yaw.hinges.servos))
-        each[within] = 1.0 / max(len(within), 1)
-        return np.asarray(np.asarray(bend)[..., None] * each * self.yaw.share)
+        """Return what a steady bend of the tail adds to ``Waves.bends`` at all hinges [rad]."""
+        tail_hinges = self.yaw.hinges.within("tail")
+        weights = np.zeros(len(self.yaw.hinges.servos))
+        weights[tail_hinges] = 1.0 / max(len(tail_hinges), 1)
+        return np.asarray(np.asarray(bend)[..., None] * weights * self.yaw.share)
 
     def _curve(self, targets: np.ndarray, limbs: np.ndarray, axis: np.ndarray) -> None:
+        """Write the servo angles of the measured curves.
+
+        Args:
+            targets: servo angles, written to [rad].
+            limbs: phases of the limbs [cycle].
+            axis: what the axis follows, as ``axis_phase`` returns it [-].
+        """
         if not self._curves:
             return
-        first = self._phases[:, 0] if self._phases.shape[1] else 0.0
-        along = np.angle(axis) / (2 * np.pi) + self._touch_down - first
+        first_phase = self._phases[:, 0] if self._phases.shape[1] else 0.0
+        axis_clock = np.angle(axis) / (2 * np.pi) + self._touch_down - first_phase
         for curve in self._curves:
-            clock = along if curve.limb is None else limbs[..., curve.limb] - self._phases[:, curve.limb]
+            clock = axis_clock if curve.limb is None else limbs[..., curve.limb] - self._phases[:, curve.limb]
             turns = np.exp(2j * np.pi * np.asarray(clock)[..., None] * np.arange(curve.harmonics.shape[1]))
             targets[..., curve.servo] = (turns * curve.harmonics).sum(axis=-1).real
 
@@ -197,13 +213,13 @@ class Movement:
 def trunk_amplitude(robot: Robot, gait: Gait) -> float:
     """Return the most that a gait bends the trunk sideways [rad]."""
     yaw = movement(robot, gait).yaw
-    among = yaw.hinges.within("trunk")
+    trunk_hinges = yaw.hinges.within("trunk")
     steady = np.abs(yaw.offset / yaw.share)
-    return float((yaw.amplitude() + steady)[0, among].sum())
+    return float((yaw.amplitude() + steady)[0, trunk_hinges].sum())
 
 
 class Batch:
-    """The gaits of the runs of a batch, gathered by skeleton and structure: each kind is worked out in one call.
+    """The gaits of a batch, grouped by skeleton and structure; each group is computed in one call.
 
     Robots that are built of one design have one skeleton, so that a batch of them is one kind.
 
@@ -213,6 +229,12 @@ class Batch:
     """
 
     def __init__(self, robots: Sequence[Robot], gaits: Sequence[Gait]) -> None:
+        """Work out each group of runs with one skeleton and one structure of gait.
+
+        Args:
+            robots: the design of each run.
+            gaits: the gait of each run.
+        """
         members: dict[Any, list[int]] = {}
         for run, (robot, gait) in enumerate(zip(robots, gaits, strict=True)):
             members.setdefault((skeleton(robot), structure(gait)), []).append(run)
@@ -224,7 +246,7 @@ class Batch:
         self._servos = len(layout(robots[0]).servos)
 
     def axis_phase(self, limbs: Float[np.ndarray, "run limb"], clock: Float[np.ndarray, " run"]) -> np.ndarray:
-        """Return what the axis of each run follows: its limbs, or its clock where it has none [-]."""
+        """Return the order parameter of each run's axis: of its limbs, or of its clock without limbs [-]."""
         z = np.zeros(len(limbs), dtype=complex)
         for movement, runs in self.groups:
             z[runs] = movement.axis_phase(limbs[runs]) if limbs.shape[1] else movement.axis_of_clock(clock[runs])
@@ -233,31 +255,37 @@ class Batch:
     def targets(
         self, limbs: Float[np.ndarray, "run limb"], axis: Complex[np.ndarray, " run"], steer: Steer | None = None
     ) -> Float[np.ndarray, "run servo"]:
-        """Return the servo angles of every run; see ``Movement.targets`` [rad]."""
+        """Return the servo angles of every run; see ``Movement.targets`` [rad].
+
+        Args:
+            limbs: phases of the limbs [cycle].
+            axis: what the axis follows [-].
+            steer: what is asked besides.
+        """
         targets = np.zeros((len(limbs), self._servos))
         for movement, runs in self.groups:
-            mine = None if steer is None else Steer(*(_of_runs(field, runs) for field in steer))
-            targets[runs] = movement.targets(limbs[runs], axis[runs], mine)
+            run_steer = None if steer is None else Steer(*(_of_runs(field, runs) for field in steer))
+            targets[runs] = movement.targets(limbs[runs], axis[runs], run_steer)
         return targets
 
-    def bend_of(self, part: Part, axis: Complex[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
+    def bend_of(self, region: Part, axis: Complex[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
         """Return how far a part of each run bends sideways, left positive [rad]."""
         bend = np.zeros(len(axis))
         for movement, runs in self.groups:
-            bend[runs] = movement.bend_of(part, axis[runs])
+            bend[runs] = movement.bend_of(region, axis[runs])
         return bend
 
-    def together(self, part: Part) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+    def together(self, region: Part) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return swing and steady bend of a part of each run: its bend is ``steady + Re(swing z)`` [rad]."""
         swing, steady = np.zeros(len(self.periods), dtype=complex), np.zeros(len(self.periods))
         for movement, runs in self.groups:
             yaw = movement.yaw
-            swing[runs], steady[runs] = yaw.together(yaw.hinges.within(part))
+            swing[runs], steady[runs] = yaw.together(yaw.hinges.within(region))
         return swing, steady
 
 
 def structure(gait: Gait) -> Any:
-    """Return what gaits must have in common to be worked out together: all that is no plain number."""
+    """Return a key that is equal for gaits that differ in plain numbers only."""
     limbs = tuple((type(limb), quarter(limb.swivel) if isinstance(limb, FootPath) else 0) for limb in gait.limbs)
     signs = tuple(_references([gait])[0])
     return limbs, signs, tuple((curve.servo, len(curve.angles)) for curve in gait.curves)
@@ -265,7 +293,7 @@ def structure(gait: Gait) -> Any:
 
 @lru_cache(maxsize=256)
 def movement(robot: Robot, gait: Gait) -> Movement:
-    """Return one gait worked out for a robot."""
+    """Return the movement of one gait on a robot; cached."""
     return Movement(robot, [gait])
 
 
@@ -285,8 +313,8 @@ def intended(
         OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
     """
     since = np.asarray(np.maximum(np.asarray(time, dtype=float) - begin, 0.0))
-    grown = np.minimum(since / ramp, 1.0) if ramp > 0.0 else None
-    size = None if grown is None else np.asarray(grown**2 * (3.0 - 2.0 * grown))
+    growth = np.minimum(since / ramp, 1.0) if ramp > 0.0 else None
+    size = None if growth is None else np.asarray(growth**2 * (3.0 - 2.0 * growth))
     clock = np.asarray(since / gait.period)
     return Intended(clock[..., None] + np.array(gait.limb_phases), cycle_targets(robot, gait, clock, size))
 
@@ -305,11 +333,13 @@ def cycle_targets(
     Raises:
         OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
     """
-    here, clock = movement(robot, gait), np.asarray(clock, dtype=float)
-    many = np.atleast_1d(clock)
+    gait_movement, clock = movement(robot, gait), np.asarray(clock, dtype=float)
+    clocks = np.atleast_1d(clock)
     steer = None if size is None else Steer(size=np.atleast_1d(size))
-    found = here.targets(many[..., None] + np.array(gait.limb_phases), here.axis_of_clock(many), steer)
-    return found.reshape(*clock.shape, -1)
+    targets = gait_movement.targets(
+        clocks[..., None] + np.array(gait.limb_phases), gait_movement.axis_of_clock(clocks), steer
+    )
+    return targets.reshape(*clock.shape, -1)
 
 
 def limb_targets(
@@ -325,16 +355,18 @@ def limb_targets(
     Raises:
         OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
     """
-    many = np.atleast_2d(phase)
-    targets = limb_movement(robot, gait).targets(many, np.zeros(many.shape[:-1], dtype=complex))
+    phases = np.atleast_2d(phase)
+    targets = limb_movement(robot, gait).targets(phases, np.zeros(phases.shape[:-1], dtype=complex))
     return targets.reshape(*np.shape(phase)[:-1], -1)
 
 
 @lru_cache(maxsize=256)
 def limb_movement(robot: Robot, gait: Gait) -> Movement:
     """Return a gait's limbs alone, worked out for a robot: its axis is not bent sideways, and not waved up and down."""
-    still = gait.straightened()
-    return Movement(robot, [replace(still, axis=tuple(bend for bend in still.axis if bend.turn == "pitch"))])
+    straight_gait = gait.straightened()
+    return Movement(
+        robot, [replace(straight_gait, axis=tuple(bend for bend in straight_gait.axis if bend.turn == "pitch"))]
+    )
 
 
 def middle_stance(robot: Robot, gait: Gait) -> Float[np.ndarray, " servo"]:
@@ -346,7 +378,11 @@ def middle_stance(robot: Robot, gait: Gait) -> Float[np.ndarray, " servo"]:
 
 
 def _references(gaits: Sequence[Gait]) -> tuple[np.ndarray, np.ndarray]:
-    """Return by which sign each limb pulls on the axis [-], and the rest of the phase at which it does [cycle]."""
+    """Return the sign with which each limb pulls on the axis [-], and the remaining phase of its pull [cycle].
+
+    Args:
+        gaits: one for each run.
+    """
     pulls = [gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases) for gait in gaits]
     reference = np.array(pulls, dtype=float)
     half = np.round(2.0 * reference)
@@ -358,11 +394,11 @@ class _Measured:
 
     def __init__(self, place: Layout, gaits: Sequence[Gait], number: int) -> None:
         self.servo = place.servos.index(gaits[0].curves[number].servo)
-        moved = [i for i, limb in enumerate(place.limbs) if limb.servos.start <= self.servo < limb.servos.stop]
-        self.limb = moved[0] if moved else None  # whose phase it follows; None: that of the axis
+        moved_limbs = [i for i, limb in enumerate(place.limbs) if limb.servos.start <= self.servo < limb.servos.stop]
+        self.limb = moved_limbs[0] if moved_limbs else None  # whose phase it follows; None: that of the axis
         self.harmonics = np.array([gait.curves[number].harmonics for gait in gaits])
 
 
 def _of_runs(field: np.ndarray | float, runs: np.ndarray) -> np.ndarray:
-    """Return what a field of a ``Steer`` says of some runs."""
+    """Return a field of a ``Steer`` for some runs."""
     return np.asarray(field)[runs] if np.ndim(field) else np.asarray(field)

@@ -111,18 +111,18 @@ class Bend:
     def __post_init__(self) -> None:
         with Checks("bend", self) as check:
             check.number("offset", -10 * pi, 10 * pi, "rad")
-            for name, most, unit in (("amplitude", 100 * pi, "rad"), ("lag", 100.0, "cycle")):
+            for name, limit, unit in (("amplitude", 100 * pi, "rad"), ("lag", 100.0, "cycle")):
                 row = getattr(self, name)
                 check.that(
-                    1 <= len(row) <= MOST_KNOTS and all(-most <= value <= most for value in row),
-                    f"bend.{name} is {str(row)[:80]}; 1 to {MOST_KNOTS} numbers of {-most:g} to {most:g} {unit} are "
+                    1 <= len(row) <= MOST_KNOTS and all(-limit <= value <= limit for value in row),
+                    f"bend.{name} is {str(row)[:80]}; 1 to {MOST_KNOTS} numbers of {-limit:g} to {limit:g} {unit} are "
                     "needed",
                 )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Curve:
-    """The angle of one servo over one cycle, as it was measured; it stands in the place of what limbs and axis say."""
+    """The measured angle of one servo over one cycle; it replaces the angles from limbs and axis."""
 
     servo: str
     """Name of the servo, as ``suchus.robot.design.layout(robot).servos`` has it."""
@@ -137,8 +137,11 @@ class Curve:
                 1 <= len(self.angles) <= MOST_ANGLES,
                 f"curve {self.servo} has {len(self.angles)} angles; 1 to {MOST_ANGLES} are allowed",
             )
-            wrong = next((angle for angle in self.angles if not abs(angle) <= 2 * pi), None)
-            check.that(wrong is None, f"curve {self.servo} has an angle of {wrong} rad; -6.28 to 6.28 rad is allowed")
+            invalid_angle = next((angle for angle in self.angles if not abs(angle) <= 2 * pi), None)
+            check.that(
+                invalid_angle is None,
+                f"curve {self.servo} has an angle of {invalid_angle} rad; -6.28 to 6.28 rad is allowed",
+            )
 
     @property
     def harmonics(self) -> Float[np.ndarray, " harmonic"]:
@@ -147,9 +150,9 @@ class Curve:
         It is the trigonometric interpolation, which has the fewest harmonics: 13 samples give six of them exactly.
         """
         count = len(self.angles)
-        found = np.fft.rfft(self.angles) / count
-        found[1 : (count + 1) // 2] *= 2.0
-        return np.asarray(found)
+        amplitudes = np.fft.rfft(self.angles) / count
+        amplitudes[1 : (count + 1) // 2] *= 2.0
+        return np.asarray(amplitudes)
 
     def at(self, clock: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
         """Return the angle at times in cycles [rad]."""
@@ -157,6 +160,6 @@ class Curve:
         return np.asarray((np.exp(2j * np.pi * turns) @ self.harmonics).real)
 
     def lagged(self, lag: float) -> "Curve":
-        """Return the curve so much later in the cycle [cycle]."""
+        """Return the curve delayed in the cycle [cycle]."""
         count = len(self.angles)
         return replace(self, angles=tuple(float(angle) for angle in self.at(np.arange(count) / count - lag)))

@@ -22,7 +22,7 @@ from suchus.robot.kinematics.tree import centre_of_mass
 
 SETTLING = 12
 """Rounds that bring the centre of mass to its place [-]; each leaves a tenth of the error, since the legs are light."""
-_INSIDE = 1e-6  # [m]; how far inside its reach a clipped leg stays
+_REACH_MARGIN = 1e-6  # [m]; distance inside its reach to which a leg is clipped
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,11 +150,11 @@ def upright(robot: Robot) -> Upright:
     leg = leg_of(hind)
     assert leg is not None
     pitching = next(hinge for hinge in root.hinges if hinge.turn == "pitch" and hinge.servo is not None)
-    behind = robot.axis[robot.root_place + 1 :]
-    lengths = [segment.front + segment.rear for segment in behind]
-    radii = [max(_half_height(shape) for shape in segment.shapes) for segment in behind]
-    middles = [fsum(lengths[:i]) + length / 2 for i, length in enumerate(lengths)]
-    taper = (radii[-1] - radii[0]) / (middles[-1] - middles[0]) if len(behind) > 1 else 0.0
+    tail_segments = robot.axis[robot.root_place + 1 :]
+    lengths = [segment.front + segment.rear for segment in tail_segments]
+    radii = [max(_half_height(shape) for shape in segment.shapes) for segment in tail_segments]
+    centers = [fsum(lengths[:i]) + length / 2 for i, length in enumerate(lengths)]
+    taper = (radii[-1] - radii[0]) / (centers[-1] - centers[0]) if len(tail_segments) > 1 else 0.0
     number = place.hinges.index(pitching.name)
     return Upright(
         leg=leg,
@@ -183,9 +183,11 @@ def _half_height(shape: Rod | Shell) -> float:
     return shape.radius if isinstance(shape, Rod) else shape.half[2]
 
 
-def _arm(first: int, hinges: tuple[Hinge, ...]) -> tuple[int, ...]:
+def _arm(first_index: int, hinges: tuple[Hinge, ...]) -> tuple[int, ...]:
     """Return where the first yaw, the first pitch and the last other pitch hinge of a limb are among all hinges."""
-    yaws, pitches = ([first + i for i, hinge in enumerate(hinges) if hinge.turn == turn] for turn in ("yaw", "pitch"))
+    yaws, pitches = (
+        [first_index + i for i, hinge in enumerate(hinges) if hinge.turn == turn] for turn in ("yaw", "pitch")
+    )
     return (yaws[0], pitches[0], pitches[-1]) if yaws and len(pitches) > 1 else ()
 
 
@@ -207,18 +209,18 @@ def plan(robot: Robot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Pl
     chains, place = upright(robot), layout(robot)
     keys = np.array([[getattr(p, name) for name in FIELDS] for p in sequence.postures])
     numbers = _eased(np.array(sequence.times), np.column_stack([keys, _balance(robot, keys)]), time)
-    given, behind = _named(numbers), numbers[..., -1]
-    angles = _angles(robot, given, behind)
+    parameters, feet_forward = _fields_by_name(numbers), numbers[..., -1]
+    angles = _angles(robot, parameters, feet_forward)
     targets = np.zeros((*angles.shape[:-1], len(place.servos)))  # the tail is straight, and so are cables
     direct = [servo for servo, hinge in enumerate(place.servo_hinges) if hinge >= 0]
     targets[..., direct] = angles[..., [place.servo_hinges[servo] for servo in direct]]
     _check_ranges(robot, targets)
-    pitch = given["pelvis_pitch"]
+    pitch = parameters["pelvis_pitch"]
     return Planned(
         targets=targets,
         pitch=pitch,
-        feet=_feet(chains.leg, given, behind),
-        lead=behind - _ahead(pitch, mass_from_hips(robot, angles)),
+        feet=_feet(chains.leg, parameters, feet_forward),
+        lead=feet_forward - _forward_in_world(pitch, mass_from_hips(robot, angles)),
     )
 
 
@@ -230,9 +232,9 @@ def mass_ahead(robot: Robot, posture: Posture, feet_ahead: float) -> float:
         posture: the posture.
         feet_ahead: how far the hind feet are ahead of the hips [m]; a leg that is too short points to its foot.
     """
-    given = {name: np.array(getattr(posture, name)) for name in FIELDS}
-    angles = _angles(robot, given, np.array(feet_ahead), clip=True)
-    return float(_ahead(given["pelvis_pitch"], mass_from_hips(robot, angles)))
+    parameters = {name: np.array(getattr(posture, name)) for name in FIELDS}
+    angles = _angles(robot, parameters, np.array(feet_ahead), clip=True)
+    return float(_forward_in_world(parameters["pelvis_pitch"], mass_from_hips(robot, angles)))
 
 
 def hind_leg(
@@ -250,22 +252,33 @@ def hind_leg(
         Unreachable: a foot is out of reach, and ``clip`` is false.
     """
     s, c = np.sin(pitch), np.cos(pitch)
-    out, forward, down = np.moveaxis(feet, -1, 0)
-    point = np.stack([out, c * forward - s * down, c * down + s * forward], axis=-1)
+    outward, forward, down = np.moveaxis(feet, -1, 0)
+    point = np.stack([outward, c * forward - s * down, c * down + s * forward], axis=-1)
     if clip:
-        far = np.linalg.norm(point, axis=-1, keepdims=True)
-        near, most = leg.reach
-        point = point * np.clip(far, near + _INSIDE, most - _INSIDE) / np.maximum(far, _INSIDE)
+        distance = np.linalg.norm(point, axis=-1, keepdims=True)
+        min_reach, max_reach = leg.reach
+        point = (
+            point
+            * np.clip(distance, min_reach + _REACH_MARGIN, max_reach - _REACH_MARGIN)
+            / np.maximum(distance, _REACH_MARGIN)
+        )
     point[..., 0] += leg.hip_offset
     return leg_kinematics.inverse(leg, point)
 
 
 def _eased(times: np.ndarray, keys: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Return the numbers of a sequence at some times, half a cosine from each key to the next, shape (*batch, number).
+
+    Args:
+        times: of the keys [s].
+        keys: numbers of the posture at each key, shape (key, number).
+        time: since the beginning of the sequence [s].
+    """
     if len(times) == 1:
         return np.broadcast_to(keys[0], (*time.shape, keys.shape[1]))
     i = np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 2)
-    share = np.clip((time - times[i]) / (times[i + 1] - times[i]), 0.0, 1.0)
-    return np.asarray(keys[i] + ((1.0 - np.cos(np.pi * share)) / 2.0)[..., None] * (keys[i + 1] - keys[i]))
+    fraction = np.clip((time - times[i]) / (times[i + 1] - times[i]), 0.0, 1.0)
+    return np.asarray(keys[i] + ((1.0 - np.cos(np.pi * fraction)) / 2.0)[..., None] * (keys[i + 1] - keys[i]))
 
 
 def mass_from_hips(robot: Robot, angles: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch 3"]:
@@ -273,36 +286,49 @@ def mass_from_hips(robot: Robot, angles: Float[np.ndarray, "*batch hinge"]) -> F
     return centre_of_mass(robot, angles) - np.array(upright(robot).hips)
 
 
-def _ahead(pitch: np.ndarray, point: np.ndarray) -> np.ndarray:
+def _forward_in_world(pitch: np.ndarray, point: np.ndarray) -> np.ndarray:
     """Return how far a point of the root's frame, from the hips, lies ahead of them in the world [m]."""
     return np.asarray(np.cos(pitch) * point[..., 0] - np.sin(pitch) * point[..., 2])
 
 
 def _balance(robot: Robot, keys: np.ndarray) -> np.ndarray:
-    """Return how far behind the feet the hips bring the centre of mass to its place in each key [m].
+    """Return how far ahead of the hips the feet must be in each key for the demanded ``lead`` [m].
 
     The centre of mass moves a little with the hind legs, and the hind legs follow from it: a few rounds agree.
+
+    Args:
+        robot: the design.
+        keys: numbers of the posture at each key, shape (key, number).
     """
-    behind = keys[:, FIELDS.index("lead")]
+    feet_forward = keys[:, FIELDS.index("lead")]
     for _ in range(SETTLING):
-        com = mass_from_hips(robot, _angles(robot, _named(keys), behind, clip=True))
-        behind = _ahead(keys[:, FIELDS.index("pelvis_pitch")], com) + keys[:, FIELDS.index("lead")]
-    return np.asarray(behind)
+        com = mass_from_hips(robot, _angles(robot, _fields_by_name(keys), feet_forward, clip=True))
+        feet_forward = _forward_in_world(keys[:, FIELDS.index("pelvis_pitch")], com) + keys[:, FIELDS.index("lead")]
+    return np.asarray(feet_forward)
 
 
-def _named(numbers: np.ndarray) -> dict[str, np.ndarray]:
-    return dict(zip(FIELDS, np.moveaxis(numbers, -1, 0), strict=False))
+def _fields_by_name(parameters: np.ndarray) -> dict[str, np.ndarray]:
+    return dict(zip(FIELDS, np.moveaxis(parameters, -1, 0), strict=False))
 
 
-def _angles(robot: Robot, given: dict[str, np.ndarray], behind: np.ndarray, *, clip: bool = False) -> np.ndarray:
-    """Return the angles of every hinge."""
+def _angles(
+    robot: Robot, parameters: dict[str, np.ndarray], feet_forward: np.ndarray, *, clip: bool = False
+) -> np.ndarray:
+    """Return the angles of every hinge, shape (*batch, hinge) [rad].
+
+    Args:
+        robot: the design.
+        parameters: numbers of the posture by name, see ``Posture``.
+        feet_forward: how far the hind feet are ahead of the hips [m].
+        clip: let a leg that is too short point to its foot.
+    """
     chains = upright(robot)
-    angles = np.zeros((*behind.shape, len(layout(robot).hinges)))
+    angles = np.zeros((*feet_forward.shape, len(layout(robot).hinges)))
     for arm in chains.arms:
         for hinge, name in zip(arm, ("arm_yaw", "arm_pitch", "arm_knee"), strict=False):
-            angles[..., hinge] = given[name]
+            angles[..., hinge] = parameters[name]
     try:
-        legs = hind_leg(chains.leg, _feet(chains.leg, given, behind), given["pelvis_pitch"], clip=clip)
+        legs = hind_leg(chains.leg, _feet(chains.leg, parameters, feet_forward), parameters["pelvis_pitch"], clip=clip)
     except Unreachable as error:
         raise OutsideLimits(
             f"the hind feet of robot {robot.name!r} cannot stay where they are planted: {error} "
@@ -310,19 +336,29 @@ def _angles(robot: Robot, given: dict[str, np.ndarray], behind: np.ndarray, *, c
         ) from error
     for hinges in chains.standing:
         angles[..., hinges] = legs
-    angles[..., list(chains.trunk)] = bent_up(chains, given["trunk_first"], given["trunk_second"])
+    angles[..., list(chains.trunk)] = bent_up(chains, parameters["trunk_first"], parameters["trunk_second"])
     angles[..., chains.tail] = np.clip(
-        tail_down(chains, given["hip_height"], given["pelvis_pitch"], given["tail_press"]), *chains.tail_range
+        tail_down(chains, parameters["hip_height"], parameters["pelvis_pitch"], parameters["tail_press"]),
+        *chains.tail_range,
     )
     return angles
 
 
 def bent_up(
-    chains: Upright, first: Float[np.ndarray, "*batch"], second: Float[np.ndarray, "*batch"]
+    chains: Upright, first_angle: Float[np.ndarray, "*batch"], second_angle: Float[np.ndarray, "*batch"]
 ) -> Float[np.ndarray, "*batch hinge"]:
-    """Return the angles of the trunk's pitch hinges, from the root forward [rad]; see ``Posture.trunk_second``."""
-    others = len(chains.trunk) - 1
-    return np.stack([-first, *others * [-second / others]] if others else [-first - second], axis=-1)
+    """Return the angles of the trunk's pitch hinges, from the root forward [rad]; see ``Posture.trunk_second``.
+
+    Args:
+        chains: of the body.
+        first_angle: of the first hinge, front end up positive [rad].
+        second_angle: of all other hinges together, front end up positive [rad].
+    """
+    other_count = len(chains.trunk) - 1
+    return np.stack(
+        [-first_angle, *other_count * [-second_angle / other_count]] if other_count else [-first_angle - second_angle],
+        axis=-1,
+    )
 
 
 def tail_down(
@@ -331,7 +367,7 @@ def tail_down(
     pitch: Float[np.ndarray, "*batch"],
     press: Float[np.ndarray, "*batch"] | float,
 ) -> Float[np.ndarray, "*batch"]:
-    """Return the pitch of the tail that brings the tip of a straight one to a depth below the ground [rad].
+    """Return the pitch of a straight tail that brings its tip to a depth below the ground [rad].
 
     Args:
         chains: of the body.
@@ -344,16 +380,19 @@ def tail_down(
     return np.asarray(np.arcsin(np.clip(drop / chains.tail_length, -1.0, 1.0)) - pitch)
 
 
-def _feet(leg: LegMeasures, given: dict[str, np.ndarray], behind: np.ndarray) -> np.ndarray:
-    down = given["hip_height"] - leg.foot_radius - given["lift"]
-    return np.stack([given["stance"], behind, down], axis=-1)
+def _feet(leg: LegMeasures, parameters: dict[str, np.ndarray], feet_forward: np.ndarray) -> np.ndarray:
+    down = parameters["hip_height"] - leg.foot_radius - parameters["lift"]
+    return np.stack([parameters["stance"], feet_forward, down], axis=-1)
 
 
 def _check_ranges(robot: Robot, targets: np.ndarray) -> None:
-    for i, (name, (low, high)) in enumerate(zip(layout(robot).servos, servo_ranges(robot), strict=True)):
-        worst = targets[..., i].ravel()[np.argmax(np.maximum(low - targets[..., i], targets[..., i] - high))]
-        if not low - 1e-9 <= worst <= high + 1e-9:
+    """Refuse servo angles outside the range of a joint."""
+    for i, (name, (lower_bound, upper_bound)) in enumerate(zip(layout(robot).servos, servo_ranges(robot), strict=True)):
+        worst_angle = targets[..., i].ravel()[
+            np.argmax(np.maximum(lower_bound - targets[..., i], targets[..., i] - upper_bound))
+        ]
+        if not lower_bound - 1e-9 <= worst_angle <= upper_bound + 1e-9:
             raise OutsideLimits(
-                f"a posture asks {name} of robot {robot.name!r} for {worst:.3f} rad; "
-                f"{low:.3f} to {high:.3f} rad is allowed."
+                f"a posture asks {name} of robot {robot.name!r} for {worst_angle:.3f} rad; "
+                f"{lower_bound:.3f} to {upper_bound:.3f} rad is allowed."
             )

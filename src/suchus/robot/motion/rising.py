@@ -80,15 +80,17 @@ def stand_up(
     relaxed = {"hip_height": ground, "tail_press": -0.02 * size, **lying}
     stance, press = _STANCE * size, 0.02 * size
     level = Posture(hip_height=ground + 0.021 * size, lead=0.0, stance=stance, lift=0.0, tail_press=0.0, **lying)
-    bent = replace(level, trunk_first=radians(50), trunk_second=radians(40), tail_press=press, **_ARMS_RAISED)
-    ahead = _feet_ahead(robot, level)
-    lead_level, lead_bent = (ahead - mass_ahead(robot, posture, ahead) for posture in (level, bent))
-    raised = {"stance": stance, "lift": 0.0, **_ARMS_RAISED}
+    bent_posture = replace(level, trunk_first=radians(50), trunk_second=radians(40), tail_press=press, **_ARMS_RAISED)
+    feet_forward = _feet_ahead(robot, level)
+    lead_level, lead_bent = (
+        feet_forward - mass_ahead(robot, posture, feet_forward) for posture in (level, bent_posture)
+    )
+    raised_fields = {"stance": stance, "lift": 0.0, **_ARMS_RAISED}
     postures = (
         Posture(lead=-0.57 * length, stance=2 * stance, lift=0.0, **relaxed),
         Posture(lead=lead_level, stance=stance, lift=press, **relaxed),
         replace(level, lead=lead_level),
-        replace(bent, lead=lead_bent),
+        replace(bent_posture, lead=lead_bent),
         Posture(
             hip_height=leg.foot_radius + 0.55 * length,
             pelvis_pitch=radians(45),
@@ -96,7 +98,7 @@ def stand_up(
             trunk_first=radians(30),
             trunk_second=radians(20),
             tail_press=press,
-            **raised,
+            **raised_fields,
         ),
         Posture(
             hip_height=leg.foot_radius + stretch * length,
@@ -105,7 +107,7 @@ def stand_up(
             trunk_first=TRUNK_FIRST,
             trunk_second=TRUNK_SECOND,
             tail_press=press / 2,
-            **raised,
+            **raised_fields,
         ),
     )
     times = tuple(slower * t for t in (0.0, 1.0, 1.5, 3.5, 5.0, 7.5))
@@ -121,19 +123,19 @@ def _feet_ahead(robot: Robot, level: Posture) -> float:
     leg = upright(robot).leg
     length = leg.femur + leg.tibia
     down = level.hip_height - leg.foot_radius
-    longest = np.sqrt((_NOT_QUITE * length) ** 2 - down**2 - level.stance**2)
-    return float(min(mass_ahead(robot, level, longest) + 0.17 * length, longest))
+    max_forward = np.sqrt((_NOT_QUITE * length) ** 2 - down**2 - level.stance**2)
+    return float(min(mass_ahead(robot, level, max_forward) + 0.17 * length, max_forward))
 
 
 def stretched(robot: Robot) -> float:
-    """Return hind leg, trunk and head in one straight line [m]; no posture reaches higher over the feet's centres."""
+    """Return the length of hind leg, trunk and head in a straight line [m], an upper bound of the snout's height."""
     chains, straight = upright(robot), np.zeros(len(layout(robot).hinges))
-    ahead = float(landmarks(robot, straight).snout[0]) - chains.hips[0]
-    return chains.leg.femur + chains.leg.tibia + ahead
+    snout_forward = float(landmarks(robot, straight).snout[0]) - chains.hips[0]
+    return chains.leg.femur + chains.leg.tibia + snout_forward
 
 
 def cantilever_torque(robot: Robot) -> float:
-    """Return what the first pitch joint of a straight trunk must give to lift the level forebody off the ground [N m].
+    """Return the torque of the first pitch joint that lifts the level forebody off the ground [N m].
 
     The limbs ahead of it hang out sideways, so that their weight acts at the shoulders.
     """
@@ -141,9 +143,9 @@ def cantilever_torque(robot: Robot) -> float:
     hinge = layout(robot).hinges[upright(robot).trunk[0]]
     bodies = layout(robot).bodies
     joint = next(i for i, body in enumerate(bodies) if any(name == hinge for _, name, _ in body.hinges))
-    ahead = straight.places[:, 0] - straight.places[joint, 0]
-    moved = ahead + moments[:, 0] / masses > 0.0
-    return float(GRAVITY * np.sum((masses * ahead + moments[:, 0])[moved]))
+    forward = straight.places[:, 0] - straight.places[joint, 0]
+    is_lifted = forward + moments[:, 0] / masses > 0.0
+    return float(GRAVITY * np.sum((masses * forward + moments[:, 0])[is_lifted]))
 
 
 def tallest(
@@ -161,7 +163,7 @@ def tallest(
     """
     chains = upright(robot)
     leg, stance = chains.leg, _STANCE * size_of(robot) if stance is None else stance
-    pitch, first, second = (
+    pitch, first_angles, second_angles = (
         g.ravel()
         for g in np.meshgrid(*(np.radians(np.arange(a, b, c)) for a, b, c in ((46, 91, 2), (-15, 46, 5), (-15, 46, 5))))
     )
@@ -169,20 +171,20 @@ def tallest(
     for arm in chains.arms:
         for hinge, name in zip(arm, ("arm_yaw", "arm_pitch", "arm_knee"), strict=False):
             angles[:, hinge] = _ARMS_RAISED[name]
-    angles[:, list(chains.trunk)] = bent_up(chains, first, second)
+    angles[:, list(chains.trunk)] = bent_up(chains, first_angles, second_angles)
     s, c = np.sin(pitch), np.cos(pitch)
     heights = []
     for shift in np.ravel(lead):
-        behind, down = np.full(len(pitch), shift), np.full(len(pitch), 0.9 * leg.reach[1])
+        feet_forward, down = np.full(len(pitch), shift), np.full(len(pitch), 0.9 * leg.reach[1])
         for _ in range(4):  # the legs' own weight moves the centre of mass a little
-            feet = np.stack([np.full(len(pitch), stance), behind, down], axis=-1)
-            bent = hind_leg(leg, feet, pitch, clip=True)
+            feet = np.stack([np.full(len(pitch), stance), feet_forward, down], axis=-1)
+            leg_angles = hind_leg(leg, feet, pitch, clip=True)
             for hinges in chains.standing:
-                angles[:, hinges] = bent
+                angles[:, hinges] = leg_angles
             angles[:, chains.tail] = tail_down(chains, down + leg.foot_radius, pitch, 0.0)
             com = mass_from_hips(robot, angles)
-            behind = c * com[:, 0] - s * com[:, 2] + shift
-            down = np.sqrt(np.maximum(leg.reach[1] ** 2 - behind**2 - stance**2, 0.0))
+            feet_forward = c * com[:, 0] - s * com[:, 2] + shift
+            down = np.sqrt(np.maximum(leg.reach[1] ** 2 - feet_forward**2 - stance**2, 0.0))
         snout, root = landmarks(robot, angles).snout - np.array(chains.hips), angles[:, chains.tail]
         fits = (root >= chains.tail_range[0]) & (root <= chains.tail_range[1]) & (down > 0)
         height = down + leg.foot_radius + s * snout[:, 0] + c * snout[:, 2]

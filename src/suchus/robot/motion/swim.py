@@ -62,7 +62,7 @@ def swimming_gait(
     """
     servos = lateral_servos(robot)
     require("swim", "frequency", frequency, 0.01, 20.0, "Hz")
-    for field, values, low, high, unit in (
+    for field, values, lower_bound, upper_bound, unit in (
         ("amplitude", amplitude, 0.0, 3.1416, "rad"),
         ("lag", lag, -1.0, 1.0, "cycle"),
     ):
@@ -72,17 +72,19 @@ def swimming_gait(
                 f"({', '.join(servos) or 'none'}), and each needs one."
             )
         for servo, value in zip(servos, values, strict=True):
-            require("swim", f"{field} of {servo}", value, low, high, unit)
+            require("swim", f"{field} of {servo}", value, lower_bound, upper_bound, unit)
     hinges, place = yaw_hinges(robot), layout(robot)
     number = {place.servos.index(servo): i for i, servo in enumerate(servos)}
     count = {servo: hinges.servos.count(servo) for servo in number}
     axis = []
-    for part in _PARTS:
-        moved = [hinges.servos[k] for k in hinges.within(part)]
-        if moved:
-            sizes = tuple(len(moved) / count[servo] * float(amplitude[number[servo]]) for servo in moved)
-            lags = tuple(float(lag[number[servo]]) for servo in moved)
-            axis.append(Bend(part=part, amplitude=_knots(sizes), lag=_knots(lags)))
+    for region in _PARTS:
+        region_servos = [hinges.servos[k] for k in hinges.within(region)]
+        if region_servos:
+            sizes = tuple(
+                len(region_servos) / count[servo] * float(amplitude[number[servo]]) for servo in region_servos
+            )
+            lags = tuple(float(lag[number[servo]]) for servo in region_servos)
+            axis.append(Bend(part=region, amplitude=_knots(sizes), lag=_knots(lags)))
     return Gait(
         name=name,
         period=1.0 / frequency,
@@ -94,8 +96,8 @@ def swimming_gait(
 
 def still(robot: Robot, *, frequency: float = 1.0, limbs: tuple[float, float] = LIMBS_BACK) -> Gait:
     """Return the swimming gait that is none: a straight axis, limbs held back; see ``swimming_gait``."""
-    none = (0.0,) * len(lateral_servos(robot))
-    return swimming_gait(robot, name="still", frequency=frequency, amplitude=none, lag=none, limbs=limbs)
+    zeros = (0.0,) * len(lateral_servos(robot))
+    return swimming_gait(robot, name="still", frequency=frequency, amplitude=zeros, lag=zeros, limbs=limbs)
 
 
 def with_limbs(robot: Robot, gait: Gait, limbs: tuple[float, float]) -> Gait:
@@ -108,11 +110,21 @@ def _knots(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def held(limb: Limb, angles: tuple[float, float]) -> Held:
-    """Return a limb held at yaw and pitch as far as its first such joints go, others as near 0 as they go [rad]."""
-    driven = [hinge for hinge in limb.hinges if hinge.servo is not None]
-    turns, row = [hinge.turn for hinge in driven], [0.0] * len(driven)
+    """Return a limb held at a yaw and a pitch within its ranges, all other joints as near to 0 as they go [rad].
+
+    Args:
+        limb: the design.
+        angles: yaw, forward positive, and pitch, down positive [rad].
+    """
+    driven_hinges = [hinge for hinge in limb.hinges if hinge.servo is not None]
+    turns, row = [hinge.turn for hinge in driven_hinges], [0.0] * len(driven_hinges)
     for turn, angle in zip(("yaw", "pitch"), angles, strict=True):
         if turn in turns:
             row[turns.index(turn)] = angle
-    ranges = [hinge.range or (-np.pi, np.pi) for hinge in driven]
-    return Held(angles=tuple(float(min(max(angle, low), high)) for angle, (low, high) in zip(row, ranges, strict=True)))
+    ranges = [hinge.range or (-np.pi, np.pi) for hinge in driven_hinges]
+    return Held(
+        angles=tuple(
+            float(min(max(angle, lower_bound), upper_bound))
+            for angle, (lower_bound, upper_bound) in zip(row, ranges, strict=True)
+        )
+    )

@@ -18,8 +18,8 @@ MEETING = 0.090 / LIMB_REACH
 """Least height of the hips at which limbs change their posture [limb reach]: a folded limb needs room."""
 RAISED = 0.2
 """How high limbs are lifted while they turn [reach of the hindmost limb]."""
-_TIMES = (0.6, 0.3, 0.5, 0.3, 0.3, 0.5, 0.3, 0.7)  # [s]; between one key and the next
-_LENGTH = 1.01  # [m]; of the body for which the times are
+_TIMES = (0.6, 0.3, 0.5, 0.3, 0.3, 0.5, 0.3, 0.7)  # durations between keys [s]
+_LENGTH = 1.01  # length of the body for which the times are [m]
 _STANDING = 0.999  # [cycle]; a phase at which every foot is meant to stand
 
 
@@ -37,17 +37,22 @@ class Transition(NamedTuple):
         return float(self.times[-1])
 
     def at(self, time: float, start: Float[np.ndarray, " servo"]) -> Float[np.ndarray, " servo"]:
-        """Return the servo angles at a time, having begun with the angles ``start`` [rad]."""
+        """Return the servo angles at a time [rad].
+
+        Args:
+            time: since the beginning of the transition [s].
+            start: servo angles at that beginning [rad].
+        """
         i = int(np.searchsorted(self.times, time, side="right"))
         if i >= len(self.times):
             return self.targets[-1]
-        since, before = (self.times[i - 1], self.targets[i - 1]) if i > 0 else (0.0, start)
-        share = np.clip((time - since) / (self.times[i] - since), 0.0, 1.0)
-        return np.asarray(before + (1.0 - np.cos(np.pi * share)) / 2.0 * (self.targets[i] - before))
+        since, previous = (self.times[i - 1], self.targets[i - 1]) if i > 0 else (0.0, start)
+        fraction = np.clip((time - since) / (self.times[i] - since), 0.0, 1.0)
+        return np.asarray(previous + (1.0 - np.cos(np.pi * fraction)) / 2.0 * (self.targets[i] - previous))
 
 
 @lru_cache(maxsize=64)
-def transition(robot: Robot, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
+def transition(robot: Robot, old_gait: Gait, new_gait: Gait, *, slower: float = 1.0) -> Transition:
     """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
 
     The robot stops and goes to a height at which both postures can stand. Then the limbs that swing in the first half
@@ -56,34 +61,42 @@ def transition(robot: Robot, here: Gait, there: Gait, *, slower: float = 1.0) ->
 
     Args:
         robot: the design.
-        here: the gait that it leaves.
-        there: the gait that it begins.
+        old_gait: the gait that it leaves.
+        new_gait: the gait that it begins.
         slower: factor on all times [-].
     """
     place = layout(robot)
-    early = np.array([(phase - here.limb_phases[0] + 0.25) % 1.0 < 0.5 for phase in here.limb_phases], dtype=bool)
+    is_first_pair = np.array(
+        [(phase - old_gait.limb_phases[0] + 0.25) % 1.0 < 0.5 for phase in old_gait.limb_phases], dtype=bool
+    )
     reach = place.limbs[-1].girdle.limb.reach if place.limbs else 0.0
-    height = max(MEETING, min(here.height, there.height))
-    old, new = replace(here, height=height), replace(there, height=height)
+    height = max(MEETING, min(old_gait.height, new_gait.height))
+    old, new = replace(old_gait, height=height), replace(new_gait, height=height)
 
     def standing(gait: Gait, lifted: np.ndarray) -> np.ndarray:
         steer = Steer(size=0.0, lower=-RAISED * reach * lifted[None])
         phase = np.full((1, len(place.limbs)), _STANDING)
         return np.asarray(movement(robot, gait).targets(phase, np.zeros(1, dtype=complex), steer)[0])
 
-    def mixed(turned: np.ndarray, lifted: np.ndarray) -> np.ndarray:
-        before, after = standing(old, lifted), standing(new, lifted)
-        share = turned.mean() if turned.size else 1.0
-        targets = (1.0 - share) * before + share * after
-        for limb, is_new in zip(place.limbs, turned, strict=True):
-            targets[limb.servos] = (after if is_new else before)[limb.servos]
+    def mixed(is_turned: np.ndarray, lifted: np.ndarray) -> np.ndarray:
+        """Return the servo angles while some limbs have their new posture; the axis mixes both by their number.
+
+        Args:
+            is_turned: which limbs have their new posture.
+            lifted: which limbs are lifted.
+        """
+        old_targets, new_targets = standing(old, lifted), standing(new, lifted)
+        fraction = is_turned.mean() if is_turned.size else 1.0
+        targets = (1.0 - fraction) * old_targets + fraction * new_targets
+        for limb, is_new in zip(place.limbs, is_turned, strict=True):
+            targets[limb.servos] = (new_targets if is_new else old_targets)[limb.servos]
         return targets
 
-    none = np.zeros(len(place.limbs), dtype=bool)
-    keys = [mixed(none, none)]
-    for before, pair in ((none, early), (early, ~early)):
-        after = before | pair
-        keys += [mixed(before, pair), mixed(after, pair), mixed(after, none)]
-    low, high = servo_ranges(robot).T
+    no_limb = np.zeros(len(place.limbs), dtype=bool)
+    keys = [mixed(no_limb, no_limb)]
+    for previous_mask, pair in ((no_limb, is_first_pair), (is_first_pair, ~is_first_pair)):
+        next_mask = previous_mask | pair
+        keys += [mixed(previous_mask, pair), mixed(next_mask, pair), mixed(next_mask, no_limb)]
+    lower_bound, upper_bound = servo_ranges(robot).T
     times = slower * gravity_time(robot.length) / gravity_time(_LENGTH) * np.cumsum(_TIMES)
-    return Transition(times, np.clip(np.array([*keys, standing(there, none)]), low, high))
+    return Transition(times, np.clip(np.array([*keys, standing(new_gait, no_limb)]), lower_bound, upper_bound))

@@ -13,7 +13,7 @@ from suchus.robot.design import Motor
 
 SHIPPED = Path(__file__).with_name("motors.toml")
 """The servos that suchus knows."""
-_OWN = ("name", "sources")  # fields that a table does not say
+_IMPLICIT_FIELDS = ("name", "sources")  # fields that a table does not say
 _PAIR = {"value", "source"}
 
 
@@ -24,14 +24,14 @@ def motors() -> Mapping[str, Motor]:
     They are made without pydantic, which would take a fifth of the time of an import; a test reads the same file as a
     user's is read.
     """
-    found = {}
+    catalog = {}
     for name, table in read_toml(SHIPPED).items():
         values, sources, _ = split(table)
-        given: dict[str, Any] = {
+        motor_fields: dict[str, Any] = {
             field: tuple(value) if isinstance(value, list) else value for field, value in values.items()
         }
-        found[name] = Motor(name=name, sources=tuple(sources.items()), **given)
-    return MappingProxyType(found)
+        catalog[name] = Motor(name=name, sources=tuple(sources.items()), **motor_fields)
+    return MappingProxyType(catalog)
 
 
 def motor(name: str) -> Motor:
@@ -46,18 +46,22 @@ def motor(name: str) -> Motor:
 
 
 def split(table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Return the values of a servo's table, their sources, and what is wrong with how they are written."""
+    """Return the values of a servo's table, their sources, and the mistakes in its form, each by field.
+
+    Args:
+        table: of one servo, as TOML gives it.
+    """
     values: dict[str, Any] = {}
     sources: dict[str, str] = {}
     odd: dict[str, str] = {}
-    known = [field.name for field in fields(Motor) if field.name not in _OWN]
-    for field, given in table.items():
-        if field in _OWN:
-            odd[field] = f"stands in the file by itself; there is {', '.join(known)}"
-        elif not isinstance(given, dict):
-            values[field] = given
-        elif set(given) != _PAIR or not isinstance(given["source"], str):
+    field_names = [field.name for field in fields(Motor) if field.name not in _IMPLICIT_FIELDS]
+    for field, entry in table.items():
+        if field in _IMPLICIT_FIELDS:
+            odd[field] = f"stands in the file by itself; there is {', '.join(field_names)}"
+        elif not isinstance(entry, dict):
+            values[field] = entry
+        elif set(entry) != _PAIR or not isinstance(entry["source"], str):
             odd[field] = 'is a table; {value = ..., source = "..."} is needed'
         else:
-            values[field], sources[field] = given["value"], given["source"]
+            values[field], sources[field] = entry["value"], entry["source"]
     return values, sources, odd

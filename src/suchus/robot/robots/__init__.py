@@ -17,7 +17,7 @@ class RelativeSize(NamedTuple):
     """Of the body [-]."""
 
 
-def _read(path: Path) -> Robot:
+def _read_robot(path: Path) -> Robot:
     from suchus.robot import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
     robot: Robot = blueprint.read(path, Robot, ROBOTS)
@@ -25,7 +25,7 @@ def _read(path: Path) -> Robot:
 
 
 ROBOTS: Catalog[Any] = Catalog(
-    "robot", "suchus.robot.robots", "suchus.robot.design:Robot", named=attrgetter("name"), read=_read
+    "robot", "suchus.robot.robots", "suchus.robot.design:Robot", named=attrgetter("name"), read=_read_robot
 )
 """Robots by name."""
 

@@ -29,11 +29,17 @@ def pleurodeles(length: float, mass: float, density: float, keel: float, *, beat
         keel: share of the mass of each part of the axis that lies low [-].
         beat: frequency of the swim for which its joints are stiff enough [Hz].
     """
-    grown = scaled(_salamander, length_factor=length / _salamander.length, mass_factor=mass / _salamander.mass)
-    grown = replace(grown, axis=tuple(_held(one, swim_servo_for(mass, length, beat)) for one in grown.axis))
+    animal = scaled(_salamander, length_factor=length / _salamander.length, mass_factor=mass / _salamander.mass)
+    animal = replace(
+        animal, axis=tuple(_with_stiff_hinges(segment, swim_servo_for(mass, length, beat)) for segment in animal.axis)
+    )
     factor = 1.0
     for _ in range(12):
-        robot = replace(grown, name="pleurodeles", axis=tuple(_part(one, density, keel, factor) for one in grown.axis))
+        robot = replace(
+            animal,
+            name="pleurodeles",
+            axis=tuple(_floating_segment(segment, density, keel, factor) for segment in animal.axis),
+        )
         volume = sum(volumes(robot).values())
         if abs(volume * density / mass - 1.0) < 1e-9:
             break
@@ -41,36 +47,44 @@ def pleurodeles(length: float, mass: float, density: float, keel: float, *, beat
     return robot
 
 
-def _held(segment: Segment, servo: Servo) -> Segment:
+def _with_stiff_hinges(segment: Segment, servo: Servo) -> Segment:
     """Return a segment behind which a servo that holds the water turns the lateral hinges."""
-    hinges = tuple(replace(one, drive=servo) if one.turn == "yaw" else one for one in segment.hinges)
+    hinges = tuple(replace(hinge, drive=servo) if hinge.turn == "yaw" else hinge for hinge in segment.hinges)
     return replace(segment, hinges=hinges)
 
 
-def _part(segment: Segment, density: float, keel: float, factor: float) -> Segment:
+def _floating_segment(segment: Segment, density: float, keel: float, factor: float) -> Segment:
+    """Return a segment with the volume of its mass, of which a part lies low.
+
+    Args:
+        segment: of one rod.
+        density: mass over volume [kg/m3].
+        keel: fraction of the mass that lies low [-].
+        factor: on the radius [-].
+    """
     (rod,) = (shape for shape in segment.shapes if isinstance(shape, Rod))
-    long = segment.front + segment.rear
-    radius = factor * sqrt(rod.mass / (density * pi * long))
-    start, end = min(rod.start[0] + rod.radius, 0.0), -long
-    start = -min(radius, 0.4 * long) if rod.start[0] < 0.0 else start
-    end += min(radius, 0.4 * long) if rod.end[0] > -long else 0.0
-    thin, low = 0.2 * radius, -0.6 * radius
+    length = segment.front + segment.rear
+    radius = factor * sqrt(rod.mass / (density * pi * length))
+    start, end = min(rod.start[0] + rod.radius, 0.0), -length
+    start = -min(radius, 0.4 * length) if rod.start[0] < 0.0 else start
+    end += min(radius, 0.4 * length) if rod.end[0] > -length else 0.0
+    belly_radius, belly_z = 0.2 * radius, -0.6 * radius
     flesh = replace(rod, start=(start, 0.0, 0.0), end=(end, 0.0, 0.0), radius=radius, mass=(1.0 - keel) * rod.mass)
     belly = Rod(
-        name=f"{rod.name}_belly", start=(0.4 * end, 0.0, low), end=(0.6 * end, 0.0, low), radius=thin,
+        name=f"{rod.name}_belly", start=(0.4 * end, 0.0, belly_z), end=(0.6 * end, 0.0, belly_z), radius=belly_radius,
         mass=keel * rod.mass,
     )  # fmt: skip
     return replace(segment, shapes=(flesh, belly))
 
 
-def catshark(length: float, mass: float, density: float, wide: float, tail: float, *, beat: float) -> Robot:
+def catshark(length: float, mass: float, density: float, width_factor: float, tail: float, *, beat: float) -> Robot:
     """Return a small-spotted catshark, its sections ellipses.
 
     Args:
         length: from the snout to the tip of the tail [m].
         mass: [kg].
         density: mass over volume [kg/m3].
-        wide: factor on the drawn width [-].
+        width_factor: factor on the drawn width [-].
         tail: factor on the height of the caudal fin [-].
         beat: frequency of the swim for which its joints are stiff enough [Hz].
 
@@ -79,15 +93,15 @@ def catshark(length: float, mass: float, density: float, wide: float, tail: floa
     places = (0.0, 0.03, 0.10, 0.20, 0.32, 0.45, 0.60, 0.75, 0.85, 0.95, 1.0)
     half_width = (0.012, 0.035, 0.052, 0.055, 0.048, 0.036, 0.024, 0.014, 0.008, 0.006, 0.005)
     half_height = (0.010, 0.022, 0.036, 0.044, 0.042, 0.040, 0.034, 0.026, 0.036, 0.042, 0.036)
-    high = [value * (tail if place > 0.8 else 1.0) for place, value in zip(places, half_height, strict=True)]
+    scaled_height = [value * (tail if place > 0.8 else 1.0) for place, value in zip(places, half_height, strict=True)]
     drawing = Drawing(
         name="catshark",
         length=length,
         mass=mass,
         density=density,
         places=places,
-        half_width=tuple(wide * value for value in half_width),
-        half_height=tuple(high),
+        half_width=tuple(width_factor * value for value in half_width),
+        half_height=tuple(scaled_height),
         joints=_CATSHARK_JOINTS,
     )
     return drawing.robot(swim_servo_for(mass, length, beat))
@@ -117,9 +131,10 @@ def eel(length: float, mass: float, density: float, *, beat: float) -> Robot:
 
 
 def _eel_width(place: float) -> float:
-    head, tail, wide, thin = 0.04, 0.95, 0.04, 0.01
+    """Return the half width of the eel at a place along the body, both [body length]."""
+    head, tail, max_width, tail_width = 0.04, 0.95, 0.04, 0.01
     if place < head:
-        return max(sqrt(max(2.0 * wide * place - place**2, 0.0)), 0.006)
+        return max(sqrt(max(2.0 * max_width * place - place**2, 0.0)), 0.006)
     if place < tail:
-        return wide - (wide - thin) * ((place - head) / (tail - head)) ** 2
-    return max(thin * (1.0 - place) / (1.0 - tail), 0.001)
+        return max_width - (max_width - tail_width) * ((place - head) / (tail - head)) ** 2
+    return max(tail_width * (1.0 - place) / (1.0 - tail), 0.001)

@@ -49,20 +49,20 @@ def row(
         masses: of the segments [kg].
         joints: behind every segment but the last, those of each joint in order.
     """
-    found = []
+    segments = []
     for i, (name, length, radius, mass) in enumerate(zip(names, lengths, radii, masses, strict=True)):
         # the rods' round ends reach into the joints; the first and the last one stay inside the body's length
         start = -radius if i == 0 else 0.0
         end = -length + (radius if i == len(names) - 1 else 0.0)
         rod = Rod(name=name, start=(start, 0.0, 0.0), end=(end, 0.0, 0.0), radius=radius, mass=mass)
         hinges = tuple(hinge(*joint) for joint in joints[i]) if i < len(joints) else ()
-        found.append(Segment(name=name, front=0.0, rear=length, shapes=(rod,), hinges=hinges))
-    return tuple(found)
+        segments.append(Segment(name=name, front=0.0, rear=length, shapes=(rod,), hinges=hinges))
+    return tuple(segments)
 
 
 def limb(
-    upper: float,
-    lower: float,
+    upper_length: float,
+    lower_length: float,
     *,
     radius: float,
     masses: tuple[float, float, float],
@@ -74,8 +74,8 @@ def limb(
     """Return a limb of yaw, pitch, perhaps roll, and an elbow.
 
     Args:
-        upper: length of the upper limb [m].
-        lower: of the lower limb to the foot's centre [m].
+        upper_length: length of the upper limb [m].
+        lower_length: of the lower limb to the foot's centre [m].
         radius: of the upper limb [m].
         masses: of upper limb, lower limb and foot [kg].
         foot: radius of the foot [m].
@@ -89,13 +89,13 @@ def limb(
     bend = Hinge(name="elbow", turn="pitch", drive=servo, range=(-0.2, 2.6))
     return Limb(
         links=(
-            Link(name="upper", hinges=tuple(hip), end=(0.0, upper, 0.0), radius=radius, mass=masses[0]),
-            Link(name="lower", hinges=(bend,), end=(0.0, lower, 0.0), radius=0.8 * radius, mass=masses[1]),
+            Link(name="upper", hinges=tuple(hip), end=(0.0, upper_length, 0.0), radius=radius, mass=masses[0]),
+            Link(name="lower", hinges=(bend,), end=(0.0, lower_length, 0.0), radius=0.8 * radius, mass=masses[1]),
         ),
         foot=Foot(radius=foot, mass=masses[2]),
     )
 
 
-def girdle(name: str, segment: str, at: float, aside: float, above: float, limb: Limb) -> Girdle:
+def girdle(name: str, segment: str, position: float, lateral_offset: float, height: float, limb: Limb) -> Girdle:
     """Return a girdle; see ``suchus.robot.design.Girdle``."""
-    return Girdle(name=name, segment=segment, at=at, aside=aside, above=above, limb=limb)
+    return Girdle(name=name, segment=segment, at=position, aside=lateral_offset, above=height, limb=limb)

@@ -96,7 +96,7 @@ robot = crocodile(tables)
 """The article's robot."""
 
 _PID = "1 to 2 degrees of static droop in stance, damping close to critical; integral action would wind up in stance"
-_BOUGHT = "from an STS3215 for 12 V on three empty cells to an STS3250 on three full ones"
+_SERVO_CHOICE = "from an STS3215 for 12 V on three empty cells to an STS3250 on three full ones"
 _CASE = "room for a hobby servo's case, and a belly that clears the ground in the crawl"
 _FORE_LEG = "the article gives the hind leg only; crocodilians' fore legs are 0.8 to 0.9 as long"
 _FOLD = "the legs can fold under the body for erect postures, and a 270 degree servo turns that far"
@@ -105,10 +105,16 @@ _BRACKET = "what brackets of this size allow, and what rising needs"
 _Row = tuple[str, float, float, str]
 
 
-def _servo_rows(path: str, asked: str) -> tuple[_Row, ...]:
+def _servo_rows(path: str, demand: str) -> tuple[_Row, ...]:
+    """Return path, plausible range and reason of every number of a servo.
+
+    Args:
+        path: of the servo in the tables.
+        demand: torque that the robot's movements ask of it, as a clause.
+    """
     return (
-        (f"{path}.torque", 2.4, 5.2, f"{_BOUGHT}; {asked}"),
-        (f"{path}.speed", 3.9, 8.3, f"{_BOUGHT}, which turn slower by the same share"),
+        (f"{path}.torque", 2.4, 5.2, f"{_SERVO_CHOICE}; {demand}"),
+        (f"{path}.speed", 3.9, 8.3, f"{_SERVO_CHOICE}, which turn slower by the same share"),
         (f"{path}.kp", 20.0, 80.0, _PID),
         (f"{path}.ki", 0.0, 20.0, _PID),
         (f"{path}.kd", 0.3, 1.2, _PID),
@@ -120,6 +126,7 @@ def _servo_rows(path: str, asked: str) -> tuple[_Row, ...]:
 
 
 def _leg_rows(path: str) -> tuple[_Row, ...]:
+    """Return path, plausible range and reason of every chosen number of the leg at a path."""
     return (
         (f"{path}.foot_radius", 0.008, 0.020, "a rubber ball that a pressure sensor fits into"),
         (f"{path}.radius", 0.008, 0.015, "a tube that carries the servos"),
@@ -215,5 +222,8 @@ _ROWS: tuple[_Row, ...] = (
     ("contact.skin_friction", 0.2, 0.6, "plastic on a floor"),
     ("contact.time_constant", 0.01, 0.03, "a rubber sole; displacement within 1 % over the range"),
 )
-chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)
+chosen = tuple(
+    Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+    for field, lower_bound, upper_bound, reason in _ROWS
+)
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

@@ -14,9 +14,12 @@ tables = replace(
 robot = crocodile(tables)
 """A robot of another topology, for studies of what a tail is worth."""
 
-_OWN = (
+_OWN_CHOICES = (
     Chosen(field="tail.fin_length", low=0.15, high=0.25, why="makes the tail 56 % of the body"),
     Chosen(field="tail.mass", low=0.45, high=0.80, why="the caiman's tail, longer in proportion"),
 )
-chosen = (*(entry for entry in caiman.chosen if entry.field not in {own.field for own in _OWN}), *_OWN)
+chosen = (
+    *(entry for entry in caiman.chosen if entry.field not in {choice.field for choice in _OWN_CHOICES}),
+    *_OWN_CHOICES,
+)
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

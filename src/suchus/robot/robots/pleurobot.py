@@ -17,9 +17,17 @@ _PELVIS = _NAMES.index("pelvis")
 _servo = servo_for(_MASS, _LENGTH)
 
 
-def _limb(upper: float, lower: float):  # type: ignore[no-untyped-def]
+def _limb(upper_length: float, lower_length: float):  # type: ignore[no-untyped-def]
+    """Return a limb of yaw, pitch, roll and elbow with two lengths, above and below the elbow [m]."""
     return limb(
-        upper, lower, radius=0.016, masses=_LIMB_MASSES, foot=0.016, servo=_servo, roll=True, limit=radians(110)
+        upper_length,
+        lower_length,
+        radius=0.016,
+        masses=_LIMB_MASSES,
+        foot=0.016,
+        servo=_servo,
+        roll=True,
+        limit=radians(110),
     )
 
 
@@ -51,7 +59,7 @@ robot = Robot(
 )
 """The robot of Karakasiliotis et al. 2016: its bones and joints; the rest chosen."""
 
-_OWN = (
+_REASONS = (
     Reason(r"\.radius$", 0.7, 1.4, "room for the servos between the bones"),
     Reason(r"\.mass$", 0.7, 1.4, "5.5 kg in all, spread by volume; a limb of 0.3 kg holds four servos"),
     Reason(
@@ -60,5 +68,5 @@ _OWN = (
     Reason(r"^girdles\[\d\]\.(at|aside|above)$", 0.7, 1.3, "hips beside the girdles' servos"),
 )
 _PUBLISHED = (r"^girdles.*\.end\[1\]$",)
-chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE), _PUBLISHED)
+chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the publication does not give, with its plausible range and the reason."""

@@ -24,7 +24,11 @@ _HIPS = 3  # place of the segment that carries the hind limbs
 
 
 def _passive(stiffness: float) -> Spring:
-    """Return a passive joint of the source's model; stiffness in parts of the body's weight times its length [-]."""
+    """Return a passive joint after the published model.
+
+    Args:
+        stiffness: over the body's weight times its length [-].
+    """
     torque = _MASS * GRAVITY * _LENGTH
     return Spring(
         stiffness=stiffness * torque,
@@ -35,13 +39,13 @@ def _passive(stiffness: float) -> Spring:
 
 def _joints(number: int) -> list[Joint]:
     """Return the joints behind a segment: a yaw joint, and perhaps a passive pitch joint."""
-    ahead = number < _HIPS
-    word = ("neck" if number == 0 else "spine") if ahead else "tail"
-    count = 1 if number == 0 else abs(number - _HIPS) + (not ahead)
-    found: list[Joint] = [(f"{word}_yaw_{count}", "yaw", _servo, radians(90))]
+    is_trunk = number < _HIPS
+    word = ("neck" if number == 0 else "spine") if is_trunk else "tail"
+    count = 1 if number == 0 else abs(number - _HIPS) + (not is_trunk)
+    joints: list[Joint] = [(f"{word}_yaw_{count}", "yaw", _servo, radians(90))]
     if number + 1 in _PITCH_BESIDE:
-        found.append((f"{word}_pitch_{count}", "pitch", _passive(0.11 if ahead else 0.036), radians(40)))
-    return found
+        joints.append((f"{word}_pitch_{count}", "pitch", _passive(0.11 if is_trunk else 0.036), radians(40)))
+    return joints
 
 
 _limb = limb(0.005, 0.006, radius=0.9e-3, masses=_LIMB_MASSES, foot=1.2e-3, servo=_servo, roll=True, limit=radians(110))
@@ -65,7 +69,7 @@ robot = Robot(
 
 """After the model of a Pleurodeles scaled to 0.10 m that is used with SalamandraSNN (MIT)."""
 
-_OWN = (
+_REASONS = (
     Reason(
         r"^axis\[\d\]\.hinges\[1\]\.drive\.(stiffness|damping)$",
         0.5,
@@ -85,5 +89,5 @@ _PUBLISHED = (
     r"\.foot\.radius$",
     r"^girdles.*\.end\[",
 )
-chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE), _PUBLISHED)
+chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the model does not give, with its plausible range and the reason."""

@@ -63,7 +63,7 @@ robot = Robot(
 )
 """The robot of Ijspeert, Crespi, Ryczko and Cabelguen 2007 after the dimensions of its public model."""
 
-_OWN = (
+_REASONS = (
     Reason(r"\.radius$", 0.7, 1.3, "round segments of about the published height and width"),
     Reason(r"\.mass$", 0.7, 1.4, "2 kg as a whole for the published outline; legs of 30 g"),
     Reason(r"^axis.*\.(start|end)\[0\]$", 0.8, 1.2, "a rod as long as its segment, its round ends in the joints"),
@@ -74,5 +74,5 @@ _PUBLISHED = (
     r"\.foot\.radius$",
     r"^girdles.*\.end\[",
 )
-chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE), _PUBLISHED)
+chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the public model does not give, with its plausible range and the reason."""

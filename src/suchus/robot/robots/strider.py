@@ -32,7 +32,7 @@ robot = Robot(
 )
 """Proof that six limbs are no more than three girdles."""
 
-_OWN = (
+_REASONS = (
     Reason(r"\.radius$", 0.7, 1.4, "room for hobby servos"),
     Reason(r"\.mass$", 0.7, 1.4, "3 kg in all; a limb of 0.15 kg holds three small servos"),
     Reason(
@@ -43,5 +43,5 @@ _OWN = (
     ),
     Reason(r"^girdles\[\d\]\.(at|aside|above)$", 0.7, 1.4, "hips beside the body, in the middle of each segment"),
 )
-chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE))
+chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE))
 """Every number, with its plausible range and the reason: the robot is invented."""

@@ -12,8 +12,10 @@ from suchus.robot.robots._plans import BY_SIZE
 _COUNT, _SEGMENT, _HEIGHT, _WIDTH = 11, 0.095, 0.056, 0.040
 _LENGTH = _COUNT * _SEGMENT
 _HALF = (0.55 * _SEGMENT, _WIDTH / 2, _HEIGHT / 2)
-_AFLOAT = 0.95  # mass over that of the water that it displaces when it is all under water: it swims at the surface
-_LOW = 0.15  # share of the mass in each of the two edges of the belly: the batteries lie low, so that it floats upright
+# mass over that of the water that it displaces when it is all under water: it swims at the surface
+_RELATIVE_DENSITY = 0.95
+# share of the mass in each of the two edges of the belly: the batteries lie low, so that it floats upright
+_BELLY_MASS_FRACTION = 0.15
 _ROOT = _COUNT // 2
 
 
@@ -23,7 +25,12 @@ def _hinge(number: int, servo: Servo) -> Hinge:
 
 
 def _shapes(name: str, mass: float) -> tuple[Shell | Rod, ...]:
-    """Return an ellipsoid and the two edges of its flat belly, on which it stands; their mass together [kg]."""
+    """Return an ellipsoid and the two edges of its flat belly, on which it stands.
+
+    Args:
+        name: of the segment.
+        mass: of all three together [kg].
+    """
     end, edge = 0.4 * _SEGMENT, 0.2 * _WIDTH
     edges = tuple(
         Rod(
@@ -31,15 +38,19 @@ def _shapes(name: str, mass: float) -> tuple[Shell | Rod, ...]:
             start=(-end, y, edge - _HEIGHT / 2),
             end=(end, y, edge - _HEIGHT / 2),
             radius=edge,
-            mass=_LOW * mass,
+            mass=_BELLY_MASS_FRACTION * mass,
         )
         for side, y in (("left", 0.3 * _WIDTH), ("right", -0.3 * _WIDTH))
     )
-    return Shell(name=name, at=(0.0, 0.0, 0.0), half=_HALF, mass=(1 - 2 * _LOW) * mass), *edges
+    return Shell(name=name, at=(0.0, 0.0, 0.0), half=_HALF, mass=(1 - 2 * _BELLY_MASS_FRACTION) * mass), *edges
 
 
 def _swimmer(mass: float) -> Robot:
-    """Return it with segments of some mass [kg]."""
+    """Return the swimmer.
+
+    Args:
+        mass: of each segment [kg].
+    """
     servo = servo_for(_COUNT * mass, _LENGTH)
     return Robot(
         name="swimmer",
@@ -60,14 +71,14 @@ def _swimmer(mass: float) -> Robot:
     )
 
 
-robot = _swimmer(_AFLOAT * WATER_DENSITY * sum(volumes(_swimmer(1.0)).values()) / _COUNT)
+robot = _swimmer(_RELATIVE_DENSITY * WATER_DENSITY * sum(volumes(_swimmer(1.0)).values()) / _COUNT)
 """A row of equal segments that float with a twentieth of their volume above the water."""
 
-_OWN = (
+_REASONS = (
     Reason(r"\.half\[0\]$", 0.9, 1.1, "neighbouring shells overlap by a tenth, so that the outline closes"),
     Reason(r"\.(start|end|radius)", 0.7, 1.3, "a flat belly, so that it does not roll to its side"),
     Reason(r"\.mass$", 0.9, 1.1, "together they float with a twentieth of their volume above the water, batteries low"),
 )
 _PUBLISHED = (r"^axis\[\d+\]\.(front|rear)$", r"\.half\[[12]\]$")
-chosen = chosen_numbers(robot, (*_OWN, *BY_SIZE), _PUBLISHED)
+chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the public models do not give, with its plausible range and the reason."""
