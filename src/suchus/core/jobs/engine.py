@@ -45,45 +45,45 @@ def finish(
     """
     numbers = range(len(job.items))
     missing = [number for number in numbers if not store.has(number)]
-    there = sorted(set(numbers) - set(missing))
+    stored_numbers = sorted(set(numbers) - set(missing))
     tally = Tally(
         sum(job.size(number) for number in numbers),
         job.unit,
         progress,
-        done=sum(job.size(number) for number in there),
-        failed=0 if job.failures is None else sum(job.failed(store.get(number)) for number in there),
+        done=sum(job.size(number) for number in stored_numbers),
+        failed=0 if job.failures is None else sum(job.failed(store.get(number)) for number in stored_numbers),
     )
 
-    def begun(i: int) -> Progress:
+    def start_piece(i: int) -> Progress:
         number = missing[i]
-        own = silent if each is None else each(number)
+        report = silent if each is None else each(number)
 
         def tell(stage: str, share: float) -> None:
-            own(stage, share)
+            report(stage, share)
             tally.under_way(number, share * job.size(number))
 
         return tell
 
-    with closing(place.results(job, [job.items[number] for number in missing], begun)) as results:
-        for i, made in results:
+    with closing(place.results(job, [job.items[number] for number in missing], start_piece)) as results:
+        for i, outcome in results:
             number = missing[i]
-            result = _of_the_dead(job, number, made) if isinstance(made, Died) else made
+            result = _result_after_crash(job, number, outcome) if isinstance(outcome, Died) else outcome
             store.put(number, result)
             tally.finished(number, job.size(number), failed=job.failed(result))
             if finished is not None:
                 finished(number, result)
 
 
-def _of_the_dead(job: Job[Item, Result], number: int, died: Died) -> Result:
+def _result_after_crash(job: Job[Item, Result], number: int, crash: Died) -> Result:
     """Return the result of a piece whose processes died.
 
     Raises:
         ProcessDied: the job has none.
     """
     if job.died is not None:
-        return job.died(job.items[number], died.exit_code)
+        return job.died(job.items[number], crash.exit_code)
     raise ProcessDied(
-        f"the process at {job.piece} {number} of {job.kind} {job.name!r} ended with exit code {died.exit_code}, "
+        f"the process at {job.piece} {number} of {job.kind} {job.name!r} ended with exit code {crash.exit_code}, "
         f"{job.tries} times; what was finished is kept: where memory was short, fewer processes (--jobs) or smaller "
         "pieces take less of it."
     )
@@ -108,12 +108,12 @@ class Tally:
         self.note = ""
         """What else is told, behind the count."""
         self._total, self._unit, self._progress = total, unit, progress
-        self._before, self._start = done, time.perf_counter()
-        self._under_way: dict[int, float] = {}
+        self._earlier_units, self._start = done, time.perf_counter()
+        self._open_units: dict[int, float] = {}
 
     def under_way(self, number: int, units: float) -> None:
         """Tell how many units of a piece are done [-]; several pieces may be under way at once."""
-        self._under_way[number] = units
+        self._open_units[number] = units
         self._tell()
 
     def finished(self, number: int, units: float, *, failed: int = 0, fresh: bool = True) -> None:
@@ -125,25 +125,25 @@ class Tally:
             failed: how many of them failed [-].
             fresh: whether this start did it; what an earlier one did says nothing of the rate.
         """
-        self._under_way.pop(number, None)
+        self._open_units.pop(number, None)
         self.done += units
         self.failed += failed
-        self._before += 0.0 if fresh else units
+        self._earlier_units += 0.0 if fresh else units
         self._tell()
 
     def _tell(self) -> None:
-        done = self.done + sum(self._under_way.values())
+        done_units = self.done + sum(self._open_units.values())
         seconds = time.perf_counter() - self._start
-        rate = (done - self._before) / seconds if seconds > 0 else 0.0
-        words = [f"{int(done)} of {self._total:g} {self._unit}"]
+        rate = (done_units - self._earlier_units) / seconds if seconds > 0 else 0.0
+        words = [f"{int(done_units)} of {self._total:g} {self._unit}"]
         if rate > 0:
             words.append(f"{rate:.1f}/s" if rate >= 0.1 else f"{3600 * rate:.1f}/h")
-            words.append(f"{_duration(max(self._total - done, 0.0) / rate)} left")
+            words.append(f"{_duration(max(self._total - done_units, 0.0) / rate)} left")
         if self.failed:
             words.append(f"{self.failed} failed")
         if self.note:
             words.append(self.note)
-        self._progress(", ".join(words), min(done / self._total, 1.0))
+        self._progress(", ".join(words), min(done_units / self._total, 1.0))
 
 
 def _duration(seconds: float) -> str:

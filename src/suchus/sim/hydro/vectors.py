@@ -29,17 +29,17 @@ FOLDER = folder()
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile what is called from outside; keep the code on disk (see ``suchus.core.kernel_cache``)."""
-    made: Callable[P, R] = njit(**_OPTIONS)(function)
+    kernel: Callable[P, R] = njit(**_OPTIONS)(function)
     if FOLDER is not None:  # else it is compiled anew every time
-        kernel_cache.keep(made, FOLDER)
-    return made
+        kernel_cache.keep(kernel, FOLDER)
+    return kernel
 
 
 def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a part of these, which nothing else calls."""
-    alone = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
-    made: Callable[P, R] = njit(**_OPTIONS, **alone)(function)
-    return made
+    inline_options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    kernel: Callable[P, R] = njit(**_OPTIONS, **inline_options)(function)
+    return kernel
 
 
 @part

@@ -83,7 +83,7 @@ class RobotLinks:
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
-        out = np.zeros((len(self._bodies), 6, model.nv))
-        for part, body in zip(out, self._bodies, strict=True):
-            mujoco.mj_jacBody(model, data, part[:3], part[3:], body)
-        return out
+        jacobians = np.zeros((len(self._bodies), 6, model.nv))
+        for link_jacobian, body in zip(jacobians, self._bodies, strict=True):
+            mujoco.mj_jacBody(model, data, link_jacobian[:3], link_jacobian[3:], body)
+        return jacobians

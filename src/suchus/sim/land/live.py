@@ -49,11 +49,11 @@ class Live:
         self._start = round(START / self._period)  # [control period]
         check_faults(run.faults, run.robot, inf)
         check_pushes(run.pushes, run.robot, inf)
-        self.run = self._whole(run)
+        self.run = self._with_whole_period(run)
         self._loop = Loop([self.run], timestep, ticks=self._ticks(self.run))
         self._recorder = self._loop.recorder(1)
         self._beat = 0
-        self._look()
+        self._decide_and_read()
 
     @property
     def time(self) -> float:
@@ -63,7 +63,7 @@ class Live:
     @property
     def now(self) -> dict[str, np.ndarray]:
         """What a record would hold of this instant: the variables of ``record.VARIABLES``, without run and time."""
-        return self._now
+        return self._current_sample
 
     @property
     def positions(self) -> np.ndarray:
@@ -83,7 +83,7 @@ class Live:
         self._beat += 1
         if self._beat >= self._start + self._cycle(self.run):
             self._beat -= self._cycle(self.run)
-        self._look()
+        self._decide_and_read()
 
     def walk(self, gait: Gait | None = None, control: Coordinated | Swimming | None = None) -> None:
         """Walk on in another gait or by other rules, or swim, from the same phase of the cycle.
@@ -92,7 +92,9 @@ class Live:
             OutsideLimits: the robot's joints cannot follow the gait, or the rules cannot coordinate it.
         """
         share = max(self._beat - self._start, 0) / self._cycle(self.run)
-        run = self._whole(replace(self.run, gait=gait or self.run.gait, control=control or self.run.control))
+        run = self._with_whole_period(
+            replace(self.run, gait=gait or self.run.gait, control=control or self.run.control)
+        )
         controller = start([run], self._ticks(run), self._period)
         if isinstance(controller, Coordinator) and isinstance(self._loop.controller, Coordinator):
             controller.take_over(self._loop.controller)
@@ -114,13 +116,13 @@ class Live:
         check_faults([replace(fault, at=0.0)], self.run.robot, inf)  # type: ignore[type-var]  # all are dataclasses
         self._loop.disturbances.injector.begin(0, fault)
         self._loop.disturb()
-        self._read()
+        self._read_sample()
 
-    def mend(self, part: str) -> None:
+    def mend(self, part_name: str) -> None:
         """Repair a part."""
-        self._loop.disturbances.injector.mend(0, part)
+        self._loop.disturbances.injector.mend(0, part_name)
         self._loop.disturb()
-        self._read()
+        self._read_sample()
 
     def push(self, push: Push) -> None:
         """Push at the push's time, which may be now.
@@ -147,14 +149,14 @@ class Live:
         self.run = replace(self.run, lake=lake)
         self._loop.batch.waters.fill(0, lake, self.time)
 
-    def _look(self) -> None:
+    def _decide_and_read(self) -> None:
         """Decide what the servos are commanded next, and read everything."""
         self._loop.decide(self._beat)
-        self._read()
+        self._read_sample()
 
-    def _read(self) -> None:
+    def _read_sample(self) -> None:
         self._recorder.store(0, self._loop.command.phase, self._loop.command.targets)
-        self._now = self._recorder.sample(0, 0)
+        self._current_sample = self._recorder.sample(0, 0)
 
     def _cycle(self, run: Run) -> int:
         """Return the length of a cycle in control periods."""
@@ -164,7 +166,7 @@ class Live:
         """Return how many control periods a controller must know."""
         return self._start + self._cycle(run) + 1
 
-    def _whole(self, run: Run) -> Run:
+    def _with_whole_period(self, run: Run) -> Run:
         """Return a run whose gait's period is a whole number of control periods, checked."""
         period = max(1, round(run.gait.period / self._period)) * self._period
         gait, control = replace(run.gait, period=period), run.control

@@ -88,12 +88,12 @@ class Loop:
         self.sensors = Sensors(self.batch, runs[0].robot)
         self.feels = any(run.control.feels for run in runs)
         self.controller = start(runs, ticks, self.period) if controller is None else controller
-        first = self.controller.rest()
-        for run, posture in zip(runs, first, strict=True):
+        initial_angles = self.controller.rest()
+        for run, posture in zip(runs, initial_angles, strict=True):
             if run.lake is not None and _swims(run.control):
                 check_afloat(run.robot, run.lake, posture)
-        self.batch.place(runs, first)
-        self._deduplication = Deduplication(runs, first, self.period)
+        self.batch.place(runs, initial_angles)
+        self._deduplication = Deduplication(runs, initial_angles, self.period)
         self.disturbances = Disturbances(runs, self.batch, ticks, self.period)
         self.tick = 0
         """Number of the control period."""
@@ -122,13 +122,13 @@ class Loop:
         """
         self.disturbances.happen(self.clocks, self._going)
         sensed = self.sensed() if self.feels else None
-        self._wanted = self.controller.command(self.tick if beat is None else beat, sensed)
+        self._intended_command = self.controller.command(self.tick if beat is None else beat, sensed)
         self.disturb()
 
     def disturb(self) -> None:
         """Disturb anew what the controller commanded last: with noise, and with what is broken by now."""
-        targets = self.disturbances.disturb(self.clocks, self.tick, self._wanted.targets)
-        self.command = Command(targets, self._wanted.phase, self._wanted.air_fraction)
+        targets = self.disturbances.disturb(self.clocks, self.tick, self._intended_command.targets)
+        self.command = Command(targets, self._intended_command.phase, self._intended_command.air_fraction)
 
     def advance(self, *, felt: bool = True, read: bool = True, before: tuple[np.ndarray, int] | None = None) -> None:
         """Let one control period pass in which the servos do as they are commanded.
@@ -153,16 +153,16 @@ class Loop:
             self.batch.advance(targets, self.steps, self.time, felt=felt, read=read)
         self._count()
 
-    def _advance_late(self, early: np.ndarray, steps: int) -> None:
+    def _advance_late(self, previous_targets: np.ndarray, steps: int) -> None:
         """Let a control period pass whose command acts after some physics steps; forces are means over all of it."""
         targets, _, air_fraction = self.command
         self.batch.waters.flood(self.time, air_fraction)
-        self.batch.advance(early, steps, self.time)
+        self.batch.advance(previous_targets, steps, self.time)
         means, share = (self.batch.pressed, self.batch.worked), steps / self.steps
-        first = [share * mean for mean in means]
+        early_means = [share * mean for mean in means]
         self.batch.advance(targets, self.steps - steps, self.time)
-        for mean, part in zip(means, first, strict=True):
-            mean[:] = part + (1.0 - share) * mean
+        for mean, early_mean in zip(means, early_means, strict=True):
+            mean[:] = early_mean + (1.0 - share) * mean
         self._count()
 
     def skip(self, periods: int) -> None:
@@ -198,7 +198,7 @@ def _swims(control: Control) -> bool:
     return isinstance(control, Swimming) or (isinstance(control, Amphibious) and control.begins == "swimming")
 
 
-_EARLY = 1e-6
+_TICK_TOLERANCE = 1e-6
 """By how much too early rather than too late a trouble may be awaited [control period]."""
 
 
@@ -215,18 +215,18 @@ class Deduplication:
         period: of control [s].
     """
 
-    def __init__(self, runs: Sequence[Run], first: np.ndarray, period: float) -> None:
+    def __init__(self, runs: Sequence[Run], initial_angles: np.ndarray, period: float) -> None:
         groups: dict[object, list[int]] = {}
         for sim, run in enumerate(runs):
             world = (run.ground, run.afloat, run.lake, run.supply)
-            key = (run.robot, *world, hip_height(run.robot, run.gait), first[sim].tobytes())
+            key = (run.robot, *world, hip_height(run.robot, run.gait), initial_angles[sim].tobytes())
             groups.setdefault(key, []).append(sim)
         self._groups = [members for members in groups.values() if len(members) > 1]
         self._leaves: dict[int, set[int]] = {}
         for sim, run in enumerate(runs):
             times = [*(fault.at for fault in run.faults), *(push.at for push in run.pushes)]
             if times:
-                self._leaves.setdefault(max(floor(min(times) / period - _EARLY), 0), set()).add(sim)
+                self._leaves.setdefault(max(floor(min(times) / period - _TICK_TOLERANCE), 0), set()).add(sim)
         self._count = len(runs)
         self._number()
 
@@ -253,8 +253,8 @@ class Deduplication:
     def leave(self, sim: int) -> None:
         """Let a run go on alone."""
         if self._groups:
-            left = [[other for other in members if other != sim] for members in self._groups]
-            self._groups = [members for members in left if len(members) > 1]
+            remaining_groups = [[member for member in members if member != sim] for members in self._groups]
+            self._groups = [members for members in remaining_groups if len(members) > 1]
             self._number()
 
     def _number(self) -> None:

@@ -30,7 +30,7 @@ class Sensors:
             name: slice(int(model.sensor(name).adr[0]), int(model.sensor(name).adr[0] + model.sensor(name).dim[0]))
             for name in sensor_names(place.robot)
         }
-        self._felt = {
+        self._sensor_columns = {
             "servo_position": self.span(place.servos, "position"),
             "servo_velocity": self.span(place.servos, "velocity"),
             "servo_torque": self.span(place.servos, "torque"),
@@ -65,10 +65,10 @@ class Sensors:
     def sensed(self, time: float) -> Sensed:
         """Return what the robots feel now, in arrays of its own."""
         rows = self._batch.readings
-        felt = {name: rows[:, columns].copy() for name, columns in self._felt.items()}
+        readings = {name: rows[:, columns].copy() for name, columns in self._sensor_columns.items()}
         pressed = {name: -rows[:, columns] for name, columns in self._pressed.items()}
         depth = self._batch.waters.depths(self._batch.qpos[:, :3])
-        return Sensed(time=time, **felt, **pressed, tail_pressure=-self.tail(rows)[..., 2], depth=depth)
+        return Sensed(time=time, **readings, **pressed, tail_pressure=-self.tail(rows)[..., 2], depth=depth)
 
     def _upward(self, names: Sequence[str]) -> slice:
         """Return where the vertical parts of neighbouring forces stand."""
@@ -96,10 +96,10 @@ class Recorder:
         self._phase = np.full((*shape, len(place.limbs)), np.nan)
         self._targets = np.full((*shape, len(place.servos)), np.nan)
         self._water = np.full((*shape, batch.waters.rows.shape[1]), np.nan)
-        self._worked = np.full((*shape, batch.worked.shape[1]), np.nan)
-        self._warm = warming(batch.model, runs[0].robot)
+        self._period_means = np.full((*shape, batch.worked.shape[1]), np.nan)
+        self._temperature_columns = warming(batch.model, runs[0].robot)
         self._air = np.array([ambient(run.robot) for run in runs])
-        heated = len(place.servos) if (self._warm >= 0).any() else 0
+        heated = len(place.servos) if (self._temperature_columns >= 0).any() else 0
         self._temperature = np.full((*shape, heated), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
@@ -116,24 +116,26 @@ class Recorder:
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
         self._water[alive, sample] = self._batch.waters.rows[alive]
-        self._worked[alive, sample] = self._batch.worked[alive]
+        self._period_means[alive, sample] = self._batch.worked[alive]
         if self._temperature.shape[-1]:
-            self._temperature[alive, sample] = self._batch.activations[alive][:, self._warm] + self._air[alive]
+            self._temperature[alive, sample] = (
+                self._batch.activations[alive][:, self._temperature_columns] + self._air[alive]
+            )
 
     def state(self) -> dict[str, np.ndarray]:
         """Return copies of all samples, by name."""
-        return {name: values.copy() for name, values in self._kept.items()}
+        return {name: values.copy() for name, values in self._stored_arrays.items()}
 
     def resume(self, state: Mapping[str, np.ndarray]) -> None:
         """Take up the samples that another recorder of the same runs kept."""
-        for name, values in self._kept.items():
+        for name, values in self._stored_arrays.items():
             values[:] = state[name]
 
     @property
-    def _kept(self) -> dict[str, np.ndarray]:
+    def _stored_arrays(self) -> dict[str, np.ndarray]:
         return {
             "readings": self._readings, "qpos": self._qpos, "phase": self._phase, "targets": self._targets,
-            "water": self._water, "worked": self._worked, "temperature": self._temperature,
+            "water": self._water, "worked": self._period_means, "temperature": self._temperature,
         }  # fmt: skip
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
@@ -142,20 +144,22 @@ class Recorder:
         In water those of ``record.WATER`` too, with servos that warm up that of ``record.HEAT``.
         """
         arrays = self._arrays()
-        wet = self._wet(arrays["foot_force"]) if self._water.shape[-1] else {}
-        return {name: np.array(values[run, sample]) for name, values in (arrays | wet | self._warmed()).items()}
+        water_arrays = self._water_arrays(arrays["foot_force"]) if self._water.shape[-1] else {}
+        return {
+            name: np.array(values[run, sample]) for name, values in (arrays | water_arrays | self._warmed()).items()
+        }
 
     def record(self, time: np.ndarray) -> xr.Dataset:
         """Return everything that was read, in the schema of a run."""
         robots = [run.robot for run in self._runs]
         # parts of a block of all sensors would keep the whole block
         arrays = {name: np.ascontiguousarray(values) for name, values in self._arrays().items()}
-        last = np.minimum(self._batch.ended, time[-1])
+        end_times = np.minimum(self._batch.ended, time[-1])
         per_run = {
             "mass": np.array([robot.mass for robot in robots]),
             "period": np.array([run.gait.period for run in self._runs]),
             "duty_factor": np.array([run.gait.duty_factor for run in self._runs]),
-            "ended": last,
+            "ended": end_times,
             "cause": np.array(self._batch.cause),
             "stands_on": np.array(
                 [ground_text(None if run.afloat or run.solved else run.ground) for run in self._runs]
@@ -174,19 +178,21 @@ class Recorder:
         }
         record = dataset(arrays, per_run, coordinates)
         for name, values in self._warmed().items():
-            dims, unit, what = HEAT[name]
-            record[name] = (("run", *dims), values, {"units": unit, "long_name": what})
+            dims, unit, long_name = HEAT[name]
+            record[name] = (("run", *dims), values, {"units": unit, "long_name": long_name})
         if not self._water.shape[-1]:
             return record
-        return _put(record, self._wet(arrays["foot_force"]), [lake_text(run.lake) for run in self._runs])
+        return _with_water(
+            record, self._water_arrays(arrays["foot_force"]), [lake_text(run.lake) for run in self._runs]
+        )
 
     def _warmed(self) -> dict[str, np.ndarray]:
         """Return how warm the servos are, by the name of ``record.HEAT``; nothing where none warms up."""
         return {"servo_temperature": self._temperature} if self._temperature.shape[-1] else {}
 
-    def _wet(self, foot_force: np.ndarray) -> dict[str, np.ndarray]:
+    def _water_arrays(self, foot_force: np.ndarray) -> dict[str, np.ndarray]:
         """Return what the water does, by the names of ``record.WATER``."""
-        water, worked = self._water, self._worked
+        water, period_means = self._water, self._period_means
         total = np.array([column(pieces(run.robot), "volume").sum() for run in self._runs])
         ups = np.array([up(run.ground) for run in self._runs])
         air = np.array([chambers(run.robot) for run in self._runs])
@@ -198,9 +204,9 @@ class Recorder:
             "air_fraction": np.einsum("rtc,rc->rt", air_kept, air / air.sum(axis=1, keepdims=True)),
             "air_fraction_front": air_kept[..., 0],
             "share_under": water[..., hydro.UNDER] / total[:, None],
-            "water_force": worked[..., :3],
-            "water_power": worked[..., 3],
-            "servo_power": worked[..., 4],
+            "water_force": period_means[..., :3],
+            "water_power": period_means[..., 3],
+            "servo_power": period_means[..., 4],
             "feet_share": (foot_force.sum(axis=2) @ ups[:, :, None])[..., 0] / weight[:, None],
         }
 
@@ -247,15 +253,15 @@ def with_equal_variables(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
             continue
         shape = record.sizes["run"], record.sizes["time"]
         dry = {name: np.zeros((*shape, *(3 for dim in dims if dim == "xyz"))) for name, (dims, _, _) in WATER.items()}
-        equal.append(_put(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
+        equal.append(_with_water(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
     return equal
 
 
-def _put(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:
+def _with_water(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:
     """Return a record with what the water does beside the rest."""
-    about = {"units": "1", "long_name": "the lake as JSON; empty on dry land"}
-    wet: dict[str, Any] = {
-        name: (("run", *dims), values[name], {"units": unit, "long_name": what})
-        for name, (dims, unit, what) in WATER.items()
+    attributes = {"units": "1", "long_name": "the lake as JSON; empty on dry land"}
+    water_variables: dict[str, Any] = {
+        name: (("run", *dims), values[name], {"units": unit, "long_name": long_name})
+        for name, (dims, unit, long_name) in WATER.items()
     }
-    return record.assign(wet | {"swims_in": ("run", np.array(lakes, dtype=object).astype(str), about)})
+    return record.assign(water_variables | {"swims_in": ("run", np.array(lakes, dtype=object).astype(str), attributes)})

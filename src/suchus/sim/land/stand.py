@@ -69,9 +69,7 @@ def on_stand(
         mujoco.mj_step(model, data)
         angle[i], torque[i] = data.qpos[hinge.qposadr[0]], data.actuator_force[servo]
         if not np.isfinite(angle[i]):
-            raise Diverged(
-                f"{joint} on the stand diverged hinge {data.time:.3f} s.", time=float(data.time), record=None
-            )
+            raise Diverged(f"{joint} on the stand diverged at {data.time:.3f} s.", time=float(data.time), record=None)
     return Response(timestep * np.arange(1, len(target) + 1), angle, torque)
 
 

@@ -81,7 +81,7 @@ def topology(robot: Robot) -> tuple[object, ...]:
     servos = servos_of(robot)
     states = tuple((servos[name].ki > 0, warms(servos[name])) for name in place.servos)
     shapes = tuple(len(segment.shapes) for segment in place.robot.axis)
-    foam = () if place.robot.hull is None else tuple(one.body for one in place.robot.hull.foam)
+    foam = () if place.robot.hull is None else tuple(piece.body for piece in place.robot.hull.foam)
     return bodies, foam, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), states
 
 
@@ -102,40 +102,49 @@ def _set_options(spec: Any, timestep: float) -> None:
 
 
 def _add_sensors(spec: Any, place: Layout) -> None:
-    kind, of = mujoco.mjtSensor, mujoco.mjtObj
+    kind, object_types = mujoco.mjtSensor, mujoco.mjtObj
     for suffix, sensor in (
         ("position", kind.mjSENS_ACTUATORPOS),
         ("velocity", kind.mjSENS_ACTUATORVEL),
         ("torque", kind.mjSENS_ACTUATORFRC),
     ):
         for servo in place.servos:
-            spec.add_sensor(name=f"{servo}_{suffix}", type=sensor, objtype=of.mjOBJ_ACTUATOR, objname=servo)
+            spec.add_sensor(name=f"{servo}_{suffix}", type=sensor, objtype=object_types.mjOBJ_ACTUATOR, objname=servo)
     for limb in place.limb_names:
-        _add_force(spec, f"{limb}_force", of.mjOBJ_GEOM, f"{limb}_foot")
+        _add_force(spec, f"{limb}_force", object_types.mjOBJ_GEOM, f"{limb}_foot")
     for body in place.trunk:
-        _add_force(spec, f"{body}_force", of.mjOBJ_BODY, body)
+        _add_force(spec, f"{body}_force", object_types.mjOBJ_BODY, body)
     for body in place.tail[:1]:
-        _add_force(spec, "tail_force", of.mjOBJ_XBODY, body)  # an x-body stands for its whole subtree
-    spec.add_sensor(name="imu_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=of.mjOBJ_SITE, objname="imu")
-    spec.add_sensor(name="imu_gyroscope", type=kind.mjSENS_GYRO, objtype=of.mjOBJ_SITE, objname="imu")
-    spec.add_sensor(name="imu_accelerometer", type=kind.mjSENS_ACCELEROMETER, objtype=of.mjOBJ_SITE, objname="imu")
-    spec.add_sensor(name="centre_of_mass", type=kind.mjSENS_SUBTREECOM, objtype=of.mjOBJ_BODY, objname=place.robot.root)
+        _add_force(spec, "tail_force", object_types.mjOBJ_XBODY, body)  # an x-body stands for its whole subtree
+    spec.add_sensor(name="imu_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=object_types.mjOBJ_SITE, objname="imu")
+    spec.add_sensor(name="imu_gyroscope", type=kind.mjSENS_GYRO, objtype=object_types.mjOBJ_SITE, objname="imu")
     spec.add_sensor(
-        name="angular_momentum", type=kind.mjSENS_SUBTREEANGMOM, objtype=of.mjOBJ_BODY, objname=place.robot.root
+        name="imu_accelerometer", type=kind.mjSENS_ACCELEROMETER, objtype=object_types.mjOBJ_SITE, objname="imu"
+    )
+    spec.add_sensor(
+        name="centre_of_mass", type=kind.mjSENS_SUBTREECOM, objtype=object_types.mjOBJ_BODY, objname=place.robot.root
+    )
+    spec.add_sensor(
+        name="angular_momentum",
+        type=kind.mjSENS_SUBTREEANGMOM,
+        objtype=object_types.mjOBJ_BODY,
+        objname=place.robot.root,
     )
     for site in sites(place.robot):
-        spec.add_sensor(name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=of.mjOBJ_SITE, objname=site)
+        spec.add_sensor(
+            name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=object_types.mjOBJ_SITE, objname=site
+        )
 
 
-def _add_force(spec: Any, name: str, of: Any, touching: str) -> None:
+def _add_force(spec: Any, name: str, object_type: Any, touching: str) -> None:
     """Add a sensor of the net contact force of a part on the ground, in the world frame."""
-    force, net, one = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE), 3, 1
+    force, net, count = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE), 3, 1
     spec.add_sensor(
         name=name,
         type=mujoco.mjtSensor.mjSENS_CONTACT,
-        objtype=of,
+        objtype=object_type,
         objname=touching,
-        intprm=[force, net, one],
+        intprm=[force, net, count],
     )
 
 
@@ -224,7 +233,7 @@ def _touches(geom: Any, friction: float, contact: Contact, dimensions: int, colo
 
 
 _SITE = 0.002  # [m]; as they are drawn
-_LEAST = 1e-9  # [kg] of foam; less than MuJoCo takes for a mass
+_MIN_FOAM_MASS = 1e-9  # [kg] of foam; less than MuJoCo takes for a mass
 
 
 def add_bodies(root: Any, place: Layout) -> None:
@@ -241,38 +250,38 @@ def add_bodies(root: Any, place: Layout) -> None:
         for limb in place.limbs
         for i in range(len(limb.girdle.limb.links))
     }
-    made: list[Any] = []
+    body_specs: list[Any] = []
     for number, body in enumerate(place.bodies):
-        here = root if body.parent < 0 else made[body.parent].add_body(name=body.name, pos=list(body.offset))
-        made.append(here)
+        body_spec = root if body.parent < 0 else body_specs[body.parent].add_body(name=body.name, pos=list(body.offset))
+        body_specs.append(body_spec)
         for hinge, name, axis in body.hinges:
-            _add_hinge(here, hinge, name, list(axis))
+            _add_hinge(body_spec, hinge, name, list(axis))
         if number in links:
-            _add_link(here, *links[number], robot.contact)
+            _add_link(body_spec, *links[number], robot.contact)
         else:
-            _add_segment(here, segments[body.name], body.shift, robot)
+            _add_segment(body_spec, segments[body.name], body.shift, robot)
 
 
 def _add_hinge(body: Any, hinge: Hinge, name: str, axis: list[float]) -> None:
-    made: dict[str, Any] = {"name": name, "type": mujoco.mjtJoint.mjJNT_HINGE, "axis": axis}
+    attributes: dict[str, Any] = {"name": name, "type": mujoco.mjtJoint.mjJNT_HINGE, "axis": axis}
     if hinge.range is not None:
-        made |= {"range": list(hinge.range), "limited": mujoco.mjtLimited.mjLIMITED_TRUE}
+        attributes |= {"range": list(hinge.range), "limited": mujoco.mjtLimited.mjLIMITED_TRUE}
     servo = hinge.servo
     if servo is not None:
-        made |= {"armature": servo.armature, "frictionloss": servo.friction, "damping": servo.damping}
+        attributes |= {"armature": servo.armature, "frictionloss": servo.friction, "damping": servo.damping}
     elif isinstance(hinge.drive, Spring):
         spring = hinge.drive
-        made |= {"stiffness": spring.stiffness, "damping": spring.damping, "armature": spring.armature}
-    body.add_joint(**made)
+        attributes |= {"stiffness": spring.stiffness, "damping": spring.damping, "armature": spring.armature}
+    body.add_joint(**attributes)
 
 
 def _add_segment(body: Any, segment: Segment, shift: float, robot: Robot) -> None:
     for shape in segment.shapes:
         if isinstance(shape, Rod):
-            start, end = _moved(shape.start, shift), _moved(shape.end, shift)
+            start, end = _shifted(shape.start, shift), _shifted(shape.end, shift)
             skin(body, shape.name, start, end, shape.radius, shape.mass, robot.contact)
         else:
-            shell(body, shape.name, _moved(shape.at, shift), shape.half, shape.mass, robot.contact)
+            shell(body, shape.name, _shifted(shape.at, shift), shape.half, shape.mass, robot.contact)
     if segment.name == robot.root:
         body.add_site(name=IMU, pos=[shift, 0, 0], size=[2 * _SITE, 0, 0])
     if segment is robot.axis[0]:
@@ -281,7 +290,7 @@ def _add_segment(body: Any, segment: Segment, shift: float, robot: Robot) -> Non
         body.add_site(name=TAIL_TIP, pos=[shift - segment.rear, 0, 0], size=[_SITE, 0, 0])
 
 
-def _moved(point: Point, shift: float) -> list[float]:
+def _shifted(point: Point, shift: float) -> list[float]:
     return [point[0] + shift, point[1], point[2]]
 
 
@@ -302,7 +311,7 @@ def add_foam(spec: Any, place: Layout) -> None:
         return
     centres = foam_centres(place.robot)
     for foam in hull.foam:
-        if foam.volume * hull.density < _LEAST:
+        if foam.volume * hull.density < _MIN_FOAM_MASS:
             continue
         spec.body(foam.body).add_geom(
             name=f"{foam.body}_foam",
@@ -319,20 +328,20 @@ def add_foam(spec: Any, place: Layout) -> None:
 
 def state_inertia(spec: Any, place: Layout) -> None:
     """Give the bodies whose design states where their mass lies that mass, with their foam, in the shapes' place."""
-    foams = {} if place.robot.hull is None else {one.body: one.volume for one in place.robot.hull.foam}
+    foams = {} if place.robot.hull is None else {piece.body: piece.volume for piece in place.robot.hull.foam}
     density = 0.0 if place.robot.hull is None else place.robot.hull.density
-    bare = masses(place.robot)
-    for body in (one for one in place.bodies if one.inertia is not None):
+    shape_masses = masses(place.robot)
+    for body in (candidate for candidate in place.bodies if candidate.inertia is not None):
         assert body.inertia is not None
         volume = foams.get(body.name, 0.0)
-        parts = [(bare[body.name], np.array(body.inertia.centre), body.inertia.tensor)]
-        if volume * density >= _LEAST:
+        parts = [(shape_masses[body.name], np.array(body.inertia.centre), body.inertia.tensor)]
+        if volume * density >= _MIN_FOAM_MASS:
             ball = 0.4 * density * volume * (3 * volume / (4 * pi)) ** (2 / 3)
             parts.append((density * volume, np.array(foam_centres(place.robot)[body.name]), ball * np.eye(3)))
         mass, centre, tensor = together(parts)
-        made = spec.body(body.name)
-        made.mass, made.ipos, made.explicitinertial = mass, centre.tolist(), True
-        made.fullinertia = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
+        body_spec = spec.body(body.name)
+        body_spec.mass, body_spec.ipos, body_spec.explicitinertial = mass, centre.tolist(), True
+        body_spec.fullinertia = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
 
 
 def lay_cables(spec: Any, robot: Robot) -> None:
@@ -380,11 +389,11 @@ def add_ground(spec: Any, relief: Relief | None) -> None:
         plane.pos = [0, 0, _raise(spec, relief)]  # as deep as the field
 
 
-def _block(spec: Any, at: tuple[float, float], half: tuple[float, float], height: float) -> None:
+def _block(spec: Any, centre: tuple[float, float], half: tuple[float, float], height: float) -> None:
     spec.worldbody.add_geom(
         name=RELIEF,
         type=mujoco.mjtGeom.mjGEOM_BOX,
-        pos=[*at, height / 2],
+        pos=[*centre, height / 2],
         size=[*half, height / 2],
         contype=1,
         conaffinity=0,
@@ -394,26 +403,26 @@ def _block(spec: Any, at: tuple[float, float], half: tuple[float, float], height
 
 def _raise(spec: Any, bumps: Bumps) -> float:
     """Add a height field; return the height of its lowest point [m]."""
-    heights, (first, last) = field(bumps), bumps.reach
-    low, high = float(heights.min()), float(heights.max())
-    middle = (first + last) / 2
+    heights, (x_start, x_end) = field(bumps), bumps.reach
+    min_height, max_height = float(heights.min()), float(heights.max())
+    middle = (x_start + x_end) / 2
     spec.add_hfield(
         name=RELIEF,
-        size=[last - middle, bumps.aside, high - low, _BASE * bumps.scale],
+        size=[x_end - middle, bumps.aside, max_height - min_height, _BASE * bumps.scale],
         nrow=heights.shape[0],
         ncol=heights.shape[1],
-        userdata=((heights - low) / (high - low)).ravel(),
+        userdata=((heights - min_height) / (max_height - min_height)).ravel(),
     )
     spec.worldbody.add_geom(
         name=RELIEF,
         type=mujoco.mjtGeom.mjGEOM_HFIELD,
         hfieldname=RELIEF,
-        pos=[middle, 0.0, low],
+        pos=[middle, 0.0, min_height],
         contype=1,
         conaffinity=0,
         rgba=list(_COLOUR),
     )
-    return low
+    return min_height
 
 
 def standing(model: Any, robot: Robot, hip_height: float, servos: np.ndarray) -> np.ndarray:

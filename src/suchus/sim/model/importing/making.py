@@ -56,25 +56,25 @@ def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, f
     Raises:
         UnreadableFile: it is skew.
     """
-    along = int(np.argmax(np.abs(axis)))
-    off = degrees(np.arccos(min(abs(axis[along]), 1.0)))
-    if off > SKEW:
+    axis_index = int(np.argmax(np.abs(axis)))
+    skew = degrees(np.arccos(min(abs(axis[axis_index]), 1.0)))
+    if skew > SKEW:
         raise UnreadableFile(
-            f"hinge {joint.name} turns about ({', '.join(f'{v:.2f}' for v in axis)}), {off:.0f} degrees off "
+            f"hinge {joint.name} turns about ({', '.join(f'{v:.2f}' for v in axis)}), {skew:.0f} degrees off "
             "the robot's axes (forward, left, up) at zero posture; suchus takes hinges along them: draw its limb so."
         )
-    if off > _EXACT:
-        remarks.append(f"Hinge {joint.name} is {off:.1f} degrees skew; the draft has it along an axis of the robot.")
-    turn: Turn = ("roll", "pitch", "yaw")[along]
-    return turn, float(np.sign(axis[along]))
+    if skew > _EXACT:
+        remarks.append(f"Hinge {joint.name} is {skew:.1f} degrees skew; the draft has it along an axis of the robot.")
+    turn: Turn = ("roll", "pitch", "yaw")[axis_index]
+    return turn, float(np.sign(axis[axis_index]))
 
 
 def limb_turn(joint: Joint, axis: np.ndarray, side: float, remarks: list[str]) -> tuple[Turn, float]:
     """Return what a hinge of a limb turns, and 1 where it turns as ours does, else -1."""
-    along, sense = turn_of(joint, axis, remarks)
-    turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[along]  # type: ignore[assignment]
-    ours = LIMB_AXES[turn][("roll", "pitch", "yaw").index(along)]
-    return turn, sense * ours * (side if turn != "roll" else 1.0)
+    file_turn, sense = turn_of(joint, axis, remarks)
+    turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[file_turn]  # type: ignore[assignment]
+    robot_sign = LIMB_AXES[turn][("roll", "pitch", "yaw").index(file_turn)]
+    return turn, sense * robot_sign * (side if turn != "roll" else 1.0)
 
 
 def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
@@ -86,8 +86,8 @@ def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
         ahead: whether it lies ahead of the root.
         onward: whether a positive angle of the file moves the part farther from our root.
     """
-    ours = 1.0 if ahead or turn == "yaw" else -1.0
-    return sense * ours * (1.0 if onward else -1.0)
+    robot_sign = 1.0 if ahead or turn == "yaw" else -1.0
+    return sense * robot_sign * (1.0 if onward else -1.0)
 
 
 def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share: float, *, lone: bool) -> Hinge:
@@ -105,13 +105,13 @@ def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share
     servo = _servo(joint, size)
     if joint.range is None and lone and servo is not None:
         return Hinge(name=name, turn=turn, drive=Crank(servo=servo))
-    low, high = sorted(sign * end for end in joint.range or (-pi, pi))
-    low, high = max(low, -_WIDEST), min(high, _WIDEST)
-    if not low < high:
+    lower_limit, upper_limit = sorted(sign * end for end in joint.range or (-pi, pi))
+    lower_limit, upper_limit = max(lower_limit, -_WIDEST), min(upper_limit, _WIDEST)
+    if not lower_limit < upper_limit:
         raise UnreadableFile(
-            f"hinge {joint.name} has a range of {low:g} to {high:g} rad; give it one that is not empty."
+            f"hinge {joint.name} has a range of {lower_limit:g} to {upper_limit:g} rad; give it one that is not empty."
         )
-    return Hinge(name=name, turn=turn, drive=servo or _spring(joint, size, share), range=(low, high))
+    return Hinge(name=name, turn=turn, drive=servo or _spring(joint, size, share), range=(lower_limit, upper_limit))
 
 
 def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
@@ -121,35 +121,37 @@ def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
         turns: what each turns, its part of the body (``spine``, ``neck`` or ``tail``), its name in the file; of each
             part of the body from the root on.
     """
-    theirs = [name for _, _, name in turns]
-    rule = all((turn == "yaw" and part == "spine") == name.startswith("spine_yaw_") for turn, part, name in turns)
-    if rule and len(set(theirs)) == len(theirs):
-        return theirs
+    file_names = [name for _, _, name in turns]
+    rule = all((turn == "yaw" and region == "spine") == name.startswith("spine_yaw_") for turn, region, name in turns)
+    if rule and len(set(file_names)) == len(file_names):
+        return file_names
     count: dict[tuple[str, str], int] = {}
     names = []
-    for turn, part, _ in turns:
-        count[part, turn] = count.get((part, turn), 0) + 1
-        names.append(f"{part}_{turn}_{count[part, turn]}")
+    for turn, region, _ in turns:
+        count[region, turn] = count.get((region, turn), 0) + 1
+        names.append(f"{region}_{turn}_{count[region, turn]}")
     return names
 
 
-def limb_names(left: Sequence[str], right: Sequence[str], girdle: str) -> list[str] | None:
+def limb_names(left_names: Sequence[str], right_names: Sequence[str], girdle: str) -> list[str] | None:
     """Return what follows the limb's name in names as ``LF_yaw`` and ``RF_yaw``; None if they are not such."""
     heads = f"L{girdle}_", f"R{girdle}_"
-    alike = all(
-        one.startswith(heads[0]) and two.startswith(heads[1]) and one[len(heads[0]) :] == two[len(heads[1]) :]
-        for one, two in zip(left, right, strict=True)
+    is_mirrored = all(
+        left_name.startswith(heads[0])
+        and right_name.startswith(heads[1])
+        and left_name[len(heads[0]) :] == right_name[len(heads[1]) :]
+        for left_name, right_name in zip(left_names, right_names, strict=True)
     )
-    suffixes = [name.removeprefix(heads[0]) for name in left]
-    return suffixes if alike and all(suffixes) and len(set(suffixes)) == len(suffixes) else None
+    suffixes = [name.removeprefix(heads[0]) for name in left_names]
+    return suffixes if is_mirrored and all(suffixes) and len(set(suffixes)) == len(suffixes) else None
 
 
 def numbered(turns: Sequence[str]) -> list[str]:
     """Return a name for each hinge of a limb: what it turns, with a number from the second one on."""
     names: list[str] = []
     for i, turn in enumerate(turns):
-        before = list(turns[:i]).count(turn)
-        names.append(turn if not before else f"{turn}_{before + 1}")
+        earlier_count = list(turns[:i]).count(turn)
+        names.append(turn if not earlier_count else f"{turn}_{earlier_count + 1}")
     return names
 
 
@@ -213,15 +215,15 @@ class Making:
         Returns:
             None where the file does not say.
         """
-        if not parts or not all(np.any(part.tensor) for part in parts):
+        if not parts or not all(np.any(tree_part.tensor) for tree_part in parts):
             return None
-        _, com, tensor = together([(part.mass, part.com, part.tensor) for part in parts])
-        turned = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
+        _, com, tensor = together([(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in parts])
+        rotated_tensor = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
         self.notes[f"{place}.inertia.moments"] = "of the file, as its centre and its products"
         return Inertia(
             centre=point(self.into(com) - origin),
-            moments=point(np.diag(turned)),
-            products=point(turned[[0, 0, 1], [1, 2, 2]]),
+            moments=point(np.diag(rotated_tensor)),
+            products=point(rotated_tensor[[0, 0, 1], [1, 2, 2]]),
         )
 
     def hip(self, chain: LimbChain) -> np.ndarray:
@@ -230,14 +232,14 @@ class Making:
 
     def note_hinge(self, place: str, hinge: Hinge, joint: Joint, sign: float) -> None:
         """Say beside a hinge which one of the file it is, and what of it is guessed."""
-        turned = "" if sign > 0 else ", turning the other way"
-        drawn = "" if joint.zero == 0.0 else f", which calls this zero {joint.zero:.6g}"
-        self.notes[f"{place}.name"] = f"the file's {joint.name}{turned}{drawn}"
+        turn_text = "" if sign > 0 else ", turning the other way"
+        zero_text = "" if joint.zero == 0.0 else f", which calls this zero {joint.zero:.6g}"
+        self.notes[f"{place}.name"] = f"the file's {joint.name}{turn_text}{zero_text}"
         if joint.range is None and hinge.range is not None:
             self.notes[f"{place}.range"] = "guess: the file gives no limits"
         if isinstance(hinge.drive, Spring):
-            known = "the file's stiffness and damping" if joint.stiffness > 0 else "guess: from the size"
-            self.notes[f"{place}.drive.stiffness"] = known
+            spring_note = "the file's stiffness and damping" if joint.stiffness > 0 else "guess: from the size"
+            self.notes[f"{place}.drive.stiffness"] = spring_note
             return
         drive = f"{place}.drive" if hinge.range is not None else f"{place}.drive.servo"
         self.notes[f"{drive}.kp"] = "guess: from the size, as all of this servo that has no note (design.servo_for)"
@@ -255,7 +257,7 @@ def making_of(plan: BodyPlan, words: Words) -> Making:
         words=words,
         level=_level(plan),
         size=Size(mass=plan.tree.mass, length=length),
-        heaviest=max(part.mass for part in plan.tree.parts),
+        heaviest=max(tree_part.mass for tree_part in plan.tree.parts),
     )
 
 
@@ -268,8 +270,8 @@ def _level(plan: BodyPlan) -> float:
     """Return the height of the axis: that of its pitch and roll hinges in the middle, else of the root's origin [m]."""
     heights = [
         float(plan.plane.into(joint.anchor)[2])
-        for near, far in zip(plan.axis[:-1], plan.axis[1:], strict=True)
-        for joint, _ in links_between(plan, near, far)
+        for inner_index, outer_index in zip(plan.axis[:-1], plan.axis[1:], strict=True)
+        for joint, _ in links_between(plan, inner_index, outer_index)
         if abs((plan.plane.turn @ joint.axis)[2]) < 0.5
     ]
     if heights:
