@@ -49,6 +49,7 @@ class Catalog(Mapping[str, T], Generic[T]):
         named: Callable[[Any], str] | None = None,
         read: Callable[[Path], Any] | None = None,
     ) -> None:
+        """Store the settings; neither file names nor modules are read yet."""
         self.kind = kind
         self._package, self._declares = package, declares
         self._classes, self._scattered = classes, scattered

@@ -60,6 +60,7 @@ class Checks:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """Raise ``InvalidFields`` with all complaints; an error of a wrong type inside the block becomes its cause."""
         if error is None or isinstance(error, (TypeError, ValueError, AttributeError, OverflowError)):
             complained = {complaint.field.partition("[")[0] for complaint in self._complaints}
             self._complaints += [Complaint(*misfit) for misfit in misfits(self._design) if misfit[0] not in complained]

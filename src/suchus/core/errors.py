@@ -76,6 +76,7 @@ class OtherMuJoCo(SuchusError, RuntimeError):
     """
 
     def __init__(self, field: str, version: str, reason: str) -> None:
+        """Compose the message from the field, MuJoCo's version and the reason, a clause."""
         self.field = field
         super().__init__(
             f"the field {field} of MuJoCo {version} is not where it should be: {reason}. Water needs a version of "
@@ -108,6 +109,7 @@ class UnknownName(SuchusError, KeyError):
     """
 
     def __init__(self, kind: str, name: str, available: Iterable[str]) -> None:
+        """Compose the message, with the available name that is most similar to the unknown one."""
         self.name = name
         self.available = tuple(available)
         matches = get_close_matches(str(name)[:_LONG_WORD], self.available, n=1)
@@ -156,6 +158,7 @@ def plain_warnings(*labels: str, options: Iterable[str] = ()) -> Iterator[None]:
     prefix, messages, worst_warnings = ": ".join(("suchus", *labels)), set[str](), dict[str, Doubtful]()
 
     def show(message: Warning | str, *_: object, **__: object) -> None:
+        """Print a warning once; of warnings of a kind store the one of greatest ``size``."""
         kind = getattr(message, "kind", "")
         if kind and isinstance(message, Doubtful):
             worst_warnings[kind] = max(message, worst_warnings.get(kind, message), key=lambda warning: warning.size)

@@ -53,6 +53,7 @@ class _Walk:
         self._open.pop()
 
     def _digest(self, value: object) -> bytes:
+        """Return the SHA-256 of a function or class; it is computed once in a walk."""
         if id(value) not in self._digests:
             outer, digest = self._write, sha256()
             self._write = digest.update
@@ -62,6 +63,7 @@ class _Walk:
         return self._digests[id(value)][1]
 
     def _write_value(self, value: object) -> None:
+        """Write a value by its type; numbers by value, arrays by type, shape and bytes."""
         if value is None or isinstance(value, bool | np.bool_ | str | bytes):
             self._word("plain", repr(value.item() if isinstance(value, np.bool_) else value))
         elif isinstance(value, np.datetime64 | np.timedelta64):  # to NumPy a timedelta64 is a Real, without a float
@@ -93,6 +95,7 @@ class _Walk:
             self.value(value)
 
     def _behaviour(self, value: object) -> None:
+        """Write a function, class or object: its code, its defaults, and the values that it reads."""
         if isinstance(value, FunctionType):
             cells = [_python_function(cell.cell_contents) for cell in value.__closure__ or ()]
             names = _names(value.__code__)
@@ -122,6 +125,7 @@ class _Walk:
             self._parts(type(value).__qualname__, {**slot_values, **attribute_values, **_class_of(value)})
 
     def _code(self, code: CodeType) -> None:
+        """Write the bytecode, the names and the constants of a function, those of inner functions included."""
         self._word("code", code.co_code)
         self._word("names", " ".join((*code.co_names, *code.co_varnames, *code.co_freevars)))
         for constant in code.co_consts:

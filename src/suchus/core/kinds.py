@@ -94,6 +94,7 @@ def _row(inner: tuple[Any, ...]) -> Fits:
 
 
 def _hint_text(hint: Any) -> str:
+    """Return in words which values a type hint allows."""
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, UnionType):
         return " or ".join("nothing" if member is type(None) else _hint_text(member) for member in inner)

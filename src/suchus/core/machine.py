@@ -146,6 +146,7 @@ def _points() -> list[float]:
 
 
 def _of_the_c_library() -> Iterator[bytes]:
+    """Yield the bytes of the C library's functions at fixed points."""
     for function in (math.sin, math.cos, math.tan, math.exp, math.tanh, math.atan, math.asin):
         yield struct.pack(f"{_POINTS}d", *(function(x) for x in _points()))
     yield struct.pack(f"{_POINTS}d", *(math.log(2.0 + x) for x in _points()))
@@ -154,6 +155,7 @@ def _of_the_c_library() -> Iterator[bytes]:
 
 
 def _of_numpy() -> Iterator[np.ndarray]:
+    """Yield NumPy's functions and sums over fixed points, in double and in single precision."""
     x = np.array(_points())
     for array in (x, x.astype(np.float32)):
         yield from (f(array) for f in (np.sin, np.cos, np.tan, np.exp, np.tanh, np.arctan, np.sinh))
@@ -167,6 +169,7 @@ def _of_numpy() -> Iterator[np.ndarray]:
 
 
 def _of_linear_algebra() -> Iterator[np.ndarray]:
+    """Yield products, factorisations and eigenvalues of fixed small matrices."""
     x = np.array(_points())
     for n in (3, 7, 19, 40):  # small enough for one thread, whatever their number
         a = x[: n * n].reshape(n, n)
@@ -176,6 +179,7 @@ def _of_linear_algebra() -> Iterator[np.ndarray]:
 
 
 def _processor() -> str:
+    """Return the name of the processor, as the operating system reports it."""
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as cpuinfo:  # noqa: PTH123  no file of ours
             names = [line.partition(":")[2].strip() for line in cpuinfo if line.startswith("model name")]

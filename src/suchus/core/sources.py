@@ -245,6 +245,7 @@ _Stamped = tuple[tuple[str, int, tuple[int, ...]], ...]
 
 
 def _stamped(package: str) -> _Stamped:
+    """Return the folders of a package with the times at which they and their subfolders were modified."""
     if package in sys.modules:
         folders = list(sys.modules[package].__path__)
     else:
@@ -264,6 +265,7 @@ def _stamped(package: str) -> _Stamped:
 
 @lru_cache(maxsize=64)
 def _files(kind: str, stamped: _Stamped) -> Mapping[str, Path]:
+    """Return the file of each module of a package by name; the result is cached by the folders' times."""
     return {
         name: _declaring(Path(place) / name, kind) if is_folder else Path(place) / f"{name}.py"
         for place, modified_ns, _ in stamped
@@ -342,6 +344,7 @@ def _names(file: Path, kind: str) -> tuple[tuple[str, str], ...]:
 
 @lru_cache(maxsize=1024)
 def _declared_names(file: Path, kind: str, *_: int) -> tuple[tuple[str, str], ...]:
+    """Return the catalog name and the module name of each thing that a file declares under a kind."""
     text = file.read_text(encoding="utf-8", errors="replace")
     if not re.search(rf"^{kind}s? *[:=]", text, re.M):
         return ()
@@ -386,6 +389,7 @@ def _opened(folder: Path) -> Project:
 
 @lru_cache(maxsize=8)
 def _read_project(folder: Path, *_: int) -> Project:
+    """Return the project of a folder from its ``suchus.toml``; the result is cached by the file's time and size."""
     settings, settings_file = read_toml(folder / SETTINGS), folder / SETTINGS
     unknown = [key for key in settings if key not in SHELVES]
     if unknown:

@@ -49,6 +49,7 @@ def stopping() -> Iterator[None]:
         raise Stopped(signum)
 
     def see_to_it() -> None:
+        """End the process if it still runs a time after the stop signal."""
         stop_event.wait()
         since = monotonic()
         while not end_event.wait(_POLL_INTERVAL):

@@ -238,6 +238,7 @@ def _locked(folder: Path) -> Iterator[bool | None]:
 
 
 def _swap(draft: Path, path: Path, old: Path) -> None:
+    """Rename a draft to its path and what was there to ``old``; on an error the old state is restored."""
     if path.exists():
         path.rename(old)
     try:

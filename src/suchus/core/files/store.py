@@ -152,6 +152,7 @@ def load(path: str | Path, *, whole: bool = False) -> xr.Dataset:
 
 
 def _attributes(text: object, path: Path) -> dict[str, Any]:
+    """Return the attributes that a record stores as JSON text."""
     try:
         attributes = json.loads(text) if isinstance(text, str) else None
     except (ValueError, RecursionError):

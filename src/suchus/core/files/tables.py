@@ -59,6 +59,7 @@ def _sets(record: xr.Dataset) -> dict[tuple[str, ...], list[str]]:
 
 
 def _rows(record: xr.Dataset, dims: Sequence[str], names: Sequence[str]) -> Iterator[tuple[Any, ...]]:
+    """Yield a row for each combination of labels: the labels, then the value of each variable."""
     labels = product(*(record[dim].values.tolist() for dim in dims))
     values = [record[name].variable.transpose(*dims).values.reshape(-1) for name in names]
     for start in range(0, len(values[0]), _ROWS):

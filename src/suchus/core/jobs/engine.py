@@ -55,6 +55,7 @@ def finish(
     )
 
     def start_piece(i: int) -> Progress:
+        """Return the callback that forwards the progress of the i-th missing piece to its observer and to the tally."""
         number = missing[i]
         report = silent if each is None else each(number)
 
@@ -104,6 +105,7 @@ class Tally:
     def __init__(
         self, total: float, unit: str, progress: Progress = silent, *, done: float = 0.0, failed: int = 0
     ) -> None:
+        """Start the clock; ``done`` units of earlier starts do not count in the rate."""
         self.done, self.failed = done, failed
         self.note = ""
         """What else is told, behind the count."""
@@ -132,6 +134,7 @@ class Tally:
         self._tell()
 
     def _tell(self) -> None:
+        """Report the count, the rate and the remaining time of the whole job."""
         done_units = self.done + sum(self._open_units.values())
         seconds = time.perf_counter() - self._start
         rate = (done_units - self._earlier_units) / seconds if seconds > 0 else 0.0

@@ -98,6 +98,7 @@ def side_by_side(
     workers = [hire(work, thread_count) for _ in range(jobs)]
 
     def give(worker: Worker) -> int:
+        """Send the next pending item to an idle worker and return the number of its piece."""
         worker.piece = pending.pop(0)
         start_counts[worker.piece] += 1
         with suppress(*_PIPE_ERRORS):  # it is heard of then
@@ -208,6 +209,7 @@ def _sender(pipe: Connection) -> Progress:
     last_stage, last_time = "", -_REPORT_INTERVAL
 
     def tell(stage: str, share: float) -> None:
+        """Send a stage and its fraction, at most once in ``_REPORT_INTERVAL`` while the stage stays the same."""
         nonlocal last_stage, last_time
         clock_time = time.monotonic()
         if stage != last_stage or clock_time - last_time > _REPORT_INTERVAL:

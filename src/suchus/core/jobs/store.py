@@ -56,6 +56,7 @@ class Store:
         kind: str = "study",
         versions: Callable[[], Mapping[str, str]] = deciding,
     ) -> None:
+        """Store the settings; the folder is neither made nor read yet."""
         self.folder = Path(folder)
         self.study = study
         self.kind = kind
@@ -105,6 +106,7 @@ class Store:
             os.close(descriptor)
 
     def _lock(self, descriptor: int) -> None:
+        """Lock the folder of a file descriptor, or raise ``Unwritable`` where another process holds the lock."""
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -172,6 +174,7 @@ class Store:
         return list(read_json(mark).get("machines", ())) if mark.is_file() else []
 
     def _origin(self) -> dict[str, Any]:
+        """Return the description of this store: its format, study, versions and machine."""
         field_texts = {f.name: repr(getattr(self.study, f.name)) for f in fields(self.study)}  # type: ignore[arg-type]
         return {
             "format": _FORMAT,
@@ -223,8 +226,9 @@ class Store:
             raise IncompatibleRecord(
                 f"{self.folder} was begun on a machine whose {parts} give other last bits "
                 f"({_machine_names(description)}; here {_machine_names({'machines': [machine.provenance()]})}): "
-                "mixed results would not be the same to the byte. Finish it there, choose another place, or say --mixed, "
-                f"which the results then tell; begun with {machine.WANTED}=1 a {self.kind} gives the same bytes on both."
+                "mixed results would not be the same to the byte. Finish it there, choose another place, or say "
+                f"--mixed, which the results then tell; begun with {machine.WANTED}=1 a {self.kind} gives the same "
+                "bytes on both."
             )
         description["machines"] = [*description.get("machines", ()), machine.provenance()]
         keep(mark, (json.dumps(description, indent=1, sort_keys=True) + "\n").encode())

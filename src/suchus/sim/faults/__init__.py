@@ -78,6 +78,7 @@ def _default(field: "Field[Any]") -> Any:
 
 
 def _check(kind: str, key: str, value: Any, declared_type: Any) -> None:
+    """Refuse a value of a fault's table whose type differs from the declared one."""
     allowed = get_args(declared_type) or (declared_type,)
     if float in allowed:
         allowed = (*allowed, int)

@@ -53,6 +53,7 @@ class Meter:
     """
 
     def __init__(self, water: np.ndarray, sensors: np.ndarray, velocities: slice, torques: slice, steps: int) -> None:
+        """Reserve arrays for the readings of one control period."""
         first_sensor, last_sensor = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
         self._acts, self._sensors = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, first_sensor:last_sensor]
         self._did, self._history = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._sensors.shape))
@@ -93,6 +94,7 @@ class SimulationBatch:
     """
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
+        """Compile the models, bind the physics' arrays, and apply ground, supply and medium of each run."""
         corrections = [None if run.lake is None else run.lake.correction for run in runs]
         bodies = [(run.robot, run.ground.relief, correction) for run, correction in zip(runs, corrections, strict=True)]
         has_water = any(run.lake is not None or run.solved is not None for run in runs)
@@ -165,6 +167,7 @@ class SimulationBatch:
         return self._models[sim]
 
     def _lay_ground(self, runs: Sequence[Run]) -> None:
+        """Write friction, slope, supply and medium of each run into its model."""
         for sim, run in enumerate(runs):
             if run.ground.friction_scale != 1.0:
                 self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
@@ -184,6 +187,7 @@ class SimulationBatch:
         self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
 
     def _cast_off(self, sim: int, medium: Afloat) -> None:
+        """Remove gravity and contacts from a run and put it into a fluid, integrated by Runge-Kutta steps."""
         self.field("opt.gravity", sim)[:] = 0.0
         self._set_option("density", sim, medium.density)
         self._set_option("viscosity", sim, medium.viscosity)
@@ -192,6 +196,7 @@ class SimulationBatch:
         self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
 
     def _set_option(self, name: str, sim: int, value: float) -> None:
+        """Write one physics option of one run; call ``commit`` after it."""
         if self._single:
             self.physics.expand(f"opt.{name}")[sim] = value
         else:

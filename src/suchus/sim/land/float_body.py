@@ -43,6 +43,7 @@ class FloatBody:
     """Strips along a cylinder, or columns along each side of a box [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse sizes, masses and inertias outside their ranges."""
         with Checks("float_body", self) as check:
             check.each("half", ("length", "width", "height"), 1e-4, 100.0, "m")
             check.number("mass", 1e-6, 1e6, "kg")
@@ -94,6 +95,7 @@ class FloatTank:
     def __init__(
         self, body: FloatBody, lake: Lake, *, timestep: float = 0.002, integrator: Integrator = "implicitfast"
     ) -> None:
+        """Build the model of the body with its pieces, and fill the tank."""
         self._body, self._lake = body, lake
         spec = mujoco.MjSpec()
         spec.option.timestep = timestep

@@ -26,6 +26,7 @@ class Injector:
     """
 
     def __init__(self, batch: SimulationBatch, period: float, robot: Robot) -> None:
+        """Note which columns of the sensors belong to which servo, limb and trunk body."""
         self._batch, self._period = batch, period
         place = layout(robot)
         self._columns = {
@@ -89,6 +90,7 @@ class Site:
     """
 
     def __init__(self, batch: SimulationBatch, sim: int, columns: Mapping[str, Mapping[str, int]]) -> None:
+        """Begin without changes: nothing is written to the model yet."""
         self._batch, self._sim, self._groups, self._columns = batch, sim, columns, columns["servo"]
         self._since: int | None = None
         self._original_rows: dict[tuple[str, int], np.ndarray] = {}
@@ -182,6 +184,7 @@ class Disturbances:
     """
 
     def __init__(self, runs: Sequence[Run], batch: SimulationBatch, ticks: int, period: float) -> None:
+        """Draw the servo noise of each run, and schedule its faults and pushes."""
         self._batch, self._period = batch, period
         self.injector = Injector(batch, period, runs[0].robot)
         self._faults: list[dict[int, list[Fault]]] = [{} for _ in runs]
@@ -256,6 +259,7 @@ class Disturbances:
         return self.injector.command(tick, targets)
 
     def _happen(self, sim: int, tick: int) -> None:
+        """Apply the mean pushes of a control period to a run, and begin the faults that are due in it."""
         start, end = tick * self._period, (tick + 1) * self._period
         forces: dict[str, np.ndarray] = {}
         for push in self._pushes[sim]:

@@ -42,6 +42,7 @@ class Wave:
     """Phase at the world's origin at time 0, a crest at 0 [cycle]."""
 
     def __post_init__(self) -> None:
+        """Refuse heights, lengths and directions outside their ranges, and waves that would break."""
         with Checks("wave", self) as check:
             check.number("height", 0.0, 100.0, "m")
             check.number("length", 0.01, 1000.0, "m")
@@ -88,6 +89,7 @@ class Lake:
     are. ``coupling.earned_correction`` makes one."""
 
     def __post_init__(self) -> None:
+        """Refuse currents, levels, air fractions and factors outside their ranges."""
         with Checks("lake", self) as check:
             check.each("current", ("forward", "left"), -FASTEST, FASTEST, "m/s")
             check.number("heel", -pi, pi, "rad")
@@ -180,6 +182,7 @@ class Waters:
     """
 
     def __init__(self, lakes: Sequence[Lake | None], grounds: Sequence[Ground], physics: Any) -> None:
+        """Bind the physics' memory and write the water of each run into it."""
         self._lakes = {sim: lake for sim, lake in enumerate(lakes) if lake is not None}
         self._changing = {sim: lake for sim, lake in self._lakes.items() if lake.changes()}
         self._ups = np.array([up(ground) for ground in grounds])

@@ -51,6 +51,7 @@ class RobotLinks:
     """
 
     def __init__(self, model: Any) -> None:
+        """Collect bodies with solid shapes, those shapes, and the hinges of the model."""
         self._model, self._data = model, mujoco.MjData(model)
         solid = [g for g in range(model.ngeom) if model.geom_bodyid[g] > 0 and model.geom_conaffinity[g]]
         self._bodies = sorted({int(model.geom_bodyid[g]) for g in solid})

@@ -35,6 +35,7 @@ class Live:
     """
 
     def __init__(self, run: Run, *, timestep: float | None = None) -> None:
+        """Check the run, and start its loop and recorder."""
         swims = isinstance(run.control, Swimming) and not run.control.feels
         if run.noise > 0.0 or not (swims or isinstance(run.control, Coordinated)):
             raise InvalidDesign(

@@ -80,6 +80,7 @@ class Loop:
     def __init__(
         self, runs: Sequence[Run], timestep: float, *, ticks: int, controller: Controller | None = None
     ) -> None:
+        """Build the batch, start the controller, and place each robot in its first posture."""
         self.runs = runs
         self.period = control_period(runs[0].robot)
         self.steps = physics_steps(timestep, self.period)
@@ -216,6 +217,7 @@ class Deduplication:
     """
 
     def __init__(self, runs: Sequence[Run], initial_angles: np.ndarray, period: float) -> None:
+        """Group the runs that begin equal, and note in which control period a fault or push separates each."""
         groups: dict[object, list[int]] = {}
         for sim, run in enumerate(runs):
             world = (run.ground, run.afloat, run.lake, run.supply)

@@ -354,6 +354,7 @@ def _growing(amplitude: np.ndarray, frequency: float) -> Callable[[float], tuple
     duration, omega = _GROWS / frequency, tau * frequency
 
     def motion(time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return angles [rad], rates [rad/s] and accelerations [rad/s2] of the joints at a time [s]."""
         p = min(time / duration, 1.0)
         envelope = p**3 * (10 - 15 * p + 6 * p**2)
         envelope_rate = 30 * p**2 * (1 - p) ** 2 / duration

@@ -23,6 +23,7 @@ class Sensors:
     """Where the sensors of the robots of a batch stand, and what they say now."""
 
     def __init__(self, batch: SimulationBatch, robot: Robot) -> None:
+        """Look up the columns of each sensor in the model."""
         self._batch = batch
         self.layout = place = layout(robot)
         model = batch.model
@@ -87,6 +88,7 @@ class Recorder:
     """
 
     def __init__(self, batch: SimulationBatch, sensors: Sensors, runs: Sequence[Run], samples: int) -> None:
+        """Reserve an array of NaN for each quantity that is sampled."""
         self._batch, self._sensors, self._runs = batch, sensors, runs
         self._layout = place = sensors.layout
         self._joints = joint_addresses(batch.model, place.hinges)
@@ -211,6 +213,7 @@ class Recorder:
         }
 
     def _arrays(self) -> dict[str, np.ndarray]:
+        """Return the samples by the names of ``record.VARIABLES``, each of shape (run, time, ...)."""
         rows, place = self._readings, self._layout
 
         def block(names: Sequence[str], suffix: str) -> np.ndarray:

@@ -115,6 +115,7 @@ class Run:
     """Name in tables and legends."""
 
     def __post_init__(self) -> None:
+        """Resolve the names of robot, gait and water, and refuse settings that contradict each other."""
         object.__setattr__(self, "robot", ROBOTS.resolve(self.robot))
         object.__setattr__(self, "gait", gait_of(self.robot, self.gait))
         self._take_water()

@@ -137,6 +137,7 @@ def _groups(runs: Sequence[Run]) -> list[list[int]]:
 
 
 def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, stride: int, progress: Progress) -> xr.Dataset:
+    """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled."""
     loop = Loop(runs, timestep, ticks=ticks + 1)
     recorder = loop.recorder(ticks // stride + 1)
     for tick in range(ticks + 1):

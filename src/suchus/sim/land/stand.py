@@ -74,6 +74,7 @@ def on_stand(
 
 
 def _model(robot: Robot, joint: str, timestep: float) -> mujoco.MjModel:
+    """Compile a robot whose root is fixed in the air, with a clamp on one joint."""
     spec = build(robot, timestep=timestep)
     if spec.joint(joint) is None:
         raise InvalidDesign(f"servo {joint!r} turns no joint of its own; name one that does.")

@@ -143,6 +143,7 @@ class Stepper:
         controller: Controller | None = None,
         begin: Beginning | None = None,
     ) -> None:
+        """Start the loop, select the coordinates of the water, and find the steps at which faults and pushes change."""
         self._loop = loop = Loop([run], timestep, ticks=ticks + 1, controller=controller)
         if begin is not None:
             loop.restart(0, begin, run.faults, run.pushes)
@@ -251,6 +252,7 @@ class Stepper:
         batch.physics.state[row] = self._physics.state[0]
 
     def _update_kinematics(self) -> None:
+        """Compute positions, centre of mass and mass matrix of the present state, once in each state."""
         if self._is_looked_at:
             return
         self._is_looked_at = True

@@ -92,6 +92,7 @@ def _ctypes_struct(name: str, members: Sequence[Any]) -> type[ctypes.Structure]:
 
 
 def _type(field_path: str, declaration: Any) -> Any:
+    """Return the ctypes type of a declaration in MuJoCo's description."""
     if isinstance(declaration, PointerType):
         return ctypes.c_void_p
     if isinstance(declaration, ArrayType):

@@ -37,6 +37,7 @@ class Tolerances:
     cables and fillings of printed parts, which a drawing leaves out."""
 
     def __post_init__(self) -> None:
+        """Refuse errors that are negative or larger than any build has."""
         with Checks("tolerances", self) as check:
             for name in ("zero_error", "dead_band", "backlash"):
                 check.number(name, 0.0, 1.0, "rad")

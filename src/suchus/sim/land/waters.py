@@ -54,6 +54,7 @@ class _Resolved:
     """In space: water beside the widest swing, to each side; None for that of a commanded swim [body length]."""
 
     def _check(self, name: str) -> None:
+        """Refuse settings of a resolved flow outside their ranges, and settings of a body in space for a slice."""
         with Checks(name, self) as check:
             check.whole("cells", 32, _MAX_CELLS[name])
             check.number("reynolds", 10.0, 1e7, "")
@@ -89,6 +90,7 @@ class Slice(_Resolved):
     """Least half-width; where the body is thinner it is thickened, its ends made round [cell]."""
 
     def __post_init__(self) -> None:
+        """Refuse cells, thickness or depth outside their ranges."""
         self._check("slice")
         with Checks("slice", self) as check:
             check.number("blunt", 0.0, 5.0, "cells")

@@ -54,6 +54,7 @@ def stance_forces(record: xr.Dataset, window: Window) -> xr.DataArray:
 
 
 def _in_course_frame(force: xr.DataArray, record: xr.Dataset, window: Window) -> xr.DataArray:
+    """Return the components of a force along the course of a run: up, toward the midline, forward."""
     forward, leftward = advance(record, window)
     size = np.hypot(forward, leftward)
     c, s = (forward / size, leftward / size) if size > 0 else (1.0, 0.0)

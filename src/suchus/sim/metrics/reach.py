@@ -103,6 +103,7 @@ def held(height: xr.DataArray, min_height: float) -> xr.DataArray:
     step = float(height.time[1] - height.time[0])
 
     def longest_run(values: np.ndarray) -> float:
+        """Return the duration of the longest run of samples at or above the height [s]."""
         best = run_length = 0
         for value in values:
             run_length = run_length + 1 if value >= min_height else 0

@@ -91,6 +91,7 @@ def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
 
 
 def _set_options(spec: Any, timestep: float) -> None:
+    """Set time step, gravity, integrator and contact solver of a model."""
     option = spec.option
     option.timestep = timestep
     option.gravity = [0.0, 0.0, -GRAVITY]
@@ -102,6 +103,7 @@ def _set_options(spec: Any, timestep: float) -> None:
 
 
 def _add_sensors(spec: Any, place: Layout) -> None:
+    """Add the sensors in the order of ``sensor_names``."""
     kind, object_types = mujoco.mjtSensor, mujoco.mjtObj
     for suffix, sensor in (
         ("position", kind.mjSENS_ACTUATORPOS),
@@ -221,6 +223,7 @@ def shell(
 
 
 def _touches(geom: Any, friction: float, contact: Contact, dimensions: int, colour: tuple[float, ...]) -> None:
+    """Give a geom its friction, its contact stiffness and its colour; it touches the ground alone."""
     # MuJoCo takes the maximum of two frictions at equal priority, so the robot's surfaces take precedence.
     geom.priority = 1
     geom.friction = [friction, contact.torsion, contact.rolling]
@@ -263,6 +266,7 @@ def add_bodies(root: Any, place: Layout) -> None:
 
 
 def _add_hinge(body: Any, hinge: Hinge, name: str, axis: list[float]) -> None:
+    """Add a hinge with its range and with armature, friction and damping of its servo or spring."""
     attributes: dict[str, Any] = {"name": name, "type": mujoco.mjtJoint.mjJNT_HINGE, "axis": axis}
     if hinge.range is not None:
         attributes |= {"range": list(hinge.range), "limited": mujoco.mjtLimited.mjLIMITED_TRUE}
@@ -276,6 +280,7 @@ def _add_hinge(body: Any, hinge: Hinge, name: str, axis: list[float]) -> None:
 
 
 def _add_segment(body: Any, segment: Segment, shift: float, robot: Robot) -> None:
+    """Add the shapes of a segment, moved forward by ``shift`` [m], and the sites that it carries."""
     for shape in segment.shapes:
         if isinstance(shape, Rod):
             start, end = _shifted(shape.start, shift), _shifted(shape.end, shift)
@@ -295,6 +300,7 @@ def _shifted(point: Point, shift: float) -> list[float]:
 
 
 def _add_link(body: Any, limb: LimbPlace, number: int, contact: Contact) -> None:
+    """Add a link of a limb; the last one carries the foot."""
     design = limb.girdle.limb
     link = design.links[number]
     end = [link.end[0], limb.side * link.end[1], link.end[2]]
@@ -390,6 +396,7 @@ def add_ground(spec: Any, relief: Relief | None) -> None:
 
 
 def _block(spec: Any, centre: tuple[float, float], half: tuple[float, float], height: float) -> None:
+    """Add a box on the ground: centre and half widths along x and y, and its height [m]."""
     spec.worldbody.add_geom(
         name=RELIEF,
         type=mujoco.mjtGeom.mjGEOM_BOX,

@@ -72,6 +72,7 @@ class _Rigid:
     """A robot frozen in a posture: its pieces, its weight and its centre of mass, root at the origin."""
 
     def __init__(self, robot: Robot, servos: np.ndarray, density: float, air_fraction: AirFractions) -> None:
+        """Compute positions, mass and volume of the robot in its posture."""
         table = np.array(pieces(robot))
         model = wet_model(robot, TIMESTEP, None, len(table))
         self.data = data = mujoco.MjData(model)

@@ -211,6 +211,7 @@ def _other_meaning(record: xr.Dataset, name: str) -> str:
 
 
 def _fits_schema(record: xr.Dataset, name: str) -> bool:
+    """Return whether a variable has dimensions, labels and numbers of the schema."""
     variable, dims = record[name], VARIABLES[name][0]
     if variable.dims not in (dims, ("run", *dims)) or variable.dtype.kind not in "fiu":
         return False

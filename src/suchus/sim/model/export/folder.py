@@ -70,6 +70,7 @@ def _texts(robot: Robot, gait: Gait, kind: Format, timestep: float) -> dict[str,
 
 
 def _mjcf(robot: Robot, gait: Gait, timestep: float) -> dict[str, str]:
+    """Return the texts of the files of an MJCF export by name."""
     model, scene = mjcf(robot, gait, timestep=timestep)
     files = {
         f"{robot.name}.xml": "the robot: bodies, joints, tendon, servos, sensors, keyframe `home`",
@@ -104,6 +105,7 @@ def _cords(robot: Robot) -> str:
 
 
 def _urdf(robot: Robot) -> dict[str, str]:
+    """Return the texts of the files of a URDF export by name."""
     files = {f"{robot.name}.urdf": "the robot: links, joints, limits, shapes", BALL: "a ball that ellipsoids stretch"}
     introduction = (
         "Joints and frames (feet, snout, tail_tip, imu) carry the names that suchus gives them; x forward, y left, z "
@@ -114,6 +116,7 @@ def _urdf(robot: Robot) -> dict[str, str]:
 
 
 def _usd(robot: Robot, gait: Gait) -> dict[str, str]:
+    """Return the texts of the files of a USD export by name."""
     name = f"{robot.name}.usda"
     files = {
         name: "the robot: bodies, joints with limits and drives, shapes, frames",
@@ -129,6 +132,15 @@ def _usd(robot: Robot, gait: Gait) -> dict[str, str]:
 
 
 def _readme(robot: Robot, files: Mapping[str, str], command: str, introduction: str, omissions: tuple[str, ...]) -> str:
+    """Return the README of an export in Markdown.
+
+    Args:
+        robot: the design.
+        files: what each file holds, by name.
+        command: shell command that shows the model.
+        introduction: text before the table of files.
+        omissions: what the format leaves out, a sentence or more each.
+    """
     files = {
         **files,
         "robot.toml": "every number, with its meaning and unit",

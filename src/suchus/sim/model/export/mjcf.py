@@ -60,6 +60,7 @@ def numbers(values: Sequence[float] | np.ndarray) -> str:
 
 
 def _home(model: Any, robot: Robot, gait: Gait) -> ElementTree.Element:
+    """Return the keyframe ``home``: positions, servo states and servo angles in mid-stance."""
     qpos, servos = home(model, robot, gait)
     keys = ElementTree.Element("keyframe")
     values = {"qpos": qpos, "act": activations(model, servos), "ctrl": servos}
@@ -98,6 +99,7 @@ def _kind(element: ElementTree.Element) -> str:
 
 
 def _refine(element: ElementTree.Element, owners: Sequence[Any]) -> None:
+    """Replace the rounded numbers of an element by exact ones of the first owner that has the same digits."""
     for key, text in element.attrib.items():
         if key == "rgba":  # single precision: what is printed is the number that was meant
             continue

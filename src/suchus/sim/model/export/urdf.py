@@ -195,6 +195,7 @@ def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Robot) -> N
 
 
 def _inertial(link: ElementTree.Element, model: Any, body: int) -> None:
+    """Add mass, centre of mass and principal moments of a body to its link."""
     inertial = ElementTree.SubElement(link, "inertial")
     _origin(inertial, model.body_ipos[body], model.body_iquat[body])
     ElementTree.SubElement(inertial, "mass", value=numbers([model.body_mass[body]]))
@@ -204,6 +205,7 @@ def _inertial(link: ElementTree.Element, model: Any, body: int) -> None:
 
 
 def _shape(link: ElementTree.Element, model: Any, geom: int) -> None:
+    """Add a geom to its link, as visual and as collision shape."""
     kinds = mujoco.mjtGeom
     kind, size, place = model.geom_type[geom], model.geom_size[geom], model.geom_pos[geom]
     quat, colour = model.geom_quat[geom], model.geom_rgba[geom]

@@ -137,6 +137,7 @@ def prim_name(robot: Robot) -> str:
 
 
 def _library() -> Any:
+    """Return the library that writes USD, or raise ``NoUsd`` where it is not installed."""
     try:
         import pxr  # noqa: PLC0415  an optional extra
         from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt  # noqa: F401, PLC0415  they load on import
@@ -189,6 +190,7 @@ class _Writer:
                 self._move(frame, site_view.pos, site_view.quat)
 
     def _place(self, link: _Link) -> Any:
+        """Define a rigid body at the place of a link and return its prim."""
         self.links[link.name] = link
         prim = self.pxr.UsdGeom.Xform.Define(self.stage, f"{self.root}/{link.name}")
         self._move(prim, link.place, link.turn.as_quat(scalar_first=True))
@@ -201,6 +203,7 @@ class _Writer:
         prim.AddOrientOp(double).Set(self.pxr.Gf.Quatd(*map(float, quat)))
 
     def _mass(self, prim: Any, mass: float, place: np.ndarray, inertia: np.ndarray, quat: np.ndarray) -> None:
+        """Set mass [kg], centre of mass [m] and principal moments [kg m2] of a body."""
         mass_api = self.pxr.UsdPhysics.MassAPI.Apply(prim)
         mass_api.CreateMassAttr(float(mass))
         mass_api.CreateCenterOfMassAttr(self.pxr.Gf.Vec3f(*map(float, place)))
@@ -208,6 +211,7 @@ class _Writer:
         mass_api.CreatePrincipalAxesAttr(self.pxr.Gf.Quatf(*map(float, quat)))
 
     def _fixed(self, parent: _Link, child: _Link) -> None:
+        """Define a joint that fixes a child to its parent."""
         gf, back = self.pxr.Gf, parent.turn.inv()
         joint = self.pxr.UsdPhysics.FixedJoint.Define(self.stage, f"{self.root}/joints/{child.name}_fixed")
         joint.CreateBody0Rel().SetTargets([f"{self.root}/{parent.name}"])
@@ -216,6 +220,7 @@ class _Writer:
         joint.CreateLocalRot0Attr(gf.Quatf(*(back * child.turn).as_quat(scalar_first=True).tolist()))
 
     def _joint(self, hinge: int, parent: _Link | None, child: _Link) -> _Link:
+        """Define a revolute joint with its limits and its drive, and return the child."""
         assert parent is not None  # only the root has none, and no hinge
         name, gf = self.model.joint(hinge).name, self.pxr.Gf
         joint = self.pxr.UsdPhysics.RevoluteJoint.Define(self.stage, f"{self.root}/joints/{name}")
@@ -252,6 +257,7 @@ class _Writer:
         drive.CreateTargetPositionAttr(np.degrees(self.targets.get(name, 0.0)).item())
 
     def _shape(self, geom: int, body: str) -> None:
+        """Define the shape of a geom and the shape that collides, with the material of foot or skin."""
         kinds, geometry, model = mujoco.mjtGeom, self.pxr.UsdGeom, self.model
         kind, size, name = model.geom_type[geom], model.geom_size[geom].tolist(), model.geom(geom).name
         path = f"{self.root}/{body}/{name}_shape"

@@ -32,6 +32,7 @@ def parse(path: Path) -> ElementTree.Element:
     depth = count = 0
 
     def start(tag: str, attributes: dict[str, str]) -> None:
+        """Begin an element; refuse too many elements, too deep ones, and those of a macro language."""
         nonlocal depth, count
         depth, count = depth + 1, count + 1
         if depth > _MAX_DEPTH:
@@ -135,6 +136,7 @@ def _freed(
 
 
 def _refuse_kinds(joints: list[ElementTree.Element]) -> None:
+    """Refuse joints that are neither hinges nor fixed."""
     for joint in joints:
         kind, name = joint.get("type", ""), joint.get("name", "")
         if kind in _UNSUPPORTED_JOINTS:
@@ -183,6 +185,7 @@ def _linked(joint: ElementTree.Element, end: str) -> str:
 
 
 def _add_link(clean_root: ElementTree.Element, link: ElementTree.Element, meshes: Meshes) -> None:
+    """Add a link with its inertia and its collision shapes; meshes that are not read are noted."""
     copy = ElementTree.SubElement(clean_root, "link", name=link.get("name", ""))
     copy.extend(e for e in link if e.tag == "inertial")
     unread_file = ""
@@ -210,6 +213,7 @@ def _drive(joint: ElementTree.Element) -> Drive:
 
 
 def _number(element: ElementTree.Element | None, key: str) -> float | None:
+    """Return a number of a limit, None where the file has none; refuse negative and infinite ones."""
     if element is None or element.get(key) is None:
         return None
     try:
@@ -238,6 +242,7 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
     home, opened_files = path.resolve().parent, [path.resolve()]
 
     def expand(element: ElementTree.Element, depth: int) -> None:
+        """Replace the includes below an element by what the included files hold."""
         if depth > _MAX_DEPTH:
             raise UnreadableFile(f"{path.name} and what it includes nest more than {_MAX_DEPTH} elements.")
         for place, child in reversed(list(enumerate(element))):
@@ -341,6 +346,7 @@ def _meshes(root: ElementTree.Element, clean_root: ElementTree.Element, meshes: 
 
 
 def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
+    """Return remarks on equalities that are not taken; refuse those that close a loop."""
     remarks = []
     for element in (e for section in root.findall("equality") for e in section):
         if element.get("active") == "false":
@@ -388,6 +394,7 @@ def _defaults(root: ElementTree.Element) -> Iterator[tuple[tuple[str, str], Mapp
     def walk(
         element: ElementTree.Element, inherited: Mapping[str, Mapping[str, str]], name: str
     ) -> Iterator[tuple[tuple[str, str], Mapping[str, str]]]:
+        """Yield the default attributes of a class and of the classes inside it."""
         class_attributes = {e.tag: {**inherited.get(e.tag, {}), **e.attrib} for e in element if e.tag != "default"}
         merged = {**inherited, **class_attributes}
         for tag, attributes in merged.items():

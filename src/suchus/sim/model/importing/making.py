@@ -156,6 +156,7 @@ def numbered(turns: Sequence[str]) -> list[str]:
 
 
 def _servo(joint: Joint, size: Size) -> Servo | None:
+    """Return a servo for the robot's size with torque and speed of the file; None for a passive hinge."""
     if joint.drive is not None and joint.drive.passive:
         return None
     servo = servo_for(size.mass, size.length)

@@ -22,6 +22,7 @@ class Meshes:
     """
 
     def __init__(self, home: Path, packages: Sequence[str | Path] = ()) -> None:
+        """Resolve the folders; no file is opened yet."""
         self._home, self._packages = home.resolve(), [Path(folder).resolve() for folder in packages]
         self.assets: dict[str, bytes] = {}
         """STL files by the names under which MuJoCo finds them."""
@@ -78,6 +79,7 @@ class Meshes:
         raise UnreadableFile(f"there is no file {name[:100]}")
 
     def _places(self, name: str) -> list[tuple[Path, str]]:
+        """Return folders and relative paths at which a mesh may lie, in the order in which they are tried."""
         if not name.startswith(_SCHEME):
             return [(self._home, name.removeprefix("file://"))]
         path = name.removeprefix(_SCHEME)
@@ -89,6 +91,7 @@ class Meshes:
         ]
 
     def _bytes(self, mesh_file: Path) -> bytes:
+        """Return the content of a mesh file; refuse it where all meshes together would be too large."""
         check_file(mesh_file)
         self._size += mesh_file.stat().st_size
         if self._size > _MAX_TOTAL_SIZE:

@@ -351,6 +351,7 @@ def links_between(plan: BodyPlan, inner: int, outer: int) -> Iterator[tuple[Join
 
 
 def _remarks_on_front(plane: Plane) -> list[str]:
+    """Return sentences on which end is the front and on other planes of symmetry."""
     heading_text = f"the file's x axis turned left by {plane.heading % 360:g} degrees"
     opposite_heading = (plane.heading + 180) % 360
     if plane.certain:
@@ -404,6 +405,7 @@ def _chain(tree: Tree, plane: Plane, plane_parts: Sequence[int], words: Words) -
 
 
 def _place(tree: Tree, name: str, plane_parts: Sequence[int]) -> int:
+    """Return the index of the part in the mirror plane that has a body of a name."""
     for i in plane_parts:
         if name in tree.parts[i].names:
             return i

@@ -34,6 +34,7 @@ def straightened(plan: BodyPlan) -> BodyPlan:
 
 
 def _straighten(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, remarks: list[str]) -> None:
+    """Turn the hinges of a limb, from the hip on, until each next hinge lies along an axis of the robot."""
     order = [(i, k) for i in chain.parts for k in range(len(parts[i].joints))]
     for number, (i, k) in enumerate(order[1:], 1):
         axis = plan.plane.turn @ parts[i].joints[k].axis

@@ -71,6 +71,7 @@ def of_body(model: Any, data: Any, body: int) -> tuple[ShapePiece, ...]:
 
 
 def _piece(model: Any, data: Any, geom: int) -> ShapePiece:
+    """Return a geom as a rod or an ellipsoid; other kinds become the ellipsoid of their bounding box."""
     place, turn = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
     size, kind = model.geom_size[geom], mujoco.mjtGeom(int(model.geom_type[geom]))
     kinds = mujoco.mjtGeom
@@ -260,6 +261,7 @@ def _root(model: Any) -> tuple[int, tuple[str, ...]]:
 
 
 def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> TreePart:
+    """Return a body with its hinges, mass, shapes and sites as a part of the tree."""
     first_joint, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
     joints = () if root else tuple(_joint(model, data, j, loaded) for j in range(first_joint, first_joint + count))
     sites = [data.site_xpos[s] for s in range(model.nsite) if model.site_bodyid[s] == body]
@@ -280,6 +282,7 @@ def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> Tr
 
 
 def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
+    """Return a hinge with its axis, anchor, range and drive in the frame of the file."""
     name = model.joint(joint).name or f"joint_{joint}"
     zero = float(model.qpos0[model.jnt_qposadr[joint]])
     lower_limit, upper_limit = model.jnt_range[joint] - zero
