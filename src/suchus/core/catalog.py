@@ -1,4 +1,4 @@
-"""A shelf: things of one kind by name, from the package, a project folder, and packages of the user's."""
+"""A catalog: designs of one kind by name, from the package, a project folder, and installed plug-ins."""
 
 import importlib
 import sys
@@ -114,7 +114,7 @@ class Catalog(Mapping[str, T], Generic[T]):
         return thing
 
     def _load_file(self, source: Source) -> Any:
-        """Return what a TOML file says; the same value until the file changes."""
+        """Return what a TOML file describes; the value is cached until the file changes."""
         assert source.file is not None
         assert self._read_file is not None
         modified_ns = source.file.stat().st_mtime_ns
@@ -289,7 +289,7 @@ def _is_of(module: ModuleType, file: Path) -> bool:
 
 
 def _error_location(source: Source, error: BaseException) -> str:
-    """Return which line of the user's an error comes from: the last one in the folder of the module."""
+    """Return the line of user code that raised an error: the last one in the folder of the module."""
     if isinstance(error, SyntaxError) and error.filename:
         return f"{_project_path(Path(error.filename))}, line {error.lineno},"
     frames = [(Path(f.filename), f.lineno) for f in traceback.extract_tb(error.__traceback__)]
@@ -317,7 +317,7 @@ def _project_path(file: Path) -> str:
 
 
 def _error_text(error: BaseException) -> str:
-    """Return what went wrong as a sentence; our own errors are sentences already."""
+    """Return the message of an error as a sentence; messages of ``SuchusError`` are sentences already."""
     if isinstance(error, SuchusError):
         return str(error)
     text = error.msg if isinstance(error, SyntaxError) else str(error)

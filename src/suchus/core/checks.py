@@ -1,4 +1,4 @@
-"""How a design refuses impossible numbers: all that are wrong in one part, named at once."""
+"""Range checks of designs: all invalid fields of one part are reported in one error."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ Course = float | tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class Complaint:
-    """What is wrong with one field, or with several together."""
+    """An invalid field, or a combination of fields that is invalid."""
 
     field: str
     """Name of the field; empty where the fault lies in several together."""
@@ -37,9 +37,9 @@ class InvalidFields(InvalidDesign):
 
 
 class Checks:
-    """Collects what is wrong with a frozen value and raises once, on leaving the ``with`` block.
+    """Collects the invalid fields of a frozen value and raises one error when the ``with`` block ends.
 
-    Fields that hold another kind of thing than they declare are complained of too, whatever else is checked.
+    Fields whose values do not match their declared types are reported too.
 
     Args:
         owner: what the value is called, for the message.
@@ -116,15 +116,15 @@ class Checks:
     def course(
         self, field: str, lower_bound: float, upper_bound: float, unit: str, *, over: str = "time", start: float = -inf
     ) -> None:
-        """Refuse what is neither a number within the bounds nor a table of rising times with such numbers.
+        """Refuse a value that is neither a number within the bounds nor a table of increasing times and such numbers.
 
         Args:
             field: holds a ``Course``.
             lower_bound: least number.
             upper_bound: greatest number.
             unit: of the number.
-            over: what stands in the place of a time.
-            start: least time.
+            over: noun for the first column of the table, in messages.
+            start: least allowed time [s].
         """
         value = getattr(self._design, field)
         if isinstance(value, (int, float)):

@@ -147,12 +147,13 @@ class Doubtful(UserWarning):
 
 @contextmanager
 def plain_warnings(*labels: str, options: Iterable[str] = ()) -> Iterator[None]:
-    """Write warnings as sentences on standard error, each once, after ``about`` and without the place in the code.
+    """Write warnings as sentences on standard error, each once, after ``labels`` and without the place in the code.
 
-    What is said of many things of a kind is said in the end, of the worst, with the options that mend it.
+    Of many ``Doubtful`` warnings of one kind only the one of greatest ``size`` is printed, when the block ends, with
+    the options that mend it.
 
     Args:
-        labels: names of what warns.
+        labels: names of what warns, printed in front of each warning.
         options: words of the command line that the reader may change.
     """
     prefix, messages, worst_warnings = ": ".join(("suchus", *labels)), set[str](), dict[str, Doubtful]()

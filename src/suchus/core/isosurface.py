@@ -62,9 +62,15 @@ def isosurface(values: np.ndarray, level: float, origin: tuple[float, float, flo
 def _crossings(
     values: np.ndarray, is_above: np.ndarray, level: float, axis: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
-    """Return of each edge along an axis that the surface crosses: its lower node, where, and whether the field falls.
+    """Return for each grid edge that the surface crosses: lower node, crossing point, whether the field falls.
 
-    Each of shape (edge, 3), (edge, 3) and (edge,).
+    The arrays have the shapes (edge, 3), (edge, 3) and (edge,).
+
+    Args:
+        values: at the nodes of the grid, shape (z, y, x).
+        is_above: whether each value is above the level, same shape.
+        level: value of the field on the surface.
+        axis: of the values, along which the edges run [-].
     """
     lower_slice, upper_slice = [slice(None)] * 3, [slice(None)] * 3
     lower_slice[axis], upper_slice[axis] = slice(None, -1), slice(1, None)
@@ -77,9 +83,14 @@ def _crossings(
 
 
 def _cubes_around(lower_nodes: np.ndarray, axis: int, cubes: tuple[int, ...]) -> np.ndarray:
-    """Return the numbers of the four cubes around edges, shape (edge, 4).
+    """Return the flat indices of the four cubes around each edge, shape (edge, 4).
 
-    They run counterclockwise as seen from the upper end of an edge. A cube beyond the sides has the number -1.
+    They run counterclockwise as seen from the upper end of an edge. A cube beyond the sides has the index -1.
+
+    Args:
+        lower_nodes: indices (z, y, x) of the lower node of each edge, shape (edge, 3).
+        axis: along which the edges run [-].
+        cubes: number of cubes along z, y and x [-].
     """
     # indices run along z, y, x: the turn from the one to the other of these is counterclockwise about the axis
     first_axis, second_axis = {0: (2, 1), 1: (0, 2), 2: (1, 0)}[axis]

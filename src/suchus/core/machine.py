@@ -67,7 +67,7 @@ def arithmetic() -> dict[str, str]:
 
 @cache
 def described() -> dict[str, str]:
-    """Return what a person calls this machine's arithmetic: processor, vector instructions, kernels, threads."""
+    """Return a description of this machine for people: processor, vector instructions, kernels, threads."""
     numpy_config = np.show_config(mode="dicts")
     blas = numpy_config["Build Dependencies"]["blas"]
     kernels = os.environ.get("OPENBLAS_CORETYPE", "of its own choice")
@@ -88,10 +88,10 @@ def provenance() -> dict[str, dict[str, str]]:
 
 
 def differences(other_arithmetic: Mapping[str, str]) -> list[str]:
-    """Return the parts of ``arithmetic`` in which another machine computes otherwise.
+    """Return the components of ``arithmetic`` in which another machine differs.
 
     Args:
-        other_arithmetic: its ``arithmetic``; what is missing there counts as other.
+        other_arithmetic: the other machine's ``arithmetic``; a missing component counts as different.
     """
     return [component for component, digest in arithmetic().items() if other_arithmetic.get(component) != digest]
 
@@ -102,7 +102,7 @@ def is_portable() -> bool:
 
 
 def begun_portable(environment: Mapping[str, str]) -> dict[str, str] | None:
-    """Return the environment in which a process that asks for portable arithmetic must be begun anew.
+    """Return the environment with which a process that asks for portable arithmetic must be restarted.
 
     Args:
         environment: of this process.

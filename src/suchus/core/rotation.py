@@ -131,7 +131,7 @@ def matrix(q: Quaternion) -> Float[np.ndarray, "*b 3 3"]:
 
 
 def multiply(q1: Float[np.ndarray, "*c 4"], q2: Float[np.ndarray, "*d 4"]) -> Quaternion:
-    """Return the products of quaternions: the turn by the second, then by the first, both about the world's axes."""
+    """Return the products q1 q2 of quaternions: the rotation by q2, then by q1, both about the world's axes."""
     w, v, s, u = q1[..., :1], q1[..., 1:], q2[..., :1], q2[..., 1:]
     return np.concatenate([w * s - np.sum(v * u, -1, keepdims=True), w * u + s * v + np.cross(v, u)], axis=-1)
 

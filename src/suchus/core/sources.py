@@ -102,7 +102,7 @@ class Project:
 
 
 def project(folder: str | os.PathLike[str] | None) -> Project | None:
-    """Let the shelves hold what stands in a project folder, in this process and in those that it starts.
+    """Add the contents of a project folder to the catalogs, in this process and in those that it starts.
 
     Without a call the project is the folder that the variable ``SUCHUS_PROJECT`` names, else the working folder if it
     has a ``suchus.toml``.
@@ -135,7 +135,7 @@ def current() -> Project | None:
 
 @contextmanager
 def within(folder: str | None) -> Iterator[None]:
-    """Let a project folder be that of this process while the block runs; with None the project stays.
+    """Use a project folder in this process while the block runs; with None the project stays.
 
     Raises:
         UnreadableFile: there is no such folder, or its ``suchus.toml`` says what cannot be.
@@ -153,7 +153,7 @@ def within(folder: str | None) -> Iterator[None]:
 
 
 class Carried:
-    """A value that takes the project of this process along when it is sent to another process as a pickle.
+    """A value whose pickle names the project of this process, so that another process opens the project too.
 
     There the project is opened before the value is read, whose types may stand in it. A process that was told a project
     by ``SUCHUS_PROJECT`` when it started keeps that one, as on a machine where the folder has another path.

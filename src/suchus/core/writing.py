@@ -35,7 +35,7 @@ def check_name(name: str, kind: str) -> None:
 
     Args:
         name: such as that of a study.
-        kind: what is called so.
+        kind: noun for what has the name, as ``study``.
 
     Raises:
         InvalidDesign: the name is empty, means another folder, or cannot be a name on disk.
@@ -359,7 +359,7 @@ def _states(folder: Path) -> Iterator[tuple[Path, bool | None]]:
 
 
 def _carry_user_files(path: Path, draft: Path) -> bool:
-    """Put the user's files of a folder into the draft of the new one, and return whether that says all of the old.
+    """Copy the user's files of an old folder into its draft, and return whether the draft then replaces all of the old.
 
     Raises:
         Unwritable: one of them stands where a file of suchus's is to be.
@@ -387,7 +387,7 @@ def _carry_user_files(path: Path, draft: Path) -> bool:
 
 
 def _copy(file: Path, target: Path) -> None:
-    """Let a file stand at another place too; a folder moves there."""
+    """Link or copy a file to another path; a folder is moved."""
     if file.is_dir() and not file.is_symlink():
         file.rename(target)
         return

@@ -1,4 +1,4 @@
-"""The contract of a fault: a frozen value that says whom it can befall, what it does and how it ends."""
+"""The interface of a fault: a frozen value that says which parts it can affect, what it does and how it ends."""
 
 import math
 import re
@@ -49,7 +49,7 @@ class Plant(Protocol):
 
         Args:
             group: one of ``SENSORS``.
-            part_name: whose reading, shape (1,): a servo, a leg, a body of the trunk; None for the whole group.
+            part_name: servo, leg or body of the trunk whose reading is returned, shape (1,); None for the whole group.
         """
 
     def parameter(self, field: str, element: str) -> np.ndarray:
@@ -92,7 +92,7 @@ class Fault(ABC):
     @classmethod
     @abstractmethod
     def parts(cls, robot: Robot) -> tuple[str, ...]:
-        """Return the names of the parts of a robot that this can befall."""
+        """Return the names of the parts of a robot that this fault can affect."""
 
     @classmethod
     def kind(cls) -> str:
@@ -114,7 +114,7 @@ class Fault(ABC):
             raise UnknownName("joint" if self.acts_on == "servo" else self.acts_on, self.part, self.parts(robot))
 
     def apply(self, plant: Plant) -> None:  # noqa: B027 - many faults need nothing when they begin
-        """Let it begin."""
+        """Begin the fault."""
 
     def command(self, plant: Plant) -> None:  # noqa: B027 - many faults leave commands alone
         """Change what the servos are commanded in a control period, in ``plant.targets``.
@@ -123,10 +123,10 @@ class Fault(ABC):
         """
 
     def sense(self, plant: Plant) -> None:  # noqa: B027 - many faults leave readings alone
-        """Change what is felt in a control period, with ``plant.felt``."""
+        """Change the sensor readings of a control period, with ``plant.felt``."""
 
     def mend(self, plant: Plant) -> None:
-        """Let it end: the robot is as it was built."""
+        """End the fault: the robot is as it was built."""
         plant.restore()
 
 
@@ -187,7 +187,7 @@ def refuse_number(fault: Fault, value: Any, lower_bound: float, upper_bound: flo
         value: the number, in its unit.
         lower_bound: least allowed.
         upper_bound: greatest allowed.
-        verb: a verb, as in "moves at 9 rad/s".
+        verb: verb phrase before the number, as "moves at" in "moves at 9 rad/s".
         unit: of the number.
 
     Raises:

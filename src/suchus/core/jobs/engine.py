@@ -1,4 +1,4 @@
-"""The engine: every piece of a job that is not in its store yet, wherever it is done, each kept as it is finished."""
+"""The engine of jobs: it computes each piece that is not in the store yet, and stores each result at once."""
 
 import time
 from collections.abc import Callable
@@ -23,17 +23,17 @@ def finish(
     each: Callable[[int], Progress] | None = None,
     finished: Callable[[int, Result], None] | None = None,
 ) -> None:
-    """Do every piece of a job that is not in its store yet, and keep each result as soon as it is there.
+    """Compute every piece of a job that is not in its store yet, and store each result as soon as it is finished.
 
-    Whatever stops the program, Ctrl-C and a kill included, only the pieces that were under way are lost. Started again
-    it goes on. Where the pieces are done, and how many at once, changes no byte.
+    If the program stops, by Ctrl-C or a kill too, only the pieces in progress are lost; the next start continues. The
+    results are the same bytes wherever the pieces are computed, and however many at once.
 
     Args:
         job: what is to be done.
-        store: where the results stay.
-        place: where the pieces are done, and how many at once.
-        progress: told how much of the whole job is done.
-        each: returns what is told how far a piece is; called with its number when the piece is begun.
+        store: where the results are stored.
+        place: where the pieces are computed, and how many at once.
+        progress: called with the finished fraction of the whole job.
+        each: called with the number of a piece when it starts; returns the callback for the progress of that piece.
         finished: called with the number of a piece and its result, when that is kept.
 
     Raises:
@@ -76,7 +76,7 @@ def finish(
 
 
 def _result_after_crash(job: Job[Item, Result], number: int, crash: Died) -> Result:
-    """Return the result of a piece whose processes died.
+    """Return the substitute that the job defines for a piece whose processes crashed.
 
     Raises:
         ProcessDied: the job has none.
@@ -91,15 +91,15 @@ def _result_after_crash(job: Job[Item, Result], number: int, crash: Died) -> Res
 
 
 class Tally:
-    """Counts what is done of a whole, of earlier starts too, and the time of this one.
+    """Counts the finished units of a job, those of earlier starts included, and estimates the remaining time.
 
     Args:
-        total: all that is to be done, in units [-].
-        unit: what is counted, as ``runs``.
-        progress: told, whenever the count changes, the count, the rate and the time that is left as a stage, and the
-            share of the total that is done.
-        done: of an earlier start [-].
-        failed: of those that are done, how many failed [-].
+        total: units of the whole job [-].
+        unit: name of a unit, as ``runs``.
+        progress: called when the count changes, with the count, the rate and the remaining time as a stage, and with
+            the finished fraction of the total.
+        done: units that earlier starts finished [-].
+        failed: number of those units that failed [-].
     """
 
     def __init__(
@@ -114,18 +114,18 @@ class Tally:
         self._open_units: dict[int, float] = {}
 
     def under_way(self, number: int, units: float) -> None:
-        """Tell how many units of a piece are done [-]; several pieces may be under way at once."""
+        """Report the finished units of a piece in progress [-]; several pieces may be in progress at once."""
         self._open_units[number] = units
         self._tell()
 
     def finished(self, number: int, units: float, *, failed: int = 0, fresh: bool = True) -> None:
-        """Count a piece.
+        """Count a finished piece.
 
         Args:
             number: of the piece.
             units: all that it has [-].
             failed: how many of them failed [-].
-            fresh: whether this start did it; what an earlier one did says nothing of the rate.
+            fresh: whether this start computed it; pieces of earlier starts do not count in the rate.
         """
         self._open_units.pop(number, None)
         self.done += units

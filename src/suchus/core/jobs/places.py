@@ -1,4 +1,4 @@
-"""Where the pieces of a job are done: in this process, in processes of this machine, or on a Dask cluster."""
+"""Places that compute the pieces of a job: this process, processes of this machine, or a Dask cluster."""
 
 import sys
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -17,23 +17,28 @@ from suchus.core.jobs.job import AnyJob, Died
 from suchus.core.progress import Progress, silent
 
 Begun = Callable[[int], Progress]
-"""Called with the number of a piece that is begun; returns what is told how far it is."""
+"""Called with the number of a piece when it starts; returns the callback for its progress."""
 Results = Generator[tuple[int, Any], None, None]
 """Numbers of pieces and their results, ``Died`` where there is none, as they are finished, in any order."""
 _SWITCH = 5e-4  # [s]; Python's own 5 ms are two physics steps of a batch, for which another thread would wait each time
 
 
 class Place(Protocol):
-    """Does pieces of work, some at once; which and how many changes no result."""
+    """Computes pieces of work, some at once; the place and the number at once change no result."""
 
     @property
     def at_once(self) -> int:
         """Pieces that are done at once [-]."""
 
     def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
-        """Do the work of a job for each item, and yield each result as it is finished.
+        """Do the work of a job for each item, and yield each result when it is finished.
 
-        What was begun and is not finished is stopped when the iteration ends early, by an error, Ctrl-C or ``close``.
+        If the iteration ends early, by an error, Ctrl-C or ``close``, pieces in progress are stopped.
+
+        Args:
+            job: the work and its settings.
+            items: one for each piece.
+            start_piece: called with the index of an item when its piece starts.
 
         Raises:
             SuchusError: what the work of a piece raised, or that the place is lost.
@@ -114,10 +119,10 @@ HERE = ThisProcess()
 def place_for(
     job_text: str, *, client: Any = None, jobs: int = 1, each: int | None = None, here: Place = HERE
 ) -> Place:
-    """Return where a job is done.
+    """Return the place that computes a job.
 
     Args:
-        job_text: what the job is called in messages, as ``a study``.
+        job_text: name of the job in messages, as ``a study``.
         client: a ``distributed.Client``, whose workers then do it; None for this machine.
         jobs: number of processes of this machine; with 1 this process does it [-].
         each: threads that each of several processes takes [-]; an equal share of all if None.
@@ -143,11 +148,11 @@ def _silently(work: Callable[[Any, Progress], Any], item: Any) -> Any:
 
 
 class _StopPiece(BaseException):
-    """A thread is to leave its piece; no piece catches it, since it is no ``Exception``."""
+    """Stops a thread inside its piece; no piece catches it, since it is no ``Exception``."""
 
 
 class _News(NamedTuple):
-    """What a thread says of the piece that it is at."""
+    """A message of a thread about its piece."""
 
     number: int
     """Of the piece."""
@@ -158,7 +163,7 @@ class _News(NamedTuple):
 
 
 def _in_threads(job: AnyJob, items: Sequence[Any], start_piece: Begun, side_by_side: int) -> Results:
-    """Do pieces in threads; everything is told, and every result yielded, in the thread that asks."""
+    """Compute pieces in threads; the calling thread reports progress and yields the results."""
     news, stop, numbers = SimpleQueue[_News](), Event(), count()
     workers = [
         Thread(target=_work, args=(job.work, items, numbers, news, stop, side_by_side), daemon=True)

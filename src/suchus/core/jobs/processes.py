@@ -73,7 +73,7 @@ class Worker:
 def side_by_side(
     work: Callable[[Any, Progress], Any], items: Sequence[Any], jobs: int, *, tries: int = 1, each: int | None = None
 ) -> Generator[tuple[int, Begun | Far | Done | Died], None, None]:
-    """Do one piece of work for each item in a few processes, and yield what is heard of the pieces as it is heard.
+    """Do one piece of work for each item in a few processes, and yield each message about the pieces.
 
     Pieces are begun in the order given. A process that dies takes its piece with it and nothing else. When the
     iteration ends early, by Ctrl-C, an error or ``close``, busy processes are killed; those of a process that was
@@ -83,7 +83,7 @@ def side_by_side(
         work: makes the result of an item, and tells how far it is; it, items and results travel as pickles.
         items: what differs between the pieces.
         jobs: number of processes.
-        tries: how often a piece is begun at most, whose process dies [-].
+        tries: how often a piece is started at most if its process dies [-].
         each: threads that each process takes [-]; an equal share of all if None.
 
     Yields:
@@ -135,7 +135,7 @@ def side_by_side(
 
 
 def hire(work: Callable[[Any, Progress], Any], thread_count: int) -> Worker:
-    """Start a process that takes ``each`` threads."""
+    """Start a process that takes ``thread_count`` threads."""
     spawning = get_context("spawn")
     parent_end, child_end = spawning.Pipe()
     process = spawning.Process(target=_work, args=(child_end, work, thread_count), daemon=True)
@@ -156,7 +156,7 @@ def dismiss(workers: Sequence[Worker]) -> None:
 
 
 def _receive(worker: Worker) -> Far | Done | Died | _PieceError | _PieceWarning:
-    """Return what a busy worker says."""
+    """Return the next message of a busy worker; ``Died`` where its process has ended."""
     try:
         message: Far | Done | _PieceError | _PieceWarning = worker.pipe.recv()
     except _PIPE_ERRORS:
@@ -167,7 +167,7 @@ def _receive(worker: Worker) -> Far | Done | Died | _PieceError | _PieceWarning:
 
 @contextmanager
 def deaf() -> Iterator[None]:
-    """Let processes that are started inside never hear Ctrl-C, which a terminal tells to all of them at once."""
+    """Block Ctrl-C in processes that are started inside, since a terminal sends it to all processes."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

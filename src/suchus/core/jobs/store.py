@@ -1,4 +1,4 @@
-"""Where tables are kept as they come: a folder of parts, each of which is there whole or not at all."""
+"""A folder of result tables, one file for each part; each file is complete or absent."""
 
 import fcntl
 import hashlib
@@ -122,7 +122,7 @@ class Store:
         return self.folder / "parts" / f"{number:06d}.nc"
 
     def has(self, number: int) -> bool:
-        """Return whether a batch is finished and as it was written; of one with a flipped bit we say so."""
+        """Return whether a batch is finished and undamaged; a damaged file is reported."""
         if not self.part(number).is_file():
             return False
         try:
@@ -218,7 +218,7 @@ class Store:
         self._check_machine(mark, description, machines)
 
     def _check_machine(self, mark: Path, description: dict[str, Any], machines: list[dict[str, str]]) -> None:
-        """Refuse what a machine with another arithmetic began, or note that this one goes on with it."""
+        """Refuse a store of a machine with another arithmetic, or, if mixing is allowed, add this machine to it."""
         if any(not machine.differences(arithmetic) for arithmetic in machines):
             return
         if not machine.asked_to_mix():
@@ -247,7 +247,7 @@ class Store:
 
 
 def _machine_names(description: Mapping[str, Any]) -> str:
-    """Return what a store says of the machines that wrote it, for a message."""
+    """Return the names of the machines in a store's description, for a message."""
     names = ("processor", "vector instructions", "linear algebra", "C library")
     machine_texts = ["; ".join(entry["described"][name] for name in names) for entry in description.get("machines", ())]
     return " and ".join(machine_texts) or "a machine that is not named"
@@ -269,7 +269,7 @@ def _no_lock_of_dask() -> Iterator[None]:
 
 
 def together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Put tables one below the other; a column that one of them lacks is NaN there."""
+    """Concatenate tables along ``sample``; a column that a table lacks is NaN in its rows."""
     columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
     rows = {
         name: np.concatenate([t[name].values if name in t else np.full(t.sizes["sample"], np.nan) for t in tables])
@@ -282,7 +282,7 @@ def together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
 
 
 def made_by(folder: Path, *, key: str = "versions") -> dict[str, str]:
-    """Return what a store says of itself: the versions that made it, or with the key ``fields`` its study's fields.
+    """Return a part of a store's description: the versions that made it, or with the key ``fields`` its study's fields.
 
     Raises:
         UnreadableFile: there is no store.

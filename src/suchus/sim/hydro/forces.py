@@ -90,7 +90,7 @@ def hydrostatic(
     level: float,
     air_fraction: tuple[float, float],
 ) -> np.ndarray:
-    """Return the volume under water, its first moment about the world's origin, and the work of pushing it there.
+    """Return the submerged volume, its first moment about the world's origin, and the work of submerging it.
 
     Shape (5,): [m3], three [m4], and the work over density and gravity [m4].
 
@@ -126,7 +126,7 @@ def hydrostatic(
 
 @part
 def _orbit(user: np.ndarray, time: float, x: Vector, up_axis: Vector) -> tuple[float, Vector, Vector]:
-    """Return how high waves stand at a point [m], and velocity and acceleration of the water there.
+    """Return the surface elevation of waves at a point [m], and velocity and acceleration of the water there.
 
     Airy's waves on deep water, as they are at the surface for points above the level, and the current.
     """
@@ -159,7 +159,7 @@ def place(table: np.ndarray, rows: np.ndarray) -> None:
 
 @part
 def flow(rows: np.ndarray, user: np.ndarray, time: float, up_axis: Vector) -> None:
-    """Say how high the surface stands over the level at each piece, and how the water there moves."""
+    """Write the surface elevation at each piece, and velocity and acceleration of the water there."""
     current, zero, wave = three(user, CURRENT), (0.0, 0.0, 0.0), user[WAVE] != 0.0
     for n in range(LANES):
         elevation, stream, surge = 0.0, current, zero
@@ -172,7 +172,7 @@ def flow(rows: np.ndarray, user: np.ndarray, time: float, up_axis: Vector) -> No
 
 @part
 def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
-    """Compare pieces with the surface and with the water around them: how deep they are, how they move against it."""
+    """Write the depth of each piece below the surface, and its velocity relative to the water."""
     for n in range(LANES):
         a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
         ua, ub, ut = dot(water.up, a), dot(water.up, b), dot(water.up, t)
@@ -192,7 +192,7 @@ def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
 
 @part
 def rub(rows: np.ndarray, water: WaterProperties) -> None:
-    """Say how turbulent water rubs, where it does."""
+    """Write the coefficient of turbulent friction of each piece; 0 below the critical Reynolds number."""
     per_speed = water.length / water.viscosity
     for n in range(LANES):
         reynolds, friction = abs(rows[lanes.SPEED + 2, n]) * per_speed, 0.0
@@ -203,7 +203,7 @@ def rub(rows: np.ndarray, water: WaterProperties) -> None:
 
 @part
 def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
-    """Say what the water does to each piece: force, couple about the point of reference, volume under water."""
+    """Write the load of the water on each piece: force, couple about the point of reference, submerged volume."""
     per_speed, (front, rear) = water.length / water.viscosity, water.air_fraction
     for n in range(LANES):
         share, moment = immersed(table[lanes.KIND, n], rows[lanes.DEPTH, n])

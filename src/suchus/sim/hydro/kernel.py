@@ -21,7 +21,7 @@ _ROTATIONAL_INERTIA, _COUPLING_INERTIA, _LINEAR_INERTIA = SPUN - lanes.FOUND, MI
 
 @compiled
 def wet(model: int, data: int, offsets: np.ndarray) -> bool:
-    """Add the forces of the water to the passive forces, and its added mass to the matrix; tell whether that changed.
+    """Add the water's forces to the passive forces and its added mass to the mass matrix; return whether that changed.
 
     Args:
         model: address of a ``mjModel``.
@@ -59,7 +59,7 @@ def wet(model: int, data: int, offsets: np.ndarray) -> bool:
 
 @part
 def _add_stored_mass(model: int, data: int, offsets: np.ndarray) -> None:
-    """Add to the matrix the added mass that stands behind the numbers of the water."""
+    """Add the stored added mass to the mass matrix; it follows the numbers of the water in the user data."""
     bodies, motion = read_bodies(model, offsets), read_motion(model, data, offsets)
     stored_mass = read_given(model, data, offsets)
     for n in range(len(bodies.column)):
@@ -129,7 +129,7 @@ def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
 
 @part
 def _hand_over(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
-    """Add up what acts on the bodies towards the roots, and hand the forces to the joints."""
+    """Sum the loads of the bodies from the leaves to the roots, and add the generalised forces to the joints."""
     user, power = motion.user, 0.0
     for b in range(len(bodies.parent) - 1, 0, -1):
         parent = bodies.parent[b]

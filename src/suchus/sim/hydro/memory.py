@@ -142,7 +142,7 @@ def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
 
 @part
 def read_given(model: int, data: int, offsets: np.ndarray) -> np.ndarray:
-    """Return what stands behind the numbers of the water."""
+    """Return the stored added mass, which follows the numbers of the water in the user data."""
     model_words, state = carray(model, (4096,), np.int64), carray(data, (65536,), np.int64)
     start_byte = 8 * NUMBERS
     return carray(

@@ -32,10 +32,10 @@ _EMERGED_FRACTION, _BALLAST_FRACTION = 0.05, 0.1
 
 
 def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
-    """Return the volume of a robot wholly under water with the air that it keeps, and that of its weight [m3].
+    """Return the volume that a robot displaces fully submerged, and the volume of water that weighs as much [m3].
 
     Args:
-        robot: the design; it floats if the first is greater.
+        robot: the design; it floats if the first volume is greater than the second.
         lake: the water, as it is at the beginning.
     """
     table = pieces(robot)
@@ -180,7 +180,7 @@ def surfaced(
 
 
 def _raising(up_axis: np.ndarray) -> np.ndarray:
-    """Return the shortest turn that takes z to ``up``, as a quaternion wxyz."""
+    """Return the shortest turn that takes z to ``up_axis``, as a quaternion wxyz."""
     axis = np.cross([0.0, 0.0, 1.0], up_axis)
     turn = np.array([1.0 + up_axis[2], *axis])
     return np.asarray(turn / np.linalg.norm(turn))

@@ -42,7 +42,7 @@ class Beginning(NamedTuple):
 
 
 class Meter:
-    """Keeps step by step what the water does to the robots and what their servos do; both jitter within a period.
+    """Records forces and powers of water and servos in each physics step, since both vary within a control period.
 
     Args:
         water: of the batch, shape (run, ``hydro.NUMBERS``); read anew at every step.
@@ -64,11 +64,11 @@ class Meter:
         self._share = np.full(steps, 1.0 / steps)
 
     def begin(self) -> None:
-        """Keep what is felt before the first step."""
+        """Store the sensor readings before the first step."""
         self._history[0] = self._sensors
 
     def read(self, step: int) -> None:
-        """Keep what a physics step has left."""
+        """Store water forces and sensor readings after a physics step."""
         self._did[step] = self._acts
         self._history[step + 1] = self._sensors
 
@@ -279,7 +279,7 @@ class SimulationBatch:
         self.read(slice(None))
 
     def read(self, selection: int | slice) -> None:
-        """Take the readings of some runs at rest in their present state, which has been brought up to date."""
+        """Copy the sensors of the selected runs into ``readings``; their mean loads become those of this instant."""
         self.readings[selection], self._shafts[selection], self.worked[selection] = (
             self.sensors[selection],
             self._lengths[selection],
@@ -289,11 +289,11 @@ class SimulationBatch:
             self.worked[selection, :4] = self.waters.acts()[selection]
 
     def felt(self, sim: int) -> dict[str, np.ndarray]:
-        """Return copies of what controllers and faults of a run decide by: sensors, angles at the shafts, places."""
+        """Return copies of the inputs of a run's controllers and faults: sensors, shaft angles, positions, loads."""
         return {name: values[sim].copy() for name, values in self._decided_by.items()}
 
     def feel(self, sim: int, inputs: Mapping[str, np.ndarray]) -> None:
-        """Let controllers and faults of a run decide by what was ``felt`` at another time."""
+        """Set the inputs of a run's controllers and faults, as ``felt`` returned them at another time."""
         for name, values in self._decided_by.items():
             values[sim] = inputs[name]
 
@@ -302,7 +302,7 @@ class SimulationBatch:
         return {"readings": self.readings, "shafts": self._shafts, "qpos": self.qpos, "worked": self.worked}
 
     def restart(self, sim: int, begin: Beginning) -> None:
-        """Put one robot into a state, without a push, also after it has diverged; its faults are the injector's.
+        """Put one robot into a state, without pushes, also after it has diverged; the injector handles its faults.
 
         The others stay as they are. From then on it moves as a robot of a fresh batch does, to the last bit.
 
@@ -330,7 +330,9 @@ class SimulationBatch:
         felt: bool = True,
         read: bool = True,
     ) -> None:
-        """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
+        """Command servo angles and advance the runs that are alive by some physics steps.
+
+        A run that diverges is stopped; ``ended`` and ``cause`` hold the time and the reason.
 
         On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure
         sensor filters them, everything else as it is now.
@@ -339,9 +341,9 @@ class SimulationBatch:
             targets: shape (run, servo) [rad].
             steps: number of physics steps.
             time: at which they begin [s].
-            selection: whether each run is advanced, shape (run,); None for all.
-            felt: whether contact forces will be read; if not, they are those of the last step, which takes less time.
-            read: whether any of ``readings`` will be; if not, they are older, and a step takes a ninth less time.
+            selection: whether each run is advanced, shape (run,); None advances all.
+            felt: whether contact forces are needed as means; if not, they are those of the last step, which is faster.
+            read: whether ``readings`` are needed; if not, they stay as they were, and a step takes a ninth less time.
         """
         # what all runs share is done at once: with one run alone each of these lines shows in its time
         going = self._going(selection)
@@ -374,11 +376,11 @@ class SimulationBatch:
                 self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
 
     def copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
-        """Let runs be where others are, and feel and suffer the same.
+        """Copy the states, readings and failures of some runs to others.
 
         Args:
-            sims: indices of the runs, shape (n,).
-            whom: for each of them the index of the other, shape (n,).
+            sims: indices of the runs that are overwritten, shape (n,).
+            whom: index of the run that each of them copies, shape (n,).
         """
         self.physics.state[sims] = self.physics.state[whom]
         self.readings[sims], self._shafts[sims] = self.readings[whom], self._shafts[whom]
@@ -388,7 +390,7 @@ class SimulationBatch:
                 self._end(int(sim), float(self.ended[source]), self.cause[source])
 
     def _sense(self, is_on: bool) -> None:
-        """Let the physics work out its sensors from now on, or not; the states that it comes to are the same."""
+        """Switch the computation of sensors on or off; the computed states are the same."""
         if is_on == self._sensing:
             return
         self._sensing, bit = is_on, int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
@@ -412,11 +414,11 @@ class SimulationBatch:
         return self._meters[steps]
 
     def _living(self, selection: np.ndarray | None) -> np.ndarray:
-        """Return who is alive, of some or of all."""
+        """Return whether each selected run is alive, shape (run,)."""
         return self.alive if selection is None else self.alive & selection
 
     def _going(self, selection: np.ndarray | None) -> np.ndarray | None:
-        """Return which simulations are stepped; None for all."""
+        """Return the indices of the runs that are stepped; None for all."""
         going = self._living(selection)
         return None if going.all() else np.flatnonzero(going)
 
@@ -432,7 +434,7 @@ def _model(
     *,
     is_solved: bool = False,
 ) -> Any:
-    """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
+    """Return a compiled model without island discovery, with a table of water pieces if ``max_pieces`` is above 0.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
     """

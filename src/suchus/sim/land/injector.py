@@ -40,7 +40,7 @@ class Injector:
         self._broken: dict[tuple[int, str], tuple[Fault, Site]] = {}
 
     def begin(self, sim: int, fault: Fault) -> None:
-        """Let a fault of a run begin now, instead of what was wrong with the same part before."""
+        """Begin a fault of a run now; an earlier fault of the same part ends."""
         self.mend(sim, fault.part)
         site = Site(self._batch, sim, self._columns)
         self._broken[sim, fault.part] = fault, site
@@ -73,7 +73,7 @@ class Injector:
         return targets
 
     def sense(self, sensed: Sensed) -> Sensed:
-        """Return what is felt by sensors that may be broken; the arrays of ``sensed`` are written."""
+        """Apply the sensor faults to readings and return them; the arrays of ``sensed`` are written."""
         for fault, site in self._broken.values():
             site.sensed = sensed
             fault.sense(site)
@@ -170,7 +170,7 @@ class NamedRow(MutableMapping[str, float]):
 
 _NO_TICK = np.iinfo(np.int64).max
 _TICK_TOLERANCE = 1e-6
-"""By how much too early rather than too late a push may be awaited [control period]."""
+"""Rounding tolerance of the time of a push; it is expected rather too early than too late [control period]."""
 
 
 class Disturbances:
@@ -205,7 +205,7 @@ class Disturbances:
             self.schedule(sim, run.faults, run.pushes)
 
     def schedule(self, sim: int, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:
-        """Let other faults and pushes than before be ahead of a run, whose clock is at 0; all that is broken is mended.
+        """Replace the future faults and pushes of a run, whose clock is at 0; its present faults end.
 
         Args:
             sim: the run.
@@ -220,7 +220,7 @@ class Disturbances:
         self._await(sim, -1)
 
     def push(self, sim: int, push: Push) -> None:
-        """Add a push to those that are ahead of a run."""
+        """Add a push to the future ones of a run."""
         self._pushes[sim].append(push)
         self._await(sim, -1)
 

@@ -112,14 +112,14 @@ class Loop:
         return Recorder(self.batch, self.sensors, self.runs, samples)
 
     def sensed(self) -> Sensed:
-        """Return what the robots feel now, by sensors that may be broken."""
+        """Return the present sensor readings of the robots, with their sensor faults."""
         return self.disturbances.injector.sense(self.sensors.sensed(self.time))
 
     def decide(self, beat: int | None = None) -> None:
-        """Let happen what is due, ask the controller, and disturb what it commands: ``command`` is the result.
+        """Begin due faults and pushes, call the controller, and disturb its command: ``command`` is the result.
 
         Args:
-            beat: the control period that the controller takes this one for; the same if None.
+            beat: number of the control period that is passed to the controller; ``tick`` if None.
         """
         self.disturbances.happen(self.clocks, self._going)
         sensed = self.sensed() if self.feels else None
@@ -127,7 +127,7 @@ class Loop:
         self.disturb()
 
     def disturb(self) -> None:
-        """Disturb anew what the controller commanded last: with noise, and with what is broken by now."""
+        """Disturb the last command of the controller again: with noise and with the present faults."""
         targets = self.disturbances.disturb(self.clocks, self.tick, self._intended_command.targets)
         self.command = Command(targets, self._intended_command.phase, self._intended_command.air_fraction)
 
@@ -167,7 +167,7 @@ class Loop:
         self._count()
 
     def skip(self, periods: int) -> None:
-        """Let control periods pass in which others move the robots that go on."""
+        """Advance the clocks by some control periods, in which other code moves the robots."""
         for _ in range(periods):
             self._count()
 
@@ -200,11 +200,11 @@ def _swims(control: Control) -> bool:
 
 
 _TICK_TOLERANCE = 1e-6
-"""By how much too early rather than too late a trouble may be awaited [control period]."""
+"""Rounding tolerance of the time of a fault or push; it is expected rather too early than too late [control period]."""
 
 
 class Deduplication:
-    """The runs of a batch in groups that differ in nothing that the physics has felt yet.
+    """Groups of runs that have been identical for the physics so far, so that one run of a group is computed.
 
     Such are the runs of one robot that is pushed in many ways, up to the push. Members of a group have the same robot,
     ground, supply and first posture, and had the same commanded servo angles to the last bit; a run with another
@@ -233,7 +233,7 @@ class Deduplication:
         self._number()
 
     def part(self, tick: int, targets: np.ndarray) -> None:
-        """Let those leave whose first trouble is due, and those that have other commands than the others.
+        """Remove runs from their groups whose first fault or push is due, or whose commands differ.
 
         Args:
             tick: number of the control period.
@@ -260,7 +260,7 @@ class Deduplication:
             self._number()
 
     def _number(self) -> None:
-        """Note who follows whom."""
+        """Select the first run of each group as its leader, and note the leader of each other run."""
         self.first = np.ones(self._count, dtype=bool)
         self.others = np.array([sim for members in self._groups for sim in members[1:]], dtype=int)
         self.whom = np.array([members[0] for members in self._groups for _ in members[1:]], dtype=int)

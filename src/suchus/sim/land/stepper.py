@@ -1,14 +1,14 @@
 """One robot with its servos, springs, controller and troubles, stepped by whoever knows what the water does to it.
 
-Time goes on in stretches of whole physics steps. A stretch can be gone through as often as it takes until force and
-motion agree: it begins each time in the same state, and what was commanded and pushed the first time is kept. A stretch
-ends where a fault begins, or a push does or ends.
+Time advances in intervals of whole physics steps. An interval is repeated until force and motion converge: each
+iteration begins in the same state, and repeats the commands and pushes of the first one. An interval ends where a fault
+begins, or where a push begins or ends.
 
-``state`` and ``resume`` let a run that was stopped go on to the same bytes. Controllers and faults have no state to
-write down: they decide again by all that they felt, and must come to the same commands.
+``state`` and ``resume`` continue a stopped run to the same bytes. Controllers and faults have no stored state: they
+decide again from their stored inputs, and must return the same commands.
 
-In the plane the root moves along, to the left and about the vertical; the others of its coordinates are as good as
-locked, by an inertia that ``LOCKED`` times exceeds the robot's. Else all coordinates of the robot are the water's too.
+In the plane the root moves forward, to the left and about the vertical. Its other coordinates are locked by an inertia
+of ``LOCKED`` times the robot's. In space the water acts on all coordinates of the robot.
 """
 
 from collections.abc import Mapping
@@ -55,7 +55,7 @@ class CoordinateState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stretch:
-    """What became of the robot in a stretch of time.
+    """Displacement, works and momentum of the robot over an interval of time.
 
     Works are those of the forces as they act over each step, dampers and the servos' loops with the velocity at its
     end, along the mean of its velocities at both ends: they add up to the kinetic energy that is gained.
@@ -75,12 +75,12 @@ class Stretch:
     """Momentum of the whole robot at its end, along and to the left, in space upwards too, the water's not counted
     [kg m/s]."""
     strayed: Float[np.ndarray, " axis"]
-    """Momentum that the robot gained without a force: MuJoCo's step holds the mass matrix of its start [kg m/s]."""
+    """Momentum gained without a force, since MuJoCo's step uses the mass matrix of its start [kg m/s]."""
 
 
 @dataclass(slots=True)
 class _Saved:
-    """A state to begin from."""
+    """State at the beginning of an interval, to which each iteration returns."""
 
     state: np.ndarray
     step: int
@@ -95,9 +95,9 @@ class _Saved:
 
 @dataclass(slots=True)
 class _Tape:
-    """What was seen in each physics step of a stretch, one a row.
+    """Velocities, forces and power in each physics step of an interval.
 
-    Velocities, passive forces and those of the motion itself are of its start too.
+    Velocities, passive and bias forces have one more entry, that of the start.
     """
 
     velocity: list[np.ndarray]
@@ -110,7 +110,7 @@ class _Tape:
 
 
 class _Decision(NamedTuple):
-    """What was decided at the beginning of a control period, by what was felt then."""
+    """Command and pushes of a control period, with the inputs that they were decided from."""
 
     command: Command
     """What the servos are commanded."""
@@ -295,7 +295,7 @@ class Stepper:
         return rows, np.array(self.model.M_colind)[: len(rows)]
 
     def _added_mass_matrix(self) -> Float[np.ndarray, "dof dof"]:
-        """Return what the mass matrix of all that moves has been burdened with."""
+        """Return the added mass in the mass matrix of all degrees of freedom."""
         (rows, columns), matrix = self._entries, np.zeros_like(self._mass_matrix)
         entries = self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)]
         matrix[rows, columns] = matrix[columns, rows] = entries
@@ -314,7 +314,7 @@ class Stepper:
     # --- going on ----------------------------------------------------------------------------------------------
 
     def begin(self) -> None:
-        """Begin a stretch here."""
+        """Begin an interval in the present state."""
         self.at_begin = self.now
         state, passive, bias = self._physics.state[0].copy(), self._passive[0].copy(), self._bias[0].copy()
         added_mass, momentum = self._added_mass_matrix(), self._momentum()
@@ -323,12 +323,12 @@ class Stepper:
         )  # fmt: skip
 
     def until(self, time: float, max_steps: int, landing: int = 0) -> int:
-        """Return how many physics steps the next stretch has, so that none goes beyond a time [s] or a trouble.
+        """Return the number of physics steps of the next interval; it ends at a time [s], fault or push at the latest.
 
         Args:
-            time: at which a stretch ends [s].
-            max_steps: physics steps in a stretch, at most [-].
-            landing: stretches before such an end that are about equally long, so that the last is no jolt [-].
+            time: at which an interval must end [s].
+            max_steps: greatest number of physics steps in an interval [-].
+            landing: number of intervals of about equal length before such an end, so that none is very short [-].
         """
         later_troubles = self._troubles[self._troubles > self.steps]
         remaining = max(min([round(time / self.timestep) - self.steps, *(later_troubles[:1] - self.steps).tolist()]), 1)
@@ -336,7 +336,7 @@ class Stepper:
         return -(-remaining // stretches) if stretches <= max(landing, 1) else max_steps
 
     def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> CoordinateState:
-        """Go through the stretch that was begun, in so many steps, under a constant force of the water; ``account`` it.
+        """Step through the interval that was begun, under a constant force of the water; ``account`` evaluates it.
 
         Args:
             count: physics steps.
@@ -382,7 +382,7 @@ class Stepper:
         return self.now
 
     def account(self) -> Stretch:
-        """Return what became of the robot in the stretch that it went through last."""
+        """Return displacement, works and momentum of the last iteration of the interval."""
         saved = self._saved
         assert saved is not None
         tape, dt = self._tape, self.timestep
@@ -405,7 +405,7 @@ class Stepper:
         )  # fmt: skip
 
     def _decide(self, saved: _Saved) -> None:
-        """Take what a control period is commanded, which is thought of once, and keep a sample."""
+        """Apply the decision of a control period, which is made in the first iteration alone, and store a sample."""
         tick = self.steps // self._per_tick
         is_known = tick in saved.decisions
         is_first = not (is_known and self.steps == saved.step)  # else the sensors are those of the end of the last go
@@ -490,16 +490,20 @@ class Stepper:
 
 
 def _with_prefix(state: Mapping[str, np.ndarray], start: str) -> dict[str, np.ndarray]:
-    """Return the values whose names begin so, by the rest of their names."""
+    """Return the values whose names begin with ``start``, by the rest of their names."""
     return {name.removeprefix(start): values for name, values in state.items() if name.startswith(start)}
 
 
 def _dominating_matrix(
     missing: Float[np.ndarray, "n n"], is_entry: Bool[np.ndarray, "n n"]
 ) -> Float[np.ndarray, "n n"]:
-    """Return a matrix that is nowhere smaller than another one, as quadratic forms, with entries where there is room.
+    """Return a matrix whose quadratic form is nowhere smaller than that of another one, with allowed entries alone.
 
-    Between two branches it is the absolute value, else a diagonal of sums.
+    It is the absolute value where that has allowed entries alone, else a diagonal of sums.
+
+    Args:
+        missing: the symmetric matrix.
+        is_entry: whether each entry of the result may differ from zero.
     """
     values, vectors = np.linalg.eigh(missing)
     size = (vectors * np.abs(values)) @ vectors.T

@@ -94,11 +94,11 @@ def _forward(hind: xr.DataArray) -> xr.DataArray:
 
 
 def held(height: xr.DataArray, min_height: float) -> xr.DataArray:
-    """Return the longest time without a break in which a height is at least ``least`` [s].
+    """Return the longest time without a break in which a height is at least ``min_height`` [s].
 
     Args:
         height: over time [m].
-        min_height: [m].
+        min_height: height that the samples must reach [m].
     """
     step = float(height.time[1] - height.time[0])
 
