@@ -1,4 +1,4 @@
-"""A robot put on the water: whether it floats upright, and level with the surface as deep as its weight asks for."""
+"""A robot on the water: whether it floats upright, and its posture at the surface in equilibrium."""
 
 import warnings
 from functools import lru_cache
@@ -44,7 +44,7 @@ def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
 
 
 def hovers(robot: Robot, lake: Lake) -> bool:
-    """Return whether a robot has so much air that it hovers when it lets a part of it out."""
+    """Return whether a robot can hover in the water by releasing a part of its air."""
     spare = sum(volumes(robot).values()) - robot.mass / lake.water.density
     return 0.0 < spare <= sum(chambers(robot))
 
@@ -71,7 +71,7 @@ def check_floats(robot: Robot, lake: Lake) -> None:
 
 
 def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"]) -> None:
-    """Warn of a swimmer that sinks, capsizes or lies in the air, before it moves; say what would mend it.
+    """Warn, before it moves, of a swimmer that sinks, capsizes or floats too high; the warning says a remedy.
 
     Args:
         robot: the design.
@@ -89,7 +89,7 @@ def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"])
 
 @lru_cache(maxsize=64)
 def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[float, ...]) -> str:
-    """Return what is doubtful about a swimmer at rest in a sentence; nothing where all is well."""
+    """Return a warning about a swimmer at rest as a sentence; empty if it floats upright and deep enough."""
     equilibrium = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heels=3)
     if equilibrium.surplus > HEAVIER * equilibrium.mass:
         return _sinks(robot, density, equilibrium.surplus)

@@ -141,7 +141,7 @@ def lake_text(lake: Lake | None) -> str:
 
 
 def check_lake(robot: Robot, lake: Lake) -> None:
-    """Refuse an air fraction that a robot's hull has no air for, and a correction of another robot.
+    """Refuse an air fraction below 1 for a hull without air, and a correction made for another robot.
 
     Raises:
         InvalidDesign: air is let out, and the robot has no hull with air; or it lacks a body that is corrected.
@@ -197,7 +197,7 @@ class Waters:
         return bool(self._lakes)
 
     def flood(self, time: float, air_fraction: Float[np.ndarray, "run chamber"] | None = None) -> None:
-        """Let level and air fraction of the lakes be what they are at a time, where they change or are commanded.
+        """Update level and air fraction of the lakes to a time, where they change or are commanded.
 
         Args:
             time: [s].
@@ -211,11 +211,11 @@ class Waters:
             self.rows[commanded, _AIR_FRACTION] = air_fraction[commanded]
 
     def fill(self, sim: int, lake: Lake, time: float) -> None:
-        """Let the water of a run be another one from now on; what the water did last stays to be read.
+        """Replace the water of a run; the last forces and power of the water stay readable.
 
         Args:
             sim: a run that has a lake.
-            lake: the other one.
+            lake: the new water.
             time: [s].
         """
         self._lakes[sim] = lake
@@ -223,17 +223,17 @@ class Waters:
         self.rows[sim, : hydro.FORCE] = lake.numbers(self._ups[sim], time)[: hydro.FORCE]
 
     def refill(self, sim: int) -> None:
-        """Write the water of a run anew, as it is at the beginning; a reset of the physics drains it."""
+        """Write the initial water of a run; a reset of the physics had removed it."""
         if sim in self._lakes:
             self.rows[sim] = self._lakes[sim].numbers(self._ups[sim])
 
     def tilt(self, sim: int, ground: Ground) -> None:
-        """Let the ground of a run slope otherwise from now on; the level stays level."""
+        """Change the slope of a run's ground; the surface of the water stays level."""
         if sim in self._lakes:
             self._ups[sim] = up(ground)
 
     def depths(self, roots: Float[np.ndarray, "run 3"]) -> Float[np.ndarray, " run"] | None:
-        """Return how deep the roots are below the level of their water, 0 above it [m]; None if all is dry.
+        """Return the depth of the roots below the water level, 0 above it [m]; None without water.
 
         Args:
             roots: their places in the world [m].

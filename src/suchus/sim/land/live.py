@@ -87,7 +87,7 @@ class Live:
         self._decide_and_read()
 
     def walk(self, gait: Gait | None = None, control: Coordinated | Swimming | None = None) -> None:
-        """Walk on in another gait or by other rules, or swim, from the same phase of the cycle.
+        """Continue in another gait or with another control, from the same phase of the cycle.
 
         Raises:
             OutsideLimits: the robot's joints cannot follow the gait, or the rules cannot coordinate it.
@@ -104,9 +104,9 @@ class Live:
             self._beat = self._start + round(share * self._cycle(run)) % self._cycle(run)
 
     def begin(self, fault: Fault) -> None:
-        """Let something break now; what was wrong with the same part before is over.
+        """Begin a fault now; an earlier fault of the same part ends.
 
-        All goes as in a run whose fault happens at this time; only what the controller hears of it, it hears one
+        The robot moves as in a run whose fault begins at this time, except that the controller senses the fault one
         control period later.
 
         Raises:
@@ -120,13 +120,13 @@ class Live:
         self._read_sample()
 
     def mend(self, part_name: str) -> None:
-        """Repair a part."""
+        """End the fault of a part."""
         self._loop.disturbances.injector.mend(0, part_name)
         self._loop.disturb()
         self._read_sample()
 
     def push(self, push: Push) -> None:
-        """Push at the push's time, which may be now.
+        """Add a push, which may begin now.
 
         Raises:
             UnknownName: the robot has no such body.
@@ -135,11 +135,11 @@ class Live:
         self._loop.disturbances.push(0, push)
 
     def tilt(self, ground: Ground) -> None:
-        """Let the ground slope as another one does; friction and relief stay."""
+        """Give the ground the slopes of another one; friction and relief stay."""
         self._loop.batch.tilt(0, ground)
 
     def fill(self, lake: Lake) -> None:
-        """Let the water be another one from now on: its level, its waves, the robot's air fraction.
+        """Replace the water: its level, its waves, the robot's air fraction.
 
         Raises:
             InvalidDesign: the run is on dry land, or the robot has no air that it could let out.
@@ -151,7 +151,7 @@ class Live:
         self._loop.batch.waters.fill(0, lake, self.time)
 
     def _decide_and_read(self) -> None:
-        """Decide what the servos are commanded next, and read everything."""
+        """Let the controller decide the next command, and read all sensors."""
         self._loop.decide(self._beat)
         self._read_sample()
 

@@ -1,7 +1,7 @@
 """The water of the runs on a body whose motion is given: section by section, as in every run with a lake.
 
 The robot's own model without limbs, wholly under water and without weight, is moved along a motion of its joints, and
-the kernel of the runs says what the water does (``hydro``). So the section model can be set beside a flow in which the
+the kernel of the runs says what the water does (``hydro``). So the section model can be compared to a flow in which the
 same body moves in the same manner. Names and signs are those of ``water.resolved`` in space, held and free.
 """
 
@@ -54,7 +54,7 @@ def towed_sections(robot: Robot, speed: float, lake: Lake) -> float:
 
 
 def held_sections(robot: Robot, gait: Gait, lake: Lake, *, sway: complex = 0j, turn: complex = 0j) -> xr.Dataset:
-    """Return the forces over a cycle on a body that swims on the spot, its head moved as it is said.
+    """Return the forces over a cycle on a body that swims in place, with a given motion of its head.
 
     Args:
         robot: whose body, limbs left out.
@@ -150,7 +150,7 @@ def sections_along(
     push: Float[np.ndarray, "sample coordinate"],
     lake: Lake,
 ) -> SectionLoads:
-    """Return what the section model says of a motion of root and joints in the plane, such as one that was recorded.
+    """Return the loads of the section model along a motion of root and joints in the plane, such as a recorded one.
 
     Args:
         robot: whose body, limbs left out.
@@ -190,7 +190,7 @@ def link_bodies(robot: Robot, joints: Sequence[str]) -> list[tuple[str, ...]]:
 
 
 def _limbless(robot: Robot) -> tuple[Robot, dict[str, str]]:
-    """Return a robot without limbs, and what its hinges that had another name are called there.
+    """Return a robot without limbs, and the new names of its renamed hinges.
 
     Without a girdle there is no neck: hinges ahead of the foremost girdle are some more of the trunk's.
     """
@@ -250,7 +250,13 @@ class _Submerged:
         return dof_rates
 
     def root_at(self, angles: np.ndarray, lateral: float, heading: float) -> np.ndarray:
-        """Return the root (x, y, yaw) of a body whose snout is at (0, left) [m], its head turned by a heading [rad]."""
+        """Return the root (x, y, yaw) of a body from its snout and head.
+
+        Args:
+            angles: of the lateral joints [rad].
+            lateral: distance of the snout to the left of the world's x axis [m]; its x is 0.
+            heading: yaw of the head [rad].
+        """
         model, data = self._model, self._data
         data.qpos[:] = self.qpos(np.zeros(3), angles)
         mujoco.mj_kinematics(model, data)
@@ -261,7 +267,7 @@ class _Submerged:
         return np.array([-(cos(yaw) * x - sin(yaw) * y), lateral - (sin(yaw) * x + cos(yaw) * y), yaw])
 
     def move(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> None:
-        """Let the water act on a posture that moves and accelerates so."""
+        """Compute the water forces on a posture with these velocities and accelerations."""
         data = self._data
         data.qpos[:], data.qvel[:], data.qacc[:] = qpos, qvel, qacc
         data.userdata[:] = self._lake.numbers(np.array([0.0, 0.0, 1.0]))
@@ -303,7 +309,7 @@ class _Submerged:
         return restricted
 
     def freed(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> Float[np.ndarray, "3"]:
-        """Return the acceleration of a root in the plane that nothing holds, whatever ``qacc`` has for it."""
+        """Return the acceleration of a free root in the plane, x, y and yaw; that in ``qacc`` does not matter."""
         self.move(qpos, qvel, qacc)
         mass_matrix = np.zeros((self._model.nv, self._model.nv))
         mujoco.mj_fullM(self._model, self._data, mass_matrix)

@@ -39,14 +39,14 @@ def smallest_pushes(
         directions: unit vectors in the world: forward, left, up.
         at: when the push begins [s].
         levels: forces to try, increasing [N].
-        fell: returns from a record which runs fell, along the dimension ``run``; its last sample is ``wait`` after the
-            push.
+        fell: returns from a record whether each run fell, along the dimension ``run``; the last sample of the record is
+            ``wait`` after the push.
         finer: number of forces of the second batch; the answer is off by at most the gap between two of them.
         duration: of the push [s].
         body: what is pushed.
-        wait: how long is waited for the fall [s].
+        wait: time from the end of the push to the end of a run [s].
         timestep: of the physics [s].
-        progress: told the share that is done.
+        progress: called with the finished fraction.
 
     Raises:
         InvalidDesign: the levels do not increase from above zero.
@@ -86,7 +86,7 @@ class _Trial(NamedTuple):
     def __call__(
         self, forces: Float[np.ndarray, "run direction force"], progress: Progress
     ) -> Bool[np.ndarray, "run direction force"]:
-        """Tell which of the forces topple [N]."""
+        """Return whether each force [N] topples its run, shape (run, direction, force)."""
         batch = [
             replace(run, pushes=(replace(self.push, force=_force_vector(direction, force)),))
             for run, of_run in zip(self.runs, forces, strict=True)

@@ -1,4 +1,4 @@
-"""The sensors of a batch: what they say now, for controllers, and what is kept of it, as a record."""
+"""The sensors of a batch: their present readings for controllers, and their samples as a record."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -20,7 +20,7 @@ from suchus.sim.record import HEAT, WATER, dataset, ground_text
 
 
 class Sensors:
-    """Where the sensors of the robots of a batch stand, and what they say now."""
+    """Columns and present readings of the sensors of a batch."""
 
     def __init__(self, batch: SimulationBatch, robot: Robot) -> None:
         """Look up the columns of each sensor in the model."""
@@ -45,7 +45,7 @@ class Sensors:
         }
 
     def __getitem__(self, name: str) -> Float[np.ndarray, "run n"]:
-        """Return what a sensor says of every run now; a view, which the next control period overwrites."""
+        """Return the present readings of a sensor in every run; a view, which the next control period overwrites."""
         return self._batch.readings[:, self._columns[name]]
 
     def columns(self, name: str) -> slice:
@@ -64,7 +64,7 @@ class Sensors:
         return np.zeros((*rows.shape[:-1], 3)) if columns is None else rows[..., columns]
 
     def sensed(self, time: float) -> Sensed:
-        """Return what the robots feel now, in arrays of its own."""
+        """Return the present sensor readings of the robots, in new arrays."""
         rows = self._batch.readings
         readings = {name: rows[:, columns].copy() for name, columns in self._sensor_columns.items()}
         pressed = {name: -rows[:, columns] for name, columns in self._pressed.items()}
@@ -105,7 +105,7 @@ class Recorder:
         self._temperature = np.full((*shape, heated), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
-        """Keep one sample of the living.
+        """Store one sample of the runs that are alive.
 
         Args:
             sample: its number.
@@ -129,7 +129,7 @@ class Recorder:
         return {name: values.copy() for name, values in self._stored_arrays.items()}
 
     def resume(self, state: Mapping[str, np.ndarray]) -> None:
-        """Take up the samples that another recorder of the same runs kept."""
+        """Load the samples that another recorder of the same runs stored."""
         for name, values in self._stored_arrays.items():
             values[:] = state[name]
 
@@ -152,7 +152,7 @@ class Recorder:
         }
 
     def record(self, time: np.ndarray) -> xr.Dataset:
-        """Return everything that was read, in the schema of a run."""
+        """Return all samples as a record, see ``record.schema``."""
         robots = [run.robot for run in self._runs]
         # parts of a block of all sensors would keep the whole block
         arrays = {name: np.ascontiguousarray(values) for name, values in self._arrays().items()}
@@ -193,7 +193,7 @@ class Recorder:
         return {"servo_temperature": self._temperature} if self._temperature.shape[-1] else {}
 
     def _water_arrays(self, foot_force: np.ndarray) -> dict[str, np.ndarray]:
-        """Return what the water does, by the names of ``record.WATER``."""
+        """Return the samples of the water by the names of ``record.WATER``."""
         water, period_means = self._water, self._period_means
         total = np.array([column(pieces(run.robot), "volume").sum() for run in self._runs])
         ups = np.array([up(run.ground) for run in self._runs])
@@ -261,7 +261,7 @@ def with_equal_variables(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
 
 
 def _with_water(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:
-    """Return a record with what the water does beside the rest."""
+    """Return a record with the variables of the water added."""
     attributes = {"units": "1", "long_name": "the lake as JSON; empty on dry land"}
     water_variables: dict[str, Any] = {
         name: (("run", *dims), values[name], {"units": unit, "long_name": long_name})

@@ -81,7 +81,7 @@ def simulate(
 
 
 def _own_step(runs: Sequence[Run]) -> float:
-    """Return the time step of runs that are asked for none [s]."""
+    """Return the default time step of a batch of runs [s]."""
     step, period = physics_step(runs[0].robot), control_period(runs[0].robot)
     max_steps = [longest_step(robot) for robot in {run.robot for run in runs if run.afloat is not None}]
     return step if not max_steps or min(max_steps) >= step else period / ceil(period / min(max_steps))

@@ -109,7 +109,7 @@ def _type(field_path: str, declaration: Any) -> Any:
 
 
 def verify(struct: str, instance: Any, fields: Sequence[str]) -> None:
-    """Compare what lies at the derived offsets with what MuJoCo's bindings say.
+    """Compare the memory at the derived offsets with the values of MuJoCo's bindings.
 
     Args:
         struct: as ``mjModel``.
@@ -135,7 +135,7 @@ def _bound(instance: Any, field: str) -> Any:
 
 
 def _field_values(struct: str, address: int, fields: Sequence[str]) -> Iterator[tuple[str, float]]:
-    """Yield what lies at the offset of each field: the address of an array, or the number itself."""
+    """Yield each field with the content of its offset: the address of an array, or the number itself."""
     for field in fields:
         place = address + offset(struct, field)
         owner, name = (structs.STRUCTS[struct], field)

@@ -103,7 +103,7 @@ def _register(field_offsets: np.ndarray) -> list[Any]:
 
 @lru_cache(maxsize=1)
 def _check_that_it_acts() -> None:
-    """Put a ball under water and look whether the kernel saw it there; once, if it did."""
+    """Submerge a ball and check that the kernel computes its volume; a success is checked once in a process."""
     spec = mujoco.MjSpec()
     ball = spec.worldbody.add_body()
     ball.add_freejoint()

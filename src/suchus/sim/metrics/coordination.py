@@ -7,7 +7,7 @@ from suchus.robot.motion import Gait
 from suchus.sim.metrics.gait import diagonals
 
 WITHIN = 0.1
-"""A limb this close to its place against another counts as coordinated [cycle]."""
+"""Greatest phase error against another limb with which a limb counts as coordinated [cycle]."""
 
 
 def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
@@ -43,7 +43,7 @@ def cycles_until(
         error: with the dimension ``time`` [cycle].
         period: of one cycle [s].
         start: from when the cycles count [s].
-        hold: for how long it must stay [cycle].
+        hold: least time within the tolerance until the end of the record [cycle].
         tolerance: the bounds [cycle].
     """
     cycles = (error.time - start) / period

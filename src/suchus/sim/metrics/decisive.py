@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float
 from scipy import stats
 
 SURE = 0.01
-"""What counts as chance: how often the greatest of all parameters reaches as much without any reason [-]."""
+"""Greatest probability by chance of the best separation among all parameters that counts as decisive [-]."""
 _MIN_SAMPLES = 5  # samples on one side; fewer say nothing about a border
 
 

@@ -68,9 +68,9 @@ def mean_cycle(values: xr.DataArray, start: float, period: float, cycles: int) -
 
 
 def each_cycle(values: xr.DataArray, start: float, period: float, cycles: int) -> xr.DataArray:
-    """Return whole cycles beside each other, dimensions ``cycle`` and ``phase`` [cycle]; see ``mean_cycle``.
+    """Return whole cycles along the dimensions ``cycle`` and ``phase`` [cycle]; see ``mean_cycle``.
 
-    Between samples it is interpolated, as a period need not be a whole number of them.
+    Values are interpolated between samples, since a period need not be a whole number of samples.
     """
     time = values.time.values
     if start + cycles * period > time[-1] + 1e-9 or start < time[0] - 1e-9 or cycles < 1:

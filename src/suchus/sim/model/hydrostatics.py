@@ -107,10 +107,10 @@ class _Rigid:
         return -atan2(arm[0], arm[2]) + 0.0  # no -0
 
     def balance(self, heel: float, guess: float) -> tuple[float, float, float]:
-        """Return by how much the nose rises [rad], righting lever and level [m] at a heel; afloat it rises as it likes.
+        """Return rise of the nose [rad], righting lever [m] and level [m] at a heel, with the trim in equilibrium afloat.
 
-        It is looked for from a rise nearby on. All three are NaN where none up to 80 degrees balances it: it would hang
-        upright in the water.
+        The search begins at the rise ``guess``. All three are NaN where no rise up to 80 degrees is an equilibrium: the
+        body would float on end.
         """
 
         def trim_moment(rise: float) -> float:
@@ -128,7 +128,7 @@ class _Rigid:
 
 
 def _root(function: Any, guess: float) -> float:
-    """Return the zero that lies nearest to a place, by widening around it; NaN if none lies up to the steepest."""
+    """Return the zero nearest to a guess, by widening brackets around it; NaN if there is none up to the steepest."""
     for width in np.geomspace(radians(0.5), 2 * _STEEPEST, 12):
         lower_bound, upper_bound = max(guess - width, -_STEEPEST), min(guess + width, _STEEPEST)
         if function(lower_bound) * function(upper_bound) <= 0:

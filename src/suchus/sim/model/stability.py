@@ -44,14 +44,14 @@ def longest_step(robot: Robot) -> float:
 
 
 def damping_of(model: Any, data: Any) -> Float[np.ndarray, "dof dof"]:
-    """Return what the dampers of joints and cables, but no servos, take per velocity [N m s/rad]."""
+    """Return the damping matrix of joints and cables, without servos [N m s/rad]."""
     cables = _cables(model, data)
     dampers = _linear_coefficients(model.tendon_damping, model.ntendon)
     return np.diag(np.asarray(model.dof_damping, float)) + cables.T @ (dampers[:, None] * cables)
 
 
 def _cables(model: Any, data: Any) -> Float[np.ndarray, "cable dof"]:
-    """Return how much longer a cable gets per turn of each joint [m/rad]."""
+    """Return the derivative of each cable's length with respect to each joint angle [m/rad]."""
     return _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv)
 
 
@@ -70,7 +70,15 @@ def _linear_coefficients(values: Any, count: int) -> Float[np.ndarray, " n"]:
 
 
 def _dense(values: Any, counts: Any, starts: Any, columns: Any, width: int) -> Float[np.ndarray, "row dof"]:
-    """Return a sparse matrix, given row by row, as it is."""
+    """Return a dense matrix from compressed sparse rows.
+
+    Args:
+        values: entries, row by row.
+        counts: number of entries of each row.
+        starts: index of the first entry of each row.
+        columns: column of each entry.
+        width: number of columns [-].
+    """
     matrix = np.zeros((len(counts), width))
     for row, (count, start) in enumerate(zip(counts, starts, strict=True)):
         entries = slice(start, start + count)

@@ -152,12 +152,12 @@ def dataset(
 
 
 def check_land(record: xr.Dataset, names: Sequence[str], source: str) -> None:
-    """Refuse what is no record of runs on land, however it came to be.
+    """Refuse a dataset that is no record of runs on land.
 
     Args:
         record: any.
-        names: which of ``VARIABLES`` are going to be looked at.
-        source: what it is called in messages.
+        names: names among ``VARIABLES`` that are needed.
+        source: name of the record in messages.
 
     Raises:
         IncompatibleRecord: a variable is missing, or has other dimensions, labels or numbers than the schema says.
@@ -191,9 +191,9 @@ def check_land(record: xr.Dataset, names: Sequence[str], source: str) -> None:
 
 
 def _other_meaning(record: xr.Dataset, name: str) -> str:
-    """Return in words what a variable says of itself that the schema does not: another unit, or to be another variable.
+    """Return in words how a variable's attributes contradict the schema: by another unit, or by another variable's name.
 
-    Nothing where it says the same or nothing of itself.
+    The text is empty where they agree or are missing.
     """
     variable, unit = record[name], VARIABLES[name][1] if name in VARIABLES else "s"
     if (unit_attribute := variable.attrs.get("units", unit)) != unit:

@@ -1,4 +1,4 @@
-"""What of a URDF or an MJCF describes its tree of hinges, checked, and freed of all that names files or makes bodies.
+"""The tree of hinges in a URDF or an MJCF: checked, and without elements that name files or generate bodies.
 
 XML from outside is parsed without entities, within a size and a depth, or refused in one sentence.
 """
@@ -65,7 +65,7 @@ def parse(path: Path) -> ElementTree.Element:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """What moves a hinge, as far as the file says."""
+    """Torque and speed of the drive of a hinge, where the file states them."""
 
     torque: float | None
     """Greatest torque [N m]; None if not said."""
@@ -82,7 +82,7 @@ _UNSUPPORTED_JOINTS = ("prismatic", "planar", "floating")
 def clean_urdf(
     root: ElementTree.Element, meshes: Meshes
 ) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
-    """Return a URDF of links and joints alone, what drives each hinge, and sentences on what was left out.
+    """Return a URDF of links and joints alone, the drive of each hinge, and remarks on omitted elements.
 
     Raises:
         UnreadableFile: it has loops, joints that do not turn, or no links.
@@ -119,7 +119,7 @@ def clean_urdf(
 def _freed(
     links: list[ElementTree.Element], joints: list[ElementTree.Element]
 ) -> tuple[list[ElementTree.Element], list[ElementTree.Element], list[str]]:
-    """Return links and joints without a floating joint between the world and the robot, whose root is free anyway."""
+    """Return links, joints and remarks without a floating joint to the world, since the root of a robot is free."""
     children = {_linked(joint, "child") for joint in joints}
     floating = [j for j in joints if j.get("type") == "floating" and _linked(j, "parent") not in children]
     if len(floating) != 1:
@@ -233,7 +233,7 @@ _FILES = 50  # included ones at most
 
 
 def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
-    """Put what an MJCF includes in its place; only files in its own folder are opened, each once.
+    """Replace the includes of an MJCF by their content; only files in its own folder are opened, each once.
 
     Raises:
         UnreadableFile: an included file lies elsewhere, is included twice, or cannot be read, or all together nest too
@@ -269,7 +269,7 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
 def clean_mjcf(
     root: ElementTree.Element, meshes: Meshes
 ) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
-    """Return an MJCF of bodies, joints and shapes alone, what drives each hinge, and sentences on what was left out.
+    """Return an MJCF of bodies, joints and shapes alone, the drive of each hinge, and remarks on omitted elements.
 
     Raises:
         UnreadableFile: it has loops, makes bodies by rule, or has no bodies.
@@ -304,7 +304,15 @@ def clean_mjcf(
 def _cleaned(
     element: ElementTree.Element, tags: tuple[str, ...], unread_meshes: Mapping[str, str] | None
 ) -> ElementTree.Element:
-    """Return a copy with these tags alone, without materials, and without geoms whose mesh or field is not read."""
+    """Return a copy of an element that has children of some tags alone.
+
+    Materials are left out, and geoms whose mesh or height field is not read.
+
+    Args:
+        element: the element.
+        tags: of the children that are copied.
+        unread_meshes: file of each mesh that is not read, by name.
+    """
     copy = ElementTree.Element(element.tag, {k: v for k, v in element.attrib.items() if k not in ("material", "mocap")})
     for child in element:
         is_dropped = child.tag == "geom" and (
@@ -316,7 +324,7 @@ def _cleaned(
 
 
 def _shapeless_bodies(world: ElementTree.Element, unread_meshes: Mapping[str, str]) -> dict[str, str]:
-    """Return the mesh that was not read of each body that has no other shape."""
+    """Return the file of the unread mesh of each body that has no other shape, by body."""
     shapes = {f"body {body.get('name', '')}": [geom.get("mesh") for geom in body.findall("geom")]
               for body in world.iter("body")}  # fmt: skip
     return {

@@ -101,7 +101,7 @@ _INERTIA_TOLERANCE = 1e-9  # of an inertia and of the length; what shapes give s
 
 
 def _without_needless(robot: Robot) -> tuple[Robot, set[str]]:
-    """Return a robot without the inertias that its shapes have anyway, and the places of their notes."""
+    """Return a robot without inertias that equal those of its shapes, and the places of their notes."""
 
     def bared(girdle: Girdle, keep: set[str]) -> Girdle:
         links = tuple(
@@ -142,7 +142,7 @@ def _weighed(model: Any, body: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _legs(plan: BodyPlan, words: Words) -> tuple[BodyPlan, list[str]]:
-    """Return a plan without limbs that do not reach below the axis, and what is noted of them."""
+    """Return a plan without limbs that do not reach below the axis, and remarks on them."""
     remarks = []
     for number in reversed(range(len(plan.pairs))):
         making = making_of(plan, words)
@@ -164,7 +164,7 @@ def _seated(girdle: Girdle, segment: str, front: float) -> Girdle:
 
 
 def _balance(making: Making, robot: Robot) -> list[str]:
-    """Say what the draft does to masses: moments of inertia follow from shapes, and the rest from this."""
+    """Return a remark if the mass of the draft differs from that of the file."""
     mass_error = abs(robot.mass / making.plan.tree.mass - 1.0)
     if mass_error > 1e-6:
         return [f"The draft weighs {robot.mass:.4g} kg, the file {np.round(making.plan.tree.mass, 6):g} kg."]
@@ -234,7 +234,7 @@ def _free_root(plan: BodyPlan) -> int:
 
 
 def _joints(making: Making, i: int, root: int) -> list[AxisHinge]:
-    """Return the hinges behind segment i from our root on."""
+    """Return the hinges between segments i and i + 1, from the robot's root outward."""
     axis, is_ahead = making.plan.axis, i < root
     inner_index, outer_index = (axis[i + 1], axis[i]) if is_ahead else (axis[i], axis[i + 1])
     hinges = []
@@ -261,7 +261,7 @@ def _ends(making: Making, parts: list[TreePart], places: list[float]) -> list[fl
 
 
 def _tell_offsets(making: Making, groups: Sequence[Sequence[AxisHinge]], places: list[float]) -> None:
-    """Say which hinges do not lie on the straight axis, and by how much they were moved."""
+    """Add a remark on the hinges that were moved onto the straight axis, with the greatest distance."""
     offsets = [(offset, j.name) for group in groups for j, _, _, offset in group]
     for group, place in zip(groups, places, strict=True):
         offsets += [(abs(float(making.into(j.anchor)[0]) - place), j.name) for j, turn, _, _ in group if turn != "roll"]
@@ -304,7 +304,7 @@ def _shapes(making: Making, tree_part: TreePart, front: float, length: float, nu
 
 
 def _half(making: Making, piece: ShapePiece) -> tuple[float, float, float]:
-    """Return half axes in the robot's frame; where that is turned, those of the box around [m]."""
+    """Return half axes along the robot's axes; of a turned ellipsoid those of its bounding box [m]."""
     box_half = np.abs(making.plan.plane.turn) @ piece.half
     return point(piece.half if len(piece.ends) == 2 else box_half)
 
@@ -419,7 +419,7 @@ def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], lab
 
 
 def _link_name(carried_parts: list[TreePart], number: int, chain: LimbChain, making: Making) -> str:
-    """Return the name of a link: that of its part without the limb's, if it is called so."""
+    """Return the name of a link: that of its part without the limb's name, if all parts of the limb have it in front."""
     names = [making.plan.part(i).name for i in chain.parts]
     part_name = carried_parts[-1].name if carried_parts else ""
     head, separator, tail = part_name.partition("_")
@@ -473,7 +473,7 @@ def _radius(making: Making, carried_parts: list[TreePart], length: float, place:
 def _tell_sides(
     making: Making, joints: tuple[list[Joint], list[Joint]], left_signs: list[float], right_signs: list[float]
 ) -> None:
-    """Say where the right limb is no exact mirror image of the left one."""
+    """Add remarks where the right limb is no exact mirror image of the left one."""
     for left_joint, right_joint, a, b in zip(*joints, left_signs, right_signs, strict=True):
         gap = making.into(left_joint.anchor) * np.array([1.0, -1.0, 1.0]) - making.into(right_joint.anchor)
         line = making.turned(right_joint.axis)

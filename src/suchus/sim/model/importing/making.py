@@ -1,4 +1,4 @@
-"""What is gathered while a robot is drafted from a body plan: its hinges, remarks, and guesses with their reasons."""
+"""State of a draft during its construction from a body plan: hinges, remarks, and guesses with their reasons."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -46,7 +46,7 @@ class Size:
 
 
 def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, float]:
-    """Return what a hinge turns, and 1 where its axis points along x, y or z of the robot, else -1.
+    """Return the kind of a hinge, and 1 where its axis points along x, y or z of the robot, else -1.
 
     Args:
         joint: the hinge.
@@ -70,7 +70,7 @@ def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, f
 
 
 def limb_turn(joint: Joint, axis: np.ndarray, side: float, remarks: list[str]) -> tuple[Turn, float]:
-    """Return what a hinge of a limb turns, and 1 where it turns as ours does, else -1."""
+    """Return the kind of a limb's hinge, and 1 where its positive sense is that of the robot's hinge, else -1."""
     file_turn, sense = turn_of(joint, axis, remarks)
     turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[file_turn]  # type: ignore[assignment]
     robot_sign = LIMB_AXES[turn][("roll", "pitch", "yaw").index(file_turn)]
@@ -78,7 +78,7 @@ def limb_turn(joint: Joint, axis: np.ndarray, side: float, remarks: list[str]) -
 
 
 def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
-    """Return 1 where a hinge of the axis turns as ours does, else -1.
+    """Return 1 where the positive sense of an axis hinge is that of the robot's hinge, else -1.
 
     Args:
         turn: what it turns.
@@ -115,7 +115,7 @@ def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share
 
 
 def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
-    """Return names for hinges of the axis: those of the file where they follow the rule, else made ones.
+    """Return names for hinges of the axis: those of the file if all follow the rule of names, else new ones.
 
     Args:
         turns: what each turns, its part of the body (``spine``, ``neck`` or ``tail``), its name in the file; of each
@@ -134,7 +134,7 @@ def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
 
 
 def limb_names(left_names: Sequence[str], right_names: Sequence[str], girdle: str) -> list[str] | None:
-    """Return what follows the limb's name in names as ``LF_yaw`` and ``RF_yaw``; None if they are not such."""
+    """Return the suffixes of names as ``LF_yaw`` and ``RF_yaw``; None if names are not of this form."""
     heads = f"L{girdle}_", f"R{girdle}_"
     is_mirrored = all(
         left_name.startswith(heads[0])
@@ -206,7 +206,7 @@ class Making:
         return np.asarray(self.plan.plane.turn @ axis)
 
     def inertia(self, place: str, parts: Sequence[TreePart], origin: np.ndarray) -> Inertia | None:
-        """Return where the mass of parts that move as one lies, in a frame like the robot's.
+        """Return centre and moments of the mass of parts that move as one, along the robot's axes.
 
         Args:
             place: of the segment or link in the robot's file.
@@ -232,7 +232,7 @@ class Making:
         return self.plan.part(chain.parts[0]).joints[0].anchor
 
     def note_hinge(self, place: str, hinge: Hinge, joint: Joint, sign: float) -> None:
-        """Say beside a hinge which one of the file it is, and what of it is guessed."""
+        """Add notes to a hinge: its name in the file, and which of its values are guesses."""
         turn_text = "" if sign > 0 else ", turning the other way"
         zero_text = "" if joint.zero == 0.0 else f", which calls this zero {joint.zero:.6g}"
         self.notes[f"{place}.name"] = f"the file's {joint.name}{turn_text}{zero_text}"

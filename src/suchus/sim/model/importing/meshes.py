@@ -14,7 +14,7 @@ _SCHEME = "package://"
 
 
 class Meshes:
-    """What MuJoCo is given of the meshes of a robot's file.
+    """The meshes of a robot's file as assets for MuJoCo.
 
     Args:
         home: the folder of the file.
@@ -29,7 +29,7 @@ class Meshes:
         self.open: list[str] = []
         """Those of ``assets`` that are no closed surfaces."""
         self.lost: dict[str, str] = {}
-        """Why a mesh was not read, by what the file calls it."""
+        """Reason why a mesh was not read, by its name in the file."""
         self.bare: dict[str, str] = {}
         """The mesh that was lost, by the body that has no other shape."""
         self._size = 0

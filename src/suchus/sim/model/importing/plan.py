@@ -134,7 +134,7 @@ def _candidates(tree: Tree, front_com: np.ndarray | None, heading: float | None)
 
 
 def _rank(tree: Tree, plane: Plane, split: Split) -> tuple[bool, int, float]:
-    """Return what makes a plane the likelier one: not across a slender body, hinges in mirrored branches, length."""
+    """Return the rank of a plane: not across a slender body, hinges in mirrored branches, length of the body."""
     paired = [i for pair in split.pairs for branch in pair for i in tree.below(branch)]
     extent = np.ptp(np.concatenate([plane.into(tree_part.corners) for tree_part in tree.parts]), axis=0)
     hinges = sum(len(tree.parts[i].joints) for i in paired)
@@ -142,7 +142,7 @@ def _rank(tree: Tree, plane: Plane, split: Split) -> tuple[bool, int, float]:
 
 
 def _close(first_rank: tuple[bool, int, float], second_rank: tuple[bool, int, float]) -> bool:
-    """Return whether nothing but a tenth of the length speaks for one plane against another."""
+    """Return whether two ranks of planes differ by at most a tenth of the length."""
     return first_rank[:2] == second_rank[:2] and abs(first_rank[2] - second_rank[2]) <= 0.1 * max(
         first_rank[2], second_rank[2]
     )
@@ -212,14 +212,14 @@ def _hinge_lines(joints: Sequence[Joint], plane: Plane) -> tuple[np.ndarray, np.
 def _meet(
     places: np.ndarray, lines: np.ndarray, other_places: np.ndarray, other_lines: np.ndarray, tolerance: float
 ) -> np.ndarray:
-    """Return which lines through places fall together with which others, shape (place, other)."""
+    """Return whether each line coincides with each other line, shape (place, other)."""
     gap = places[:, None] - other_places[None]
     distances = gap - np.einsum("ijk,jk->ij", gap, other_lines)[..., None] * other_lines[None]
     return np.asarray((np.abs(lines @ other_lines.T) > _LEVEL) & (np.linalg.norm(distances, axis=-1) < tolerance))
 
 
 def _forward(tree: Tree, plane: Plane, front_com: np.ndarray | None) -> tuple[float, bool]:
-    """Return 1 if the plane's x points forward and -1 if backward, and whether something says so."""
+    """Return 1 if the plane's x points forward, else -1, and whether an option or names decide it."""
     if front_com is not None:
         return float(np.sign((plane.turn @ (front_com - tree.com))[0]) or 1.0), True
     votes, middle = 0.0, plane.into(tree.com)[0]
@@ -370,7 +370,7 @@ def _remarks_on_front(plane: Plane) -> list[str]:
 
 
 def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
-    """Return a tree without branches, whose masses go to what carries them."""
+    """Return a tree without the branches of some bodies, whose masses go to the parts that carry them."""
     removed_parts: set[int] = set()
     for name in names:
         place = next((i for i, tree_part in enumerate(tree.parts) if name in tree_part.names), None)

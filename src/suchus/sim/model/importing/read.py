@@ -53,7 +53,17 @@ def _straighten(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, remarks
 
 
 def _angle(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, pivot: Joint, axis: np.ndarray) -> float | None:
-    """Return how far to turn at a hinge so that the next one's axis lies along one of the robot's [rad]."""
+    """Return the angle at a hinge that aligns the next hinge's axis with an axis of the robot [rad].
+
+    It is None where no angle does. Of nearly equal angles the one that points the limb sideways is taken.
+
+    Args:
+        plan: axis and limbs.
+        parts: of the tree, as turned so far.
+        chain: the limb.
+        pivot: the hinge that is turned.
+        axis: of the next hinge, in the robot's frame.
+    """
     rotation_axis = plan.plane.turn @ pivot.axis
     axis_index = int(np.argmax(np.abs(rotation_axis)))
     if abs(axis @ rotation_axis) > np.sin(np.radians(SKEW)) or np.abs(rotation_axis)[axis_index] < np.cos(
@@ -76,7 +86,7 @@ def _angle(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, pivot: Joint
 
 
 def _turn(parts: list[TreePart], plan: BodyPlan, place: int, joint_index: int, angle: float) -> None:
-    """Turn all that a hinge carries, its own part included, and give the hinge its new zero."""
+    """Rotate everything that a hinge carries by an angle [rad], and set the new zero of the hinge."""
     pivot = parts[place].joints[joint_index]
     rotation = Rotation.from_rotvec(angle * pivot.axis)
 
