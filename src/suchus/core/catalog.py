@@ -152,26 +152,26 @@ class Catalog(Mapping[str, T], Generic[T]):
             )
         return thing
 
-    def file(self, value: Any, place: str | Path = Path()) -> Path | None:
+    def file(self, value: Any, folder: str | Path = Path()) -> Path | None:
         """Return the file that a value names, None where it names none.
 
         A path does, and a text that is not on the shelf, if it ends in .toml or a file has that name.
 
         Args:
             value: as a user gives it.
-            place: the folder from which paths are read.
+            folder: the folder from which paths are read.
         """
         if not isinstance(value, (str, Path)) or self._read_file is None or (isinstance(value, str) and value in self):
             return None
-        path = Path(place) / value
+        path = Path(folder) / value
         return path if path.suffix == ".toml" or there(path) else None
 
-    def resolve(self, value: Any, place: str | Path = Path()) -> T:
+    def resolve(self, value: Any, folder: str | Path = Path()) -> T:
         """Return what a value stands for: itself, what carries its name on the shelf, or what a TOML file describes.
 
         Args:
             value: the thing, its name, or the path of its file.
-            place: the folder from which paths are read.
+            folder: the folder from which paths are read.
 
         Raises:
             UnknownName: a name that is not on the shelf.
@@ -179,7 +179,7 @@ class Catalog(Mapping[str, T], Generic[T]):
             MistakenFile: the file describes nothing that can be.
             InvalidDesign: neither a name nor what stands on this shelf.
         """
-        path = self.file(value, place)
+        path = self.file(value, folder)
         if path is not None and self._read_file is not None:
             entry: T = self._read_file(path)
             return entry

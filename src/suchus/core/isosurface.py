@@ -43,7 +43,7 @@ def isosurface(values: np.ndarray, level: float, origin: tuple[float, float, flo
     sums = [
         np.bincount(cube_indices, coordinates, surface_cubes.size) for coordinates in edge_points[flat_cubes >= 0].T
     ]
-    places = (
+    grid_positions = (
         np.stack([coordinate_sums / count for coordinate_sums in sums], axis=1)
         if surface_cubes.size
         else np.zeros((0, 3))
@@ -55,8 +55,8 @@ def isosurface(values: np.ndarray, level: float, origin: tuple[float, float, flo
         down = falling[is_interior]
         b, d = np.where(down, b, d), np.where(down, d, b)
         faces += [np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]
-    points = np.array(origin) + cell * places[:, ::-1]
-    return IsoSurface(points, np.concatenate(faces).astype(np.int32), places)
+    points = np.array(origin) + cell * grid_positions[:, ::-1]
+    return IsoSurface(points, np.concatenate(faces).astype(np.int32), grid_positions)
 
 
 def _crossings(

@@ -42,7 +42,7 @@ def folder(home: Path, files: Iterable[Path], prefix: str) -> Path | None:
         files: the sources, any of which may be a part of any other.
         prefix: how the names of their folders begin.
     """
-    cache_folder = _first_writable([place / f"{prefix}{digest(files)}" for place in places(home)], prefix)
+    cache_folder = _first_writable([parent / f"{prefix}{digest(files)}" for parent in places(home)], prefix)
     if cache_folder is None:
         _say_unkept("no folder for it can be written to, and NUMBA_CACHE_DIR may name another")
     return cache_folder
@@ -71,14 +71,17 @@ def digest(files: Iterable[Path]) -> str:
     return text.hexdigest()[:12]
 
 
-def keep(kernel: Any, place: Path) -> None:
+def keep(kernel: Any, cache_folder: Path) -> None:
     """Let the machine code of a kernel be kept in a folder; see ``numba.core.dispatcher.Dispatcher.enable_caching``.
 
     Args:
         kernel: that ``numba.njit`` made, without ``cache``.
-        place: the folder.
+        cache_folder: the folder.
     """
-    default_dir, config.CACHE_DIR = config.CACHE_DIR, str(place)  # which is read when a cache is made, for it alone
+    default_dir, config.CACHE_DIR = (
+        config.CACHE_DIR,
+        str(cache_folder),
+    )  # which is read when a cache is made, for it alone
     try:
         kernel._cache = _SealedCache(kernel.py_func)
     finally:

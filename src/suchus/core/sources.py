@@ -231,8 +231,8 @@ def _module_sources(package: str, kind: str, stamped: "_Stamped") -> tuple[Sourc
 
 
 def _of_package(package: str, name: str, file: Path, thing: str, attribute: str) -> Source:
-    place = f"{package.replace('.', '/')}/{f'{name}/{file.name}' if _is_folder(name, file) else file.name}"
-    return Source(name=thing, place=place, module=f"{package}.{name}", attribute=attribute, file=file, shipped=True)
+    location = f"{package.replace('.', '/')}/{f'{name}/{file.name}' if _is_folder(name, file) else file.name}"
+    return Source(name=thing, place=location, module=f"{package}.{name}", attribute=attribute, file=file, shipped=True)
 
 
 def _modules(package: str, kind: str) -> Mapping[str, Path]:
@@ -267,9 +267,9 @@ def _stamped(package: str) -> _Stamped:
 def _files(kind: str, stamped: _Stamped) -> Mapping[str, Path]:
     """Return the file of each module of a package by name; the result is cached by the folders' times."""
     return {
-        name: _declaring(Path(place) / name, kind) if is_folder else Path(place) / f"{name}.py"
-        for place, modified_ns, _ in stamped
-        for name, is_folder in _listed(place, modified_ns)
+        name: _declaring(Path(folder) / name, kind) if is_folder else Path(folder) / f"{name}.py"
+        for folder, modified_ns, _ in stamped
+        for name, is_folder in _listed(folder, modified_ns)
     }
 
 
@@ -301,22 +301,22 @@ def _of_project(package: str, kind: str, scattered: bool) -> Iterator[Source]:
         return
     package_modules = _modules(package, kind)
     for name, file in opened.files(f"{kind}s"):
-        place = opened.shown(file)
+        location = opened.shown(file)
         if file.suffix == ".py" and name in package_modules:
-            raise AmbiguousName("module", name, f"{package.replace('.', '/')}/{name}", place)
+            raise AmbiguousName("module", name, f"{package.replace('.', '/')}/{name}", location)
         if file.suffix == ".toml":
-            yield Source(name=name, place=place, file=file)
+            yield Source(name=name, place=location, file=file)
         elif not name.startswith("_"):
             for thing, attribute in _names(file, kind) if scattered else ((name, ""),):
-                yield Source(name=thing, place=place, module=f"{package}.{name}", attribute=attribute, file=file)
+                yield Source(name=thing, place=location, module=f"{package}.{name}", attribute=attribute, file=file)
 
 
 def _plugged(kind: str) -> Iterator[Source]:
     """Yield what other installed packages put on a shelf by their entry points."""
     for point in _entry_points().get(f"suchus.{kind}s", ()):
         owner = point.dist.name if point.dist else "an installed package"
-        place = f"the entry point {point.name} = {point.value!r} of {owner}"
-        yield Source(name=point.name, place=place, module=point.module, attribute=point.attr)
+        location = f"the entry point {point.name} = {point.value!r} of {owner}"
+        yield Source(name=point.name, place=location, module=point.module, attribute=point.attr)
 
 
 @cache

@@ -345,10 +345,10 @@ def _is_users(path: Path) -> bool:
 
 def _states(folder: Path) -> Iterator[tuple[Path, bool | None]]:
     """Yield each file in a folder and below, and whether it is as suchus wrote it; None where suchus did not."""
-    for place, _, names in os.walk(folder):
-        digests_by_name = _recorded_digests(Path(place))
+    for subfolder, _, names in os.walk(folder):
+        digests_by_name = _recorded_digests(Path(subfolder))
         for name in names:
-            file = Path(place, name)
+            file = Path(subfolder, name)
             if name != MANIFEST:
                 yield (
                     file,
@@ -400,10 +400,10 @@ def _copy(file: Path, target: Path) -> None:
 def _backup(path: Path) -> Path:
     """Return a free name beside a path, for what is there, and say so."""
     number = 1
-    while os.path.lexists(place := path.with_name(f"{path.name}.backup{number}")):
+    while os.path.lexists(backup := path.with_name(f"{path.name}.backup{number}")):
         number += 1
-    _LOG.warning("suchus: what was at %s is kept as %s.", path, place)
-    return place
+    _LOG.warning("suchus: what was at %s is kept as %s.", path, backup)
+    return backup
 
 
 def _is_draft(path: Path) -> bool:
@@ -417,8 +417,8 @@ def _digest(path: Path) -> str:
 
 def _sign(folder: Path) -> None:
     """Note all files of a folder and below, each in its own folder."""
-    for place, _, names in list(os.walk(folder)):
-        _note(Path(place), {name: _digest(Path(place, name)) for name in names if name != MANIFEST})
+    for subfolder, _, names in list(os.walk(folder)):
+        _note(Path(subfolder), {name: _digest(Path(subfolder, name)) for name in names if name != MANIFEST})
 
 
 def _note(folder: Path, digests: Mapping[str, str]) -> None:

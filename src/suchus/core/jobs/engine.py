@@ -59,9 +59,9 @@ def finish(
         number = missing[i]
         report = silent if each is None else each(number)
 
-        def tell(stage: str, share: float) -> None:
-            report(stage, share)
-            tally.under_way(number, share * job.size(number))
+        def tell(stage: str, fraction: float) -> None:
+            report(stage, fraction)
+            tally.under_way(number, fraction * job.size(number))
 
         return tell
 

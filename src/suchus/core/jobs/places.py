@@ -203,10 +203,10 @@ def _work(
     """Do one piece after the other until none is left; the threads of the physics are shared by all that do so."""
     last_round_start = len(items) - len(items) % side_by_side  # of the pieces from here on there are fewer than threads
 
-    def tell(number: int, stage: str, share: float) -> None:
+    def tell(number: int, stage: str, fraction: float) -> None:
         if stop.is_set():
             raise _StopPiece
-        news.put(_News(number, "far", (stage, share)))
+        news.put(_News(number, "far", (stage, fraction)))
 
     while not stop.is_set() and (number := next(numbers)) < len(items):
         news.put(_News(number, "begun"))

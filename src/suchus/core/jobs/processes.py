@@ -208,12 +208,12 @@ def _sender(pipe: Connection) -> Progress:
     """Return what tells the other process now and then."""
     last_stage, last_time = "", -_REPORT_INTERVAL
 
-    def tell(stage: str, share: float) -> None:
+    def tell(stage: str, fraction: float) -> None:
         """Send a stage and its fraction, at most once in ``_REPORT_INTERVAL`` while the stage stays the same."""
         nonlocal last_stage, last_time
         clock_time = time.monotonic()
         if stage != last_stage or clock_time - last_time > _REPORT_INTERVAL:
             last_stage, last_time = stage, clock_time
-            pipe.send(Far(stage, share))
+            pipe.send(Far(stage, fraction))
 
     return tell

@@ -240,8 +240,8 @@ class Store:
 
     def _sweep(self) -> None:
         """Take away drafts that a kill left behind."""
-        for place in (self.folder, self.folder / "parts"):
-            for draft in place.glob(".*.*-*"):
+        for folder in (self.folder, self.folder / "parts"):
+            for draft in folder.glob(".*.*-*"):
                 if draft.is_dir():
                     shutil.rmtree(draft, ignore_errors=True)
 

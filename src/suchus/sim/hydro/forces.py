@@ -51,8 +51,8 @@ def immersed(kind: float, depth: float) -> tuple[float, float]:
     half_chord = sqrt(chord_squared)
     disc, ball, slab = 0.5 + (_arcsine(d) + d * half_chord) / pi, (2.0 + 3.0 * d - d * d * d) / 4.0, (1.0 + d) / 2.0
     flat = -2.0 / 3.0 / pi * chord_squared * half_chord
-    share = disc if kind == DISC else (ball if kind == BALL else slab)
-    return share, flat if kind == DISC else (
+    fraction = disc if kind == DISC else (ball if kind == BALL else slab)
+    return fraction, flat if kind == DISC else (
         -3.0 / 16.0 * chord_squared * chord_squared if kind == BALL else -chord_squared / 4.0
     )
 
@@ -114,13 +114,13 @@ def hydrostatic(
         )
         extent = sqrt(ua * ua + ub * ub + ut * ut)
         depth = (level - dot(vertical, centre)) / extent
-        share, moment = immersed(row[1], depth)
+        fraction, moment = immersed(row[1], depth)
         arm = blend(row[14] * ua, axes[0], row[15] * ub, axes[1], row[16] * ut, axes[2])
         volume = row[17] - (1.0 - air_fraction[0]) * row[18] - (1.0 - air_fraction[1]) * row[19]
-        sums[0] += volume * share
+        sums[0] += volume * fraction
         for i in range(3):
-            sums[1 + i] += volume * (share * centre[i] + moment * arm[i] / extent)
-        sums[4] += volume * extent * (depth * share - moment)
+            sums[1 + i] += volume * (fraction * centre[i] + moment * arm[i] / extent)
+        sums[4] += volume * extent * (depth * fraction - moment)
     return sums
 
 
@@ -206,9 +206,9 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Write the load of the water on each piece: force, couple about the point of reference, submerged volume."""
     per_speed, (front, rear) = water.length / water.viscosity, water.air_fraction
     for n in range(LANES):
-        share, moment = immersed(table[lanes.KIND, n], rows[lanes.DEPTH, n])
+        fraction, moment = immersed(table[lanes.KIND, n], rows[lanes.DEPTH, n])
         emptied = (1.0 - front) * table[lanes.AIR, n] + (1.0 - rear) * table[lanes.AIR + 1, n]
-        volume = (table[lanes.VOLUME, n] - emptied) * share
+        volume = (table[lanes.VOLUME, n] - emptied) * fraction
         a, b, t, w = (
             lane(rows, lanes.E_A, n),
             lane(rows, lanes.E_B, n),
@@ -218,9 +218,9 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
         r, omega, surge = lane(rows, lanes.FROM, n), lane(rows, lanes.MOVING, n), lane(rows, lanes.SURGE, n)
         # buoyancy and the pressure of the waves, at the centre of what is under water
         f = times(water.density * volume, plus(times(water.gravity, water.up), surge))
-        torque = cross(times(moment / share, lane(rows, lanes.ARM, n)), f)
+        torque = cross(times(moment / fraction, lane(rows, lanes.ARM, n)), f)
         # drag across and along, and of a flat piece that rolls, over the share under water
-        dense = water.density * share
+        dense = water.density * fraction
         cross_factor = -0.5 * dense * water.cross_drag * sqrt(w[0] * w[0] + w[1] * w[1])
         speed, roll = abs(w[2]), dot(omega, t)
         friction = water.thickening * max(1.328 / sqrt(max(speed * per_speed, 1.0)), rows[lanes.TURBULENT, n])
@@ -254,7 +254,7 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
         torque = plus(plus(torque, cross(end, shed_force)), cross(r, plus(f, shed_force)))
         put(rows, lanes.FORCE, n, plus(f, shed_force))
         put(rows, lanes.FORCE - 3, n, torque)
-        rows[lanes.SHARE, n], rows[lanes.UNDER, n] = share, volume
+        rows[lanes.SHARE, n], rows[lanes.UNDER, n] = fraction, volume
 
 
 @part

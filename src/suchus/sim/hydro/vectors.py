@@ -85,15 +85,15 @@ def write(values: np.ndarray, start: int, three_: Vector) -> None:
 
 
 @part
-def lane(rows: np.ndarray, row: int, place: int) -> Vector:
+def lane(rows: np.ndarray, row: int, column: int) -> Vector:
     """Return three numbers that stand below each other, from a row on."""
-    return rows[row, place], rows[row + 1, place], rows[row + 2, place]
+    return rows[row, column], rows[row + 1, column], rows[row + 2, column]
 
 
 @part
-def put(rows: np.ndarray, row: int, place: int, values: Vector) -> None:
+def put(rows: np.ndarray, row: int, column: int, values: Vector) -> None:
     """Write three numbers below each other, from a row on."""
-    rows[row, place], rows[row + 1, place], rows[row + 2, place] = values
+    rows[row, column], rows[row + 1, column], rows[row + 2, column] = values
 
 
 @part

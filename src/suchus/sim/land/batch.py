@@ -218,17 +218,17 @@ class SimulationBatch:
         """The contact forces among the readings, for writing, shape (run, 3 forces) [N]."""
         return self._mean
 
-    def supply(self, sim: int, share: float) -> None:
+    def supply(self, sim: int, fraction: float) -> None:
         """Let a run's servos that have a winding get a share of their supply, from the next ``commit`` on.
 
         Args:
             sim: the run.
-            share: of the supply of the design [-].
+            fraction: of the supply of the design [-].
         """
         volts = supplies(self._robots[sim])
         motors = ~np.isnan(volts)
         if motors.any():
-            self.field("actuator_gainprm", sim)[motors, SUPPLY] = share * volts[motors]
+            self.field("actuator_gainprm", sim)[motors, SUPPLY] = fraction * volts[motors]
 
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""

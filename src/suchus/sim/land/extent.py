@@ -18,8 +18,8 @@ def record_bytes(run: Run, samples: float) -> float:
         run: whose.
         samples: how many samples it keeps [-].
     """
-    place = layout(run.robot)
-    numbers = len(place.hinges) + 4 * len(servo_names(run.robot)) + 7 * len(place.limb_names)
+    robot_layout = layout(run.robot)
+    numbers = len(robot_layout.hinges) + 4 * len(servo_names(run.robot)) + 7 * len(robot_layout.limb_names)
     return 8.0 * samples * (_PER_SAMPLE + numbers + 3 * len(run.robot.axis))
 
 

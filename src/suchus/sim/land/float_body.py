@@ -61,22 +61,22 @@ class FloatBody:
         """Return its pieces, on body 1 of a model; no drag."""
         c, a, b = self.half
         axis_a, axis_b, axis_t = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-        middles = (np.arange(self.parts) + 0.5) / self.parts * 2 - 1
+        positions = (np.arange(self.parts) + 0.5) / self.parts * 2 - 1
         if self.shape == "ellipsoid":
-            places, kind, half = [(0.0, 0.0, 0.0)], BALL, (a, b, c)
+            centres, kind, half = [(0.0, 0.0, 0.0)], BALL, (a, b, c)
         elif self.shape == "cylinder":
-            places, kind, half = [(c * m, 0.0, 0.0) for m in middles], DISC, (a, b, c / self.parts)
+            centres, kind, half = [(c * m, 0.0, 0.0) for m in positions], DISC, (a, b, c / self.parts)
         else:
-            places = [(c * m, a * n, 0.0) for m in middles for n in middles]
+            centres = [(c * m, a * n, 0.0) for m in positions for n in positions]
             kind, half = SLAB, (c / self.parts, a / self.parts, b)
             axis_a, axis_b, axis_t = axis_t, axis_a, axis_b
         added_mass = np.array(self.added)[
             [("xyz").index("xyz"[int(np.argmax(axis))]) for axis in (axis_a, axis_b, axis_t)]
         ]
-        table = np.zeros((len(places), WIDTH))
+        table = np.zeros((len(centres), WIDTH))
         for name, values in (
-            ("body", 1), ("kind", kind), ("at", places), ("across", axis_a), ("upward", axis_b), ("forward", axis_t),
-            ("half", half), ("volume", self.volume / len(places)), ("added", added_mass * self.volume / len(places)),
+            ("body", 1), ("kind", kind), ("at", centres), ("across", axis_a), ("upward", axis_b), ("forward", axis_t),
+            ("half", half), ("volume", self.volume / len(centres)), ("added", added_mass * self.volume / len(centres)),
         ):  # fmt: skip
             table[:, slice(*COLUMNS[name])] = np.reshape(values, (-1, COLUMNS[name][1] - COLUMNS[name][0]))
         return table

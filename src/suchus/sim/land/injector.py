@@ -28,13 +28,13 @@ class Injector:
     def __init__(self, batch: SimulationBatch, period: float, robot: Robot) -> None:
         """Note which columns of the sensors belong to which servo, limb and trunk body."""
         self._batch, self._period = batch, period
-        place = layout(robot)
+        robot_layout = layout(robot)
         self._columns = {
             group: {name: i for i, name in enumerate(names)}
             for group, names in (
-                ("servo", place.servos),
-                ("foot_pressure", place.limb_names),
-                ("belly_pressure", place.trunk),
+                ("servo", robot_layout.servos),
+                ("foot_pressure", robot_layout.limb_names),
+                ("belly_pressure", robot_layout.trunk),
             )
         }
         self._broken: dict[tuple[int, str], tuple[Fault, Site]] = {}

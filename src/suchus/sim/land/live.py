@@ -92,7 +92,7 @@ class Live:
         Raises:
             OutsideLimits: the robot's joints cannot follow the gait, or the rules cannot coordinate it.
         """
-        share = max(self._beat - self._start, 0) / self._cycle(self.run)
+        cycle_fraction = max(self._beat - self._start, 0) / self._cycle(self.run)
         run = self._with_whole_period(
             replace(self.run, gait=gait or self.run.gait, control=control or self.run.control)
         )
@@ -101,7 +101,7 @@ class Live:
             controller.take_over(self._loop.controller)
         self.run, self._loop.controller, self._loop.feels = run, controller, run.control.feels
         if self._beat >= self._start:
-            self._beat = self._start + round(share * self._cycle(run)) % self._cycle(run)
+            self._beat = self._start + round(cycle_fraction * self._cycle(run)) % self._cycle(run)
 
     def begin(self, fault: Fault) -> None:
         """Begin a fault now; an earlier fault of the same part ends.

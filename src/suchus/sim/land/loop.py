@@ -159,11 +159,11 @@ class Loop:
         targets, _, air_fraction = self.command
         self.batch.waters.flood(self.time, air_fraction)
         self.batch.advance(previous_targets, steps, self.time)
-        means, share = (self.batch.pressed, self.batch.worked), steps / self.steps
-        early_means = [share * mean for mean in means]
+        means, early_fraction = (self.batch.pressed, self.batch.worked), steps / self.steps
+        early_means = [early_fraction * mean for mean in means]
         self.batch.advance(targets, self.steps - steps, self.time)
         for mean, early_mean in zip(means, early_means, strict=True):
-            mean[:] = early_mean + (1.0 - share) * mean
+            mean[:] = early_mean + (1.0 - early_fraction) * mean
         self._count()
 
     def skip(self, periods: int) -> None:

@@ -145,7 +145,7 @@ class SectionLoads(NamedTuple):
 def sections_along(
     robot: Robot,
     joints: Sequence[str],
-    place: Float[np.ndarray, "sample coordinate"],
+    positions: Float[np.ndarray, "sample coordinate"],
     rate: Float[np.ndarray, "sample coordinate"],
     push: Float[np.ndarray, "sample coordinate"],
     lake: Lake,
@@ -155,23 +155,23 @@ def sections_along(
     Args:
         robot: whose body, limbs left out.
         joints: lateral joints, from the head on.
-        place: of the root (x, y, yaw) and of these joints [m, rad].
+        positions: of the root (x, y, yaw) and of these joints [m, rad].
         rate: their rates.
         push: their accelerations.
         lake: the water; its level does not matter.
     """
     body = _Submerged(robot, lake, joints)
-    count = len(place)
+    count = len(positions)
     links, moments = np.zeros((count, len(joints) + 1, 3)), np.zeros((count, len(joints)))
     for i in range(count):
-        posture = body.qpos(place[i, :3], place[i, 3:])
+        posture = body.qpos(positions[i, :3], positions[i, 3:])
         moving, gaining = (body.rates(sample_rates[i, :3], sample_rates[i, 3:]) for sample_rates in (rate, push))
         forces = body.joint_forces(posture, moving, gaining)
         moments[i] = forces[3:]
     for link, members in enumerate(body.links(joints)):
         link_body = body.restricted_to(members)
         for i in range(count):
-            posture = link_body.qpos(place[i, :3], place[i, 3:])
+            posture = link_body.qpos(positions[i, :3], positions[i, 3:])
             moving, gaining = (
                 link_body.rates(sample_rates[i, :3], sample_rates[i, 3:]) for sample_rates in (rate, push)
             )
@@ -328,13 +328,13 @@ class _Submerged:
                 column(body_pieces, "at"),
                 column(body_pieces, "half"),
             )
-            middle = np.average(centres, axis=0, weights=mass)
-            square = (centres - middle) ** 2
+            mass_centre = np.average(centres, axis=0, weights=mass)
+            square = (centres - mass_centre) ** 2
             piece_inertia = np.column_stack(
                 [half[:, 2] ** 2 / 3, half[:, 0] ** 2 / 4, half[:, 1] ** 2 / 4]
             )  # along x, y and z
             second = (mass[:, None] * (square + piece_inertia)).sum(axis=0)
-            model.body_mass[body], model.body_ipos[body] = mass.sum(), middle
+            model.body_mass[body], model.body_ipos[body] = mass.sum(), mass_centre
             model.body_inertia[body] = second.sum() - second
             model.body_iquat[body] = (1.0, 0.0, 0.0, 0.0)
         mujoco.mj_setConst(model, self._data)

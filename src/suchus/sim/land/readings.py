@@ -25,23 +25,23 @@ class Sensors:
     def __init__(self, batch: SimulationBatch, robot: Robot) -> None:
         """Look up the columns of each sensor in the model."""
         self._batch = batch
-        self.layout = place = layout(robot)
+        self.layout = robot_layout = layout(robot)
         model = batch.model
         self._columns = {
             name: slice(int(model.sensor(name).adr[0]), int(model.sensor(name).adr[0] + model.sensor(name).dim[0]))
-            for name in sensor_names(place.robot)
+            for name in sensor_names(robot_layout.robot)
         }
         self._sensor_columns = {
-            "servo_position": self.span(place.servos, "position"),
-            "servo_velocity": self.span(place.servos, "velocity"),
-            "servo_torque": self.span(place.servos, "torque"),
+            "servo_position": self.span(robot_layout.servos, "position"),
+            "servo_velocity": self.span(robot_layout.servos, "velocity"),
+            "servo_torque": self.span(robot_layout.servos, "torque"),
             "orientation": self._columns["imu_orientation"],
             "angular_velocity": self._columns["imu_gyroscope"],
             "acceleration": self._columns["imu_accelerometer"],
         }
         self._pressed = {
-            "foot_pressure": self._upward(place.limb_names),
-            "belly_pressure": self._upward(place.trunk),
+            "foot_pressure": self._upward(robot_layout.limb_names),
+            "belly_pressure": self._upward(robot_layout.trunk),
         }
 
     def __getitem__(self, name: str) -> Float[np.ndarray, "run n"]:
@@ -90,18 +90,18 @@ class Recorder:
     def __init__(self, batch: SimulationBatch, sensors: Sensors, runs: Sequence[Run], samples: int) -> None:
         """Reserve an array of NaN for each quantity that is sampled."""
         self._batch, self._sensors, self._runs = batch, sensors, runs
-        self._layout = place = sensors.layout
-        self._joints = joint_addresses(batch.model, place.hinges)
+        self._layout = robot_layout = sensors.layout
+        self._joints = joint_addresses(batch.model, robot_layout.hinges)
         shape = len(runs), samples
         self._readings = np.full((*shape, batch.readings.shape[1]), np.nan)
         self._qpos = np.full((*shape, batch.qpos.shape[1]), np.nan)
-        self._phase = np.full((*shape, len(place.limbs)), np.nan)
-        self._targets = np.full((*shape, len(place.servos)), np.nan)
+        self._phase = np.full((*shape, len(robot_layout.limbs)), np.nan)
+        self._targets = np.full((*shape, len(robot_layout.servos)), np.nan)
         self._water = np.full((*shape, batch.waters.rows.shape[1]), np.nan)
         self._period_means = np.full((*shape, batch.worked.shape[1]), np.nan)
         self._temperature_columns = warming(batch.model, runs[0].robot)
         self._air = np.array([ambient(run.robot) for run in runs])
-        heated = len(place.servos) if (self._temperature_columns >= 0).any() else 0
+        heated = len(robot_layout.servos) if (self._temperature_columns >= 0).any() else 0
         self._temperature = np.full((*shape, heated), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
@@ -214,7 +214,7 @@ class Recorder:
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Return the samples by the names of ``record.VARIABLES``, each of shape (run, time, ...)."""
-        rows, place = self._readings, self._layout
+        rows, robot_layout = self._readings, self._layout
 
         def block(names: Sequence[str], suffix: str) -> np.ndarray:
             return np.array(rows[..., self._sensors.span(names, suffix)])
@@ -230,14 +230,14 @@ class Recorder:
             "angular_momentum": rows[..., self._sensors.columns("angular_momentum")],
             "snout": block(("snout",), "position"),
             "tail_tip": block(("tail_tip",), "position"),
-            "foot_position": points([f"{limb}_foot" for limb in place.limb_names], "position"),
+            "foot_position": points([f"{limb}_foot" for limb in robot_layout.limb_names], "position"),
             # the sensors read the robot's force on the ground; the record holds the ground's on the robot
-            "foot_force": -points(place.limb_names, "force"),
-            "belly_force": -points(place.trunk, "force"),
+            "foot_force": -points(robot_layout.limb_names, "force"),
+            "belly_force": -points(robot_layout.trunk, "force"),
             "tail_force": -self._sensors.tail(rows),
-            "servo_angle": block(place.servos, "position"),
-            "servo_velocity": block(place.servos, "velocity"),
-            "servo_torque": block(place.servos, "torque"),
+            "servo_angle": block(robot_layout.servos, "position"),
+            "servo_velocity": block(robot_layout.servos, "velocity"),
+            "servo_torque": block(robot_layout.servos, "torque"),
             "servo_target": self._targets,
             "limb_phase": self._phase,
             "angular_velocity": rows[..., self._sensors.columns("imu_gyroscope")],

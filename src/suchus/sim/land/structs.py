@@ -137,15 +137,15 @@ def _bound(instance: Any, field: str) -> Any:
 def _field_values(struct: str, address: int, fields: Sequence[str]) -> Iterator[tuple[str, float]]:
     """Yield each field with the content of its offset: the address of an array, or the number itself."""
     for field in fields:
-        place = address + offset(struct, field)
+        field_address = address + offset(struct, field)
         owner, name = (structs.STRUCTS[struct], field)
         while "." in name:
             member_name, _, name = name.partition(".")
             owner = structs.STRUCTS[next(member.type.name for member in owner.fields if member.name == member_name)]
         declaration = next(member.type for member in owner.fields if member.name == name)
         if isinstance(declaration, ArrayType):
-            yield field, place
+            yield field, field_address
         elif isinstance(declaration, PointerType):
-            yield field, ctypes.c_size_t.from_address(place).value
+            yield field, ctypes.c_size_t.from_address(field_address).value
         else:
-            yield field, _PLAIN[declaration.name].from_address(place).value
+            yield field, _PLAIN[declaration.name].from_address(field_address).value

@@ -54,13 +54,13 @@ def offsets() -> np.ndarray:
     verify("mjModel", model, FIELDS)
     verify("mjData", data, DATA_FIELDS)
     fields = [("mjModel", field) for field in FIELDS] + [("mjData", field) for field in DATA_FIELDS]
-    places = np.array([offset(struct, field) for struct, field in fields])
-    for (struct, field), place in zip(fields, places, strict=True):
-        if place % 8:
+    positions = np.array([offset(struct, field) for struct, field in fields])
+    for (struct, field), position in zip(fields, positions, strict=True):
+        if position % 8:
             raise OtherMuJoCo(
-                f"{struct}.{field}", mujoco.__version__, f"it begins at byte {place}, not at a whole word"
+                f"{struct}.{field}", mujoco.__version__, f"it begins at byte {position}, not at a whole word"
             )
-    return places
+    return positions
 
 
 def _register(field_offsets: np.ndarray) -> list[Any]:

@@ -37,9 +37,10 @@ def weight(record: xr.Dataset) -> float:
 
 def advance(record: xr.Dataset, window: Window) -> np.ndarray:
     """Return how far the centre of mass of one run comes over the ground in a cycle, forward and left [m]."""
-    place = record.centre_of_mass.sel(xyz=["x", "y"]).transpose("time", "xyz").values
+    centre_of_mass = record.centre_of_mass.sel(xyz=["x", "y"]).transpose("time", "xyz").values
     start_position, end_position = (
-        np.array([np.interp(t, record.time.values, column) for column in place.T]) for t in (window.start, window.end)
+        np.array([np.interp(t, record.time.values, column) for column in centre_of_mass.T])
+        for t in (window.start, window.end)
     )
     return np.asarray(end_position - start_position) / window.cycles
 

@@ -50,11 +50,11 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
     if len(periods) > 1:  # each run is sampled at its own period
         lengths = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
         return xr.concat(lengths, "run", coords="different", compat="equals")
-    places = between(record, start, end).centre_of_mass.sel(xyz=["x", "y"]).transpose(..., "time", "xyz")
-    stride = max(1, round(float(periods[0]) / float(places.time[1] - places.time[0])))
-    points = places.isel(time=slice(None, None, stride))
+    path = between(record, start, end).centre_of_mass.sel(xyz=["x", "y"]).transpose(..., "time", "xyz")
+    stride = max(1, round(float(periods[0]) / float(path.time[1] - path.time[0])))
+    points = path.isel(time=slice(None, None, stride))
     if points.sizes["time"] < 2:
-        points = places.isel(time=[0, -1])
+        points = path.isel(time=[0, -1])
     return ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
 
 

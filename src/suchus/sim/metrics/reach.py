@@ -31,12 +31,12 @@ def reach(robot: Robot, record: xr.Dataset) -> xr.DataArray:
 
 def _tops(robot: Robot, q: np.ndarray, position: np.ndarray, angles: np.ndarray) -> Float[np.ndarray, "*batch shape"]:
     """Return the highest point of every shape from the root forward [m]."""
-    place, body_frames, up_axis = layout(robot), frames(robot, angles), rotation.upward(q)
-    segments = {segment.name: segment for segment in place.robot.axis}
+    robot_layout, body_frames, up_axis = layout(robot), frames(robot, angles), rotation.upward(q)
+    segments = {segment.name: segment for segment in robot_layout.robot.axis}
     tops = []
-    for i, body in enumerate(place.bodies):
+    for i, body in enumerate(robot_layout.bodies):
         shift = np.array([body.shift, 0.0, 0.0])
-        for shape in segments[body.name].shapes if body.name in place.trunk else ():
+        for shape in segments[body.name].shapes if body.name in robot_layout.trunk else ():
             local_up = np.einsum(
                 "...i,...ij->...j", up_axis, body_frames.turns[..., i, :, :]
             )  # upward, in the frame of the body

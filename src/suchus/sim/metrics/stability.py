@@ -123,8 +123,8 @@ def _on_two_feet(record: xr.Dataset) -> xr.DataArray:
 def _to_segment(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
     segment = end - start
     length2 = float(segment @ segment)
-    share = 0.0 if length2 == 0 else float(np.clip((point - start) @ segment / length2, 0.0, 1.0))
-    return float(np.linalg.norm(point - start - share * segment))
+    fraction = 0.0 if length2 == 0 else float(np.clip((point - start) @ segment / length2, 0.0, 1.0))
+    return float(np.linalg.norm(point - start - fraction * segment))
 
 
 def _is_inside(point: np.ndarray, corners: np.ndarray) -> bool:

@@ -15,7 +15,7 @@ _SLEW_PID, _SLEW_MOTOR = 1, 7
 _POSITION_INPUT = 1  # the servo takes an angle; the other inputs of MuJoCo's actuators stay unused
 
 
-def add_servo(spec: Any, number: int, name: str, servo: Servo, place: Layout) -> None:
+def add_servo(spec: Any, number: int, name: str, servo: Servo, robot_layout: Layout) -> None:
     """Add a servo to a ``mujoco.MjSpec``: MuJoCo's pid, or its dcmotor for a servo with a winding.
 
     Args:
@@ -23,7 +23,7 @@ def add_servo(spec: Any, number: int, name: str, servo: Servo, place: Layout) ->
         number: of the servo in the layout.
         name: of the servo, and of its joint or cable.
         servo: its design.
-        place: the layout.
+        robot_layout: the layout.
     """
     actuator = spec.add_actuator(name=name, group=number)
     if servo.winding is None:
@@ -37,11 +37,11 @@ def add_servo(spec: Any, number: int, name: str, servo: Servo, place: Layout) ->
         )
     else:
         _wind(actuator, servo, servo.winding)
-    if number in place.cables:
+    if number in robot_layout.cables:
         actuator.trntype = mujoco.mjtTrn.mjTRN_TENDON
         actuator.target = name
         actuator.gear[0] = (
-            1.0 / place.cable(number).pulley
+            1.0 / robot_layout.cable(number).pulley
         )  # cable length to angle of the pulley, and its torque to tension
     else:
         actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT

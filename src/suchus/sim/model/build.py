@@ -33,22 +33,22 @@ def build(robot: Robot, *, timestep: float = TIMESTEP, relief: Relief | None = N
     Returns:
         The ``mujoco.MjSpec``, ready for ``compile()`` or for further edits.
     """
-    place = layout(robot)
+    robot_layout = layout(robot)
     spec = mujoco.MjSpec()
     spec.modelname = robot.name
     spec.compiler.degree = False
     _set_options(spec, timestep)
     add_ground(spec, relief)
-    root = spec.worldbody.add_body(name=place.robot.root, pos=[0, 0, 0.2])
+    root = spec.worldbody.add_body(name=robot_layout.robot.root, pos=[0, 0, 0.2])
     root.add_freejoint(name="root")
-    add_bodies(root, place)
-    add_foam(spec, place)
-    state_inertia(spec, place)
-    lay_cables(spec, place.robot)
-    servos = servos_of(place.robot)
-    for number, name in enumerate(place.servos):
-        add_servo(spec, number, name, servos[name], place)
-    _add_sensors(spec, place)
+    add_bodies(root, robot_layout)
+    add_foam(spec, robot_layout)
+    state_inertia(spec, robot_layout)
+    lay_cables(spec, robot_layout.robot)
+    servos = servos_of(robot_layout.robot)
+    for number, name in enumerate(robot_layout.servos):
+        add_servo(spec, number, name, servos[name], robot_layout)
+    _add_sensors(spec, robot_layout)
     return spec
 
 
@@ -76,13 +76,13 @@ def topology(robot: Robot) -> tuple[object, ...]:
     That is every body with its parent and its hinges, which of them are free of limits or springs, the servos, and
     which of them have integral action or warm up, and so a state of its own.
     """
-    place = layout(robot)
-    bodies = tuple((body.name, body.parent, tuple(name for _, name, _ in body.hinges)) for body in place.bodies)
+    robot_layout = layout(robot)
+    bodies = tuple((body.name, body.parent, tuple(name for _, name, _ in body.hinges)) for body in robot_layout.bodies)
     servos = servos_of(robot)
-    states = tuple((servos[name].ki > 0, warms(servos[name])) for name in place.servos)
-    shapes = tuple(len(segment.shapes) for segment in place.robot.axis)
-    foam = () if place.robot.hull is None else tuple(piece.body for piece in place.robot.hull.foam)
-    return bodies, foam, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), states
+    states = tuple((servos[name].ki > 0, warms(servos[name])) for name in robot_layout.servos)
+    shapes = tuple(len(segment.shapes) for segment in robot_layout.robot.axis)
+    foam = () if robot_layout.robot.hull is None else tuple(piece.body for piece in robot_layout.robot.hull.foam)
+    return bodies, foam, robot_layout.servos, shapes, tuple(cable.hinges for cable in robot_layout.robot.cables), states
 
 
 def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
@@ -102,7 +102,7 @@ def _set_options(spec: Any, timestep: float) -> None:
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # divergence ends a run, it does not restart it
 
 
-def _add_sensors(spec: Any, place: Layout) -> None:
+def _add_sensors(spec: Any, robot_layout: Layout) -> None:
     """Add the sensors in the order of ``sensor_names``."""
     kind, object_types = mujoco.mjtSensor, mujoco.mjtObj
     for suffix, sensor in (
@@ -110,13 +110,13 @@ def _add_sensors(spec: Any, place: Layout) -> None:
         ("velocity", kind.mjSENS_ACTUATORVEL),
         ("torque", kind.mjSENS_ACTUATORFRC),
     ):
-        for servo in place.servos:
+        for servo in robot_layout.servos:
             spec.add_sensor(name=f"{servo}_{suffix}", type=sensor, objtype=object_types.mjOBJ_ACTUATOR, objname=servo)
-    for limb in place.limb_names:
+    for limb in robot_layout.limb_names:
         _add_force(spec, f"{limb}_force", object_types.mjOBJ_GEOM, f"{limb}_foot")
-    for body in place.trunk:
+    for body in robot_layout.trunk:
         _add_force(spec, f"{body}_force", object_types.mjOBJ_BODY, body)
-    for body in place.tail[:1]:
+    for body in robot_layout.tail[:1]:
         _add_force(spec, "tail_force", object_types.mjOBJ_XBODY, body)  # an x-body stands for its whole subtree
     spec.add_sensor(name="imu_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=object_types.mjOBJ_SITE, objname="imu")
     spec.add_sensor(name="imu_gyroscope", type=kind.mjSENS_GYRO, objtype=object_types.mjOBJ_SITE, objname="imu")
@@ -124,15 +124,18 @@ def _add_sensors(spec: Any, place: Layout) -> None:
         name="imu_accelerometer", type=kind.mjSENS_ACCELEROMETER, objtype=object_types.mjOBJ_SITE, objname="imu"
     )
     spec.add_sensor(
-        name="centre_of_mass", type=kind.mjSENS_SUBTREECOM, objtype=object_types.mjOBJ_BODY, objname=place.robot.root
+        name="centre_of_mass",
+        type=kind.mjSENS_SUBTREECOM,
+        objtype=object_types.mjOBJ_BODY,
+        objname=robot_layout.robot.root,
     )
     spec.add_sensor(
         name="angular_momentum",
         type=kind.mjSENS_SUBTREEANGMOM,
         objtype=object_types.mjOBJ_BODY,
-        objname=place.robot.root,
+        objname=robot_layout.robot.root,
     )
-    for site in sites(place.robot):
+    for site in sites(robot_layout.robot):
         spec.add_sensor(
             name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=object_types.mjOBJ_SITE, objname=site
         )
@@ -164,11 +167,11 @@ def force_sensors(robot: Robot) -> tuple[str, ...]:
 
     They stand side by side in the model's readings.
     """
-    place = layout(robot)
+    robot_layout = layout(robot)
     return (
-        *(f"{limb}_force" for limb in place.limb_names),
-        *(f"{body}_force" for body in place.trunk),
-        *(("tail_force",) if place.tail else ()),
+        *(f"{limb}_force" for limb in robot_layout.limb_names),
+        *(f"{body}_force" for body in robot_layout.trunk),
+        *(("tail_force",) if robot_layout.tail else ()),
     )
 
 
@@ -239,22 +242,22 @@ _SITE = 0.002  # [m]; as they are drawn
 _MIN_FOAM_MASS = 1e-9  # [kg] of foam; less than MuJoCo takes for a mass
 
 
-def add_bodies(root: Any, place: Layout) -> None:
+def add_bodies(root: Any, robot_layout: Layout) -> None:
     """Give the root its shape and hang all other bodies on it.
 
     Args:
         root: the ``MjsBody`` that carries the free joint.
-        place: the layout of the robot.
+        robot_layout: the layout of the robot.
     """
-    robot = place.robot
+    robot = robot_layout.robot
     segments = {segment.name: segment for segment in robot.axis}
     links = {
         limb.tip - i: (limb, len(limb.girdle.limb.links) - 1 - i)
-        for limb in place.limbs
+        for limb in robot_layout.limbs
         for i in range(len(limb.girdle.limb.links))
     }
     body_specs: list[Any] = []
-    for number, body in enumerate(place.bodies):
+    for number, body in enumerate(robot_layout.bodies):
         body_spec = root if body.parent < 0 else body_specs[body.parent].add_body(name=body.name, pos=list(body.offset))
         body_specs.append(body_spec)
         for hinge, name, axis in body.hinges:
@@ -310,12 +313,12 @@ def _add_link(body: Any, limb: LimbPlace, number: int, contact: Contact) -> None
         body.add_site(name=f"{limb.name}_foot", pos=end, size=[_SITE, 0, 0])
 
 
-def add_foam(spec: Any, place: Layout) -> None:
+def add_foam(spec: Any, robot_layout: Layout) -> None:
     """Add the mass of the robot's foam: balls of its volume around its centres, which touch nothing."""
-    hull = place.robot.hull
+    hull = robot_layout.robot.hull
     if hull is None:
         return
-    centres = foam_centres(place.robot)
+    centres = foam_centres(robot_layout.robot)
     for foam in hull.foam:
         if foam.volume * hull.density < _MIN_FOAM_MASS:
             continue
@@ -332,18 +335,20 @@ def add_foam(spec: Any, place: Layout) -> None:
         )
 
 
-def state_inertia(spec: Any, place: Layout) -> None:
+def state_inertia(spec: Any, robot_layout: Layout) -> None:
     """Give the bodies whose design states where their mass lies that mass, with their foam, in the shapes' place."""
-    foams = {} if place.robot.hull is None else {piece.body: piece.volume for piece in place.robot.hull.foam}
-    density = 0.0 if place.robot.hull is None else place.robot.hull.density
-    shape_masses = masses(place.robot)
-    for body in (candidate for candidate in place.bodies if candidate.inertia is not None):
+    foams = (
+        {} if robot_layout.robot.hull is None else {piece.body: piece.volume for piece in robot_layout.robot.hull.foam}
+    )
+    density = 0.0 if robot_layout.robot.hull is None else robot_layout.robot.hull.density
+    shape_masses = masses(robot_layout.robot)
+    for body in (candidate for candidate in robot_layout.bodies if candidate.inertia is not None):
         assert body.inertia is not None
         volume = foams.get(body.name, 0.0)
         parts = [(shape_masses[body.name], np.array(body.inertia.centre), body.inertia.tensor)]
         if volume * density >= _MIN_FOAM_MASS:
             ball = 0.4 * density * volume * (3 * volume / (4 * pi)) ** (2 / 3)
-            parts.append((density * volume, np.array(foam_centres(place.robot)[body.name]), ball * np.eye(3)))
+            parts.append((density * volume, np.array(foam_centres(robot_layout.robot)[body.name]), ball * np.eye(3)))
         mass, centre, tensor = together(parts)
         body_spec = spec.body(body.name)
         body_spec.mass, body_spec.ipos, body_spec.explicitinertial = mass, centre.tolist(), True
@@ -412,10 +417,10 @@ def _raise(spec: Any, bumps: Bumps) -> float:
     """Add a height field; return the height of its lowest point [m]."""
     heights, (x_start, x_end) = field(bumps), bumps.reach
     min_height, max_height = float(heights.min()), float(heights.max())
-    middle = (x_start + x_end) / 2
+    x_centre = (x_start + x_end) / 2
     spec.add_hfield(
         name=RELIEF,
-        size=[x_end - middle, bumps.aside, max_height - min_height, _BASE * bumps.scale],
+        size=[x_end - x_centre, bumps.aside, max_height - min_height, _BASE * bumps.scale],
         nrow=heights.shape[0],
         ncol=heights.shape[1],
         userdata=((heights - min_height) / (max_height - min_height)).ravel(),
@@ -424,7 +429,7 @@ def _raise(spec: Any, bumps: Bumps) -> float:
         name=RELIEF,
         type=mujoco.mjtGeom.mjGEOM_HFIELD,
         hfieldname=RELIEF,
-        pos=[middle, 0.0, min_height],
+        pos=[x_centre, 0.0, min_height],
         contype=1,
         conaffinity=0,
         rgba=list(_COLOUR),
@@ -444,14 +449,14 @@ def standing(model: Any, robot: Robot, hip_height: float, servos: np.ndarray) ->
         servos: shape (servo,) [rad].
     """
     data = mujoco.MjData(model)
-    place = layout(robot)
+    robot_layout = layout(robot)
     data.qpos[2] = hip_height
-    turn = -sum(servos[i] for i in place.trunk_yaw) / 2
+    turn = -sum(servos[i] for i in robot_layout.trunk_yaw) / 2
     data.qpos[3:7] = about(np.array([0.0, 0.0, 1.0]), turn)
-    direct = len(place.servos) - len(place.cables)
-    data.qpos[joint_addresses(model, place.servos[:direct])] = servos[:direct]
-    for i in place.cables:
-        cable = place.cable(i)
+    direct = len(robot_layout.servos) - len(robot_layout.cables)
+    data.qpos[joint_addresses(model, robot_layout.servos[:direct])] = servos[:direct]
+    for i in robot_layout.cables:
+        cable = robot_layout.cable(i)
         pulley_per_bend = cable.cord_spacing / 2 / cable.pulley
         data.qpos[joint_addresses(model, cable.hinges)] = servos[i] / pulley_per_bend / cable.joints
     mujoco.mj_forward(model, data)

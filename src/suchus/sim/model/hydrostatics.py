@@ -62,9 +62,9 @@ class Hydrostatics:
         first_unstable = int(unstable[0])
         if first_unstable == 0 or self.lever[first_unstable - 1] <= 0.0:
             return float(self.heel[max(first_unstable - 1, 0)])
-        share = self.lever[first_unstable - 1] / (self.lever[first_unstable - 1] - self.lever[first_unstable])
+        fraction = self.lever[first_unstable - 1] / (self.lever[first_unstable - 1] - self.lever[first_unstable])
         return float(
-            self.heel[first_unstable - 1] + share * (self.heel[first_unstable] - self.heel[first_unstable - 1])
+            self.heel[first_unstable - 1] + fraction * (self.heel[first_unstable] - self.heel[first_unstable - 1])
         )
 
 
@@ -107,7 +107,7 @@ class _Rigid:
         return -atan2(arm[0], arm[2]) + 0.0  # no -0
 
     def balance(self, heel: float, guess: float) -> tuple[float, float, float]:
-        """Return rise of the nose [rad], righting lever [m] and level [m] at a heel, with the trim in equilibrium afloat.
+        """Return rise of the nose [rad], righting lever and level [m] at a heel; afloat the trim is in equilibrium.
 
         The search begins at the rise ``guess``. All three are NaN where no rise up to 80 degrees is an equilibrium: the
         body would float on end.
@@ -137,9 +137,9 @@ def _root(function: Any, guess: float) -> float:
 
 
 def _bend(model: Any, data: Any, robot: Robot, servos: np.ndarray) -> None:
-    place = layout(robot)
-    direct = [i for i in range(len(place.servos)) if i not in place.cables]
-    data.qpos[joint_addresses(model, [place.servos[i] for i in direct])] = servos[direct]
+    robot_layout = layout(robot)
+    direct = [i for i in range(len(robot_layout.servos)) if i not in robot_layout.cables]
+    data.qpos[joint_addresses(model, [robot_layout.servos[i] for i in direct])] = servos[direct]
 
 
 def hydrostatics(
@@ -199,8 +199,8 @@ def hydrostatics(
 def _fraction_pair(air_fraction: float | AirFractions) -> AirFractions:
     """Return the shares of the air in front and rear chambers."""
     if isinstance(air_fraction, tuple):
-        for name, share in zip(("front", "rear"), air_fraction, strict=True):
-            require("hydrostatics", f"air_fraction ({name})", share, 0.0, 1.0, "")
+        for name, fraction in zip(("front", "rear"), air_fraction, strict=True):
+            require("hydrostatics", f"air_fraction ({name})", fraction, 0.0, 1.0, "")
         return air_fraction
     require("hydrostatics", "air_fraction", air_fraction, 0.0, 1.0, "")
     return float(air_fraction), float(air_fraction)
@@ -210,9 +210,9 @@ def _lowest_point(body: _Rigid, up_axis: np.ndarray) -> float:
     """Return the height of the lowest point of the pieces [m]."""
     ids = body.table[:, 0].astype(int)
     turn = body.data.xmat[ids].reshape(-1, 3, 3)
-    middle = body.data.xpos[ids] + np.einsum("nij,nj->ni", turn, column(body.table, "at"))
+    centres = body.data.xpos[ids] + np.einsum("nij,nj->ni", turn, column(body.table, "at"))
     extent = [
         (np.einsum("nij,nj->ni", turn, column(body.table, axis)) @ up_axis) * column(body.table, "half")[:, k]
         for k, axis in enumerate(("across", "upward", "forward"))
     ]
-    return float((middle @ up_axis - np.sqrt(np.sum(np.square(extent), axis=0))).min())
+    return float((centres @ up_axis - np.sqrt(np.sum(np.square(extent), axis=0))).min())

@@ -191,7 +191,7 @@ def check_land(record: xr.Dataset, names: Sequence[str], source: str) -> None:
 
 
 def _other_meaning(record: xr.Dataset, name: str) -> str:
-    """Return in words how a variable's attributes contradict the schema: by another unit, or by another variable's name.
+    """Return in words how a variable's attributes contradict the schema: another unit, or another variable's meaning.
 
     The text is empty where they agree or are missing.
     """

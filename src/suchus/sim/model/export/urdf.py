@@ -29,11 +29,11 @@ def filled(texts: Sequence[str], robot: Robot, **format_values: object) -> tuple
         robot: the design.
         format_values: further values, of the format.
     """
-    place, contact = layout(robot), robot.contact
-    cables = place.robot.cables
+    robot_layout, contact = layout(robot), robot.contact
+    cables = robot_layout.robot.cables
     springs = [
         _SPRING_TEXT.format(name=name, stiffness=hinge.drive.stiffness)
-        for body in place.bodies
+        for body in robot_layout.bodies
         for hinge, name, _ in body.hinges
         if isinstance(hinge.drive, Spring)
     ]
@@ -45,7 +45,7 @@ def filled(texts: Sequence[str], robot: Robot, **format_values: object) -> tuple
         "springs": ", ".join(springs),
         "foot": contact.foot_friction,
         "skin": contact.skin_friction,
-        "root": place.robot.root,
+        "root": robot_layout.robot.root,
     }
     fitting = [
         text
@@ -150,10 +150,8 @@ def _add_body(root: ElementTree.Element, model: Any, body: int, robot: Robot) ->
             ElementTree.SubElement(root, "link", name=child)
         kind = "revolute" if model.jnt_limited[hinge] else "continuous"
         joint = _joint(root, label, kind, parent, child)
-        place = (
-            (model.body_pos[body], model.body_quat[body]) if number == 0 else (np.zeros(3), np.array([1.0, 0, 0, 0]))
-        )
-        _origin(joint, *place)
+        pose = (model.body_pos[body], model.body_quat[body]) if number == 0 else (np.zeros(3), np.array([1.0, 0, 0, 0]))
+        _origin(joint, *pose)
         _turn(joint, model, hinge, robot)
         parent = child
     if body > 1 and not hinges:
@@ -176,9 +174,9 @@ def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Robot) -> N
     name = model.joint(hinge).name
     dof = int(model.jnt_dofadr[hinge])
     ElementTree.SubElement(joint, "axis", xyz=numbers(model.jnt_axis[hinge]))
-    place = layout(robot)
-    cables = [cable for cable in place.robot.cables if name in cable.hinges]
-    if name in place.servos:
+    robot_layout = layout(robot)
+    cables = [cable for cable in robot_layout.robot.cables if name in cable.hinges]
+    if name in robot_layout.servos:
         servo = robot.servo(name)
         effort, speed = servo.torque, servo.speed
     elif cables:
@@ -207,18 +205,18 @@ def _inertial(link: ElementTree.Element, model: Any, body: int) -> None:
 def _shape(link: ElementTree.Element, model: Any, geom: int) -> None:
     """Add a geom to its link, as visual and as collision shape."""
     kinds = mujoco.mjtGeom
-    kind, size, place = model.geom_type[geom], model.geom_size[geom], model.geom_pos[geom]
+    kind, size, centre = model.geom_type[geom], model.geom_size[geom], model.geom_pos[geom]
     quat, colour = model.geom_quat[geom], model.geom_rgba[geom]
     pieces: list[tuple[str, dict[str, str], np.ndarray]]
     if kind == kinds.mjGEOM_SPHERE:
-        pieces = [("sphere", {"radius": numbers([size[0]])}, place)]
+        pieces = [("sphere", {"radius": numbers([size[0]])}, centre)]
     elif kind == kinds.mjGEOM_ELLIPSOID:
-        pieces = [("mesh", {"filename": BALL, "scale": numbers(size)}, place)]
+        pieces = [("mesh", {"filename": BALL, "scale": numbers(size)}, centre)]
     else:
         end = _rotation(quat).apply([0.0, 0.0, size[1]])
         rod = {"radius": numbers([size[0]]), "length": numbers([2 * size[1]])}
         cap = {"radius": numbers([size[0]])}
-        pieces = [("cylinder", rod, place), ("sphere", cap, place - end), ("sphere", cap, place + end)]
+        pieces = [("cylinder", rod, centre), ("sphere", cap, centre - end), ("sphere", cap, centre + end)]
     shade = " ".join(f"{c:.3g}" for c in colour)
     for purpose in ("visual", "collision"):
         for tag, attributes, position in pieces:
@@ -230,8 +228,8 @@ def _shape(link: ElementTree.Element, model: Any, geom: int) -> None:
                 ElementTree.SubElement(material, "color", rgba=shade)
 
 
-def _origin(element: ElementTree.Element, place: np.ndarray, quat: np.ndarray) -> None:
-    ElementTree.SubElement(element, "origin", xyz=numbers(place), rpy=numbers(_roll_pitch_yaw(quat)))
+def _origin(element: ElementTree.Element, position: np.ndarray, quat: np.ndarray) -> None:
+    ElementTree.SubElement(element, "origin", xyz=numbers(position), rpy=numbers(_roll_pitch_yaw(quat)))
 
 
 def _roll_pitch_yaw(quat: np.ndarray) -> tuple[float, float, float]:

@@ -197,16 +197,16 @@ class _Writer:
         self.pxr.UsdPhysics.RigidBodyAPI.Apply(prim.GetPrim())
         return prim.GetPrim()
 
-    def _move(self, prim: Any, place: np.ndarray, quat: np.ndarray) -> None:
+    def _move(self, prim: Any, position: np.ndarray, quat: np.ndarray) -> None:
         double = self.pxr.UsdGeom.XformOp.PrecisionDouble
-        prim.AddTranslateOp(double).Set(self.pxr.Gf.Vec3d(*map(float, place)))
+        prim.AddTranslateOp(double).Set(self.pxr.Gf.Vec3d(*map(float, position)))
         prim.AddOrientOp(double).Set(self.pxr.Gf.Quatd(*map(float, quat)))
 
-    def _mass(self, prim: Any, mass: float, place: np.ndarray, inertia: np.ndarray, quat: np.ndarray) -> None:
+    def _mass(self, prim: Any, mass: float, centre: np.ndarray, inertia: np.ndarray, quat: np.ndarray) -> None:
         """Set mass [kg], centre of mass [m] and principal moments [kg m2] of a body."""
         mass_api = self.pxr.UsdPhysics.MassAPI.Apply(prim)
         mass_api.CreateMassAttr(float(mass))
-        mass_api.CreateCenterOfMassAttr(self.pxr.Gf.Vec3f(*map(float, place)))
+        mass_api.CreateCenterOfMassAttr(self.pxr.Gf.Vec3f(*map(float, centre)))
         mass_api.CreateDiagonalInertiaAttr(self.pxr.Gf.Vec3f(*map(float, inertia)))
         mass_api.CreatePrincipalAxesAttr(self.pxr.Gf.Quatf(*map(float, quat)))
 

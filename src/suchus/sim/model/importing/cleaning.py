@@ -245,7 +245,7 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
         """Replace the includes below an element by what the included files hold."""
         if depth > _MAX_DEPTH:
             raise UnreadableFile(f"{path.name} and what it includes nest more than {_MAX_DEPTH} elements.")
-        for place, child in reversed(list(enumerate(element))):
+        for index, child in reversed(list(enumerate(element))):
             if child.tag != "include":
                 expand(child, depth + 1)
                 continue
@@ -260,7 +260,7 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
             opened_files.append(included_file)
             included_root = parse(included_file)
             expand(included_root, depth)
-            element[place : place + 1] = list(included_root)
+            element[index : index + 1] = list(included_root)
 
     expand(root, 1)
     return root

@@ -88,7 +88,7 @@ def draft_of(plan: BodyPlan, name: str, words: Words) -> Draft:
         raise UnreadableFile(f"the file gives no robot that can be: {error}") from error
     robot, needless = _without_needless(robot)
     order = layout(robot).hinges
-    notes = {place: text for place, text in making.notes.items() if place not in needless}
+    notes = {note_path: text for note_path, text in making.notes.items() if note_path not in needless}
     return Draft(
         robot=robot,
         matches=tuple(sorted(making.matches, key=lambda match: order.index(match.ours))),
@@ -119,19 +119,19 @@ def _without_needless(robot: Robot) -> tuple[Robot, set[str]]:
         for body in layout(robot).bodies
         if body.inertia is not None and not _has_same_inertia(stated, shape_model, body.name, robot.length)
     }
-    places = {segment.name: f"axis[{i}]" for i, segment in enumerate(robot.axis)}
+    note_paths = {segment.name: f"axis[{i}]" for i, segment in enumerate(robot.axis)}
     for i, girdle in enumerate(robot.girdles):
-        places |= {f"L{girdle.name}_{link.name}": f"girdles[{i}].limb.links[{k}]"
+        note_paths |= {f"L{girdle.name}_{link.name}": f"girdles[{i}].limb.links[{k}]"
                    for k, link in enumerate(girdle.limb.links)}  # fmt: skip
     return with_inertias(differing), {
-        f"{place}.inertia.moments" for name, place in places.items() if name not in differing
+        f"{note_path}.inertia.moments" for name, note_path in note_paths.items() if name not in differing
     }
 
 
 def _has_same_inertia(first_model: Any, second_model: Any, body: str, length: float) -> bool:
     """Return whether a body of two models has its mass in the same places."""
-    (place, tensor), (other_place, other_tensor) = (_weighed(model, body) for model in (first_model, second_model))
-    is_near = np.linalg.norm(place - other_place) <= _INERTIA_TOLERANCE * length
+    (centre, tensor), (other_centre, other_tensor) = (_weighed(model, body) for model in (first_model, second_model))
+    is_near = np.linalg.norm(centre - other_centre) <= _INERTIA_TOLERANCE * length
     return bool(is_near and np.abs(tensor - other_tensor).max() <= _INERTIA_TOLERANCE * np.abs(tensor).max())
 
 
@@ -189,9 +189,9 @@ def draft_axis(making: Making) -> tuple[tuple[Segment, ...], str, list[float]]:
     parts = [plan.part(i) for i in plan.axis]
     root = plan.pairs[-1][0].on if plan.pairs else _free_root(plan)
     groups = [_joints(making, i, root) for i in range(len(parts) - 1)]
-    places = [float(np.mean([making.into(joint.anchor)[0] for joint, *_ in group])) for group in groups]
-    ends = _ends(making, parts, places)
-    _tell_offsets(making, groups, places)
+    joint_positions = [float(np.mean([making.into(joint.anchor)[0] for joint, *_ in group])) for group in groups]
+    ends = _ends(making, parts, joint_positions)
+    _tell_offsets(making, groups, joint_positions)
     hinges = _hinges(making, groups, root)
     segments = []
     for i, tree_part in enumerate(parts):
@@ -245,7 +245,7 @@ def _joints(making: Making, i: int, root: int) -> list[AxisHinge]:
     return hinges
 
 
-def _ends(making: Making, parts: list[TreePart], places: list[float]) -> list[float]:
+def _ends(making: Making, parts: list[TreePart], joint_positions: list[float]) -> list[float]:
     """Return where segments begin and end along x, from the snout to the tip of the tail [m]."""
     limbs = [chain for pair in making.plan.pairs for chain in pair]
 
@@ -255,16 +255,18 @@ def _ends(making: Making, parts: list[TreePart], places: list[float]) -> list[fl
 
     front, rear = max(reach(0)), min(reach(len(parts) - 1))
     min_length = _MIN_LENGTH_RATIO * making.size.length
-    if places:
-        front, rear = max(front, places[0] + min_length), min(rear, places[-1] - min_length)
-    return [front, *places, rear]
+    if joint_positions:
+        front, rear = max(front, joint_positions[0] + min_length), min(rear, joint_positions[-1] - min_length)
+    return [front, *joint_positions, rear]
 
 
-def _tell_offsets(making: Making, groups: Sequence[Sequence[AxisHinge]], places: list[float]) -> None:
+def _tell_offsets(making: Making, groups: Sequence[Sequence[AxisHinge]], joint_positions: list[float]) -> None:
     """Add a remark on the hinges that were moved onto the straight axis, with the greatest distance."""
     offsets = [(offset, j.name) for group in groups for j, _, _, offset in group]
-    for group, place in zip(groups, places, strict=True):
-        offsets += [(abs(float(making.into(j.anchor)[0]) - place), j.name) for j, turn, _, _ in group if turn != "roll"]
+    for group, joint_position in zip(groups, joint_positions, strict=True):
+        offsets += [
+            (abs(float(making.into(j.anchor)[0]) - joint_position), j.name) for j, turn, _, _ in group if turn != "roll"
+        ]
     max_offset = max(offsets, default=(0.0, ""))
     if max_offset[0] > JOINED * making.size.length:
         making.remarks.append(
@@ -276,11 +278,11 @@ def _tell_offsets(making: Making, groups: Sequence[Sequence[AxisHinge]], places:
 def _shapes(making: Making, tree_part: TreePart, front: float, length: float, number: int) -> tuple[Rod | Shell, ...]:
     """Return a segment's shapes, its mass shared among them by volume."""
     start = np.array([front, 0.0, 0.0])
-    place = f"axis[{number}].shapes"
+    note_path = f"axis[{number}].shapes"
     pieces = [piece for piece in tree_part.pieces if _overlaps(making, piece, front, length)]
     volume = sum(piece.volume for piece in pieces)
     if not pieces or volume <= 0:
-        making.notes[f"{place}[0].radius"] = "guess: a tenth of the segment's length; the file has no shape for it"
+        making.notes[f"{note_path}[0].radius"] = "guess: a tenth of the segment's length; the file has no shape for it"
         making.remarks.append(f"{tree_part.name} has no shape that is read; the draft gives it a rod.")
         radius = min(max(_RADIUS_RATIO * length, 1e-5), 10.0)
         return (
@@ -299,7 +301,7 @@ def _shapes(making: Making, tree_part: TreePart, front: float, length: float, nu
         else:
             shapes.append(Shell(name=name, at=point(points[0]), half=half, mass=mass))
         if len(pieces) > 1:
-            making.notes[f"{place}[{i}].mass"] = "guess: the segment's mass shared among its shapes by volume"
+            making.notes[f"{note_path}[{i}].mass"] = "guess: the segment's mass shared among its shapes by volume"
     return tuple(shapes)
 
 
@@ -372,7 +374,7 @@ def lowest_foot_height(girdle: Girdle) -> float:
     return float(limb_kinematics.forward(girdle.limb, angles)[:, 2].min()) + girdle.above
 
 
-def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], labels: list[str], place: str) -> Limb:
+def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], labels: list[str], note_path: str) -> Limb:
     """Return the left limb: hinges in one point share a link, whose mass is that of the parts up to the next point."""
     parts = [making.plan.part(i) for i in chain.parts]
     stations: list[tuple[np.ndarray, list[tuple[int, Joint]], list[TreePart]]] = []
@@ -385,11 +387,11 @@ def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], lab
             stations[-1][1].append((number, joint))
             number += 1
         stations[-1][2].append(tree_part)
-    foot, radius = _foot(making, parts, stations[-1][0], place)
+    foot, radius = _foot(making, parts, stations[-1][0], note_path)
     ends = [*(anchor for anchor, _, _ in stations[1:]), foot]
     links = []
     for i, ((anchor, hinges, carried_parts), end) in enumerate(zip(stations, ends, strict=True)):
-        link = f"{place}.links[{i}]"
+        link = f"{note_path}.links[{i}]"
         link_hinges = []
         for k, (n, joint) in enumerate(hinges):
             turn, sign = turns[n]
@@ -411,15 +413,15 @@ def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], lab
             )
         )
     feet = _FOOT_SHARE / (1.0 - _FOOT_SHARE) * links[-1].mass
-    making.notes[f"{place}.foot.mass"] = "guess: a tenth of the last link's mass"
+    making.notes[f"{note_path}.foot.mass"] = "guess: a tenth of the last link's mass"
     if making.words.foot_radius is not None:
         radius = making.words.foot_radius
-        making.notes[f"{place}.foot.radius"] = "as asked (--foot-radius)"
+        making.notes[f"{note_path}.foot.radius"] = "as asked (--foot-radius)"
     return Limb(links=tuple(links), foot=Foot(radius=radius, mass=feet))
 
 
 def _link_name(carried_parts: list[TreePart], number: int, chain: LimbChain, making: Making) -> str:
-    """Return the name of a link: that of its part without the limb's name, if all parts of the limb have it in front."""
+    """Return the name of a link: that of its part without the limb's name, if all its parts begin with that."""
     names = [making.plan.part(i).name for i in chain.parts]
     part_name = carried_parts[-1].name if carried_parts else ""
     head, separator, tail = part_name.partition("_")
@@ -428,7 +430,7 @@ def _link_name(carried_parts: list[TreePart], number: int, chain: LimbChain, mak
     return tail if separator and tail and has_same_head and unique else f"link_{number + 1}"
 
 
-def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, place: str) -> tuple[np.ndarray, float]:
+def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, note_path: str) -> tuple[np.ndarray, float]:
     """Return the foot's centre in the robot's frame [m] and its radius [m]."""
     foot_part = parts[-1]
     balls = [(making.into(piece.centre), float(piece.half[0])) for piece in foot_part.pieces if piece.ball]
@@ -437,7 +439,7 @@ def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, place: str) -
         far_ends = [candidate for candidate in candidates if np.linalg.norm(candidate[0] - knee) > _POINT]
         if far_ends:
             if reason:
-                making.notes[f"{place}.foot.radius"] = reason
+                making.notes[f"{note_path}.foot.radius"] = reason
             return max(far_ends, key=lambda candidate: float(np.linalg.norm(candidate[0] - knee)) + candidate[1])
     reach = sum(
         float(np.linalg.norm(outer.joints[0].anchor - inner.joints[0].anchor)) for inner, outer in pairwise(parts)
@@ -450,23 +452,25 @@ def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, place: str) -
             f"Nothing of the file says how far {foot_part.name} reaches beyond its joint; the draft has its foot "
             f"{knee[2] - far_end[2]:.3g} m below."
         )
-        making.notes[f"{place}.links[{len(parts) - 1}].end"] = "guess: straight down, as long as the links before it"
+        making.notes[f"{note_path}.links[{len(parts) - 1}].end"] = (
+            "guess: straight down, as long as the links before it"
+        )
     elif foot_part.pieces:
-        middle = np.mean([making.into(piece.centre) for piece in foot_part.pieces], axis=0)
-        far_end = np.array([*middle[:2], far_end[2]]) if abs(far_end[2] - knee[2]) > _POINT else far_end
+        mean_centre = np.mean([making.into(piece.centre) for piece in foot_part.pieces], axis=0)
+        far_end = np.array([*mean_centre[:2], far_end[2]]) if abs(far_end[2] - knee[2]) > _POINT else far_end
         making.remarks.append(f"{foot_part.name} has no ball for a foot; the draft has the foot at its farthest end.")
     radius = _FOOT * max(reach + float(np.linalg.norm(far_end - knee)), _POINT)
-    making.notes[f"{place}.foot.radius"] = "guess: a twelfth of the limb's reach; see --foot-radius"
+    making.notes[f"{note_path}.foot.radius"] = "guess: a twelfth of the limb's reach; see --foot-radius"
     return far_end, max(radius, 1e-5)
 
 
-def _radius(making: Making, carried_parts: list[TreePart], length: float, place: str) -> float:
+def _radius(making: Making, carried_parts: list[TreePart], length: float, note_path: str) -> float:
     """Return the radius of a link: of its thickest rod, else from the box around its shapes, else from its length."""
     pieces = [piece for tree_part in carried_parts for piece in tree_part.pieces]
     rods = [float(piece.half[0]) for piece in pieces if len(piece.ends) == 2]
     if rods:
         return max(rods)
-    making.notes[place] = "guess: from its shapes" if pieces else "guess: a tenth of its length"
+    making.notes[note_path] = "guess: from its shapes" if pieces else "guess: a tenth of its length"
     return max(min([float(np.sort(piece.half)[0]) for piece in pieces], default=_RADIUS_RATIO * length), 1e-5)
 
 

@@ -90,7 +90,9 @@ def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
     return sense * robot_sign * (1.0 if onward else -1.0)
 
 
-def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share: float, *, lone: bool) -> Hinge:
+def hinge_of(
+    name: str, turn: Turn, sign: float, joint: Joint, size: Size, mass_fraction: float, *, lone: bool
+) -> Hinge:
     """Return a hinge of the robot.
 
     Args:
@@ -99,7 +101,7 @@ def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share
         sign: of its angles against those of the file.
         joint: of the file.
         size: of the robot.
-        share: mass of what it carries over that of the heaviest part, for a spring.
+        mass_fraction: mass of what it carries over that of the heaviest part, for a spring.
         lone: whether it is the only hinge of a limb, which may turn all round.
     """
     servo = _servo(joint, size)
@@ -111,7 +113,9 @@ def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share
         raise UnreadableFile(
             f"hinge {joint.name} has a range of {lower_limit:g} to {upper_limit:g} rad; give it one that is not empty."
         )
-    return Hinge(name=name, turn=turn, drive=servo or _spring(joint, size, share), range=(lower_limit, upper_limit))
+    return Hinge(
+        name=name, turn=turn, drive=servo or _spring(joint, size, mass_fraction), range=(lower_limit, upper_limit)
+    )
 
 
 def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
@@ -169,8 +173,8 @@ def _servo(joint: Joint, size: Size) -> Servo | None:
     )
 
 
-def _spring(joint: Joint, size: Size, share: float) -> Spring:
-    spring = spring_for(size.mass, size.length, share)
+def _spring(joint: Joint, size: Size, mass_fraction: float) -> Spring:
+    spring = spring_for(size.mass, size.length, mass_fraction)
     if joint.stiffness > 0:
         return replace(spring, stiffness=joint.stiffness, damping=joint.damping)
     return spring
@@ -205,11 +209,11 @@ class Making:
         """Return a direction of the file in the robot's frame, shape (3,) [-]."""
         return np.asarray(self.plan.plane.turn @ axis)
 
-    def inertia(self, place: str, parts: Sequence[TreePart], origin: np.ndarray) -> Inertia | None:
+    def inertia(self, note_path: str, parts: Sequence[TreePart], origin: np.ndarray) -> Inertia | None:
         """Return centre and moments of the mass of parts that move as one, along the robot's axes.
 
         Args:
-            place: of the segment or link in the robot's file.
+            note_path: of the segment or link in the robot's file.
             parts: the parts.
             origin: of the frame, in that of the robot [m].
 
@@ -220,7 +224,7 @@ class Making:
             return None
         _, com, tensor = together([(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in parts])
         rotated_tensor = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
-        self.notes[f"{place}.inertia.moments"] = "of the file, as its centre and its products"
+        self.notes[f"{note_path}.inertia.moments"] = "of the file, as its centre and its products"
         return Inertia(
             centre=point(self.into(com) - origin),
             moments=point(np.diag(rotated_tensor)),
@@ -231,18 +235,18 @@ class Making:
         """Return where a limb begins in the frame of the file, shape (3,) [m]."""
         return self.plan.part(chain.parts[0]).joints[0].anchor
 
-    def note_hinge(self, place: str, hinge: Hinge, joint: Joint, sign: float) -> None:
+    def note_hinge(self, note_path: str, hinge: Hinge, joint: Joint, sign: float) -> None:
         """Add notes to a hinge: its name in the file, and which of its values are guesses."""
         turn_text = "" if sign > 0 else ", turning the other way"
         zero_text = "" if joint.zero == 0.0 else f", which calls this zero {joint.zero:.6g}"
-        self.notes[f"{place}.name"] = f"the file's {joint.name}{turn_text}{zero_text}"
+        self.notes[f"{note_path}.name"] = f"the file's {joint.name}{turn_text}{zero_text}"
         if joint.range is None and hinge.range is not None:
-            self.notes[f"{place}.range"] = "guess: the file gives no limits"
+            self.notes[f"{note_path}.range"] = "guess: the file gives no limits"
         if isinstance(hinge.drive, Spring):
             spring_note = "the file's stiffness and damping" if joint.stiffness > 0 else "guess: from the size"
-            self.notes[f"{place}.drive.stiffness"] = spring_note
+            self.notes[f"{note_path}.drive.stiffness"] = spring_note
             return
-        drive = f"{place}.drive" if hinge.range is not None else f"{place}.drive.servo"
+        drive = f"{note_path}.drive" if hinge.range is not None else f"{note_path}.drive.servo"
         self.notes[f"{drive}.kp"] = "guess: from the size, as all of this servo that has no note (design.servo_for)"
         for name in ("torque", "speed"):
             if joint.drive is not None and getattr(joint.drive, name):
@@ -277,5 +281,5 @@ def _level(plan: BodyPlan) -> float:
     ]
     if heights:
         return sorted(heights)[len(heights) // 2]
-    place = 0 if 0 in plan.axis else plan.axis[0]
-    return float(plan.plane.into(plan.part(place).origin)[2])
+    root_index = 0 if 0 in plan.axis else plan.axis[0]
+    return float(plan.plane.into(plan.part(root_index).origin)[2])

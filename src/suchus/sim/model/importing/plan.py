@@ -100,11 +100,11 @@ def find_plane(tree: Tree, *, front: str | None, heading: float | None) -> tuple
     """
     front_com = None if front is None else _body_com(tree, front)
     scored_planes = [(mapped_share(tree, plane), plane) for plane in _candidates(tree, front_com, heading)]
-    fit = [(plane, split_by(tree, plane)) for share, plane in scored_planes if share >= _SHARE]
+    fit = [(plane, split_by(tree, plane)) for mapped_fraction, plane in scored_planes if mapped_fraction >= _SHARE]
     if not fit:
-        best_share = max((share for share, _ in scored_planes), default=0.0)
+        best_fraction = max((mapped_fraction for mapped_fraction, _ in scored_planes), default=0.0)
         raise UnreadableFile(
-            f"no vertical plane mirrors its hinges onto each other (the best one {best_share:.0%} of them, "
+            f"no vertical plane mirrors its hinges onto each other (the best one {best_fraction:.0%} of them, "
             f"{_SHARE:.0%} are needed): draw it upright and straight at zero posture, or say --heading."
         )
     ranks = [_rank(tree, *candidate) for candidate in fit]
@@ -150,8 +150,8 @@ def _close(first_rank: tuple[bool, int, float], second_rank: tuple[bool, int, fl
 
 def mapped_share(tree: Tree, plane: Plane) -> float:
     """Return the share of the hinges whose mirror image is a hinge."""
-    places, lines = _hinge_lines([joint for tree_part in tree.parts for joint in tree_part.joints], plane)
-    return float(_meet(places * _FLIP, lines * _FLIP, places, lines, TOLERANCE * tree.size).any(axis=1).mean())
+    points, lines = _hinge_lines([joint for tree_part in tree.parts for joint in tree_part.joints], plane)
+    return float(_meet(points * _FLIP, lines * _FLIP, points, lines, TOLERANCE * tree.size).any(axis=1).mean())
 
 
 def split_by(tree: Tree, plane: Plane) -> Split:
@@ -159,10 +159,10 @@ def split_by(tree: Tree, plane: Plane) -> Split:
     tolerance = TOLERANCE * tree.size
     axis: list[int] = [0]
     branches: list[int] = []
-    for place, tree_part in enumerate(tree.parts[1:], 1):
+    for index, tree_part in enumerate(tree.parts[1:], 1):
         if tree_part.parent in axis:
-            (axis if _is_in_plane(tree_part, plane, tolerance) else branches).append(place)
-    hinges = {place: _branch(tree, place, plane) for place in branches}
+            (axis if _is_in_plane(tree_part, plane, tolerance) else branches).append(index)
+    hinges = {index: _branch(tree, index, plane) for index in branches}
     pairs, single, open_branches = [], [], list(branches)
     while open_branches:
         branch = open_branches.pop(0)
@@ -191,16 +191,16 @@ def _twins(
     tolerance: float,
 ) -> bool:
     """Return whether two branches, see ``_branch``, hang on one part and mirror each other hinge by hinge."""
-    (parent, places, lines), (other_parent, other_places, other_lines) = first_branch, second_branch
-    if parent != other_parent or len(places) != len(other_places):
+    (parent, points, lines), (other_parent, other_points, other_lines) = first_branch, second_branch
+    if parent != other_parent or len(points) != len(other_points):
         return False
-    return bool(_meet(places * _FLIP, lines * _FLIP, other_places, other_lines, tolerance).any(axis=1).all())
+    return bool(_meet(points * _FLIP, lines * _FLIP, other_points, other_lines, tolerance).any(axis=1).all())
 
 
-def _branch(tree: Tree, place: int, plane: Plane) -> tuple[int, np.ndarray, np.ndarray]:
+def _branch(tree: Tree, index: int, plane: Plane) -> tuple[int, np.ndarray, np.ndarray]:
     """Return the part that a branch hangs on, and the lines of its hinges."""
-    joints = [joint for i in tree.below(place) for joint in tree.parts[i].joints]
-    return tree.parts[place].parent, *_hinge_lines(joints, plane)
+    joints = [joint for i in tree.below(index) for joint in tree.parts[i].joints]
+    return tree.parts[index].parent, *_hinge_lines(joints, plane)
 
 
 def _hinge_lines(joints: Sequence[Joint], plane: Plane) -> tuple[np.ndarray, np.ndarray]:
@@ -210,10 +210,10 @@ def _hinge_lines(joints: Sequence[Joint], plane: Plane) -> tuple[np.ndarray, np.
 
 
 def _meet(
-    places: np.ndarray, lines: np.ndarray, other_places: np.ndarray, other_lines: np.ndarray, tolerance: float
+    points: np.ndarray, lines: np.ndarray, other_points: np.ndarray, other_lines: np.ndarray, tolerance: float
 ) -> np.ndarray:
     """Return whether each line coincides with each other line, shape (place, other)."""
-    gap = places[:, None] - other_places[None]
+    gap = points[:, None] - other_points[None]
     distances = gap - np.einsum("ijk,jk->ij", gap, other_lines)[..., None] * other_lines[None]
     return np.asarray((np.abs(lines @ other_lines.T) > _LEVEL) & (np.linalg.norm(distances, axis=-1) < tolerance))
 
@@ -222,14 +222,14 @@ def _forward(tree: Tree, plane: Plane, front_com: np.ndarray | None) -> tuple[fl
     """Return 1 if the plane's x points forward, else -1, and whether an option or names decide it."""
     if front_com is not None:
         return float(np.sign((plane.turn @ (front_com - tree.com))[0]) or 1.0), True
-    votes, middle = 0.0, plane.into(tree.com)[0]
+    votes, centre = 0.0, plane.into(tree.com)[0]
     for tree_part in tree.parts:
-        for name, place in [
+        for name, position in [
             *((n, tree_part.com) for n in tree_part.names),
             *((j.name, j.anchor) for j in tree_part.joints),
         ]:
             says = bool(_FRONT_NAMES.search(name)) - bool(_REAR_NAMES.search(name))
-            votes += says * np.sign(plane.into(place)[0] - middle)
+            votes += says * np.sign(plane.into(position)[0] - centre)
     if votes:
         return float(np.sign(votes)), True
     c, s = _level(plane.heading)
@@ -275,9 +275,9 @@ class BodyPlan:
     remarks: tuple[str, ...]
     """What was guessed, and what was not taken."""
 
-    def part(self, place: int) -> TreePart:
+    def part(self, index: int) -> TreePart:
         """Return a part of the tree."""
-        return self.tree.parts[place]
+        return self.tree.parts[index]
 
 
 def plan_of(tree: Tree, words: Words) -> BodyPlan:
@@ -373,12 +373,12 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
     """Return a tree without the branches of some bodies, whose masses go to the parts that carry them."""
     removed_parts: set[int] = set()
     for name in names:
-        place = next((i for i, tree_part in enumerate(tree.parts) if name in tree_part.names), None)
-        if place is None:
+        index = next((i for i, tree_part in enumerate(tree.parts) if name in tree_part.names), None)
+        if index is None:
             raise UnknownName("body", name, [body_name for tree_part in tree.parts for body_name in tree_part.names])
-        if place == 0:
+        if index == 0:
             raise UnreadableFile(f"--leave {name} is the root, which carries everything; name a branch.")
-        removed_parts |= set(tree.below(place))
+        removed_parts |= set(tree.below(index))
     if not removed_parts:
         return tree, []
     remaining_parts = [i for i in range(len(tree.parts)) if i not in removed_parts]
@@ -414,8 +414,8 @@ def _place(tree: Tree, name: str, plane_parts: Sequence[int]) -> int:
     )
 
 
-def _upward(tree: Tree, place: int) -> list[int]:
-    path = [place]
+def _upward(tree: Tree, index: int) -> list[int]:
+    path = [index]
     while tree.parts[path[-1]].parent >= 0:
         path.append(tree.parts[path[-1]].parent)
     return path
@@ -424,10 +424,10 @@ def _upward(tree: Tree, place: int) -> list[int]:
 def _main(tree: Tree, plane: Plane, limb_root: int) -> tuple[int, ...]:
     """Return the path from a hip to the end of the branch that has most hinges, the lowest of those alike."""
 
-    def rank(place: int) -> tuple[int, float]:
-        path = [i for i in _upward(tree, place) if i >= limb_root]
+    def rank(index: int) -> tuple[int, float]:
+        path = [i for i in _upward(tree, index) if i >= limb_root]
         hinges = sum(len(tree.parts[i].joints) for i in path)
-        return hinges, -float(plane.into(tree.parts[place].corners)[:, 2].min())
+        return hinges, -float(plane.into(tree.parts[index].corners)[:, 2].min())
 
     branch = tree.below(limb_root)
     end = max((i for i in branch if not any(tree.parts[k].parent == i for k in branch)), key=rank)

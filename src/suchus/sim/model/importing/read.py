@@ -85,21 +85,21 @@ def _angle(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, pivot: Joint
     )[2]
 
 
-def _turn(parts: list[TreePart], plan: BodyPlan, place: int, joint_index: int, angle: float) -> None:
+def _turn(parts: list[TreePart], plan: BodyPlan, part_index: int, joint_index: int, angle: float) -> None:
     """Rotate everything that a hinge carries by an angle [rad], and set the new zero of the hinge."""
-    pivot = parts[place].joints[joint_index]
+    pivot = parts[part_index].joints[joint_index]
     rotation = Rotation.from_rotvec(angle * pivot.axis)
 
     def rotate_points(points: np.ndarray) -> np.ndarray:
         return np.asarray(pivot.anchor + rotation.apply(points - pivot.anchor))
 
     limits = None if pivot.range is None else (pivot.range[0] - angle, pivot.range[1] - angle)
-    for i in plan.tree.below(place):
+    for i in plan.tree.below(part_index):
         joints = list(parts[i].joints)
         for k, joint in enumerate(joints):
-            if i != place or k > joint_index:
+            if i != part_index or k > joint_index:
                 joints[k] = replace(joint, axis=rotation.apply(joint.axis), anchor=rotate_points(joint.anchor))
-        if i == place:
+        if i == part_index:
             joints[joint_index] = replace(pivot, zero=pivot.zero + angle, range=limits)
         parts[i] = replace(
             parts[i],

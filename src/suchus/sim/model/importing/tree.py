@@ -72,18 +72,18 @@ def of_body(model: Any, data: Any, body: int) -> tuple[ShapePiece, ...]:
 
 def _piece(model: Any, data: Any, geom: int) -> ShapePiece:
     """Return a geom as a rod or an ellipsoid; other kinds become the ellipsoid of their bounding box."""
-    place, turn = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
+    position, turn = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
     size, kind = model.geom_size[geom], mujoco.mjtGeom(int(model.geom_type[geom]))
     kinds = mujoco.mjtGeom
     if kind in (kinds.mjGEOM_CAPSULE, kinds.mjGEOM_CYLINDER) and size[1] > size[0]:
         half_axis = size[1] * turn[:, 2]
-        return ShapePiece(ends=np.array([place - half_axis, place + half_axis]), half=np.full(3, size[0]))
+        return ShapePiece(ends=np.array([position - half_axis, position + half_axis]), half=np.full(3, size[0]))
     if kind == kinds.mjGEOM_SPHERE:
-        return ShapePiece(ends=place[None].copy(), half=np.full(3, size[0]))
+        return ShapePiece(ends=position[None].copy(), half=np.full(3, size[0]))
     if kind == kinds.mjGEOM_ELLIPSOID:
-        return ShapePiece(ends=place[None].copy(), half=np.sqrt((turn * size) ** 2 @ np.ones(3)))
-    middle, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
-    return ShapePiece(ends=(place + turn @ middle)[None], half=np.maximum(np.abs(turn) @ half, 1e-5))
+        return ShapePiece(ends=position[None].copy(), half=np.sqrt((turn * size) ** 2 @ np.ones(3)))
+    box_centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    return ShapePiece(ends=(position + turn @ box_centre)[None], half=np.maximum(np.abs(turn) @ half, 1e-5))
 
 
 def _shortened(rod: ShapePiece, pieces: list[ShapePiece]) -> ShapePiece:
@@ -195,14 +195,14 @@ class Tree:
         """Centre of mass, shape (3,) [m]."""
         return np.sum([tree_part.mass * tree_part.com for tree_part in self.parts], axis=0) / self.mass
 
-    def children(self, place: int) -> list[int]:
+    def children(self, index: int) -> list[int]:
         """Return the places of the parts that a part carries."""
-        return [i for i, tree_part in enumerate(self.parts) if tree_part.parent == place]
+        return [i for i, tree_part in enumerate(self.parts) if tree_part.parent == index]
 
-    def below(self, place: int) -> list[int]:
+    def below(self, index: int) -> list[int]:
         """Return the places of a part and of all that hangs on it, parents first."""
-        indices = [place]
-        for i in range(place + 1, len(self.parts)):
+        indices = [index]
+        for i in range(index + 1, len(self.parts)):
             if self.parts[i].parent in indices:
                 indices.append(i)
         return indices
@@ -319,15 +319,15 @@ def _joined(parts: list[TreePart]) -> list[TreePart]:
     new_indices: dict[int, int] = {}
     joined_parts: list[TreePart] = []
     waiting: dict[int, tuple[int, tuple[Joint, ...]]] = {}
-    for place, tree_part in enumerate(parts):
+    for index, tree_part in enumerate(parts):
         parent_index, earlier_joints = waiting.get(tree_part.parent, (tree_part.parent, ()))
         joints = earlier_joints + tree_part.joints
-        children = [candidate for candidate in parts if candidate.parent == place]
-        empty = tree_part.mass == 0.0 and len(children) == 1 and place > 0
+        children = [candidate for candidate in parts if candidate.parent == index]
+        empty = tree_part.mass == 0.0 and len(children) == 1 and index > 0
         if empty and np.linalg.norm(children[0].joints[0].anchor - joints[-1].anchor) < JOINED * size:
-            waiting[place] = (parent_index, joints)
+            waiting[index] = (parent_index, joints)
             continue
-        new_indices[place] = len(joined_parts)
+        new_indices[index] = len(joined_parts)
         joined_parts.append(replace(tree_part, joints=joints, parent=new_indices.get(parent_index, -1)))
     return joined_parts
 
