@@ -75,7 +75,15 @@ class Checks:
             self._complain(field, f"is {_show(value, unit)}; {limits} is allowed")
 
     def each(self, field: str, names: Sequence[str], lower_bound: float, upper_bound: float, unit: str) -> None:
-        """Refuse a row that has not one finite number of ``lower_bound`` to ``upper_bound`` for each name."""
+        """Refuse a row that has not one finite number of ``lower_bound`` to ``upper_bound`` for each name.
+
+        Args:
+            field: name of the field.
+            names: one for each number of the row.
+            lower_bound: least allowed number.
+            upper_bound: greatest allowed number.
+            unit: of the numbers, for the message.
+        """
         row = getattr(self._design, field)
         if not isinstance(row, (tuple, list)):
             return  # reported as a misfit
@@ -94,7 +102,14 @@ class Checks:
             self._complain(field, f"is {_show(value)}; a whole number of {lower_bound} to {upper_bound} is allowed")
 
     def range(self, field: str, lower_bound: float, upper_bound: float, unit: str) -> None:
-        """Refuse what is not an increasing pair within ``lower_bound`` to ``upper_bound``."""
+        """Refuse what is not an increasing pair within ``lower_bound`` to ``upper_bound``.
+
+        Args:
+            field: name of the field.
+            lower_bound: least allowed number.
+            upper_bound: greatest allowed number.
+            unit: of the numbers, for the message.
+        """
         value = getattr(self._design, field)
         pair = (
             isinstance(value, tuple)
@@ -155,6 +170,14 @@ class Checks:
 
 def require(owner: str, field: str, value: float, lower_bound: float, upper_bound: float, unit: str) -> None:
     """Refuse a lone number outside its range, or one that is not a number.
+
+    Args:
+        owner: name of the design in the message.
+        field: name of the field in the message.
+        value: of the field, in its unit.
+        lower_bound: least allowed value.
+        upper_bound: greatest allowed value.
+        unit: of the value, for the message.
 
     Raises:
         InvalidFields: the value is not finite, below ``lower_bound`` or above ``upper_bound``.

@@ -235,7 +235,15 @@ def _packages(versions: Mapping[str, Any]) -> dict[str, str]:
 def _piece(
     number: int, item: Item, work: Callable[[Item], Any], versions: Versions, expected_versions: Mapping[str, str]
 ) -> tuple[int, Any]:
-    """Do one piece of work, on a worker."""
+    """Do one piece of work, on a worker.
+
+    Args:
+        number: index of the item.
+        item: what the piece is computed from.
+        work: computes the result of an item.
+        versions: returns the versions on this worker.
+        expected_versions: versions and arithmetic that the results must be made with.
+    """
     worker_versions = versions()
     differences = [
         f"{name} {worker_versions.get(name)} (not {expected_versions.get(name)})"

@@ -200,7 +200,16 @@ def _work(
     stop: Event,
     side_by_side: int,
 ) -> None:
-    """Do one piece after the other until none is left; the threads of the physics are shared by all that do so."""
+    """Do one piece after the other until none is left; the threads of the physics are shared by all that do so.
+
+    Args:
+        work: computes the result of an item.
+        items: of all pieces.
+        numbers: yields the number of the next piece; all threads share it.
+        news: queue for messages to the calling thread.
+        stop: set where the pieces shall stop.
+        side_by_side: number of threads that compute pieces [-].
+    """
     last_round_start = len(items) - len(items) % side_by_side  # of the pieces from here on there are fewer than threads
 
     def tell(number: int, stage: str, fraction: float) -> None:

@@ -129,6 +129,12 @@ def _orbit(user: np.ndarray, time: float, x: Vector, up_axis: Vector) -> tuple[f
     """Return the surface elevation of waves at a point [m], and velocity and acceleration of the water there.
 
     Airy's waves on deep water, as they are at the surface for points above the level, and the current.
+
+    Args:
+        user: numbers of the water, see ``water_table``.
+        time: [s].
+        x: the point in the world [m].
+        up_axis: unit vector against gravity.
     """
     current, zero = three(user, CURRENT), (0.0, 0.0, 0.0)
     height, omega = user[WAVE], user[WAVE + 4]
@@ -159,7 +165,14 @@ def place(table: np.ndarray, rows: np.ndarray) -> None:
 
 @part
 def flow(rows: np.ndarray, user: np.ndarray, time: float, up_axis: Vector) -> None:
-    """Write the surface elevation at each piece, and velocity and acceleration of the water there."""
+    """Write the surface elevation at each piece, and velocity and acceleration of the water there.
+
+    Args:
+        rows: quantities of the pieces, see ``lanes``; written.
+        user: numbers of the water, see ``water_table``.
+        time: [s].
+        up_axis: unit vector against gravity.
+    """
     current, zero, wave = three(user, CURRENT), (0.0, 0.0, 0.0), user[WAVE] != 0.0
     for n in range(LANES):
         elevation, stream, surge = 0.0, current, zero
@@ -172,7 +185,13 @@ def flow(rows: np.ndarray, user: np.ndarray, time: float, up_axis: Vector) -> No
 
 @part
 def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
-    """Write the depth of each piece below the surface, and its velocity relative to the water."""
+    """Write the depth of each piece below the surface, and its velocity relative to the water.
+
+    Args:
+        table: of the pieces, shape (column, lane).
+        rows: quantities of the pieces, see ``lanes``; written.
+        water: its properties.
+    """
     for n in range(LANES):
         a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
         ua, ub, ut = dot(water.up, a), dot(water.up, b), dot(water.up, t)
@@ -203,7 +222,13 @@ def rub(rows: np.ndarray, water: WaterProperties) -> None:
 
 @part
 def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
-    """Write the load of the water on each piece: force, couple about the point of reference, submerged volume."""
+    """Write the load of the water on each piece: force, couple about the point of reference, submerged volume.
+
+    Args:
+        table: of the pieces, shape (column, lane).
+        rows: quantities of the pieces, see ``lanes``; written.
+        water: its properties.
+    """
     per_speed, (front, rear) = water.length / water.viscosity, water.air_fraction
     for n in range(LANES):
         fraction, moment = immersed(table[lanes.KIND, n], rows[lanes.DEPTH, n])
@@ -259,7 +284,13 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
 
 @part
 def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
-    """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force."""
+    """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force.
+
+    Args:
+        table: of the pieces, shape (column, lane).
+        rows: quantities of the pieces, see ``lanes``; written.
+        water: its properties.
+    """
     for n in range(LANES):
         dense = water.density * rows[lanes.SHARE, n] * water.added
         a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)

@@ -68,7 +68,15 @@ def _add_stored_mass(model: int, data: int, offsets: np.ndarray) -> None:
 
 @part
 def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: float, motion: Motion) -> bool:
-    """Return whether all pieces are far above the surface, waves of a height included."""
+    """Return whether all pieces are far above the surface, waves of a height included.
+
+    Args:
+        table: of the pieces, shape (block, column, lane).
+        count: number of pieces [-].
+        water: its properties.
+        height: of the waves above the level, at most [m].
+        motion: positions of the bodies.
+    """
     for n in range(count):
         block, lane = n // LANES, n % LANES
         origin = three(motion.xpos[int(table[block, _BODY, lane])], 0)
@@ -79,7 +87,15 @@ def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: floa
 
 @part
 def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bodies, motion: Motion) -> np.ndarray:
-    """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``)."""
+    """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``).
+
+    Args:
+        table: of the pieces, shape (block, column, lane).
+        count: number of pieces [-].
+        water: its properties.
+        bodies: the tree of bodies and joints.
+        motion: positions and velocities of the bodies.
+    """
     bias = _bias(bodies, motion)
     rows, sums, wet_volume = np.zeros((ROWS, LANES)), np.zeros((len(bodies.parent), SUMS)), 0.0
     for block in range(table.shape[0]):
@@ -129,7 +145,13 @@ def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
 
 @part
 def _hand_over(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
-    """Sum the loads of the bodies from the leaves to the roots, and add the generalised forces to the joints."""
+    """Sum the loads of the bodies from the leaves to the roots, and add the generalised forces to the joints.
+
+    Args:
+        sums: loads of the bodies, shape (body, ``SUMS``); each body's become those of its subtree.
+        bodies: the tree of bodies and joints.
+        motion: passive forces and numbers of the water, which are written.
+    """
     user, power = motion.user, 0.0
     for b in range(len(bodies.parent) - 1, 0, -1):
         parent = bodies.parent[b]
@@ -153,6 +175,11 @@ def _burden(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
     """Add the added inertia of each joint's subtree to the matrix.
 
     From force and power of the water is taken what this inertia takes by the accelerations of the last step.
+
+    Args:
+        sums: loads and inertias of the subtrees, shape (body, ``SUMS``).
+        bodies: the tree of bodies and joints.
+        motion: mass matrix and numbers of the water, which are written.
     """
     power, added_force, cdof, qvel, qacc = 0.0, (0.0, 0.0, 0.0), motion.cdof, motion.qvel, motion.qacc
     for i in range(len(bodies.owner)):
@@ -174,7 +201,13 @@ def _burden(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
 
 @part
 def _answer(inertia: np.ndarray, turns: Vector, moves: Vector) -> tuple[Vector, Vector]:
-    """Return couple and force of an added inertia that is accelerated."""
+    """Return couple and force of an added inertia that is accelerated.
+
+    Args:
+        inertia: sums of a subtree, shape (``SUMS``,).
+        turns: angular acceleration [rad/s2].
+        moves: linear acceleration [m/s2].
+    """
     s, x, y = (
         three(inertia, _ROTATIONAL_INERTIA),
         three(inertia, _COUPLING_INERTIA),

@@ -120,7 +120,13 @@ def read_bodies(model: int, offsets: np.ndarray) -> Bodies:
 
 @part
 def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
-    """Return where the bodies of a model are."""
+    """Return where the bodies of a model are.
+
+    Args:
+        model: address of a ``mjModel``.
+        data: address of its ``mjData``.
+        offsets: of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+    """
     model_words = carray(model, (4096,), np.int64)
     state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
     nv, nbody = model_words[offsets[_NV] // 8], model_words[offsets[_NBODY] // 8]
@@ -152,7 +158,14 @@ def read_given(model: int, data: int, offsets: np.ndarray) -> np.ndarray:
 
 @part
 def read_water(model: int, user: np.ndarray, offsets: np.ndarray, length: float) -> WaterProperties:
-    """Return what the water is."""
+    """Return what the water is.
+
+    Args:
+        model: address of a ``mjModel``.
+        user: numbers of the water, see ``water_table``.
+        offsets: of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        length: of the robot, for the Reynolds number of friction [m].
+    """
     down = three(carray(model, (4096,), np.float64), offsets[_GRAVITY] // 8)
     gravity = sqrt(dot(down, down))
     up_axis = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)

@@ -204,7 +204,13 @@ class SimulationBatch:
             self._is_modified = True
 
     def power(self, sim: int, servo: str, *, on: bool) -> None:
-        """Give a servo its torque, or take it away, from the next ``commit`` on."""
+        """Give a servo its torque, or take it away, from the next ``commit`` on.
+
+        Args:
+            sim: the run.
+            servo: name of the servo.
+            on: whether it gets its torque.
+        """
         bit = 1 << int(self.model.actuator(servo).group[0])
         disabled_groups = (
             self.physics.expand("opt.disableactuator")[sim]
@@ -437,6 +443,12 @@ def _model(
     """Return a compiled model without island discovery, with a table of water pieces if ``max_pieces`` is above 0.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
+
+    Args:
+        body: robot, relief of its ground, and correction of its sections.
+        timestep: of the physics [s].
+        max_pieces: pieces that the table of the water has room for; 0 on dry land.
+        is_solved: whether a flow solver computes the water.
     """
     robot, relief, correction = body
     if max_pieces:

@@ -275,7 +275,13 @@ class _Submerged:
         mujoco.mj_fwdVelocity(self._model, data)
 
     def joint_forces(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> Float[np.ndarray, " coordinate"]:
-        """Return the generalised forces of the water alone on root in the plane and lateral joints [N, N m]."""
+        """Return the generalised forces of the water alone on root in the plane and lateral joints [N, N m].
+
+        Args:
+            qpos: generalised positions.
+            qvel: generalised velocities.
+            qacc: generalised accelerations.
+        """
         forces = []
         for density in (1.0, 0.0):
             self._data.qacc[:] = qacc

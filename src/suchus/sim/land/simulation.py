@@ -88,7 +88,14 @@ def _own_step(runs: Sequence[Run]) -> float:
 
 
 def _check(runs: Sequence[Run], duration: float, timestep: float, stride: int) -> float:
-    """Refuse what cannot be simulated; return the control period [s]."""
+    """Refuse what cannot be simulated; return the control period [s].
+
+    Args:
+        runs: of the batch.
+        duration: of each run [s].
+        timestep: of the physics [s].
+        stride: control periods for each sample [-].
+    """
     periods = {control_period(run.robot) for run in runs}
     if len(periods) > 1:
         period_text = " and ".join(f"{period:g}" for period in sorted(periods))
@@ -137,7 +144,15 @@ def _groups(runs: Sequence[Run]) -> list[list[int]]:
 
 
 def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, stride: int, progress: Progress) -> xr.Dataset:
-    """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled."""
+    """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled.
+
+    Args:
+        runs: of the group.
+        ticks: number of control periods.
+        timestep: of the physics [s].
+        stride: control periods for each sample [-].
+        progress: called with the finished fraction.
+    """
     loop = Loop(runs, timestep, ticks=ticks + 1)
     recorder = loop.recorder(ticks // stride + 1)
     for tick in range(ticks + 1):

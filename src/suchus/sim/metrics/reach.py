@@ -30,7 +30,14 @@ def reach(robot: Robot, record: xr.Dataset) -> xr.DataArray:
 
 
 def _tops(robot: Robot, q: np.ndarray, position: np.ndarray, angles: np.ndarray) -> Float[np.ndarray, "*batch shape"]:
-    """Return the highest point of every shape from the root forward [m]."""
+    """Return the highest point of every shape from the root forward [m].
+
+    Args:
+        robot: the design.
+        q: orientation of the root, shape (..., 4).
+        position: of the root in the world, shape (..., 3) [m].
+        angles: of the hinges, shape (..., joint) [rad].
+    """
     robot_layout, body_frames, up_axis = layout(robot), frames(robot, angles), rotation.upward(q)
     segments = {segment.name: segment for segment in robot_layout.robot.axis}
     tops = []

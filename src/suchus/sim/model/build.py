@@ -206,7 +206,17 @@ def sole(body: Any, name: str, pos: list[float], radius: float, mass: float, con
 def skin(
     body: Any, name: str, start: list[float], end: list[float], radius: float, mass: float, contact: Contact
 ) -> None:
-    """Add a capsule of skin from ``start`` to ``end``."""
+    """Add a capsule of skin from ``start`` to ``end``.
+
+    Args:
+        body: that carries the capsule.
+        name: of the geom.
+        start: centre of one end in the body's frame [m].
+        end: centre of the other end [m].
+        radius: [m].
+        mass: [kg].
+        contact: friction and stiffness of the skin.
+    """
     geom = body.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_CAPSULE,
@@ -226,7 +236,15 @@ def shell(
 
 
 def _touches(geom: Any, friction: float, contact: Contact, dimensions: int, colour: tuple[float, ...]) -> None:
-    """Give a geom its friction, its contact stiffness and its colour; it touches the ground alone."""
+    """Give a geom its friction, its contact stiffness and its colour; it touches the ground alone.
+
+    Args:
+        geom: the shape.
+        friction: sliding friction coefficient [-].
+        contact: stiffness, torsional and rolling friction.
+        dimensions: of the contact, MuJoCo's ``condim`` [-].
+        colour: red, green, blue and opacity, 0 to 1.
+    """
     # MuJoCo takes the maximum of two frictions at equal priority, so the robot's surfaces take precedence.
     geom.priority = 1
     geom.friction = [friction, contact.torsion, contact.rolling]

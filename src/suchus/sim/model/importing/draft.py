@@ -212,7 +212,13 @@ def draft_axis(making: Making) -> tuple[tuple[Segment, ...], str, list[float]]:
 
 
 def _hinges(making: Making, groups: Sequence[Sequence[AxisHinge]], root: int) -> list[tuple[Hinge, ...]]:
-    """Return the hinges behind each segment."""
+    """Return the hinges behind each segment.
+
+    Args:
+        making: the draft.
+        groups: hinges behind each segment but the last.
+        root: index of the root among the segments.
+    """
     plan = making.plan
     front = plan.pairs[0][0].on if plan.pairs else 0
     words = ["tail" if i >= root else "neck" if i < front else "spine" for i in range(len(groups))]
@@ -234,7 +240,13 @@ def _free_root(plan: BodyPlan) -> int:
 
 
 def _joints(making: Making, i: int, root: int) -> list[AxisHinge]:
-    """Return the hinges between segments i and i + 1, from the robot's root outward."""
+    """Return the hinges between segments i and i + 1, from the robot's root outward.
+
+    Args:
+        making: the draft.
+        i: index of the front segment, from the front.
+        root: index of the root among the segments.
+    """
     axis, is_ahead = making.plan.axis, i < root
     inner_index, outer_index = (axis[i + 1], axis[i]) if is_ahead else (axis[i], axis[i + 1])
     hinges = []
@@ -246,7 +258,13 @@ def _joints(making: Making, i: int, root: int) -> list[AxisHinge]:
 
 
 def _ends(making: Making, parts: list[TreePart], joint_positions: list[float]) -> list[float]:
-    """Return where segments begin and end along x, from the snout to the tip of the tail [m]."""
+    """Return where segments begin and end along x, from the snout to the tip of the tail [m].
+
+    Args:
+        making: the draft.
+        parts: of the axis, from the front.
+        joint_positions: x of the hinges between them [m].
+    """
     limbs = [chain for pair in making.plan.pairs for chain in pair]
 
     def reach(index: int) -> list[float]:
@@ -276,7 +294,15 @@ def _tell_offsets(making: Making, groups: Sequence[Sequence[AxisHinge]], joint_p
 
 
 def _shapes(making: Making, tree_part: TreePart, front: float, length: float, number: int) -> tuple[Rod | Shell, ...]:
-    """Return a segment's shapes, its mass shared among them by volume."""
+    """Return a segment's shapes, its mass shared among them by volume.
+
+    Args:
+        making: the draft.
+        tree_part: of the file, which becomes the segment.
+        front: x of the segment's front end [m].
+        length: of the segment [m].
+        number: index of the segment.
+    """
     start = np.array([front, 0.0, 0.0])
     note_path = f"axis[{number}].shapes"
     pieces = [piece for piece in tree_part.pieces if _overlaps(making, piece, front, length)]
@@ -375,7 +401,15 @@ def lowest_foot_height(girdle: Girdle) -> float:
 
 
 def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], labels: list[str], note_path: str) -> Limb:
-    """Return the left limb: hinges in one point share a link, whose mass is that of the parts up to the next point."""
+    """Return the left limb: hinges in one point share a link, whose mass is that of the parts up to the next point.
+
+    Args:
+        making: the draft.
+        chain: parts of the limb.
+        turns: kind and sign of each hinge.
+        labels: name of each hinge without the limb's.
+        note_path: place of the limb in the robot's file.
+    """
     parts = [making.plan.part(i) for i in chain.parts]
     stations: list[tuple[np.ndarray, list[tuple[int, Joint]], list[TreePart]]] = []
     number = 0
@@ -431,7 +465,14 @@ def _link_name(carried_parts: list[TreePart], number: int, chain: LimbChain, mak
 
 
 def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, note_path: str) -> tuple[np.ndarray, float]:
-    """Return the foot's centre in the robot's frame [m] and its radius [m]."""
+    """Return the foot's centre in the robot's frame [m] and its radius [m].
+
+    Args:
+        making: the draft.
+        parts: of the limb, from the hip.
+        knee: anchor of the last hinges in the robot's frame [m].
+        note_path: place of the limb in the robot's file.
+    """
     foot_part = parts[-1]
     balls = [(making.into(piece.centre), float(piece.half[0])) for piece in foot_part.pieces if piece.ball]
     rods = [(making.into(end), float(p.half[0])) for p in foot_part.pieces if len(p.ends) == 2 for end in p.ends]
@@ -477,7 +518,14 @@ def _radius(making: Making, carried_parts: list[TreePart], length: float, note_p
 def _tell_sides(
     making: Making, joints: tuple[list[Joint], list[Joint]], left_signs: list[float], right_signs: list[float]
 ) -> None:
-    """Add remarks where the right limb is no exact mirror image of the left one."""
+    """Add remarks where the right limb is no exact mirror image of the left one.
+
+    Args:
+        making: the draft.
+        joints: hinges of the left and of the right limb.
+        left_signs: sign of each left hinge against the file.
+        right_signs: sign of each right hinge against the file.
+    """
     for left_joint, right_joint, a, b in zip(*joints, left_signs, right_signs, strict=True):
         gap = making.into(left_joint.anchor) * np.array([1.0, -1.0, 1.0]) - making.into(right_joint.anchor)
         line = making.turned(right_joint.axis)

@@ -190,7 +190,13 @@ def _twins(
     second_branch: tuple[int, np.ndarray, np.ndarray],
     tolerance: float,
 ) -> bool:
-    """Return whether two branches, see ``_branch``, hang on one part and mirror each other hinge by hinge."""
+    """Return whether two branches, see ``_branch``, hang on one part and mirror each other hinge by hinge.
+
+    Args:
+        first_branch: part that carries it, points and directions of its hinges.
+        second_branch: likewise.
+        tolerance: greatest distance of mirrored hinges [m].
+    """
     (parent, points, lines), (other_parent, other_points, other_lines) = first_branch, second_branch
     if parent != other_parent or len(points) != len(other_points):
         return False
@@ -341,6 +347,11 @@ def links_between(plan: BodyPlan, inner: int, outer: int) -> Iterator[tuple[Join
     """Yield the hinges between two neighbours of the axis from the one near our root on.
 
     Each comes with whether its positive turn moves the far part as in the file, and not the near one.
+
+    Args:
+        plan: the body plan.
+        inner: index of the part nearer to the robot's root.
+        outer: index of the other part.
     """
     if plan.part(outer).parent == inner:
         for joint in plan.part(outer).joints:

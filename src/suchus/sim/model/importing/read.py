@@ -86,7 +86,15 @@ def _angle(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, pivot: Joint
 
 
 def _turn(parts: list[TreePart], plan: BodyPlan, part_index: int, joint_index: int, angle: float) -> None:
-    """Rotate everything that a hinge carries by an angle [rad], and set the new zero of the hinge."""
+    """Rotate everything that a hinge carries by an angle [rad], and set the new zero of the hinge.
+
+    Args:
+        parts: of the tree; those that move are replaced.
+        plan: the body plan.
+        part_index: part that the hinge carries.
+        joint_index: of the hinge in that part.
+        angle: [rad].
+    """
     pivot = parts[part_index].joints[joint_index]
     rotation = Rotation.from_rotvec(angle * pivot.axis)
 
