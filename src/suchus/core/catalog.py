@@ -1,4 +1,4 @@
-"""A shelf: things of one kind by name, from the package, a project folder, and packages of the user's."""
+"""A catalog: designs of one kind by name, from the package, a project folder, and installed plug-ins."""
 
 import importlib
 import sys
@@ -49,12 +49,13 @@ class Catalog(Mapping[str, T], Generic[T]):
         named: Callable[[Any], str] | None = None,
         read: Callable[[Path], Any] | None = None,
     ) -> None:
+        """Store the settings; neither file names nor modules are read yet."""
         self.kind = kind
         self._package, self._declares = package, declares
         self._classes, self._scattered = classes, scattered
-        self._named, self._read = named, read
+        self._name_of, self._read_file = named, read
         self._from_files: dict[Path, tuple[int, Any]] = {}
-        self._begun = _Begun()
+        self._loading = _LoadingFiles()
 
     def sources(self) -> dict[str, Source]:
         """Return where each thing on the shelf comes from, by name; nothing is imported.
@@ -103,8 +104,8 @@ class Catalog(Mapping[str, T], Generic[T]):
             BrokenFile: it is the user's, and loading it fails.
             InvalidDesign: it declares something else than stands on this shelf.
         """
-        thing = self._described(source) if not source.module else self._declared(source)
-        name = self._named(thing) if self._named else source.name
+        thing = self._load_file(source) if not source.module else self._load_module(source)
+        name = self._name_of(thing) if self._name_of else source.name
         if name != source.name:
             raise InvalidDesign(
                 f"{source.place} declares the {self.kind} {name!r}, which must have the name by which it stands on the "
@@ -112,61 +113,65 @@ class Catalog(Mapping[str, T], Generic[T]):
             )
         return thing
 
-    def _described(self, source: Source) -> Any:
-        """Return what a TOML file says; the same value until the file changes."""
+    def _load_file(self, source: Source) -> Any:
+        """Return what a TOML file describes; the value is cached until the file changes."""
         assert source.file is not None
-        assert self._read is not None
-        changed = source.file.stat().st_mtime_ns
-        if self._from_files.get(source.file, (None,))[0] != changed:
-            if source.name in self._begun.names:
+        assert self._read_file is not None
+        modified_ns = source.file.stat().st_mtime_ns
+        if self._from_files.get(source.file, (None,))[0] != modified_ns:
+            if source.name in self._loading.names:
                 raise BrokenFile(f"{source.place} starts from itself.")
-            self._begun.names.add(source.name)
+            self._loading.names.add(source.name)
             try:
-                self._from_files[source.file] = changed, self._read(source.file)
+                self._from_files[source.file] = modified_ns, self._read_file(source.file)
             except SuchusError as error:
                 raise BrokenFile(f"{source.place} cannot be loaded: {error}") from error
             finally:
-                self._begun.names.discard(source.name)
+                self._loading.names.discard(source.name)
         return self._from_files[source.file][1]
 
-    def _declared(self, source: Source) -> Any:
+    def _load_module(self, source: Source) -> Any:
         """Return what a module declares."""
         module = _imported(source, "" if source.attribute else self.kind)
         try:
             thing: Any = attrgetter(source.attribute or self.kind)(module)
         except AttributeError:
             thing = None
-        wanted = self._wanted()
-        fits = isinstance(thing, type) and issubclass(thing, wanted) if self._classes else isinstance(thing, wanted)
+        declared_type = self._declared_type()
+        fits = (
+            isinstance(thing, type) and issubclass(thing, declared_type)
+            if self._classes
+            else isinstance(thing, declared_type)
+        )
         if not fits:
-            wanted_as = f"subclass of {_name(wanted)}" if self._classes else _name(wanted)
-            declared = "nothing" if thing is None else f"a {type(thing).__name__}"
+            type_text = f"subclass of {_name(declared_type)}" if self._classes else _name(declared_type)
+            actual_text = "nothing" if thing is None else f"a {type(thing).__name__}"
             raise InvalidDesign(
-                f"{source.place} must declare `{source.attribute or self.kind}`, a {wanted_as}, "
-                f"but declares {declared}; add it or move the file off the shelf."
+                f"{source.place} must declare `{source.attribute or self.kind}`, a {type_text}, "
+                f"but declares {actual_text}; add it or move the file off the shelf."
             )
         return thing
 
-    def file(self, value: Any, place: str | Path = Path()) -> Path | None:
+    def file(self, value: Any, folder: str | Path = Path()) -> Path | None:
         """Return the file that a value names, None where it names none.
 
         A path does, and a text that is not on the shelf, if it ends in .toml or a file has that name.
 
         Args:
             value: as a user gives it.
-            place: the folder from which paths are read.
+            folder: the folder from which paths are read.
         """
-        if not isinstance(value, (str, Path)) or self._read is None or (isinstance(value, str) and value in self):
+        if not isinstance(value, (str, Path)) or self._read_file is None or (isinstance(value, str) and value in self):
             return None
-        path = Path(place) / value
+        path = Path(folder) / value
         return path if path.suffix == ".toml" or there(path) else None
 
-    def resolve(self, value: Any, place: str | Path = Path()) -> T:
+    def resolve(self, value: Any, folder: str | Path = Path()) -> T:
         """Return what a value stands for: itself, what carries its name on the shelf, or what a TOML file describes.
 
         Args:
             value: the thing, its name, or the path of its file.
-            place: the folder from which paths are read.
+            folder: the folder from which paths are read.
 
         Raises:
             UnknownName: a name that is not on the shelf.
@@ -174,15 +179,17 @@ class Catalog(Mapping[str, T], Generic[T]):
             MistakenFile: the file describes nothing that can be.
             InvalidDesign: neither a name nor what stands on this shelf.
         """
-        path = self.file(value, place)
-        if path is not None and self._read is not None:
-            found: T = self._read(path)
-            return found
+        path = self.file(value, folder)
+        if path is not None and self._read_file is not None:
+            entry: T = self._read_file(path)
+            return entry
         if isinstance(value, str):
             return self[value]
-        wanted = self._wanted()
-        if not isinstance(value, wanted):
-            raise InvalidDesign(f"{show(value)} is no {self.kind}; a {_name(wanted)} or a name of one is needed.")
+        declared_type = self._declared_type()
+        if not isinstance(value, declared_type):
+            raise InvalidDesign(
+                f"{show(value)} is no {self.kind}; a {_name(declared_type)} or a name of one is needed."
+            )
         return value
 
     def beside(self, name: str, attribute: str, default: Any, *, module: str = "") -> Any:
@@ -208,10 +215,10 @@ class Catalog(Mapping[str, T], Generic[T]):
         except BrokenFile:
             return default
 
-    def _wanted(self) -> Any:
+    def _declared_type(self) -> Any:
         path, _, cls = self._declares.partition(":")
-        wanted: Any = getattr(import_module(path), cls)
-        return wanted
+        declared_type: Any = getattr(import_module(path), cls)
+        return declared_type
 
     def __repr__(self) -> str:
         return f"Catalog({self.kind}: {', '.join(self)})"
@@ -239,19 +246,19 @@ class _SoundItems(ItemsView[str, T]):
         return self._shelf.sound()
 
 
-class _Begun(local):
+class _LoadingFiles(local):
     """Names of the files that a thread is reading."""
 
     def __init__(self) -> None:
         self.names: set[str] = set()
 
 
-def _name(wanted: Any) -> str:
+def _name(declared_type: Any) -> str:
     """Return the name of a type, or of each of a union."""
-    return " or ".join(one.__name__ for one in get_args(wanted) or (wanted,))
+    return " or ".join(member.__name__ for member in get_args(declared_type) or (declared_type,))
 
 
-def _imported(source: Source, part: str) -> ModuleType:
+def _imported(source: Source, submodule: str) -> ModuleType:
     """Return the module that declares a part of a source: its file; in a folder that of the part, if there is one.
 
     Another project's module of that name gives way.
@@ -265,44 +272,52 @@ def _imported(source: Source, part: str) -> ModuleType:
             del sys.modules[name]
     try:
         module = import_module(source.module)
-        inside = f"{source.module}.{part}"
-        return import_module(inside) if part and hasattr(module, "__path__") and find_spec(inside) else module
+        submodule_name = f"{source.module}.{submodule}"
+        return (
+            import_module(submodule_name)
+            if submodule and hasattr(module, "__path__") and find_spec(submodule_name)
+            else module
+        )
     except (Exception, SystemExit) as error:
         if source.shipped:
             raise
-        raise BrokenFile(f"{_where(source, error)} cannot be loaded: {_why(error)}") from error
+        raise BrokenFile(f"{_error_location(source, error)} cannot be loaded: {_error_text(error)}") from error
 
 
 def _is_of(module: ModuleType, file: Path) -> bool:
     return module.__file__ in (str(file), str(file.parent / "__init__.py"))
 
 
-def _where(source: Source, error: BaseException) -> str:
-    """Return which line of the user's an error comes from: the last one in the folder of the module."""
+def _error_location(source: Source, error: BaseException) -> str:
+    """Return the line of user code that raised an error: the last one in the folder of the module."""
     if isinstance(error, SyntaxError) and error.filename:
-        return f"{_shown(Path(error.filename))}, line {error.lineno},"
+        return f"{_project_path(Path(error.filename))}, line {error.lineno},"
     frames = [(Path(f.filename), f.lineno) for f in traceback.extract_tb(error.__traceback__)]
-    ours = (Path(__file__).parents[1], Path(importlib.__file__).parent)
-    theirs = [(file, line) for file, line in frames if file.is_absolute() and not any(map(file.is_relative_to, ours))]
+    library_folders = (Path(__file__).parents[1], Path(importlib.__file__).parent)
+    user_frames = [
+        (file, line)
+        for file, line in frames
+        if file.is_absolute() and not any(map(file.is_relative_to, library_folders))
+    ]
     if source.file:  # of a project, which may lie inside our own folder
         root = source.file.parent
-        theirs = [(file, line) for file, line in frames if file.is_relative_to(root)]
-    elif theirs:
-        root = theirs[0][0].parent
-        theirs = [(file, line) for file, line in theirs if file.is_relative_to(root)]
-    if not theirs:
+        user_frames = [(file, line) for file, line in frames if file.is_relative_to(root)]
+    elif user_frames:
+        root = user_frames[0][0].parent
+        user_frames = [(file, line) for file, line in user_frames if file.is_relative_to(root)]
+    if not user_frames:
         return source.place
-    file, line = theirs[-1]
-    return f"{_shown(file)}, line {line},"
+    file, line = user_frames[-1]
+    return f"{_project_path(file)}, line {line},"
 
 
-def _shown(file: Path) -> str:
+def _project_path(file: Path) -> str:
     project = current()
     return project.shown(file) if project else str(file)
 
 
-def _why(error: BaseException) -> str:
-    """Return what went wrong as a sentence; our own errors are sentences already."""
+def _error_text(error: BaseException) -> str:
+    """Return the message of an error as a sentence; messages of ``SuchusError`` are sentences already."""
     if isinstance(error, SuchusError):
         return str(error)
     text = error.msg if isinstance(error, SyntaxError) else str(error)

@@ -1,4 +1,4 @@
-"""How a design refuses impossible numbers: all that are wrong in one part, named at once."""
+"""Range checks of designs: all invalid fields of one part are reported in one error."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ Course = float | tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class Complaint:
-    """What is wrong with one field, or with several together."""
+    """An invalid field, or a combination of fields that is invalid."""
 
     field: str
     """Name of the field; empty where the fault lies in several together."""
@@ -37,9 +37,9 @@ class InvalidFields(InvalidDesign):
 
 
 class Checks:
-    """Collects what is wrong with a frozen value and raises once, on leaving the ``with`` block.
+    """Collects the invalid fields of a frozen value and raises one error when the ``with`` block ends.
 
-    Fields that hold another kind of thing than they declare are complained of too, whatever else is checked.
+    Fields whose values do not match their declared types are reported too.
 
     Args:
         owner: what the value is called, for the message.
@@ -60,20 +60,30 @@ class Checks:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """Raise ``InvalidFields`` with all complaints; an error of a wrong type inside the block becomes its cause."""
         if error is None or isinstance(error, (TypeError, ValueError, AttributeError, OverflowError)):
             complained = {complaint.field.partition("[")[0] for complaint in self._complaints}
             self._complaints += [Complaint(*misfit) for misfit in misfits(self._design) if misfit[0] not in complained]
             if self._complaints:
                 raise InvalidFields(self._owner, tuple(self._complaints)) from error
 
-    def number(self, field: str, low: float, high: float, unit: str) -> None:
-        """Refuse what is not a finite number of ``low`` to ``high``."""
+    def number(self, field: str, lower_bound: float, upper_bound: float, unit: str) -> None:
+        """Refuse what is not a finite number of ``lower_bound`` to ``upper_bound``."""
         value = getattr(self._design, field)
-        if not _within(value, low, high):
-            self._complain(field, f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed")
+        if not _is_within(value, lower_bound, upper_bound):
+            limits = f"{_show(lower_bound)} to {_show(upper_bound, unit)}"
+            self._complain(field, f"is {_show(value, unit)}; {limits} is allowed")
 
-    def each(self, field: str, names: Sequence[str], low: float, high: float, unit: str) -> None:
-        """Refuse a row that has not one finite number of ``low`` to ``high`` for each name."""
+    def each(self, field: str, names: Sequence[str], lower_bound: float, upper_bound: float, unit: str) -> None:
+        """Refuse a row that has not one finite number of ``lower_bound`` to ``upper_bound`` for each name.
+
+        Args:
+            field: name of the field.
+            names: one for each number of the row.
+            lower_bound: least allowed number.
+            upper_bound: greatest allowed number.
+            unit: of the numbers, for the message.
+        """
         row = getattr(self._design, field)
         if not isinstance(row, (tuple, list)):
             return  # reported as a misfit
@@ -81,60 +91,71 @@ class Checks:
             self._complain(field, f"has {len(row)} numbers; {', '.join(names)} need one each")
             return
         for i, value in enumerate(row):
-            if not _within(value, low, high):
-                self._complain(
-                    f"{field}[{i}]", f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed"
-                )
+            if not _is_within(value, lower_bound, upper_bound):
+                limits = f"{_show(lower_bound)} to {_show(upper_bound, unit)}"
+                self._complain(f"{field}[{i}]", f"is {_show(value, unit)}; {limits} is allowed")
 
-    def whole(self, field: str, low: int, high: int) -> None:
-        """Refuse what is not a whole number of ``low`` to ``high``."""
+    def whole(self, field: str, lower_bound: int, upper_bound: int) -> None:
+        """Refuse what is not a whole number of ``lower_bound`` to ``upper_bound``."""
         value = getattr(self._design, field)
-        if not (isinstance(value, int) and _within(value, low, high)):
-            self._complain(field, f"is {_show(value)}; a whole number of {low} to {high} is allowed")
+        if not (isinstance(value, int) and _is_within(value, lower_bound, upper_bound)):
+            self._complain(field, f"is {_show(value)}; a whole number of {lower_bound} to {upper_bound} is allowed")
 
-    def range(self, field: str, low: float, high: float, unit: str) -> None:
-        """Refuse what is not an increasing pair within ``low`` to ``high``."""
+    def range(self, field: str, lower_bound: float, upper_bound: float, unit: str) -> None:
+        """Refuse what is not an increasing pair within ``lower_bound`` to ``upper_bound``.
+
+        Args:
+            field: name of the field.
+            lower_bound: least allowed number.
+            upper_bound: greatest allowed number.
+            unit: of the numbers, for the message.
+        """
         value = getattr(self._design, field)
-        pair = isinstance(value, tuple) and len(value) == 2 and all(_within(end, low, high) for end in value)
+        pair = (
+            isinstance(value, tuple)
+            and len(value) == 2
+            and all(_is_within(end, lower_bound, upper_bound) for end in value)
+        )
         if not (pair and value[0] < value[1]):
-            limits = f"{_show(low)} to {_show(high, unit)}"
+            limits = f"{_show(lower_bound)} to {_show(upper_bound, unit)}"
             self._complain(field, f"is {_show(value, unit)}; an increasing pair within {limits} is allowed")
 
-    def rising(self, field: str, low: float, high: float, unit: str) -> None:
+    def rising(self, field: str, lower_bound: float, upper_bound: float, unit: str) -> None:
         """Refuse what is not a row of at least one number, each greater than the one before, within the bounds."""
         value = getattr(self._design, field)
-        row = isinstance(value, tuple) and value and all(_within(item, low, high) for item in value)
+        row = isinstance(value, tuple) and value and all(_is_within(item, lower_bound, upper_bound) for item in value)
         if not (row and all(a < b for a, b in pairwise(value))):
-            limits = f"{_show(low)} to {_show(high, unit)}"
+            limits = f"{_show(lower_bound)} to {_show(upper_bound, unit)}"
             self._complain(field, f"is {_show(value)}; increasing numbers within {limits} are needed, at least one")
 
     def course(
-        self, field: str, low: float, high: float, unit: str, *, over: str = "time", start: float = -inf
+        self, field: str, lower_bound: float, upper_bound: float, unit: str, *, over: str = "time", start: float = -inf
     ) -> None:
-        """Refuse what is neither a number within the bounds nor a table of rising times with such numbers.
+        """Refuse a value that is neither a number within the bounds nor a table of increasing times and such numbers.
 
         Args:
             field: holds a ``Course``.
-            low: least number.
-            high: greatest number.
+            lower_bound: least number.
+            upper_bound: greatest number.
             unit: of the number.
-            over: what stands in the place of a time.
-            start: least time.
+            over: noun for the first column of the table, in messages.
+            start: least allowed time [s].
         """
         value = getattr(self._design, field)
         if isinstance(value, (int, float)):
-            return self.number(field, low, high, unit)
+            return self.number(field, lower_bound, upper_bound, unit)
         rows = value if isinstance(value, tuple) else ()
         pairs = bool(rows) and all(isinstance(row, tuple) and len(row) == 2 for row in rows)
         times = [row[0] for row in rows] if pairs else []
-        within = pairs and all(_within(time, start, inf) and isfinite(time) for time in times)
-        within = within and all(_within(number, low, high) for _, number in rows)
-        if not (within and all(a < b for a, b in pairwise(times))):
-            limits, first = f"{_show(low)} to {_show(high, unit)}", "" if start == -inf else f" from {start:g} on"
+        is_valid = pairs and all(_is_within(time, start, inf) and isfinite(time) for time in times)
+        is_valid = is_valid and all(_is_within(number, lower_bound, upper_bound) for _, number in rows)
+        if not (is_valid and all(a < b for a, b in pairwise(times))):
+            limits = f"{_show(lower_bound)} to {_show(upper_bound, unit)}"
+            start_text = "" if start == -inf else f" from {start:g} on"
             self._complain(
                 field,
                 f"is {show(value)}; a number of {limits}, or pairs of a {over} and such a number are allowed, the "
-                f"{over}s rising{first}",
+                f"{over}s rising{start_text}",
             )
         return None
 
@@ -147,20 +168,28 @@ class Checks:
         self._complaints.append(Complaint(field, text))
 
 
-def require(owner: str, field: str, value: float, low: float, high: float, unit: str) -> None:
+def require(owner: str, field: str, value: float, lower_bound: float, upper_bound: float, unit: str) -> None:
     """Refuse a lone number outside its range, or one that is not a number.
 
+    Args:
+        owner: name of the design in the message.
+        field: name of the field in the message.
+        value: of the field, in its unit.
+        lower_bound: least allowed value.
+        upper_bound: greatest allowed value.
+        unit: of the value, for the message.
+
     Raises:
-        InvalidFields: the value is not finite, below ``low`` or above ``high``.
+        InvalidFields: the value is not finite, below ``lower_bound`` or above ``upper_bound``.
     """
-    if not _within(value, low, high):
-        text = f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed"
+    if not _is_within(value, lower_bound, upper_bound):
+        text = f"is {_show(value, unit)}; {_show(lower_bound)} to {_show(upper_bound, unit)} is allowed"
         raise InvalidFields(owner, (Complaint(field, text),))
 
 
-def _within(value: Any, low: float, high: float) -> bool:
+def _is_within(value: Any, lower_bound: float, upper_bound: float) -> bool:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return number and low <= value <= high  # no comparison holds for what is not a number
+    return number and lower_bound <= value <= upper_bound  # no comparison holds for what is not a number
 
 
 def _show(value: Any, unit: str = "") -> str:

@@ -75,11 +75,12 @@ class OtherMuJoCo(SuchusError, RuntimeError):
         field: which field is not where it should be.
     """
 
-    def __init__(self, field: str, version: str, why: str) -> None:
+    def __init__(self, field: str, version: str, reason: str) -> None:
+        """Compose the message from the field, MuJoCo's version and the reason, a clause."""
         self.field = field
         super().__init__(
-            f"the field {field} of MuJoCo {version} is not where it should be: {why}. Water needs a version of MuJoCo "
-            "that suchus was tested with, 4.0; dry land works with this one too."
+            f"the field {field} of MuJoCo {version} is not where it should be: {reason}. Water needs a version of "
+            "MuJoCo that suchus was tested with, 4.0; dry land works with this one too."
         )
 
 
@@ -108,18 +109,21 @@ class UnknownName(SuchusError, KeyError):
     """
 
     def __init__(self, kind: str, name: str, available: Iterable[str]) -> None:
+        """Compose the message, with the available name that is most similar to the unknown one."""
         self.name = name
         self.available = tuple(available)
-        near = get_close_matches(str(name)[:_LONG_WORD], self.available, n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
+        matches = get_close_matches(str(name)[:_LONG_WORD], self.available, n=1)
+        hint = f" Did you mean {matches[0]!r}?" if matches else ""
         super().__init__(f"there is no {kind} named {name!r}; there is {', '.join(self.available)}.{hint}")
 
 
 class AmbiguousName(SuchusError, ValueError):
     """Two things of one name on a shelf."""
 
-    def __init__(self, kind: str, name: str, first: str, second: str) -> None:
-        super().__init__(f"there are two {kind}s named {name!r}: {first} and {second}; give one of them another name.")
+    def __init__(self, kind: str, name: str, first_place: str, second_place: str) -> None:
+        super().__init__(
+            f"there are two {kind}s named {name!r}: {first_place} and {second_place}; give one of them another name."
+        )
 
 
 class BrokenFile(SuchusError, ImportError):
@@ -142,33 +146,35 @@ class Doubtful(UserWarning):
 
 
 @contextmanager
-def plain_warnings(*about: str, options: Iterable[str] = ()) -> Iterator[None]:
-    """Write warnings as sentences on standard error, each once, after ``about`` and without the place in the code.
+def plain_warnings(*labels: str, options: Iterable[str] = ()) -> Iterator[None]:
+    """Write warnings as sentences on standard error, each once, after ``labels`` and without the place in the code.
 
-    What is said of many things of a kind is said in the end, of the worst, with the options that mend it.
+    Of many ``Doubtful`` warnings of one kind only the one of greatest ``size`` is printed, when the block ends, with
+    the options that mend it.
 
     Args:
-        about: names of what warns.
+        labels: names of what warns, printed in front of each warning.
         options: words of the command line that the reader may change.
     """
-    before, said, worst = ": ".join(("suchus", *about)), set[str](), dict[str, Doubtful]()
+    prefix, messages, worst_warnings = ": ".join(("suchus", *labels)), set[str](), dict[str, Doubtful]()
 
     def show(message: Warning | str, *_: object, **__: object) -> None:
+        """Print a warning once; of warnings of a kind store the one of greatest ``size``."""
         kind = getattr(message, "kind", "")
         if kind and isinstance(message, Doubtful):
-            worst[kind] = max(message, worst.get(kind, message), key=lambda one: one.size)
-        elif str(message) not in said:
-            said.add(str(message))
-            print(f"{before}: {message}", file=sys.stderr)
+            worst_warnings[kind] = max(message, worst_warnings.get(kind, message), key=lambda warning: warning.size)
+        elif str(message) not in messages:
+            messages.add(str(message))
+            print(f"{prefix}: {message}", file=sys.stderr)
 
     with warnings.catch_warnings():
         warnings.showwarning = show
         try:
             yield
         finally:
-            for kind, message in worst.items():
+            for kind, message in worst_warnings.items():
                 mend = [option for option in options if kind in option]
-                print(f"{before}: {message}" + f" See {', '.join(mend)}." * bool(mend), file=sys.stderr)
+                print(f"{prefix}: {message}" + f" See {', '.join(mend)}." * bool(mend), file=sys.stderr)
 
 
 class Unreachable(SuchusError, ValueError):

@@ -34,7 +34,7 @@ class _Walk:
     def __init__(self, write: Callable[[bytes], None]) -> None:
         self._write = write
         self._open: list[int] = []  # what is being written: a function may know itself
-        self._done: dict[int, tuple[object, bytes]] = {}  # functions and classes, which many others may know
+        self._digests: dict[int, tuple[object, bytes]] = {}  # functions and classes, which many others may know
 
     def _word(self, kind: str, text: str | bytes = "") -> None:
         data = text.encode() if isinstance(text, str) else text
@@ -53,15 +53,17 @@ class _Walk:
         self._open.pop()
 
     def _digest(self, value: object) -> bytes:
-        if id(value) not in self._done:
-            outer, own = self._write, sha256()
-            self._write = own.update
+        """Return the SHA-256 of a function or class; it is computed once in a walk."""
+        if id(value) not in self._digests:
+            outer, digest = self._write, sha256()
+            self._write = digest.update
             self._write_value(value)
             self._write = outer
-            self._done[id(value)] = value, own.digest()
-        return self._done[id(value)][1]
+            self._digests[id(value)] = value, digest.digest()
+        return self._digests[id(value)][1]
 
     def _write_value(self, value: object) -> None:
+        """Write a value by its type; numbers by value, arrays by type, shape and bytes."""
         if value is None or isinstance(value, bool | np.bool_ | str | bytes):
             self._word("plain", repr(value.item() if isinstance(value, np.bool_) else value))
         elif isinstance(value, np.datetime64 | np.timedelta64):  # to NumPy a timedelta64 is a Real, without a float
@@ -76,8 +78,8 @@ class _Walk:
             self._word("array", f"{value.dtype.str}{value.shape}")
             self._word("numbers", np.ascontiguousarray(value).tobytes())
         elif is_dataclass(value) and not isinstance(value, type):
-            own = {f.name: getattr(value, f.name) for f in fields(value)}
-            self._parts(type(value).__qualname__, {**own, **_class_of(value)})
+            field_values = {f.name: getattr(value, f.name) for f in fields(value)}
+            self._parts(type(value).__qualname__, {**field_values, **_class_of(value)})
         elif isinstance(value, dict):
             self._parts("dict", {repr(key): item for key, item in value.items()})
         elif isinstance(value, list | tuple | set | frozenset):
@@ -88,35 +90,42 @@ class _Walk:
 
     def _parts(self, kind: str, parts: dict[str, object]) -> None:
         self._word(kind, str(len(parts)))
-        for name, part in parts.items():
+        for name, value in parts.items():
             self._word("name", name)
-            self.value(part)
+            self.value(value)
 
     def _behaviour(self, value: object) -> None:
+        """Write a function, class or object: its code, its defaults, and the values that it reads."""
         if isinstance(value, FunctionType):
-            cells = [_written(cell.cell_contents) for cell in value.__closure__ or ()]
+            cells = [_python_function(cell.cell_contents) for cell in value.__closure__ or ()]
             names = _names(value.__code__)
-            known = _known(names, value.__globals__)
-            own = {name: item for name, item in known.items() if _decides(item, value.__module__)}
+            global_values = _global_values(names, value.__globals__)
+            deciding_globals = {name: item for name, item in global_values.items() if _decides(item, value.__module__)}
             self._code(value.__code__)
-            self._parts("function", {"with": cells, "or": value.__defaults__, "and": value.__kwdefaults__, "of": own})
+            self._parts(
+                "function",
+                {"with": cells, "or": value.__defaults__, "and": value.__kwdefaults__, "of": deciding_globals},
+            )
         elif isinstance(value, MethodType):
             self._parts("method", {"of": value.__self__, "is": value.__func__})
         elif isinstance(value, partial):
             self._parts("partial", {"is": value.func, "with": value.args, "and": value.keywords})
-        elif isinstance(value, type) and _given(value):
+        elif isinstance(value, type) and _is_user_code(value):
             self._parts(f"class {value.__qualname__}", _methods(value))
         elif isinstance(value, type | BuiltinFunctionType | ModuleType | np.ufunc):
             self._word("named", f"{getattr(value, '__module__', '')}.{value.__name__}")
         else:
-            own = {name: getattr(value, name) for name in getattr(type(value), "__slots__", ()) if hasattr(value, name)}
-            kept = {
-                name: part for name, part in getattr(value, "__dict__", {}).items()
+            slot_values = {
+                name: getattr(value, name) for name in getattr(type(value), "__slots__", ()) if hasattr(value, name)
+            }
+            attribute_values = {
+                name: attribute for name, attribute in getattr(value, "__dict__", {}).items()
                 if not isinstance(getattr(type(value), name, None), cached_property)  # filled in as it is asked for
             }  # fmt: skip
-            self._parts(type(value).__qualname__, {**own, **kept, **_class_of(value)})
+            self._parts(type(value).__qualname__, {**slot_values, **attribute_values, **_class_of(value)})
 
     def _code(self, code: CodeType) -> None:
+        """Write the bytecode, the names and the constants of a function, those of inner functions included."""
         self._word("code", code.co_code)
         self._word("names", " ".join((*code.co_names, *code.co_varnames, *code.co_freevars)))
         for constant in code.co_consts:
@@ -126,7 +135,7 @@ class _Walk:
                 self.value(constant)
 
 
-def _written(value: object) -> object:
+def _python_function(value: object) -> object:
     """Return the function that a compiled one of numba's was made of, and anything else as it is."""
     function = getattr(value, "py_func", None)
     return function if isinstance(function, FunctionType) else value
@@ -134,28 +143,28 @@ def _written(value: object) -> object:
 
 def _names(code: CodeType) -> list[str]:
     """Return the names that a function looks up, and those that functions inside it do."""
-    inner = [name for part in code.co_consts if isinstance(part, CodeType) for name in _names(part)]
+    inner = [name for constant in code.co_consts if isinstance(constant, CodeType) for name in _names(constant)]
     return sorted({*code.co_names, *inner})
 
 
-def _known(names: list[str], found: dict[str, object]) -> dict[str, object]:
+def _global_values(names: list[str], namespace: dict[str, object]) -> dict[str, object]:
     """Return what names mean among the globals of a function; of a module, what the function may take from it."""
-    known = {name: _written(found[name]) for name in names if name in found}
-    for module, value in list(known.items()):
-        if isinstance(value, ModuleType) and _given(value):
-            known |= {f"{module}.{name}": vars(value)[name] for name in names if name in vars(value)}
-    return known
+    values = {name: _python_function(namespace[name]) for name in names if name in namespace}
+    for module, value in list(values.items()):
+        if isinstance(value, ModuleType) and _is_user_code(value):
+            values |= {f"{module}.{name}": vars(value)[name] for name in names if name in vars(value)}
+    return values
 
 
 def _decides(value: object, module: str) -> bool:
     """Return whether a global that a function reads is a part of what it does: a value, or what users wrote."""
     if isinstance(value, FunctionType):
-        return value.__module__ == module or _given(value)
+        return value.__module__ == module or _is_user_code(value)
     plain = isinstance(value, Real | str | tuple | list | dict | np.ndarray) or is_dataclass(value)
-    return _given(value if isinstance(value, type) else type(value)) or (plain and not isinstance(value, type))
+    return _is_user_code(value if isinstance(value, type) else type(value)) or (plain and not isinstance(value, type))
 
 
-def _given(value: object) -> bool:
+def _is_user_code(value: object) -> bool:
     """Return whether a function, class or module is the user's own: neither this package's nor an installed one's.
 
     Installed are the standard library, what suchus itself requires, files in a folder ``site-packages`` or
@@ -208,18 +217,20 @@ def _recorded_files(folder: Path) -> frozenset[str]:
 
 def _class_of(value: object) -> dict[str, object]:
     """Return the class of an object as a part of it, if it is the user's own."""
-    return {"class": type(value)} if _given(type(value)) else {}
+    return {"class": type(value)} if _is_user_code(type(value)) else {}
 
 
 def _methods(kind: type) -> dict[str, object]:
     """Return the functions of a class and of those that it is made of, and the values that these may read."""
-    found: dict[str, object] = {}
-    for one in reversed(kind.__mro__):
-        if not _given(one):
+    members: dict[str, object] = {}
+    for base in reversed(kind.__mro__):
+        if not _is_user_code(base):
             continue
-        for name, item in vars(one).items():
+        for name, item in vars(base).items():
             plain = getattr(item, "__func__", getattr(item, "fget", getattr(item, "func", item)))
-            written = isinstance(plain, FunctionType) and plain.__code__.co_filename != "<string>"  # not by dataclass
-            if written or (not name.startswith("__") and _decides(plain, one.__module__)):
-                found[name] = plain
-    return found
+            is_source_function = (
+                isinstance(plain, FunctionType) and plain.__code__.co_filename != "<string>"
+            )  # not by dataclass
+            if is_source_function or (not name.startswith("__") and _decides(plain, base.__module__)):
+                members[name] = plain
+    return members

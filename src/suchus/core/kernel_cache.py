@@ -42,23 +42,23 @@ def folder(home: Path, files: Iterable[Path], prefix: str) -> Path | None:
         files: the sources, any of which may be a part of any other.
         prefix: how the names of their folders begin.
     """
-    found = _first_writable([place / f"{prefix}{digest(files)}" for place in places(home)], prefix)
-    if found is None:
+    cache_folder = _first_writable([parent / f"{prefix}{digest(files)}" for parent in places(home)], prefix)
+    if cache_folder is None:
         _say_unkept("no folder for it can be written to, and NUMBA_CACHE_DIR may name another")
-    return found
+    return cache_folder
 
 
 def places(home: Path) -> list[Path]:
     """Return the folders that are tried, in their order."""
-    if asked := os.environ.get("NUMBA_CACHE_DIR"):
-        return [Path(asked)]
+    if cache_dir := os.environ.get("NUMBA_CACHE_DIR"):
+        return [Path(cache_dir)]
     return [home / "__pycache__", user_cache()]
 
 
 def user_cache() -> Path:
     """Return the user's folder for what can be made anew, ``suchus`` in it."""
-    if asked := os.environ.get("XDG_CACHE_HOME"):
-        return Path(asked) / "suchus"
+    if cache_home := os.environ.get("XDG_CACHE_HOME"):
+        return Path(cache_home) / "suchus"
     home = Path(os.path.expanduser("~"))  # noqa: PTH111  Path.home raises where there is none
     return home / ("Library/Caches" if sys.platform == "darwin" else ".cache") / "suchus"
 
@@ -71,18 +71,21 @@ def digest(files: Iterable[Path]) -> str:
     return text.hexdigest()[:12]
 
 
-def keep(kernel: Any, place: Path) -> None:
+def keep(kernel: Any, cache_folder: Path) -> None:
     """Let the machine code of a kernel be kept in a folder; see ``numba.core.dispatcher.Dispatcher.enable_caching``.
 
     Args:
         kernel: that ``numba.njit`` made, without ``cache``.
-        place: the folder.
+        cache_folder: the folder.
     """
-    asked, config.CACHE_DIR = config.CACHE_DIR, str(place)  # which is read when a cache is made, for it alone
+    default_dir, config.CACHE_DIR = (
+        config.CACHE_DIR,
+        str(cache_folder),
+    )  # which is read when a cache is made, for it alone
     try:
         kernel._cache = _SealedCache(kernel.py_func)
     finally:
-        config.CACHE_DIR = asked
+        config.CACHE_DIR = default_dir
 
 
 class _SealedCache(FunctionCache):  # type: ignore[misc]
@@ -113,8 +116,8 @@ class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
 
     def load(self, key: Any) -> Any:
         """Return the code of a signature; None where there is none, or that of another in its place."""
-        of, data = super().load(key) or (None, None)
-        return data if of == key else None
+        stored_key, data = super().load(key) or (None, None)
+        return data if stored_key == key else None
 
     def _load_index(self) -> dict[Any, str]:
         version, stamp, names = self._read(self._index_name) or ("", None, {})
@@ -147,31 +150,31 @@ class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
 
     def sealed(self, name: str, content: bytes) -> bytes:
         """Return the content of a file of this name with its digest."""
-        whose = f"{name} of numba {self._version}\0".encode()
-        return _SEAL + hashlib.sha256(whose + content).digest() + content
+        identity = f"{name} of numba {self._version}\0".encode()
+        return _SEAL + hashlib.sha256(identity + content).digest() + content
 
 
 @cache
-def _say_unkept(why: str) -> None:
-    print(f"suchus: compiled code is not kept, and will be compiled again: {why}", file=sys.stderr, flush=True)
+def _say_unkept(reason: str) -> None:
+    print(f"suchus: compiled code is not kept, and will be compiled again: {reason}", file=sys.stderr, flush=True)
 
 
 def _first_writable(folders: Iterable[Path], prefix: str) -> Path | None:
     """Return the first folder that can be made and written to; those before it are left as they were."""
-    for one in folders:
+    for candidate in folders:
         with suppress(OSError):
-            one.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=one):
+            candidate.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=candidate):
                 pass
-            _forget(one, prefix)
-            return one
+            _forget(candidate, prefix)
+            return candidate
     return None
 
 
 def _forget(current: Path, prefix: str) -> None:
     """Remove the code of sources that are long gone, all but the latest few."""
     with suppress(OSError):
-        others = [one for one in current.parent.glob(f"{prefix}*") if one != current]
-        others.sort(key=lambda one: one.stat().st_mtime, reverse=True)
-        for old in others[KEPT - 1 :]:
+        other_folders = [cache_folder for cache_folder in current.parent.glob(f"{prefix}*") if cache_folder != current]
+        other_folders.sort(key=lambda cache_folder: cache_folder.stat().st_mtime, reverse=True)
+        for old in other_folders[KEPT - 1 :]:
             shutil.rmtree(old, ignore_errors=True)

@@ -8,17 +8,17 @@ from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 _WORDS = {float: "a number", int: "a whole number", str: "a text", bool: "true or false"}
-_SHOWN = 60  # characters of a value in a message
+_MAX_CHARACTERS = 60  # characters of a value in a message
 
 
 def misfits(value: object) -> Iterator[tuple[str, str]]:
     """Yield name and complaint of each field of a dataclass that holds another kind of thing than it declares."""
     kind: Any = type(value)
-    for name, hint, fits in _declared(kind):
+    for name, hint, fits in _field_checks(kind):
         has = getattr(value, name)
         if not fits(has):
-            wanted = "a smaller number" if _huge(has) and fits(0.0) else _wanted(hint)
-            yield name, f"is {show(has)}; {wanted} is needed"
+            expected_text = "a smaller number" if _huge(has) and fits(0.0) else _hint_text(hint)
+            yield name, f"is {show(has)}; {expected_text} is needed"
 
 
 def show(value: object) -> str:
@@ -27,7 +27,7 @@ def show(value: object) -> str:
         text = value.__name__ if isinstance(value, type) else repr(value)
     except ValueError:  # Python writes no number of more than 4300 digits
         text = "a number of thousands of digits"
-    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
+    return text if len(text) <= _MAX_CHARACTERS else f"{text[: _MAX_CHARACTERS - 3]}..."
 
 
 Fits = Callable[[Any], bool]
@@ -35,7 +35,7 @@ Fits = Callable[[Any], bool]
 
 
 @cache
-def _declared(kind: Any) -> tuple[tuple[str, Any, Fits], ...]:
+def _field_checks(kind: Any) -> tuple[tuple[str, Any, Fits], ...]:
     """Return name, hint and check of each field of a dataclass; many values of few classes are made in a study."""
     hints = get_type_hints(kind)
     return tuple((field.name, hints[field.name], _check(hints[field.name])) for field in fields(kind))
@@ -46,13 +46,13 @@ def _huge(value: Any) -> bool:
     return isinstance(value, Integral) and not -(2**1023) < int(value) < 2**1023
 
 
-def _number(value: Any) -> bool:
+def _is_number(value: Any) -> bool:
     if type(value) is float:  # most are
         return True
     return not isinstance(value, bool) and isinstance(value, Real) and not _huge(value)
 
 
-def _whole(value: Any) -> bool:
+def _is_integer(value: Any) -> bool:
     return not isinstance(value, bool) and isinstance(value, Integral) and not _huge(value)
 
 
@@ -60,7 +60,7 @@ def _check(hint: Any) -> Fits:
     """Return what tells whether a value is what a hint declares."""
     origin, inner = get_origin(hint), get_args(hint)
     if hint in (float, int):
-        return _number if hint is float else _whole
+        return _is_number if hint is float else _is_integer
     if origin in (Union, UnionType):
         members = [_check(member) for member in inner]
         return lambda value: any(fits(value) for fits in members)
@@ -85,21 +85,22 @@ def _row(inner: tuple[Any, ...]) -> Fits:
     if Ellipsis in inner:
         fits = _check(inner[0])
         return lambda value: isinstance(value, tuple) and all(map(fits, value))
-    each = [_check(item) for item in inner]
+    element_checks = [_check(item) for item in inner]
     return lambda value: (
         isinstance(value, tuple)
-        and len(value) == len(each)
-        and all(fits(item) for fits, item in zip(each, value, strict=True))
+        and len(value) == len(element_checks)
+        and all(fits(item) for fits, item in zip(element_checks, value, strict=True))
     )
 
 
-def _wanted(hint: Any) -> str:
+def _hint_text(hint: Any) -> str:
+    """Return in words which values a type hint allows."""
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, UnionType):
-        return " or ".join("nothing" if one is type(None) else _wanted(one) for one in inner)
+        return " or ".join("nothing" if member is type(None) else _hint_text(member) for member in inner)
     if origin is Literal:
-        return " or ".join(repr(one) for one in inner)
+        return " or ".join(repr(literal) for literal in inner)
     if origin is tuple:
-        return f"a tuple{'' if Ellipsis in inner else f' of {len(inner)}'}, each {_wanted(inner[0])},"
+        return f"a tuple{'' if Ellipsis in inner else f' of {len(inner)}'}, each {_hint_text(inner[0])},"
     name = getattr(hint, "__name__", "value of another kind")
     return _WORDS.get(hint, f"{'an' if name[0] in 'AEIOU' else 'a'} {name}")

@@ -22,17 +22,17 @@ LONG = 86400.0
 
 
 @contextmanager
-def allowing(asked: bool = True) -> Iterator[None]:
+def allowing(is_allowed: bool = True) -> Iterator[None]:
     """While the block runs, let large work begin, if asked."""
-    before = os.environ.get(WANTED)
-    if asked:
+    environment_value = os.environ.get(WANTED)
+    if is_allowed:
         os.environ[WANTED] = "1"
     try:
         yield
     finally:
-        if asked:
+        if is_allowed:
             os.environ.pop(WANTED)
-            os.environ.update({} if before is None else {WANTED: before})
+            os.environ.update({} if environment_value is None else {WANTED: environment_value})
 
 
 def allowed() -> bool:
@@ -43,19 +43,21 @@ def allowed() -> bool:
 def memory() -> int | None:
     """Return the memory of this process at most: the machine's, or less by ``ulimit``; None where none says [bytes]."""
     try:
-        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        physical_memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):
-        whole = None
+        physical_memory = None
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-    found = [size for size in (whole, None if limit == resource.RLIM_INFINITY else limit) if size is not None]
-    return min(found, default=None)
+    limits = [
+        size for size in (physical_memory, None if limit == resource.RLIM_INFINITY else limit) if size is not None
+    ]
+    return min(limits, default=None)
 
 
-def check_memory(what: str, need: float, remedy: str) -> None:
+def check_memory(subject: str, need: float, remedy: str) -> None:
     """Refuse what the memory cannot hold, or not beside much else unless it is allowed.
 
     Args:
-        what: what takes the memory, as the subject of a sentence in the singular.
+        subject: what takes the memory, as the subject of a sentence in the singular.
         need: an estimate [bytes].
         remedy: what to do instead.
 
@@ -65,15 +67,15 @@ def check_memory(what: str, need: float, remedy: str) -> None:
     have = memory()
     if have is None or need <= SHARE * have or (allowed() and need <= have):
         return
-    said = f"{what} takes some {need / 1e9:.3g} GB of memory, and this machine has {have / 1e9:.3g} GB"
-    raise InvalidDesign(f"{said}; {remedy}{'' if need > have else f', or say {OPTION} to begin all the same'}.")
+    size_text = f"{subject} takes some {need / 1e9:.3g} GB of memory, and this machine has {have / 1e9:.3g} GB"
+    raise InvalidDesign(f"{size_text}; {remedy}{'' if need > have else f', or say {OPTION} to begin all the same'}.")
 
 
-def check_work(what: str, seconds: float, remedy: str) -> None:
+def check_work(subject: str, seconds: float, remedy: str) -> None:
     """Refuse what would compute for more than a day, unless it is allowed.
 
     Args:
-        what: what computes, as the subject of a sentence in the singular.
+        subject: what computes, as the subject of a sentence in the singular.
         seconds: an estimate of the processor time [s].
         remedy: what to do instead.
 
@@ -81,5 +83,5 @@ def check_work(what: str, seconds: float, remedy: str) -> None:
         InvalidDesign: with the estimate.
     """
     if seconds > LONG and not allowed():
-        said = f"{what} takes some {seconds / LONG:.3g} days of a processor"
-        raise InvalidDesign(f"{said}; {remedy}, or say {OPTION} to begin all the same.")
+        time_text = f"{subject} takes some {seconds / LONG:.3g} days of a processor"
+        raise InvalidDesign(f"{time_text}; {remedy}, or say {OPTION} to begin all the same.")

@@ -38,13 +38,13 @@ _mixing: ContextVar[bool] = ContextVar("mixing", default=False)
 
 
 @contextmanager
-def mixing(asked: bool = True) -> Iterator[None]:
+def mixing(is_mixed: bool = True) -> Iterator[None]:
     """While the block runs, let stores be continued that a machine with another arithmetic began; they say so then."""
-    before = _mixing.set(asked)
+    token = _mixing.set(is_mixed)
     try:
         yield
     finally:
-        _mixing.reset(before)
+        _mixing.reset(token)
 
 
 def asked_to_mix() -> bool:
@@ -60,21 +60,21 @@ def arithmetic() -> dict[str, str]:
     """
     return {
         "C library": _digest(_of_the_c_library()),
-        "NumPy's functions": _digest(part.tobytes() for part in _of_numpy()),
-        "linear algebra": _digest(part.tobytes() for part in _of_linear_algebra()),
+        "NumPy's functions": _digest(array.tobytes() for array in _of_numpy()),
+        "linear algebra": _digest(array.tobytes() for array in _of_linear_algebra()),
     }
 
 
 @cache
 def described() -> dict[str, str]:
-    """Return what a person calls this machine's arithmetic: processor, vector instructions, kernels, threads."""
-    shown = np.show_config(mode="dicts")
-    blas = shown["Build Dependencies"]["blas"]
+    """Return a description of this machine for people: processor, vector instructions, kernels, threads."""
+    numpy_config = np.show_config(mode="dicts")
+    blas = numpy_config["Build Dependencies"]["blas"]
     kernels = os.environ.get("OPENBLAS_CORETYPE", "of its own choice")
     return {
         "processor": _processor(),
         "architecture": platform.machine(),
-        "vector instructions": " ".join(shown["SIMD Extensions"].get("found", [])) or "the least",
+        "vector instructions": " ".join(numpy_config["SIMD Extensions"].get("found", [])) or "the least",
         "linear algebra": f"{blas['name']} {blas['version']}, kernels {kernels}",
         "C library": " ".join(platform.libc_ver()).strip() or sys.platform,
         "threads": str(threads.count()),
@@ -87,13 +87,13 @@ def provenance() -> dict[str, dict[str, str]]:
     return {"arithmetic": arithmetic(), "described": described()}
 
 
-def differences(theirs: Mapping[str, str]) -> list[str]:
-    """Return the parts of ``arithmetic`` in which another machine computes otherwise.
+def differences(other_arithmetic: Mapping[str, str]) -> list[str]:
+    """Return the components of ``arithmetic`` in which another machine differs.
 
     Args:
-        theirs: its ``arithmetic``; what is missing there counts as other.
+        other_arithmetic: the other machine's ``arithmetic``; a missing component counts as different.
     """
-    return [part for part, digest in arithmetic().items() if theirs.get(part) != digest]
+    return [component for component, digest in arithmetic().items() if other_arithmetic.get(component) != digest]
 
 
 def is_portable() -> bool:
@@ -102,7 +102,7 @@ def is_portable() -> bool:
 
 
 def begun_portable(environment: Mapping[str, str]) -> dict[str, str] | None:
-    """Return the environment in which a process that asks for portable arithmetic must be begun anew.
+    """Return the environment with which a process that asks for portable arithmetic must be restarted.
 
     Args:
         environment: of this process.
@@ -113,11 +113,11 @@ def begun_portable(environment: Mapping[str, str]) -> dict[str, str] | None:
     Raises:
         OutsideLimits: there are no such settings for this kind of machine, or it is asked for in another word than 1.
     """
-    wanted = environment.get(WANTED, "")
-    if wanted in ("", "0"):
+    setting = environment.get(WANTED, "")
+    if setting in ("", "0"):
         return None
-    if wanted != "1":
-        raise OutsideLimits(f"{WANTED} is {wanted!r}; 1 asks for portable arithmetic, 0 or nothing for the fastest.")
+    if setting != "1":
+        raise OutsideLimits(f"{WANTED} is {setting!r}; 1 asks for portable arithmetic, 0 or nothing for the fastest.")
     if (platform.machine(), platform.libc_ver()[0]) != ("x86_64", "glibc"):
         raise OutsideLimits(
             f"{WANTED} is for x86-64 with the GNU C library, and this is {platform.machine()} with "
@@ -129,23 +129,24 @@ def begun_portable(environment: Mapping[str, str]) -> dict[str, str] | None:
     return {**environment, **PORTABLE}
 
 
-def _digest(parts: Iterator[bytes]) -> str:
+def _digest(chunks: Iterator[bytes]) -> str:
     text = hashlib.sha256()
-    for part in parts:
-        text.update(part)
+    for chunk in chunks:
+        text.update(chunk)
     return text.hexdigest()[:12]
 
 
 def _points() -> list[float]:
     """Return numbers in -1..1 that are the same everywhere: exact ratios of whole numbers to a power of two."""
-    found, state = [], 12345
+    points, state = [], 12345
     for _ in range(_POINTS):
         state = (state * 1103515245 + 12345) % 2**31
-        found.append(state / 2**30 - 1.0)
-    return found
+        points.append(state / 2**30 - 1.0)
+    return points
 
 
 def _of_the_c_library() -> Iterator[bytes]:
+    """Yield the bytes of the C library's functions at fixed points."""
     for function in (math.sin, math.cos, math.tan, math.exp, math.tanh, math.atan, math.asin):
         yield struct.pack(f"{_POINTS}d", *(function(x) for x in _points()))
     yield struct.pack(f"{_POINTS}d", *(math.log(2.0 + x) for x in _points()))
@@ -154,14 +155,21 @@ def _of_the_c_library() -> Iterator[bytes]:
 
 
 def _of_numpy() -> Iterator[np.ndarray]:
+    """Yield NumPy's functions and sums over fixed points, in double and in single precision."""
     x = np.array(_points())
-    for one in (x, x.astype(np.float32)):
-        yield from (f(one) for f in (np.sin, np.cos, np.tan, np.exp, np.tanh, np.arctan, np.sinh))
-        yield from (np.log(one + 2), np.power(one + 2, one), np.arctan2(one, 1 - one), np.hypot(one, 1 - one))
-        yield from (one.sum()[None], one.mean()[None], one.std()[None], np.cumsum(one), np.sqrt(one + 1))
+    for array in (x, x.astype(np.float32)):
+        yield from (f(array) for f in (np.sin, np.cos, np.tan, np.exp, np.tanh, np.arctan, np.sinh))
+        yield from (
+            np.log(array + 2),
+            np.power(array + 2, array),
+            np.arctan2(array, 1 - array),
+            np.hypot(array, 1 - array),
+        )
+        yield from (array.sum()[None], array.mean()[None], array.std()[None], np.cumsum(array), np.sqrt(array + 1))
 
 
 def _of_linear_algebra() -> Iterator[np.ndarray]:
+    """Yield products, factorisations and eigenvalues of fixed small matrices."""
     x = np.array(_points())
     for n in (3, 7, 19, 40):  # small enough for one thread, whatever their number
         a = x[: n * n].reshape(n, n)
@@ -171,9 +179,10 @@ def _of_linear_algebra() -> Iterator[np.ndarray]:
 
 
 def _processor() -> str:
+    """Return the name of the processor, as the operating system reports it."""
     try:
-        with open("/proc/cpuinfo", encoding="utf-8") as told:  # noqa: PTH123  no file of ours
-            names = [line.partition(":")[2].strip() for line in told if line.startswith("model name")]
+        with open("/proc/cpuinfo", encoding="utf-8") as cpuinfo:  # noqa: PTH123  no file of ours
+            names = [line.partition(":")[2].strip() for line in cpuinfo if line.startswith("model name")]
     except OSError:
         names = []
     return names[0] if names else platform.processor() or "unknown"

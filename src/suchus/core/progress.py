@@ -6,9 +6,9 @@ Progress = Callable[[str, float], None]
 """Called with what is being done and the share of it that is done, 0 to 1."""
 
 
-def silent(stage: str, share: float) -> None:
+def silent(stage: str, fraction: float) -> None:
     """Show no progress."""
-    del stage, share
+    del stage, fraction
 
 
 def staged(progress: Progress, stage: str, start: float, end: float) -> Progress:
@@ -20,7 +20,7 @@ def staged(progress: Progress, stage: str, start: float, end: float) -> Progress
         start: share of the whole at which the part begins [-].
         end: share at which it ends [-].
     """
-    return lambda inner, share: progress(stage or inner, start + share * (end - start))
+    return lambda inner, fraction: progress(stage or inner, start + fraction * (end - start))
 
 
 def portion(progress: Progress, number: int, count: int) -> Progress:

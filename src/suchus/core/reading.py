@@ -57,7 +57,7 @@ def unreadable(path: str | Path, error: OSError | ValueError) -> UnreadableFile:
     return UnreadableFile(f"{str(path)!r} is no name that a file can have.")
 
 
-def read_bytes(path: str | Path, most: int = LARGEST) -> bytes:
+def read_bytes(path: str | Path, max_size: int = LARGEST) -> bytes:
     """Return what is in a file of at most so many bytes.
 
     Raises:
@@ -67,11 +67,11 @@ def read_bytes(path: str | Path, most: int = LARGEST) -> bytes:
     check_file(path)
     try:
         with path.open("rb") as file:
-            data = file.read(most + 1)
+            data = file.read(max_size + 1)
     except (OSError, ValueError) as error:
         raise unreadable(path, error) from error
-    if len(data) > most:
-        raise UnreadableFile(f"{path} is larger than {most / 2**20:g} MiB, more than such a file can need.")
+    if len(data) > max_size:
+        raise UnreadableFile(f"{path} is larger than {max_size / 2**20:g} MiB, more than such a file can need.")
     return data
 
 
@@ -106,17 +106,17 @@ def read_mesh(path: str | Path, data: bytes | None = None) -> Any:
     return mesh
 
 
-def read_text(path: str | Path, most: int = LARGEST) -> str:
+def read_text(path: str | Path, max_size: int = LARGEST) -> str:
     """Return the text of a file.
 
     Args:
         path: the file; UTF-8, with or without a byte order mark.
-        most: its greatest size [byte].
+        max_size: its greatest size [byte].
 
     Raises:
         UnreadableFile: it is no ordinary file, cannot be read, is larger, or is no text in UTF-8.
     """
-    data = read_bytes(path, most)
+    data = read_bytes(path, max_size)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -135,7 +135,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         raise UnreadableFile(f"{path} is not valid TOML: {error}.") from error
     except (ValueError, RecursionError) as error:
-        raise _beyond(path, error) from error
+        raise _nesting_error(path, error) from error
 
 
 def read_json(path: str | Path) -> Any:
@@ -150,10 +150,10 @@ def read_json(path: str | Path) -> Any:
     except json.JSONDecodeError as error:
         raise UnreadableFile(f"{path} is not valid JSON: {error}.") from error
     except (ValueError, RecursionError) as error:
-        raise _beyond(path, error) from error
+        raise _nesting_error(path, error) from error
 
 
-def _beyond(path: str | Path, error: ValueError | RecursionError) -> UnreadableFile:
-    deep = isinstance(error, RecursionError)
-    what = "brackets or tables nested more deeply" if deep else "a number or a date of more digits"
-    return UnreadableFile(f"{path} holds {what} than can be read.")
+def _nesting_error(path: str | Path, error: ValueError | RecursionError) -> UnreadableFile:
+    is_nested = isinstance(error, RecursionError)
+    content_text = "brackets or tables nested more deeply" if is_nested else "a number or a date of more digits"
+    return UnreadableFile(f"{path} holds {content_text} than can be read.")

@@ -84,15 +84,15 @@ def angles(q: Float[np.ndarray, "4"]) -> tuple[float, float, float]:
     return attitude(matrix(q))
 
 
-def attitude(turned: Float[np.ndarray, "3 3"]) -> tuple[float, float, float]:
+def attitude(rotation_matrix: Float[np.ndarray, "3 3"]) -> tuple[float, float, float]:
     """Return yaw, pitch and roll of a rotation matrix, from which ``from_angles`` makes the same rotation [rad].
 
     That holds for a body that stands upright as well, where yaw and roll are about one axis and any yaw will do.
     """
-    (x, y, z), sides = turned[:, 0].tolist(), turned[:, 1:]
+    (x, y, z), sides = rotation_matrix[:, 0].tolist(), rotation_matrix[:, 1:]
     yaw = np.arctan2(y, x)
-    aside = np.cos(yaw) * sides[1] - np.sin(yaw) * sides[0]  # across the yaw, where the body's y and z axes show
-    return float(yaw), float(np.arctan2(-z, np.hypot(x, y))), float(np.arctan2(-aside[1], aside[0]))
+    lateral = np.cos(yaw) * sides[1] - np.sin(yaw) * sides[0]  # across the yaw, where the body's y and z axes show
+    return float(yaw), float(np.arctan2(-z, np.hypot(x, y))), float(np.arctan2(-lateral[1], lateral[0]))
 
 
 def from_vector(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:
@@ -100,13 +100,13 @@ def from_vector(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:
     return np.asarray(Rotation.from_rotvec(vector).as_quat(scalar_first=True))
 
 
-def to_vector(q: Float[np.ndarray, "4"], near: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+def to_vector(q: Float[np.ndarray, "4"], reference: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
     """Return the rotation vector that is nearest to another one, among those that differ by whole turns [rad]."""
     w, x, y, z = q.tolist()
     half = sqrt(x * x + y * y + z * z)
     angle = 2 * atan2(half, w)
-    axis = q[1:] / half if half > 0 else near / max(sqrt(near @ near), 1e-300)
-    turns = round((float(axis @ near) - angle) / (2 * pi))
+    axis = q[1:] / half if half > 0 else reference / max(sqrt(reference @ reference), 1e-300)
+    turns = round((float(axis @ reference) - angle) / (2 * pi))
     return np.asarray((angle + 2 * pi * turns) * axis)
 
 
@@ -130,20 +130,20 @@ def matrix(q: Quaternion) -> Float[np.ndarray, "*b 3 3"]:
     return np.asarray(Rotation.from_quat(q.reshape(-1, 4), scalar_first=True).as_matrix().reshape(*q.shape[:-1], 3, 3))
 
 
-def multiply(first: Float[np.ndarray, "*c 4"], second: Float[np.ndarray, "*d 4"]) -> Quaternion:
-    """Return the products of quaternions: the turn by the second, then by the first, both about the world's axes."""
-    w, v, s, u = first[..., :1], first[..., 1:], second[..., :1], second[..., 1:]
+def multiply(q1: Float[np.ndarray, "*c 4"], q2: Float[np.ndarray, "*d 4"]) -> Quaternion:
+    """Return the products q1 q2 of quaternions: the rotation by q2, then by q1, both about the world's axes."""
+    w, v, s, u = q1[..., :1], q1[..., 1:], q2[..., :1], q2[..., 1:]
     return np.concatenate([w * s - np.sum(v * u, -1, keepdims=True), w * u + s * v + np.cross(v, u)], axis=-1)
 
 
 def rotate(q: Quaternion, vector: Vector) -> Float[np.ndarray, "*d 3"]:
     """Return vectors of the body's frame in the world's; one quaternion may turn many vectors, and the reverse."""
     if q.ndim == 1 and vector.ndim > 1:
-        turned = Rotation.from_quat(q, scalar_first=True).apply(vector.reshape(-1, 3))
-        return np.asarray(turned.reshape(vector.shape))
+        rotated = Rotation.from_quat(q, scalar_first=True).apply(vector.reshape(-1, 3))
+        return np.asarray(rotated.reshape(vector.shape))
     w, v = q[..., :1], q[..., 1:]
-    twice = 2 * np.cross(v, vector)
-    return np.asarray(vector + w * twice + np.cross(v, twice))
+    doubled_cross = 2 * np.cross(v, vector)
+    return np.asarray(vector + w * doubled_cross + np.cross(v, doubled_cross))
 
 
 def _parts(q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -152,6 +152,6 @@ def _parts(q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarra
 
 def heel(orientation: np.ndarray) -> np.ndarray:
     """Return the heel of a body on a level surface, right side down positive, up to 180 degrees [rad]."""
-    left = rotate(orientation, np.array([0.0, 1.0, 0.0]))[..., 2]
-    up = rotate(orientation, np.array([0.0, 0.0, 1.0]))[..., 2]
-    return np.asarray(np.arctan2(left, up))
+    left_axis_z = rotate(orientation, np.array([0.0, 1.0, 0.0]))[..., 2]
+    up_axis_z = rotate(orientation, np.array([0.0, 0.0, 1.0]))[..., 2]
+    return np.asarray(np.arctan2(left_axis_z, up_axis_z))

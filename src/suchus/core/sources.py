@@ -79,8 +79,8 @@ class Project:
             shelf: one of ``SHELVES``.
         """
         folder = self.folder / shelf
-        inside = sorted(folder.iterdir()) if folder.is_dir() else []
-        for path in (*inside, *self.named.get(shelf, ())):
+        folder_entries = sorted(folder.iterdir()) if folder.is_dir() else []
+        for path in (*folder_entries, *self.named.get(shelf, ())):
             if path.suffix in _suffixes(shelf) and path.is_file():
                 yield path.stem, path
             elif (path / "__init__.py").is_file():
@@ -95,13 +95,13 @@ class Project:
         text = hashlib.sha256()
         for shelf in SHELVES:
             for name, file in self.files(shelf):
-                for part in sorted(file.parent.rglob("*.py")) if _is_folder(name, file) else [file]:
-                    text.update(self.shown(part).encode() + b"\0" + part.read_bytes() + b"\0")
+                for path in sorted(file.parent.rglob("*.py")) if _is_folder(name, file) else [file]:
+                    text.update(self.shown(path).encode() + b"\0" + path.read_bytes() + b"\0")
         return text.hexdigest()[:12]
 
 
 def project(folder: str | os.PathLike[str] | None) -> Project | None:
-    """Let the shelves hold what stands in a project folder, in this process and in those that it starts.
+    """Add the contents of a project folder to the catalogs, in this process and in those that it starts.
 
     Without a call the project is the folder that the variable ``SUCHUS_PROJECT`` names, else the working folder if it
     has a ``suchus.toml``.
@@ -126,33 +126,33 @@ def current() -> Project | None:
     Raises:
         UnreadableFile: the folder is not there, or its ``suchus.toml`` says what cannot be.
     """
-    told = os.environ.get(VARIABLE)
-    if told is not None:
-        return _opened(Path(told)) if told else None
+    folder = os.environ.get(VARIABLE)
+    if folder is not None:
+        return _opened(Path(folder)) if folder else None
     return _opened(Path()) if Path(SETTINGS).is_file() else None
 
 
 @contextmanager
 def within(folder: str | None) -> Iterator[None]:
-    """Let a project folder be that of this process while the block runs; with None the project stays.
+    """Use a project folder in this process while the block runs; with None the project stays.
 
     Raises:
         UnreadableFile: there is no such folder, or its ``suchus.toml`` says what cannot be.
     """
-    before = os.environ.get(VARIABLE)
+    previous_folder = os.environ.get(VARIABLE)
     if folder is not None:
         project(folder)
     try:
         yield
     finally:
-        if before is None:
+        if previous_folder is None:
             os.environ.pop(VARIABLE, None)
         else:
-            os.environ[VARIABLE] = before
+            os.environ[VARIABLE] = previous_folder
 
 
 class Carried:
-    """A value that takes the project of this process along when it is sent to another process as a pickle.
+    """A value whose pickle names the project of this process, so that another process opens the project too.
 
     There the project is opened before the value is read, whose types may stand in it. A process that was told a project
     by ``SUCHUS_PROJECT`` when it started keeps that one, as on a machine where the folder has another path.
@@ -203,18 +203,18 @@ def gather(kind: str, package: str, *, scattered: bool = False) -> dict[str, Sou
         AmbiguousName: two things have the same name.
         UnreadableFile: the project's folder is not there, or its ``suchus.toml`` says what cannot be.
     """
-    there: dict[str, Source] = {}
+    sources: dict[str, Source] = {}
     for source in (*_shipped(package, kind, scattered), *_of_project(package, kind, scattered), *_plugged(kind)):
-        if source.name in there:
-            raise AmbiguousName(kind, source.name, there[source.name].place, source.place)
-        there[source.name] = source
-    return dict(sorted(there.items()))
+        if source.name in sources:
+            raise AmbiguousName(kind, source.name, sources[source.name].place, source.place)
+        sources[source.name] = source
+    return dict(sorted(sources.items()))
 
 
 def _shipped(package: str, kind: str, scattered: bool) -> Iterator[Source]:
     """Yield what the package itself has on a shelf."""
     if not scattered:
-        yield from _one_each(package, kind, _stamped(package))
+        yield from _module_sources(package, kind, _stamped(package))
         return
     for name, file in _modules(package, kind).items():
         if not name.startswith("_"):
@@ -223,15 +223,15 @@ def _shipped(package: str, kind: str, scattered: bool) -> Iterator[Source]:
 
 
 @lru_cache(maxsize=64)
-def _one_each(package: str, kind: str, stamped: "_Stamped") -> tuple[Source, ...]:
+def _module_sources(package: str, kind: str, stamped: "_Stamped") -> tuple[Source, ...]:
     """Return what the modules of a package declare, one thing each."""
     files = _files(kind, stamped).items()
     return tuple(_of_package(package, name, file, name, "") for name, file in files if not name.startswith("_"))
 
 
 def _of_package(package: str, name: str, file: Path, thing: str, attribute: str) -> Source:
-    place = f"{package.replace('.', '/')}/{f'{name}/{file.name}' if _is_folder(name, file) else file.name}"
-    return Source(name=thing, place=place, module=f"{package}.{name}", attribute=attribute, file=file, shipped=True)
+    location = f"{package.replace('.', '/')}/{f'{name}/{file.name}' if _is_folder(name, file) else file.name}"
+    return Source(name=thing, place=location, module=f"{package}.{name}", attribute=attribute, file=file, shipped=True)
 
 
 def _modules(package: str, kind: str) -> Mapping[str, Path]:
@@ -244,25 +244,31 @@ _Stamped = tuple[tuple[str, int, tuple[int, ...]], ...]
 
 
 def _stamped(package: str) -> _Stamped:
+    """Return the folders of a package with the times at which they and their subfolders were modified."""
     if package in sys.modules:
         folders = list(sys.modules[package].__path__)
     else:
         spec = find_spec(package)
         folders = list(spec.submodule_search_locations or ()) if spec else []
-    found = []
+    stamps = []
     for folder in folders:
-        changed = os.stat(folder).st_mtime_ns  # noqa: PTH116  a shelf is asked some thousand times a minute
-        inside = (os.stat(f"{folder}/{name}").st_mtime_ns for name, is_folder in _listed(folder, changed) if is_folder)  # noqa: PTH116
-        found.append((folder, changed, tuple(inside)))
-    return tuple(found)
+        modified_ns = os.stat(folder).st_mtime_ns  # noqa: PTH116  a shelf is asked some thousand times a minute
+        subfolder_times = (
+            os.stat(f"{folder}/{name}").st_mtime_ns  # noqa: PTH116
+            for name, is_folder in _listed(folder, modified_ns)
+            if is_folder
+        )
+        stamps.append((folder, modified_ns, tuple(subfolder_times)))
+    return tuple(stamps)
 
 
 @lru_cache(maxsize=64)
 def _files(kind: str, stamped: _Stamped) -> Mapping[str, Path]:
+    """Return the file of each module of a package by name; the result is cached by the folders' times."""
     return {
-        name: _declaring(Path(place) / name, kind) if is_folder else Path(place) / f"{name}.py"
-        for place, changed, _ in stamped
-        for name, is_folder in _listed(place, changed)
+        name: _declaring(Path(folder) / name, kind) if is_folder else Path(folder) / f"{name}.py"
+        for folder, modified_ns, _ in stamped
+        for name, is_folder in _listed(folder, modified_ns)
     }
 
 
@@ -274,8 +280,8 @@ def _listed(folder: str, _: int) -> tuple[tuple[str, bool], ...]:
 
 def _declaring(folder: Path, kind: str) -> Path:
     """Return the file of a folder that declares a kind: its module of that name, or its own."""
-    inside = folder / f"{kind}.py"
-    return inside if inside.is_file() else folder / "__init__.py"
+    module_file = folder / f"{kind}.py"
+    return module_file if module_file.is_file() else folder / "__init__.py"
 
 
 def _is_folder(name: str, file: Path) -> bool:
@@ -292,24 +298,24 @@ def _of_project(package: str, kind: str, scattered: bool) -> Iterator[Source]:
     opened = current()
     if opened is None:
         return
-    taken = _modules(package, kind)
+    package_modules = _modules(package, kind)
     for name, file in opened.files(f"{kind}s"):
-        place = opened.shown(file)
-        if file.suffix == ".py" and name in taken:
-            raise AmbiguousName("module", name, f"{package.replace('.', '/')}/{name}", place)
+        location = opened.shown(file)
+        if file.suffix == ".py" and name in package_modules:
+            raise AmbiguousName("module", name, f"{package.replace('.', '/')}/{name}", location)
         if file.suffix == ".toml":
-            yield Source(name=name, place=place, file=file)
+            yield Source(name=name, place=location, file=file)
         elif not name.startswith("_"):
             for thing, attribute in _names(file, kind) if scattered else ((name, ""),):
-                yield Source(name=thing, place=place, module=f"{package}.{name}", attribute=attribute, file=file)
+                yield Source(name=thing, place=location, module=f"{package}.{name}", attribute=attribute, file=file)
 
 
 def _plugged(kind: str) -> Iterator[Source]:
     """Yield what other installed packages put on a shelf by their entry points."""
     for point in _entry_points().get(f"suchus.{kind}s", ()):
         owner = point.dist.name if point.dist else "an installed package"
-        place = f"the entry point {point.name} = {point.value!r} of {owner}"
-        yield Source(name=point.name, place=place, module=point.module, attribute=point.attr)
+        location = f"the entry point {point.name} = {point.value!r} of {owner}"
+        yield Source(name=point.name, place=location, module=point.module, attribute=point.attr)
 
 
 @cache
@@ -317,8 +323,8 @@ def _entry_points() -> Mapping[str, Sequence[Any]]:
     """Return the entry points of the shelves by group; reading those of all packages takes 20 ms."""
     from importlib.metadata import entry_points  # noqa: PLC0415  half of the start of a program that has no shelf
 
-    every = entry_points()
-    return {group: tuple(every.select(group=group)) for group in (f"suchus.{shelf}" for shelf in SHELVES)}
+    all_points = entry_points()
+    return {group: tuple(all_points.select(group=group)) for group in (f"suchus.{shelf}" for shelf in SHELVES)}
 
 
 def snake(name: str) -> str:
@@ -332,11 +338,12 @@ def _names(file: Path, kind: str) -> tuple[tuple[str, str], ...]:
     A project's file that cannot be read stands under its own name, so that its mistake is told when it is asked for.
     """
     stat = file.stat()
-    return _declared(file, kind, stat.st_mtime_ns, stat.st_size)
+    return _declared_names(file, kind, stat.st_mtime_ns, stat.st_size)
 
 
 @lru_cache(maxsize=1024)
-def _declared(file: Path, kind: str, *_: int) -> tuple[tuple[str, str], ...]:
+def _declared_names(file: Path, kind: str, *_: int) -> tuple[tuple[str, str], ...]:
+    """Return the catalog name and the module name of each thing that a file declares under a kind."""
     text = file.read_text(encoding="utf-8", errors="replace")
     if not re.search(rf"^{kind}s? *[:=]", text, re.M):
         return ()
@@ -344,14 +351,14 @@ def _declared(file: Path, kind: str, *_: int) -> tuple[tuple[str, str], ...]:
         body = ast.parse(text).body
     except (SyntaxError, ValueError):
         return ((file.stem, ""),)
-    found: list[tuple[str, str]] = []
+    names: list[tuple[str, str]] = []
     for line in body:
         target = line.targets[0] if isinstance(line, ast.Assign) else getattr(line, "target", None)
         value = getattr(line, "value", None)
         if isinstance(target, ast.Name) and target.id in (kind, f"{kind}s"):
             parts = value.elts if isinstance(value, (ast.Tuple, ast.List)) else [value]
-            found += [(snake(part.id), part.id) for part in parts if isinstance(part, ast.Name)]
-    return tuple(found)
+            names += [(snake(element.id), element.id) for element in parts if isinstance(element, ast.Name)]
+    return tuple(names)
 
 
 def _suffixes(shelf: str) -> tuple[str, ...]:
@@ -376,24 +383,26 @@ def _opened(folder: Path) -> Project:
         return Project(folder)
     except (OSError, ValueError) as error:
         raise UnreadableFile(f"the project folder {str(folder)!r} cannot be read: {error}.") from error
-    return _read(folder, stat.st_mtime_ns, stat.st_size)
+    return _read_project(folder, stat.st_mtime_ns, stat.st_size)
 
 
 @lru_cache(maxsize=8)
-def _read(folder: Path, *_: int) -> Project:
-    told, where = read_toml(folder / SETTINGS), folder / SETTINGS
-    unknown = [key for key in told if key not in SHELVES]
+def _read_project(folder: Path, *_: int) -> Project:
+    """Return the project of a folder from its ``suchus.toml``; the result is cached by the file's time and size."""
+    settings, settings_file = read_toml(folder / SETTINGS), folder / SETTINGS
+    unknown = [key for key in settings if key not in SHELVES]
     if unknown:
-        near = [close[0] for key in unknown if (close := get_close_matches(key, SHELVES, n=1))]
-        hint = f" Did you mean {', '.join(map(repr, near))}?" if near else ""
-        them = "which is" if len(unknown) == 1 else "which are"
+        matches = [close[0] for key in unknown if (close := get_close_matches(key, SHELVES, n=1))]
+        hint = f" Did you mean {', '.join(map(repr, matches))}?" if matches else ""
+        verb = "which is" if len(unknown) == 1 else "which are"
         raise UnreadableFile(
-            f"{where} has {', '.join(map(repr, unknown))}, {them} not known; there is {', '.join(SHELVES)}.{hint}"
+            f"{settings_file} has {', '.join(map(repr, unknown))}, {verb} not known; "
+            f"there is {', '.join(SHELVES)}.{hint}"
         )
-    return Project(folder, {shelf: tuple(_named(folder, shelf, files)) for shelf, files in told.items()})
+    return Project(folder, {shelf: tuple(_listed_files(folder, shelf, files)) for shelf, files in settings.items()})
 
 
-def _named(folder: Path, shelf: str, files: Any) -> Iterator[Path]:
+def _listed_files(folder: Path, shelf: str, files: Any) -> Iterator[Path]:
     """Yield the files that ``suchus.toml`` names for a shelf.
 
     Raises:
@@ -418,13 +427,13 @@ class _ProjectFinder:
     def find_spec(name: str, path: object = None, target: ModuleType | None = None) -> ModuleSpec | None:
         """Return how a module of the project is loaded; None for any other module."""
         del path, target
-        package, _, last = name.rpartition(".")
+        package, _, module_name = name.rpartition(".")
         shelf = next((shelf for shelf, home in SHELVES.items() if home == package), None)
         opened = current() if shelf else None
         if shelf is None or opened is None:
             return None
         for stem, file in opened.files(shelf):
-            if stem == last and file.suffix == ".py":
+            if stem == module_name and file.suffix == ".py":
                 if not _is_folder(stem, file):
                     return spec_from_file_location(name, file)
                 inner = [str(file.parent)]

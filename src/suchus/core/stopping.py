@@ -14,8 +14,8 @@ SOON = 1.5
 """Time after which a process that was told to stop ends, whatever it is at [s]."""
 CUT = "suchus: stopped while it was busy; what was finished is kept, the next run takes away what is half-written.\n"
 """What is said where that time was too short."""
-_LOOK = 0.1  # [s]; between two looks whether it has ended by itself
-_longer: list[float] = []  # what ``finishing`` asks for
+_POLL_INTERVAL = 0.1  # [s]; between two looks whether it has ended by itself
+_finishing_times: list[float] = []  # what ``finishing`` asks for
 
 
 class Stopped(KeyboardInterrupt):
@@ -40,34 +40,35 @@ def stopping() -> Iterator[None]:
     if current_thread() is not main_thread():
         yield
         return
-    told, done, number = Event(), Event(), [signal.SIGTERM]
+    stop_event, end_event, number = Event(), Event(), [signal.SIGTERM]
 
     def stop(signum: int, frame: FrameType | None) -> None:
         del frame
         number[0] = signal.Signals(signum)
-        told.set()
+        stop_event.set()
         raise Stopped(signum)
 
     def see_to_it() -> None:
-        told.wait()
+        """End the process if it still runs a time after the stop signal."""
+        stop_event.wait()
         since = monotonic()
-        while not done.wait(_LOOK):
-            if monotonic() - since > max((SOON, *_longer)):
+        while not end_event.wait(_POLL_INTERVAL):
+            if monotonic() - since > max((SOON, *_finishing_times)):
                 with suppress(OSError):  # nobody may read it
                     os.write(2, CUT.encode())
                 os._exit(128 + number[0])
 
-    heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) == signal.SIG_DFL]
-    for one in heard:
-        signal.signal(one, stop)
+    handled_signals = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) == signal.SIG_DFL]
+    for handled_signal in handled_signals:
+        signal.signal(handled_signal, stop)
     Thread(target=see_to_it, daemon=True).start()
     try:
         yield
     finally:
-        done.set()
-        told.set()
-        for one in heard:
-            signal.signal(one, signal.SIG_DFL)
+        end_event.set()
+        stop_event.set()
+        for handled_signal in handled_signals:
+            signal.signal(handled_signal, signal.SIG_DFL)
 
 
 @contextmanager
@@ -77,11 +78,11 @@ def finishing(seconds: float) -> Iterator[None]:
     Args:
         seconds: after which it ends all the same [s].
     """
-    _longer.append(seconds)
+    _finishing_times.append(seconds)
     try:
         yield
     finally:
-        _longer.remove(seconds)
+        _finishing_times.remove(seconds)
 
 
 def end_with_parent() -> None:

@@ -21,13 +21,13 @@ _SHARED_BY: ContextVar[int] = ContextVar("shared_by", default=1)
 
 
 @contextmanager
-def shared(by: int) -> Iterator[None]:
+def shared(sharers: int) -> Iterator[None]:
     """Let what the block computes use an equal share of the threads, at least one.
 
     Args:
-        by: number of such blocks, which run at the same time in threads of their own [-].
+        sharers: number of such blocks, which run at the same time in threads of their own [-].
     """
-    token = _SHARED_BY.set(by)
+    token = _SHARED_BY.set(sharers)
     try:
         yield
     finally:
@@ -40,14 +40,14 @@ def count() -> int:
     Raises:
         OutsideLimits: ``SUCHUS_THREADS`` is not a positive whole number.
     """
-    return max(_asked() // _SHARED_BY.get(), 1)
+    return max(_thread_limit() // _SHARED_BY.get(), 1)
 
 
-def _asked() -> int:
+def _thread_limit() -> int:
     """Return the number of threads that all of this process may use."""
-    asked = os.environ.get("SUCHUS_THREADS")
-    if asked is None:
+    setting = os.environ.get("SUCHUS_THREADS")
+    if setting is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    if not asked.isdecimal() or int(asked) < 1:
-        raise OutsideLimits(f"SUCHUS_THREADS is {asked!r}; a whole number of at least 1 is needed.")
-    return int(asked)
+    if not setting.isdecimal() or int(setting) < 1:
+        raise OutsideLimits(f"SUCHUS_THREADS is {setting!r}; a whole number of at least 1 is needed.")
+    return int(setting)

@@ -24,27 +24,27 @@ from suchus.core.reading import there
 
 MANIFEST = ".suchus-written"
 """File that says what suchus wrote into its folder: a line for each state, its digest and the name."""
-_LONGEST = 200  # bytes of a name, so that a draft's name, which is longer, is a name too
+_MAX_NAME_BYTES = 200  # bytes of a name, so that a draft's name, which is longer, is a name too
 _LOG = logging.getLogger(__name__)
 _replacing: ContextVar[bool] = ContextVar("replacing", default=False)
 _drafts: set[Path] = set()  # folders that are being written, whose files nobody else knows yet
 
 
-def check_name(name: str, what: str) -> None:
+def check_name(name: str, kind: str) -> None:
     """Refuse a name that makes no folder of its own in another folder.
 
     Args:
         name: such as that of a study.
-        what: what is called so.
+        kind: noun for what has the name, as ``study``.
 
     Raises:
         InvalidDesign: the name is empty, means another folder, or cannot be a name on disk.
     """
     odd = not name.strip() or name in (".", "..") or not name.isprintable() or any(c in name for c in "/\\")
-    if odd or len(name.encode(errors="replace")) > _LONGEST:
+    if odd or len(name.encode(errors="replace")) > _MAX_NAME_BYTES:
         raise InvalidDesign(
-            f"the {what} is named {name!r}, which makes no folder; choose a name of up to {_LONGEST} bytes without "
-            "slashes, or say --out DIR."
+            f"the {kind} is named {name!r}, which makes no folder; choose a name of up to {_MAX_NAME_BYTES} bytes "
+            "without slashes, or say --out DIR."
         )
 
 
@@ -55,12 +55,12 @@ def check_writable(folder: str | Path) -> None:
         Unwritable: it lies below a file, on a read-only disk, or permission is missing.
     """
     folder = Path(folder)
-    above = folder
-    while not there(above) and above != above.parent:
-        above = above.parent
+    ancestor = folder
+    while not there(ancestor) and ancestor != ancestor.parent:
+        ancestor = ancestor.parent
     try:
         _check_names(folder)
-        with tempfile.TemporaryDirectory(dir=above, prefix=".suchus-"):
+        with tempfile.TemporaryDirectory(dir=ancestor, prefix=".suchus-"):
             pass
     except (OSError, ValueError) as error:
         raise _unwritable(folder, error) from error
@@ -166,14 +166,14 @@ def new_folder(path: str | Path, *, lasting: bool = False) -> Iterator[Path]:
                 _drafts.discard(draft)
             _sign(draft)
             check_replaceable(path)  # once more: it may have changed meanwhile
-            whole = _taken_along(path, draft)
-            if not whole and not _replacing.get():  # another process was faster since the check above
+            is_complete = _carry_user_files(path, draft)
+            if not is_complete and not _replacing.get():  # another process was faster since the check above
                 raise Unwritable(f"{path} was changed while it was to be replaced; {_REMEDY}")
             if lasting:
-                for part in (*draft.rglob("*"), draft):
-                    _to_disk(part)
-            _swap(draft, path, shelter / "old" if whole else _backup(path))
-            if whole:
+                for file in (*draft.rglob("*"), draft):
+                    _to_disk(file)
+            _swap(draft, path, shelter / "old" if is_complete else _backup(path))
+            if is_complete:
                 shutil.rmtree(shelter / "old", ignore_errors=True)
         if lasting:
             _to_disk(path.parent)
@@ -189,8 +189,8 @@ def sweep(path: str | Path) -> None:
     path = Path(path)
     with suppress(OSError):
         for shelter in path.parent.glob(f".{glob.escape(path.name)}-*"):
-            with _locked(shelter) as ours:
-                if not ours:
+            with _locked(shelter) as is_locked:
+                if not is_locked:
                     continue
                 old = shelter / "old"
                 if old.exists() and not path.exists():
@@ -205,10 +205,10 @@ def _shelter(path: Path) -> Iterator[Path]:
     for _ in range(100):
         with (
             tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}-", ignore_cleanup_errors=True) as folder,
-            _locked(Path(folder)) as ours,
+            _locked(Path(folder)) as is_locked,
         ):
             if (
-                ours is not False and Path(folder).exists()
+                is_locked is not False and Path(folder).exists()
             ):  # else another process took it for a dead one's before it was locked
                 yield Path(folder)
                 return
@@ -219,13 +219,13 @@ def _shelter(path: Path) -> Iterator[Path]:
 def _locked(folder: Path) -> Iterator[bool | None]:
     """Hold a folder and return whether we do: not where another has it or it is gone; None on a disk without locks."""
     try:
-        held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     except OSError:
         yield False
         return
     try:
         try:
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             yield False
             return
@@ -234,10 +234,11 @@ def _locked(folder: Path) -> Iterator[bool | None]:
             return
         yield True
     finally:
-        os.close(held)
+        os.close(descriptor)
 
 
 def _swap(draft: Path, path: Path, old: Path) -> None:
+    """Rename a draft to its path and what was there to ``old``; on an error the old state is restored."""
     if path.exists():
         path.rename(old)
     try:
@@ -252,11 +253,11 @@ def _to_disk(path: Path) -> None:
     """Wait until a file, or the list of a folder's files, is on the disk."""
     if path.is_symlink():
         return
-    held = os.open(path, os.O_RDONLY)
+    descriptor = os.open(path, os.O_RDONLY)
     try:
-        os.fsync(held)
+        os.fsync(descriptor)
     finally:
-        os.close(held)
+        os.close(descriptor)
 
 
 def _check_names(path: Path) -> None:
@@ -285,13 +286,13 @@ def _unwritable(path: Path, error: OSError | ValueError) -> Unwritable:
 
 
 @contextmanager
-def replacing(asked: bool = True) -> Iterator[None]:
+def replacing(is_replacing: bool = True) -> Iterator[None]:
     """While the block runs, let what a user wrote or changed be replaced; a backup is kept beside it, and we say so."""
-    before = _replacing.set(asked)
+    token = _replacing.set(is_replacing)
     try:
         yield
     finally:
-        _replacing.reset(before)
+        _replacing.reset(token)
 
 
 def asked_to_replace() -> bool:
@@ -314,15 +315,19 @@ def check_replaceable(path: str | Path) -> None:
         if _replacing.get() or not there(path):
             return
         if path.is_dir():
-            changed = [file for file, ours in _states(path) if ours is False]
-            if changed:
-                raise Unwritable(f"{changed[0]} was changed since suchus wrote it; {_REMEDY}")
+            changed_files = [file for file, is_unchanged in _states(path) if is_unchanged is False]
+            if changed_files:
+                raise Unwritable(f"{changed_files[0]} was changed since suchus wrote it; {_REMEDY}")
             if any(path.iterdir()) and not (path / MANIFEST).is_file():
                 raise Unwritable(f"{path} exists, and nothing says that suchus wrote it; {_REMEDY}")
         elif _is_users(path):
-            ours = path.name in _written(path.parent)
-            how = " was changed since suchus wrote it" if ours else " exists, and nothing says that suchus wrote it"
-            raise Unwritable(f"{path}{how}; {_REMEDY}")
+            is_recorded = path.name in _recorded_digests(path.parent)
+            reason = (
+                " was changed since suchus wrote it"
+                if is_recorded
+                else " exists, and nothing says that suchus wrote it"
+            )
+            raise Unwritable(f"{path}{reason}; {_REMEDY}")
     except (OSError, ValueError) as error:
         raise _unwritable(path, error) from error
 
@@ -333,22 +338,28 @@ _REMEDY = "choose another place, move it away, or say --replace, which keeps a b
 def _is_users(path: Path) -> bool:
     """Return whether what is at a path holds something, and not what suchus wrote there."""
     return there(path) and not (
-        path.is_file() and (path.stat().st_size == 0 or _digest(path) in _written(path.parent).get(path.name, ()))
+        path.is_file()
+        and (path.stat().st_size == 0 or _digest(path) in _recorded_digests(path.parent).get(path.name, ()))
     )
 
 
 def _states(folder: Path) -> Iterator[tuple[Path, bool | None]]:
     """Yield each file in a folder and below, and whether it is as suchus wrote it; None where suchus did not."""
-    for place, _, names in os.walk(folder):
-        known = _written(Path(place))
+    for subfolder, _, names in os.walk(folder):
+        digests_by_name = _recorded_digests(Path(subfolder))
         for name in names:
-            file = Path(place, name)
+            file = Path(subfolder, name)
             if name != MANIFEST:
-                yield file, (name in known or None) and not file.is_symlink() and _digest(file) in known[name]
+                yield (
+                    file,
+                    (name in digests_by_name or None)
+                    and not file.is_symlink()
+                    and _digest(file) in digests_by_name[name],
+                )
 
 
-def _taken_along(path: Path, draft: Path) -> bool:
-    """Put the user's files of a folder into the draft of the new one, and return whether that says all of the old.
+def _carry_user_files(path: Path, draft: Path) -> bool:
+    """Copy the user's files of an old folder into its draft, and return whether the draft then replaces all of the old.
 
     Raises:
         Unwritable: one of them stands where a file of suchus's is to be.
@@ -356,13 +367,17 @@ def _taken_along(path: Path, draft: Path) -> bool:
     if not path.is_dir():
         return not _is_users(path)
     states = list(_states(path))
-    own = [file.relative_to(path) for file, ours in states if ours is None]
-    clash = [file for file in own if os.path.lexists(draft / file)]
+    user_files = [file.relative_to(path) for file, is_unchanged in states if is_unchanged is None]
+    clash = [file for file in user_files if os.path.lexists(draft / file)]
     if clash and not _replacing.get():
         raise Unwritable(f"{path / clash[0]} stands where a file of suchus's is to be; {_REMEDY}")
-    if clash or any(ours is False for _, ours in states) or (own and not (path / MANIFEST).is_file()):
+    if (
+        clash
+        or any(is_unchanged is False for _, is_unchanged in states)
+        or (user_files and not (path / MANIFEST).is_file())
+    ):
         return False
-    for file in own:
+    for file in user_files:
         (draft / file).parent.mkdir(parents=True, exist_ok=True)
         _copy(path / file, draft / file)
         manifest = file.parent / MANIFEST  # whose the folder is stays known, though nothing of ours may be left in it
@@ -371,24 +386,24 @@ def _taken_along(path: Path, draft: Path) -> bool:
     return True
 
 
-def _copy(file: Path, to: Path) -> None:
-    """Let a file stand at another place too; a folder moves there."""
+def _copy(file: Path, target: Path) -> None:
+    """Link or copy a file to another path; a folder is moved."""
     if file.is_dir() and not file.is_symlink():
-        file.rename(to)
+        file.rename(target)
         return
     try:
-        os.link(file, to, follow_symlinks=False)
+        os.link(file, target, follow_symlinks=False)
     except OSError:  # a disk without links
-        shutil.copy2(file, to, follow_symlinks=False)
+        shutil.copy2(file, target, follow_symlinks=False)
 
 
 def _backup(path: Path) -> Path:
     """Return a free name beside a path, for what is there, and say so."""
     number = 1
-    while os.path.lexists(place := path.with_name(f"{path.name}.backup{number}")):
+    while os.path.lexists(backup := path.with_name(f"{path.name}.backup{number}")):
         number += 1
-    _LOG.warning("suchus: what was at %s is kept as %s.", path, place)
-    return place
+    _LOG.warning("suchus: what was at %s is kept as %s.", path, backup)
+    return backup
 
 
 def _is_draft(path: Path) -> bool:
@@ -402,29 +417,29 @@ def _digest(path: Path) -> str:
 
 def _sign(folder: Path) -> None:
     """Note all files of a folder and below, each in its own folder."""
-    for place, _, names in list(os.walk(folder)):
-        _note(Path(place), {name: _digest(Path(place, name)) for name in names if name != MANIFEST})
+    for subfolder, _, names in list(os.walk(folder)):
+        _note(Path(subfolder), {name: _digest(Path(subfolder, name)) for name in names if name != MANIFEST})
 
 
 def _note(folder: Path, digests: Mapping[str, str]) -> None:
     """Add states of files to what suchus wrote into a folder; whatever happens then, the file is one of ours."""
-    known = _written(folder)
-    new = {name: digest for name, digest in digests.items() if digest not in known.get(name, ())}
+    digests_by_name = _recorded_digests(folder)
+    new = {name: digest for name, digest in digests.items() if digest not in digests_by_name.get(name, ())}
     if new:
         lines = "".join(f"{digest}  {_plain(name)}\n" for name, digest in new.items())
         with (folder / MANIFEST).open("a", encoding="ascii") as file:
             file.write(lines)
 
 
-def _written(folder: Path) -> dict[str, set[str]]:
+def _recorded_digests(folder: Path) -> dict[str, set[str]]:
     """Return the digests of what suchus wrote into a folder, by name; a line that was cut off says nothing."""
-    known: dict[str, set[str]] = {}
+    digests_by_name: dict[str, set[str]] = {}
     manifest = folder / MANIFEST
     if manifest.is_file():
         for line in manifest.read_text(encoding="ascii", errors="replace").splitlines():
             digest, _, name = line.partition("  ")
-            known.setdefault(unquote(name, errors="surrogateescape"), set()).add(digest)
-    return known
+            digests_by_name.setdefault(unquote(name, errors="surrogateescape"), set()).add(digest)
+    return digests_by_name
 
 
 def _plain(name: str) -> str:

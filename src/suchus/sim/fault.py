@@ -1,4 +1,4 @@
-"""The contract of a fault: a frozen value that says whom it can befall, what it does and how it ends."""
+"""The interface of a fault: a frozen value that says which parts it can affect, what it does and how it ends."""
 
 import math
 import re
@@ -44,21 +44,21 @@ class Plant(Protocol):
     def angle(self, servo: str) -> float:
         """Return the angle of a joint at its servo's shaft, as it is now [rad]."""
 
-    def felt(self, group: str, of: str | None = None) -> np.ndarray:
+    def felt(self, group: str, part_name: str | None = None) -> np.ndarray:
         """Return readings of this control period for writing; only in ``Fault.sense``.
 
         Args:
             group: one of ``SENSORS``.
-            of: whose reading, shape (1,): a servo, a leg, a body of the trunk; None for the whole group.
+            part_name: servo, leg or body of the trunk whose reading is returned, shape (1,); None for the whole group.
         """
 
-    def parameter(self, field: str, of: str) -> np.ndarray:
+    def parameter(self, field: str, element: str) -> np.ndarray:
         """Return this robot's own row of a field of ``mujoco.MjModel`` for writing; ``restore`` undoes what is written.
 
         Args:
             field: such as ``actuator_forcerange``, ``geom_conaffinity``, ``dof_damping``; constants that MuJoCo
                 derives from masses and lengths do not follow.
-            of: name of the servo, geom, body or joint.
+            element: name of the servo, geom, body or joint.
         """
 
     def speed_limit(self, servo: str) -> np.ndarray:
@@ -92,7 +92,7 @@ class Fault(ABC):
     @classmethod
     @abstractmethod
     def parts(cls, robot: Robot) -> tuple[str, ...]:
-        """Return the names of the parts of a robot that this can befall."""
+        """Return the names of the parts of a robot that this fault can affect."""
 
     @classmethod
     def kind(cls) -> str:
@@ -114,7 +114,7 @@ class Fault(ABC):
             raise UnknownName("joint" if self.acts_on == "servo" else self.acts_on, self.part, self.parts(robot))
 
     def apply(self, plant: Plant) -> None:  # noqa: B027 - many faults need nothing when they begin
-        """Let it begin."""
+        """Begin the fault."""
 
     def command(self, plant: Plant) -> None:  # noqa: B027 - many faults leave commands alone
         """Change what the servos are commanded in a control period, in ``plant.targets``.
@@ -123,10 +123,10 @@ class Fault(ABC):
         """
 
     def sense(self, plant: Plant) -> None:  # noqa: B027 - many faults leave readings alone
-        """Change what is felt in a control period, with ``plant.felt``."""
+        """Change the sensor readings of a control period, with ``plant.felt``."""
 
     def mend(self, plant: Plant) -> None:
-        """Let it end: the robot is as it was built."""
+        """End the fault: the robot is as it was built."""
         plant.restore()
 
 
@@ -165,32 +165,34 @@ def check_faults(faults: Sequence[Fault], robot: Robot, duration: float) -> None
     for fault in faults:
         if not isinstance(fault, Fault):
             raise InvalidDesign(f"{str(fault)[:60]!r} is no fault; give values such as Limp('LF_yaw').")
-        wrong = [f"{field} {text}" for field, text in misfits(fault)]
-        if wrong:
-            raise InvalidDesign(f"a fault of the kind {fault.kind()} has {'; '.join(wrong)}.")
+        misfit_texts = [f"{field} {text}" for field, text in misfits(fault)]
+        if misfit_texts:
+            raise InvalidDesign(f"a fault of the kind {fault.kind()} has {'; '.join(misfit_texts)}.")
         fault.refuse(robot)
         if not (math.isfinite(fault.at) and 0.0 <= fault.at < duration):
             raise InvalidDesign(f"{fault} happens at {fault.at} s; the run lasts from 0 to {duration} s.")
     for i, fault in enumerate(faults):
-        for other in faults[:i]:
-            if fault.part == other.part:
-                raise InvalidDesign(f"{other} and {fault} contradict each other; one fault per part is allowed.")
+        for earlier_fault in faults[:i]:
+            if fault.part == earlier_fault.part:
+                raise InvalidDesign(
+                    f"{earlier_fault} and {fault} contradict each other; one fault per part is allowed."
+                )
 
 
-def refuse_number(fault: Fault, value: Any, low: float, high: float, what: str, unit: str = "") -> None:
+def refuse_number(fault: Fault, value: Any, lower_bound: float, upper_bound: float, verb: str, unit: str = "") -> None:
     """Refuse a number of a fault outside its range.
 
     Args:
         fault: whose.
         value: the number, in its unit.
-        low: least allowed.
-        high: greatest allowed.
-        what: a verb, as in "moves at 9 rad/s".
+        lower_bound: least allowed.
+        upper_bound: greatest allowed.
+        verb: verb phrase before the number, as "moves at" in "moves at 9 rad/s".
         unit: of the number.
 
     Raises:
         InvalidDesign: it is outside, or no finite number.
     """
-    if not (isinstance(value, (int, float)) and low <= value <= high):
+    if not (isinstance(value, (int, float)) and lower_bound <= value <= upper_bound):
         text = f"{value:g}" if isinstance(value, (int, float)) else f"{value!r:.40}"
-        raise InvalidDesign(f"{fault} {what} {text}{unit}; {low:g} to {high:g}{unit} is allowed.")
+        raise InvalidDesign(f"{fault} {verb} {text}{unit}; {lower_bound:g} to {upper_bound:g}{unit} is allowed.")

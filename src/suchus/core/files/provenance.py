@@ -45,33 +45,33 @@ def digest(settings: Mapping[str, Any]) -> str:
 
 def versions() -> dict[str, str]:
     """Return the version of Python and of every package that can change a number or a picture."""
-    found = {"python": platform.python_version()}
+    package_versions = {"python": platform.python_version()}
     for name in _PACKAGES:
         try:
-            found[name] = version(name)
+            package_versions[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "not installed"
-    return found
+            package_versions[name] = "not installed"
+    return package_versions
 
 
 @cache
-def code_digest(*rooms: str) -> str:
+def code_digest(*paths: str) -> str:
     """Return the SHA-256 of the syntax trees of some rooms or modules of suchus, and of their data.
 
     Comments, docstrings and line breaks change nothing.
 
     Args:
-        rooms: paths of folders or of modules, as ``sim/land`` or ``experiments/study/claims.py``.
+        paths: paths of folders or of modules, as ``sim/land`` or ``experiments/study/claims.py``.
 
     Raises:
         FileNotFoundError: there is no such folder or module.
     """
     text = hashlib.sha256()
-    for room in rooms:
-        place = _PACKAGE / room
-        if not place.exists():
-            raise FileNotFoundError(f"suchus has no {room}, whose source was to be compared.")
-        for file in [place] if place.is_file() else sorted([*place.rglob("*.py"), *place.rglob("*.toml")]):
+    for path in paths:
+        location = _PACKAGE / path
+        if not location.exists():
+            raise FileNotFoundError(f"suchus has no {path}, whose source was to be compared.")
+        for file in [location] if location.is_file() else sorted([*location.rglob("*.py"), *location.rglob("*.toml")]):
             source = file.read_bytes() if file.suffix == ".toml" else syntax_of(file.read_bytes())
             text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + source + b"\0")
     return text.hexdigest()
@@ -89,7 +89,7 @@ def syntax_of(source: bytes) -> bytes:
     tree = ast.parse(source)
     for node in ast.walk(tree):
         if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
-            node.body = [part for part in node.body if not _is_text(part)]
+            node.body = [statement for statement in node.body if not _is_text(statement)]
     text: list[str] = []
     _write(tree, text.append)
     return "".join(text).encode()
@@ -104,20 +104,20 @@ def _is_text(statement: ast.stmt) -> bool:
     )
 
 
-def _write(node: ast.AST, put: Callable[[str], None]) -> None:
+def _write(node: ast.AST, write: Callable[[str], None]) -> None:
     """Write a syntax tree without positions."""
-    put(f"{type(node).__name__}(")
+    write(f"{type(node).__name__}(")
     for name, value in node.__dict__.items():
         if name in _NO_SYNTAX or value is None or value == []:
             continue
-        put(f"{name}=")
-        for part in value if isinstance(value, list) else (value,):
-            if isinstance(part, ast.AST):
-                _write(part, put)
+        write(f"{name}=")
+        for element in value if isinstance(value, list) else (value,):
+            if isinstance(element, ast.AST):
+                _write(element, write)
             else:
-                put(repr(part))
-            put(",")
-    put(")")
+                write(repr(element))
+            write(",")
+    write(")")
 
 
 @cache
@@ -137,9 +137,14 @@ def made_alike(stored: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
         stored: what ``provenance`` returned for it.
         settings: the fields of the experiment.
     """
-    now, there = provenance(settings, seconds=0.0), stored.get("machine")
-    same_arithmetic = isinstance(there, dict) and there.get("arithmetic") == now["machine"]["arithmetic"]
-    return same_arithmetic and all(stored.get(name) == now[name] for name in ("config_hash", "versions", "code"))
+    current_provenance, stored_machine = provenance(settings, seconds=0.0), stored.get("machine")
+    same_arithmetic = (
+        isinstance(stored_machine, dict)
+        and stored_machine.get("arithmetic") == current_provenance["machine"]["arithmetic"]
+    )
+    return same_arithmetic and all(
+        stored.get(name) == current_provenance[name] for name in ("config_hash", "versions", "code")
+    )
 
 
 def plain(value: Any) -> Any:

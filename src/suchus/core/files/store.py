@@ -66,24 +66,24 @@ def open_foreign(data: bytes, path: Path) -> xr.Dataset:
         raise IncompatibleRecord(f"{path} is not a NetCDF file that can be read.") from error
 
 
-def _check_inside(file: h5py.File, path: Path, most: int) -> None:
+def _check_inside(file: h5py.File, path: Path, max_size: int) -> None:
     """Refuse groups and data that lie in other files, and data that are larger than the file can make them."""
-    size, groups, seen = 0, [file], set()
+    size, groups, group_ids = 0, [file], set()
     while groups:
         group = groups.pop()
         for name in group:
             if not isinstance(group.get(name, getlink=True), h5py.HardLink):
                 raise IncompatibleRecord(f"{path} refers to other files or places by {name!r}; that is not followed.")
-            inside = group[name]
-            if isinstance(inside, h5py.Group):
-                if inside.id not in seen:
-                    seen.add(inside.id)
-                    groups.append(inside)
-            elif isinstance(inside, h5py.Dataset):
-                if inside.external or inside.is_virtual:
+            member = group[name]
+            if isinstance(member, h5py.Group):
+                if member.id not in group_ids:
+                    group_ids.add(member.id)
+                    groups.append(member)
+            elif isinstance(member, h5py.Dataset):
+                if member.external or member.is_virtual:
                     raise IncompatibleRecord(f"{path} keeps {name!r} in other files; that is not followed.")
-                size += inside.size * inside.dtype.itemsize if inside.size else 0
-    if size > most:
+                size += member.size * member.dtype.itemsize if member.size else 0
+    if size > max_size:
         raise IncompatibleRecord(f"{path} claims to hold {size:.3g} bytes, more than a file of its size can.")
 
 
@@ -152,6 +152,7 @@ def load(path: str | Path, *, whole: bool = False) -> xr.Dataset:
 
 
 def _attributes(text: object, path: Path) -> dict[str, Any]:
+    """Return the attributes that a record stores as JSON text."""
     try:
         attributes = json.loads(text) if isinstance(text, str) else None
     except (ValueError, RecursionError):

@@ -32,15 +32,17 @@ def write_tables(record: xr.Dataset, folder: str | Path) -> Path:
         Unwritable: the place cannot be written to, or is taken.
     """
     folder = Path(folder)
-    about: list[tuple[str, str, str, str]] = []
+    column_rows: list[tuple[str, str, str, str]] = []
     with new_folder(folder) as draft:
         for dims, names in _sets(record).items():
-            file = "_".join(part.replace("/", "-") for part in dims) or _SINGLE
+            file = "_".join(dim.replace("/", "-") for dim in dims) or _SINGLE
             _write(
                 draft / f"{file}.csv", [_headed(record, name) for name in (*dims, *names)], _rows(record, dims, names)
             )
-            about += [(f"{file}.csv", _headed(record, name), *_unit_and_name(record, name)) for name in (*dims, *names)]
-        _write(draft / COLUMNS, ["file", "column", "unit", "meaning"], iter(about))
+            column_rows += [
+                (f"{file}.csv", _headed(record, name), *_unit_and_name(record, name)) for name in (*dims, *names)
+            ]
+        _write(draft / COLUMNS, ["file", "column", "unit", "meaning"], iter(column_rows))
     return folder
 
 
@@ -57,6 +59,7 @@ def _sets(record: xr.Dataset) -> dict[tuple[str, ...], list[str]]:
 
 
 def _rows(record: xr.Dataset, dims: Sequence[str], names: Sequence[str]) -> Iterator[tuple[Any, ...]]:
+    """Yield a row for each combination of labels: the labels, then the value of each variable."""
     labels = product(*(record[dim].values.tolist() for dim in dims))
     values = [record[name].variable.transpose(*dims).values.reshape(-1) for name in names]
     for start in range(0, len(values[0]), _ROWS):
@@ -80,7 +83,7 @@ def _unit_and_name(record: xr.Dataset, name: str) -> tuple[str, str]:
 
 
 def _write(file: Path, header: Sequence[str], rows: Iterator[tuple[Any, ...]]) -> None:
-    with file.open("w", encoding="utf-8", newline="") as out:
-        writer = csv.writer(out, lineterminator="\n")
+    with file.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(header)
         writer.writerows(rows)

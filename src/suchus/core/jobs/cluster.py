@@ -20,7 +20,7 @@ Item = TypeVar("Item")
 Versions = Callable[[], Mapping[str, str]]
 _LOG = logging.getLogger(__name__)
 _ADDRESS = re.compile(r"(tcp|tls)://(\[[0-9a-fA-F:.]+\]|[^\[\]/:\s]+):(\d{1,5})")
-_ALIKE = (
+_SHARED_PACKAGES = (
     "python",
     "dask",
     "distributed",
@@ -28,12 +28,12 @@ _ALIKE = (
     "msgpack",
     "numpy",
 )  # alike at both ends
-_PATIENCE = 30.0  # [s]; for a first worker
-_AGAIN = 0.5  # [s]; between two looks whether somebody listens
+_WORKER_TIMEOUT = 30.0  # [s]; for a first worker
+_RETRY_INTERVAL = 0.5  # [s]; between two looks whether somebody listens
 _GREETING = 2**20  # bytes of the first message, at most
 _UNREAD = "during deserialization"
 """What Dask says where a scheduler or a worker cannot make out what it was sent."""
-_SOON = 8.0  # [s]; for a scheduler: a command that finds none ends within 10 s, its start included
+_SCHEDULER_TIMEOUT = 8.0  # [s]; for a scheduler: a command that finds none ends within 10 s, its start included
 
 
 class NoCluster(SuchusError, ConnectionError):
@@ -41,7 +41,7 @@ class NoCluster(SuchusError, ConnectionError):
 
 
 @contextmanager
-def connected(address: str, patience: float = _SOON) -> Iterator[Any]:
+def connected(address: str, patience: float = _SCHEDULER_TIMEOUT) -> Iterator[Any]:
     """Yield a ``distributed.Client`` of a scheduler.
 
     Args:
@@ -84,7 +84,7 @@ def spread(
     name: str,
     versions: Versions = deciding,
     retries: int = 3,
-    patience: float = _PATIENCE,
+    patience: float = _WORKER_TIMEOUT,
 ) -> Generator[tuple[int, Any], None, None]:
     """Do one piece of work for each item on a cluster, and yield the results as they are finished, in any order.
 
@@ -117,7 +117,7 @@ def spread(
             [Carried(item) for item in items],
             work=Carried(work),
             versions=versions,
-            wanted=dict(versions()) | ({} if machine.asked_to_mix() else machine.arithmetic()),
+            expected_versions=dict(versions()) | ({} if machine.asked_to_mix() else machine.arithmetic()),
             pure=False,
             retries=retries,
             key=f"suchus-{name}",
@@ -155,29 +155,29 @@ def _reach(address: str, patience: float) -> None:
     Raises:
         NoCluster: there is nothing to connect to.
     """
-    found = _ADDRESS.fullmatch(address)
-    if found is None or not 0 < int(found[3]) < 65536:
+    match = _ADDRESS.fullmatch(address)
+    if match is None or not 0 < int(match[3]) < 65536:
         raise NoCluster(f"{address!r} is no address of a scheduler; one looks like tcp://127.0.0.1:8786.")
     end, announced = time.monotonic() + patience, False
     while True:
         try:
-            where = found[2].strip("[]"), int(found[3])
-            with socket.create_connection(where, timeout=max(patience, 0.1)) as wire:
-                if _speaks(wire, found[1] == "tls"):
+            endpoint = match[2].strip("[]"), int(match[3])
+            with socket.create_connection(endpoint, timeout=max(patience, 0.1)) as wire:
+                if _speaks(wire, match[1] == "tls"):
                     return
             raise NoCluster(f"what answers at {address} is no scheduler; start one with `dask scheduler`.")
         except NoCluster:
             raise
         except (OSError, ValueError) as error:
             unknown = isinstance(error, (socket.gaierror, ValueError))
-            if unknown or time.monotonic() + _AGAIN > end:
+            if unknown or time.monotonic() + _RETRY_INTERVAL > end:
                 raise NoCluster(
                     f"no scheduler answers at {address} within {patience:g} s; start one with `dask scheduler`."
                 ) from error
         if not announced:
             _LOG.warning("nobody answers at %s; trying for %g s.", address, patience)
             announced = True
-        time.sleep(_AGAIN)
+        time.sleep(_RETRY_INTERVAL)
 
 
 def _speaks(wire: socket.socket, secret: bool) -> bool:
@@ -206,39 +206,61 @@ def _check_versions(client: Any) -> None:
     """
     try:
         versions = client.get_versions()
-        ours = _packages(versions["client"])
-        others = {"the scheduler": _packages(versions["scheduler"])}
-        others |= {f"the worker {name}": _packages(worker) for name, worker in versions["workers"].items()}
+        local_versions = _packages(versions["client"])
+        remote_versions = {"the scheduler": _packages(versions["scheduler"])}
+        remote_versions |= {f"the worker {name}": _packages(worker) for name, worker in versions["workers"].items()}
     except (OSError, TimeoutError, KeyError, TypeError, ValueError, ImportError, AttributeError) as error:
         raise NoCluster(
             "the cluster does not report its versions; start it with the versions that are here."
         ) from error
-    for who, theirs in others.items():
-        other = [f"{name} {theirs[name]} (here {ours[name]})" for name in _ALIKE if theirs[name] != ours[name]]
-        if other:
-            raise IncompatibleRecord(f"{who} has {', '.join(other)}; install the same versions on every machine.")
+    for peer, peer_versions in remote_versions.items():
+        differences = [
+            f"{name} {peer_versions[name]} (here {local_versions[name]})"
+            for name in _SHARED_PACKAGES
+            if peer_versions[name] != local_versions[name]
+        ]
+        if differences:
+            raise IncompatibleRecord(
+                f"{peer} has {', '.join(differences)}; install the same versions on every machine."
+            )
 
 
 def _packages(versions: Mapping[str, Any]) -> dict[str, str]:
     packages: Mapping[str, Any] = versions["packages"]
-    return {name: ".".join(str(packages.get(name)).split(".")[: 2 if name == "python" else 3]) for name in _ALIKE}
+    return {
+        name: ".".join(str(packages.get(name)).split(".")[: 2 if name == "python" else 3]) for name in _SHARED_PACKAGES
+    }
 
 
 def _piece(
-    number: int, item: Item, work: Callable[[Item], Any], versions: Versions, wanted: Mapping[str, str]
+    number: int, item: Item, work: Callable[[Item], Any], versions: Versions, expected_versions: Mapping[str, str]
 ) -> tuple[int, Any]:
-    """Do one piece of work, on a worker."""
-    found = versions()
-    other = [
-        f"{name} {found.get(name)} (not {wanted.get(name)})"
-        for name in dict.fromkeys((*found, *(name for name in wanted if name not in machine.arithmetic())))
-        if found.get(name) != wanted.get(name)
-    ]
-    if other:
-        raise IncompatibleRecord(
-            f"a worker has {', '.join(other)}; its bytes could differ: install the same versions everywhere."
+    """Do one piece of work, on a worker.
+
+    Args:
+        number: index of the item.
+        item: what the piece is computed from.
+        work: computes the result of an item.
+        versions: returns the versions on this worker.
+        expected_versions: versions and arithmetic that the results must be made with.
+    """
+    worker_versions = versions()
+    differences = [
+        f"{name} {worker_versions.get(name)} (not {expected_versions.get(name)})"
+        for name in dict.fromkeys(
+            (*worker_versions, *(name for name in expected_versions if name not in machine.arithmetic()))
         )
-    if parts := [part for part, digest in machine.arithmetic().items() if wanted.get(part, digest) != digest]:
+        if worker_versions.get(name) != expected_versions.get(name)
+    ]
+    if differences:
+        raise IncompatibleRecord(
+            f"a worker has {', '.join(differences)}; its bytes could differ: install the same versions everywhere."
+        )
+    if parts := [
+        component
+        for component, digest in machine.arithmetic().items()
+        if expected_versions.get(component, digest) != digest
+    ]:
         raise IncompatibleRecord(
             f"on the worker {platform.node()} the {' and '.join(parts)} give other last bits than here; start all "
             f"processes with {machine.WANTED}=1, take machines of one kind, or say --mixed."

@@ -1,4 +1,4 @@
-"""The engine: every piece of a job that is not in its store yet, wherever it is done, each kept as it is finished."""
+"""The engine of jobs: it computes each piece that is not in the store yet, and stores each result at once."""
 
 import time
 from collections.abc import Callable
@@ -23,17 +23,17 @@ def finish(
     each: Callable[[int], Progress] | None = None,
     finished: Callable[[int, Result], None] | None = None,
 ) -> None:
-    """Do every piece of a job that is not in its store yet, and keep each result as soon as it is there.
+    """Compute every piece of a job that is not in its store yet, and store each result as soon as it is finished.
 
-    Whatever stops the program, Ctrl-C and a kill included, only the pieces that were under way are lost. Started again
-    it goes on. Where the pieces are done, and how many at once, changes no byte.
+    If the program stops, by Ctrl-C or a kill too, only the pieces in progress are lost; the next start continues. The
+    results are the same bytes wherever the pieces are computed, and however many at once.
 
     Args:
         job: what is to be done.
-        store: where the results stay.
-        place: where the pieces are done, and how many at once.
-        progress: told how much of the whole job is done.
-        each: returns what is told how far a piece is; called with its number when the piece is begun.
+        store: where the results are stored.
+        place: where the pieces are computed, and how many at once.
+        progress: called with the finished fraction of the whole job.
+        each: called with the number of a piece when it starts; returns the callback for the progress of that piece.
         finished: called with the number of a piece and its result, when that is kept.
 
     Raises:
@@ -45,105 +45,108 @@ def finish(
     """
     numbers = range(len(job.items))
     missing = [number for number in numbers if not store.has(number)]
-    there = sorted(set(numbers) - set(missing))
+    stored_numbers = sorted(set(numbers) - set(missing))
     tally = Tally(
         sum(job.size(number) for number in numbers),
         job.unit,
         progress,
-        done=sum(job.size(number) for number in there),
-        failed=0 if job.failures is None else sum(job.failed(store.get(number)) for number in there),
+        done=sum(job.size(number) for number in stored_numbers),
+        failed=0 if job.failures is None else sum(job.failed(store.get(number)) for number in stored_numbers),
     )
 
-    def begun(i: int) -> Progress:
+    def start_piece(i: int) -> Progress:
+        """Return the callback that forwards the progress of the i-th missing piece to its observer and to the tally."""
         number = missing[i]
-        own = silent if each is None else each(number)
+        report = silent if each is None else each(number)
 
-        def tell(stage: str, share: float) -> None:
-            own(stage, share)
-            tally.under_way(number, share * job.size(number))
+        def tell(stage: str, fraction: float) -> None:
+            report(stage, fraction)
+            tally.under_way(number, fraction * job.size(number))
 
         return tell
 
-    with closing(place.results(job, [job.items[number] for number in missing], begun)) as results:
-        for i, made in results:
+    with closing(place.results(job, [job.items[number] for number in missing], start_piece)) as results:
+        for i, outcome in results:
             number = missing[i]
-            result = _of_the_dead(job, number, made) if isinstance(made, Died) else made
+            result = _result_after_crash(job, number, outcome) if isinstance(outcome, Died) else outcome
             store.put(number, result)
             tally.finished(number, job.size(number), failed=job.failed(result))
             if finished is not None:
                 finished(number, result)
 
 
-def _of_the_dead(job: Job[Item, Result], number: int, died: Died) -> Result:
-    """Return the result of a piece whose processes died.
+def _result_after_crash(job: Job[Item, Result], number: int, crash: Died) -> Result:
+    """Return the substitute that the job defines for a piece whose processes crashed.
 
     Raises:
         ProcessDied: the job has none.
     """
     if job.died is not None:
-        return job.died(job.items[number], died.exit_code)
+        return job.died(job.items[number], crash.exit_code)
     raise ProcessDied(
-        f"the process at {job.piece} {number} of {job.kind} {job.name!r} ended with exit code {died.exit_code}, "
+        f"the process at {job.piece} {number} of {job.kind} {job.name!r} ended with exit code {crash.exit_code}, "
         f"{job.tries} times; what was finished is kept: where memory was short, fewer processes (--jobs) or smaller "
         "pieces take less of it."
     )
 
 
 class Tally:
-    """Counts what is done of a whole, of earlier starts too, and the time of this one.
+    """Counts the finished units of a job, those of earlier starts included, and estimates the remaining time.
 
     Args:
-        total: all that is to be done, in units [-].
-        unit: what is counted, as ``runs``.
-        progress: told, whenever the count changes, the count, the rate and the time that is left as a stage, and the
-            share of the total that is done.
-        done: of an earlier start [-].
-        failed: of those that are done, how many failed [-].
+        total: units of the whole job [-].
+        unit: name of a unit, as ``runs``.
+        progress: called when the count changes, with the count, the rate and the remaining time as a stage, and with
+            the finished fraction of the total.
+        done: units that earlier starts finished [-].
+        failed: number of those units that failed [-].
     """
 
     def __init__(
         self, total: float, unit: str, progress: Progress = silent, *, done: float = 0.0, failed: int = 0
     ) -> None:
+        """Start the clock; ``done`` units of earlier starts do not count in the rate."""
         self.done, self.failed = done, failed
         self.note = ""
         """What else is told, behind the count."""
         self._total, self._unit, self._progress = total, unit, progress
-        self._before, self._start = done, time.perf_counter()
-        self._under_way: dict[int, float] = {}
+        self._earlier_units, self._start = done, time.perf_counter()
+        self._open_units: dict[int, float] = {}
 
     def under_way(self, number: int, units: float) -> None:
-        """Tell how many units of a piece are done [-]; several pieces may be under way at once."""
-        self._under_way[number] = units
+        """Report the finished units of a piece in progress [-]; several pieces may be in progress at once."""
+        self._open_units[number] = units
         self._tell()
 
     def finished(self, number: int, units: float, *, failed: int = 0, fresh: bool = True) -> None:
-        """Count a piece.
+        """Count a finished piece.
 
         Args:
             number: of the piece.
             units: all that it has [-].
             failed: how many of them failed [-].
-            fresh: whether this start did it; what an earlier one did says nothing of the rate.
+            fresh: whether this start computed it; pieces of earlier starts do not count in the rate.
         """
-        self._under_way.pop(number, None)
+        self._open_units.pop(number, None)
         self.done += units
         self.failed += failed
-        self._before += 0.0 if fresh else units
+        self._earlier_units += 0.0 if fresh else units
         self._tell()
 
     def _tell(self) -> None:
-        done = self.done + sum(self._under_way.values())
+        """Report the count, the rate and the remaining time of the whole job."""
+        done_units = self.done + sum(self._open_units.values())
         seconds = time.perf_counter() - self._start
-        rate = (done - self._before) / seconds if seconds > 0 else 0.0
-        words = [f"{int(done)} of {self._total:g} {self._unit}"]
+        rate = (done_units - self._earlier_units) / seconds if seconds > 0 else 0.0
+        words = [f"{int(done_units)} of {self._total:g} {self._unit}"]
         if rate > 0:
             words.append(f"{rate:.1f}/s" if rate >= 0.1 else f"{3600 * rate:.1f}/h")
-            words.append(f"{_duration(max(self._total - done, 0.0) / rate)} left")
+            words.append(f"{_duration(max(self._total - done_units, 0.0) / rate)} left")
         if self.failed:
             words.append(f"{self.failed} failed")
         if self.note:
             words.append(self.note)
-        self._progress(", ".join(words), min(done / self._total, 1.0))
+        self._progress(", ".join(words), min(done_units / self._total, 1.0))
 
 
 def _duration(seconds: float) -> str:

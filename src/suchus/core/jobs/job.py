@@ -50,17 +50,17 @@ class Job(Generic[Item, Result]):
 
 
 class Died(NamedTuple):
-    """The processes that were at a piece ended before it was finished."""
+    """The outcome of a piece whose processes ended before the piece was finished."""
 
     exit_code: int | None
     """Of the last of them; negative for the signal that killed it."""
 
 
 class ResultStore(Protocol[Result]):
-    """Where the results of a job stay; one that was put stays, whatever happens to the program."""
+    """Storage for the results of a job; a stored result survives the end of the program."""
 
     def has(self, number: int) -> bool:
-        """Return whether the result of a piece is there, whole, and what the work would make again."""
+        """Return whether the store has the complete result of a piece, equal to what the work would compute again."""
 
     def get(self, number: int) -> Result:
         """Return a result that is there."""

@@ -29,8 +29,8 @@ def deciding(rooms: Sequence[str] = MADE_BY, libraries: Sequence[str] = ()) -> d
         rooms: whose source decides, see ``record.code_digest``.
         libraries: further packages whose versions decide.
     """
-    found = versions()
-    makers = {name: found.get(name, "not installed") for name in _DECIDING}
+    package_versions = versions()
+    makers = {name: package_versions.get(name, "not installed") for name in _DECIDING}
     makers["source"] = code_digest(*rooms)[:12]
     project = current()
     if project is not None:

@@ -1,4 +1,4 @@
-"""Where the pieces of a job are done: in this process, in processes of this machine, or on a Dask cluster."""
+"""Places that compute the pieces of a job: this process, processes of this machine, or a Dask cluster."""
 
 import sys
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -17,23 +17,28 @@ from suchus.core.jobs.job import AnyJob, Died
 from suchus.core.progress import Progress, silent
 
 Begun = Callable[[int], Progress]
-"""Called with the number of a piece that is begun; returns what is told how far it is."""
+"""Called with the number of a piece when it starts; returns the callback for its progress."""
 Results = Generator[tuple[int, Any], None, None]
 """Numbers of pieces and their results, ``Died`` where there is none, as they are finished, in any order."""
 _SWITCH = 5e-4  # [s]; Python's own 5 ms are two physics steps of a batch, for which another thread would wait each time
 
 
 class Place(Protocol):
-    """Does pieces of work, some at once; which and how many changes no result."""
+    """Computes pieces of work, some at once; the place and the number at once change no result."""
 
     @property
     def at_once(self) -> int:
         """Pieces that are done at once [-]."""
 
-    def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
-        """Do the work of a job for each item, and yield each result as it is finished.
+    def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
+        """Do the work of a job for each item, and yield each result when it is finished.
 
-        What was begun and is not finished is stopped when the iteration ends early, by an error, Ctrl-C or ``close``.
+        If the iteration ends early, by an error, Ctrl-C or ``close``, pieces in progress are stopped.
+
+        Args:
+            job: the work and its settings.
+            items: one for each piece.
+            start_piece: called with the index of an item when its piece starts.
 
         Raises:
             SuchusError: what the work of a piece raised, or that the place is lost.
@@ -51,13 +56,13 @@ class ThisProcess:
     at_once: int = 1
     """Pieces that are done at once [-]; with one all is done in the thread that asks."""
 
-    def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
+    def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
         """Yield the results, with one piece at once in the order of the items; see ``Place``."""
         side_by_side = min(self.at_once, len(items), threads.count())
         if side_by_side > 1:
-            yield from _in_threads(job, items, begun, side_by_side)
+            yield from _in_threads(job, items, start_piece, side_by_side)
         else:
-            yield from ((i, job.work(item, begun(i))) for i, item in enumerate(items))
+            yield from ((i, job.work(item, start_piece(i))) for i, item in enumerate(items))
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,17 +78,19 @@ class Processes:
     each: int | None = None
     """Threads that each of them takes [-]; an equal share of all if None."""
 
-    def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
+    def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
         """Yield the results; a process that dies takes its piece with it and nothing else, see ``Place``."""
-        told: dict[int, Progress] = {}
-        with closing(processes.side_by_side(job.work, items, self.at_once, tries=job.tries, each=self.each)) as heard:
-            for number, said in heard:
-                if isinstance(said, processes.Begun):
-                    told[number] = begun(number)
-                elif isinstance(said, processes.Far):
-                    told[number](*said)
+        reports: dict[int, Progress] = {}
+        with closing(
+            processes.side_by_side(job.work, items, self.at_once, tries=job.tries, each=self.each)
+        ) as messages:
+            for number, message in messages:
+                if isinstance(message, processes.Begun):
+                    reports[number] = start_piece(number)
+                elif isinstance(message, processes.Far):
+                    reports[number](*message)
                 else:
-                    yield number, said if isinstance(said, Died) else said.value
+                    yield number, message if isinstance(message, Died) else message.value
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +105,9 @@ class Cluster:
         """Pieces that the workers do at once [-]."""
         return cluster.cores(self.client)
 
-    def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
+    def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
         """Yield the results; a worker that is lost loses its piece, which another one begins again, see ``Place``."""
-        del begun
+        del start_piece
         work = partial(_silently, job.work)
         yield from cluster.spread(work, items, self.client, name=job.name, versions=job.versions, retries=job.tries)
 
@@ -109,11 +116,13 @@ HERE = ThisProcess()
 """One piece after the other, in this process."""
 
 
-def place_for(what: str, *, client: Any = None, jobs: int = 1, each: int | None = None, here: Place = HERE) -> Place:
-    """Return where a job is done.
+def place_for(
+    job_text: str, *, client: Any = None, jobs: int = 1, each: int | None = None, here: Place = HERE
+) -> Place:
+    """Return the place that computes a job.
 
     Args:
-        what: what the job is called in messages, as ``a study``.
+        job_text: name of the job in messages, as ``a study``.
         client: a ``distributed.Client``, whose workers then do it; None for this machine.
         jobs: number of processes of this machine; with 1 this process does it [-].
         each: threads that each of several processes takes [-]; an equal share of all if None.
@@ -123,9 +132,9 @@ def place_for(what: str, *, client: Any = None, jobs: int = 1, each: int | None 
         OutsideLimits: less than one process is asked for, or several beside a cluster.
     """
     if jobs < 1:
-        raise OutsideLimits(f"{what} in {jobs} processes cannot be; at least 1 is needed.")
+        raise OutsideLimits(f"{job_text} in {jobs} processes cannot be; at least 1 is needed.")
     if jobs > 1 and client is not None:
-        raise OutsideLimits(f"{what} takes a cluster or {jobs} processes of this machine, not both; choose one.")
+        raise OutsideLimits(f"{job_text} takes a cluster or {jobs} processes of this machine, not both; choose one.")
     if client is not None:
         return Cluster(client)
     return Processes(jobs, each) if jobs > 1 else here
@@ -138,12 +147,12 @@ def _silently(work: Callable[[Any, Progress], Any], item: Any) -> Any:
 # --- threads of this process --------------------------------------------------------------------------------------
 
 
-class _Stopped(BaseException):
-    """A thread is to leave its piece; no piece catches it, since it is no ``Exception``."""
+class _StopPiece(BaseException):
+    """Stops a thread inside its piece; no piece catches it, since it is no ``Exception``."""
 
 
 class _News(NamedTuple):
-    """What a thread says of the piece that it is at."""
+    """A message of a thread about its piece."""
 
     number: int
     """Of the piece."""
@@ -153,14 +162,14 @@ class _News(NamedTuple):
     """Nothing, the stage and the share, the result, or the error."""
 
 
-def _in_threads(job: AnyJob, items: Sequence[Any], begun: Begun, side_by_side: int) -> Results:
-    """Do pieces in threads; everything is told, and every result yielded, in the thread that asks."""
+def _in_threads(job: AnyJob, items: Sequence[Any], start_piece: Begun, side_by_side: int) -> Results:
+    """Compute pieces in threads; the calling thread reports progress and yields the results."""
     news, stop, numbers = SimpleQueue[_News](), Event(), count()
     workers = [
         Thread(target=_work, args=(job.work, items, numbers, news, stop, side_by_side), daemon=True)
         for _ in range(side_by_side)
     ]
-    told: dict[int, Progress] = {}
+    reports: dict[int, Progress] = {}
     finished = 0
     with _quick_switches():
         try:
@@ -169,9 +178,9 @@ def _in_threads(job: AnyJob, items: Sequence[Any], begun: Begun, side_by_side: i
             while finished < len(items):
                 number, kind, value = news.get()
                 if kind == "begun":
-                    told[number] = begun(number)
+                    reports[number] = start_piece(number)
                 elif kind == "far":
-                    told[number](*value)
+                    reports[number](*value)
                 elif kind == "done":
                     finished += 1
                     yield number, value
@@ -191,20 +200,29 @@ def _work(
     stop: Event,
     side_by_side: int,
 ) -> None:
-    """Do one piece after the other until none is left; the threads of the physics are shared by all that do so."""
-    alone = len(items) - len(items) % side_by_side  # of the pieces from here on there are fewer than threads
+    """Do one piece after the other until none is left; the threads of the physics are shared by all that do so.
 
-    def tell(number: int, stage: str, share: float) -> None:
+    Args:
+        work: computes the result of an item.
+        items: of all pieces.
+        numbers: yields the number of the next piece; all threads share it.
+        news: queue for messages to the calling thread.
+        stop: set where the pieces shall stop.
+        side_by_side: number of threads that compute pieces [-].
+    """
+    last_round_start = len(items) - len(items) % side_by_side  # of the pieces from here on there are fewer than threads
+
+    def tell(number: int, stage: str, fraction: float) -> None:
         if stop.is_set():
-            raise _Stopped
-        news.put(_News(number, "far", (stage, share)))
+            raise _StopPiece
+        news.put(_News(number, "far", (stage, fraction)))
 
     while not stop.is_set() and (number := next(numbers)) < len(items):
         news.put(_News(number, "begun"))
         try:
-            with threads.shared(side_by_side if number < alone else len(items) - alone):
+            with threads.shared(side_by_side if number < last_round_start else len(items) - last_round_start):
                 news.put(_News(number, "done", work(items[number], partial(tell, number))))
-        except _Stopped:
+        except _StopPiece:
             return
         except BaseException as error:  # to be raised where the work was asked for
             news.put(_News(number, "raised", error))
@@ -214,9 +232,9 @@ def _work(
 @contextmanager
 def _quick_switches() -> Iterator[None]:
     """Let a thread that comes back from the physics go on soon, whatever Python the others are at."""
-    before = sys.getswitchinterval()
-    sys.setswitchinterval(min(before, _SWITCH))
+    switch_interval = sys.getswitchinterval()
+    sys.setswitchinterval(min(switch_interval, _SWITCH))
     try:
         yield
     finally:
-        sys.setswitchinterval(before)
+        sys.setswitchinterval(switch_interval)

@@ -19,9 +19,9 @@ from suchus.core.jobs.job import Died
 from suchus.core.progress import Progress
 from suchus.core.stopping import end_with_parent
 
-_EVERY = 0.1  # [s]; between two reports of one stage
+_REPORT_INTERVAL = 0.1  # [s]; between two reports of one stage
 _PATIENCE = 10.0  # [s]; for a process that was told to stop
-_GONE = (EOFError, ConnectionError)  # what a pipe says when the other end has died
+_PIPE_ERRORS = (EOFError, ConnectionError)  # what a pipe says when the other end has died
 
 
 class Begun(NamedTuple):
@@ -44,14 +44,14 @@ class Done(NamedTuple):
     """The result of the piece."""
 
 
-class _Refused(NamedTuple):
+class _PieceError(NamedTuple):
     """A piece ended with one of our own errors."""
 
     error: SuchusError
     """The refusal, to be raised where the work was asked for."""
 
 
-class _Warned(NamedTuple):
+class _PieceWarning(NamedTuple):
     """A piece warns."""
 
     warning: Warning
@@ -73,7 +73,7 @@ class Worker:
 def side_by_side(
     work: Callable[[Any, Progress], Any], items: Sequence[Any], jobs: int, *, tries: int = 1, each: int | None = None
 ) -> Generator[tuple[int, Begun | Far | Done | Died], None, None]:
-    """Do one piece of work for each item in a few processes, and yield what is heard of the pieces as it is heard.
+    """Do one piece of work for each item in a few processes, and yield each message about the pieces.
 
     Pieces are begun in the order given. A process that dies takes its piece with it and nothing else. When the
     iteration ends early, by Ctrl-C, an error or ``close``, busy processes are killed; those of a process that was
@@ -83,7 +83,7 @@ def side_by_side(
         work: makes the result of an item, and tells how far it is; it, items and results travel as pickles.
         items: what differs between the pieces.
         jobs: number of processes.
-        tries: how often a piece is begun at most, whose process dies [-].
+        tries: how often a piece is started at most if its process dies [-].
         each: threads that each process takes [-]; an equal share of all if None.
 
     Yields:
@@ -92,15 +92,16 @@ def side_by_side(
     Raises:
         SuchusError: what the work of a piece raised.
     """
-    left, begun = list(range(len(items))), Counter[int]()
-    jobs = min(jobs, len(left))
-    mine = max(threads.count() // max(jobs, 1), 1) if each is None else each
-    workers = [hire(work, mine) for _ in range(jobs)]
+    pending, start_counts = list(range(len(items))), Counter[int]()
+    jobs = min(jobs, len(pending))
+    thread_count = max(threads.count() // max(jobs, 1), 1) if each is None else each
+    workers = [hire(work, thread_count) for _ in range(jobs)]
 
     def give(worker: Worker) -> int:
-        worker.piece = left.pop(0)
-        begun[worker.piece] += 1
-        with suppress(*_GONE):  # it is heard of then
+        """Send the next pending item to an idle worker and return the number of its piece."""
+        worker.piece = pending.pop(0)
+        start_counts[worker.piece] += 1
+        with suppress(*_PIPE_ERRORS):  # it is heard of then
             worker.pipe.send(items[worker.piece])
         return worker.piece
 
@@ -110,38 +111,38 @@ def side_by_side(
         while busy := {worker.pipe: worker for worker in workers if worker.piece is not None}:
             for pipe in wait(list(busy)):
                 worker = busy[pipe]  # type: ignore[index]  # only connections are waited for
-                piece, said = worker.piece, _heard(worker)
+                piece, message = worker.piece, _receive(worker)
                 assert piece is not None
-                if isinstance(said, _Refused):
-                    raise said.error
-                if isinstance(said, _Warned):
-                    warnings.warn(said.warning, stacklevel=2)
+                if isinstance(message, _PieceError):
+                    raise message.error
+                if isinstance(message, _PieceWarning):
+                    warnings.warn(message.warning, stacklevel=2)
                     continue
-                if isinstance(said, Died) and begun[piece] < tries:
-                    left.insert(0, piece)
+                if isinstance(message, Died) and start_counts[piece] < tries:
+                    pending.insert(0, piece)
                 else:
-                    yield piece, said
-                if isinstance(said, Far):
+                    yield piece, message
+                if isinstance(message, Far):
                     continue
                 worker.piece = None
-                if left and isinstance(said, Died):
+                if pending and isinstance(message, Died):
                     workers.remove(worker)
-                    workers.append(worker := hire(work, mine))
-                if left:
+                    workers.append(worker := hire(work, thread_count))
+                if pending:
                     yield give(worker), Begun()
     finally:
         dismiss(workers)
 
 
-def hire(work: Callable[[Any, Progress], Any], each: int) -> Worker:
-    """Start a process that takes ``each`` threads."""
+def hire(work: Callable[[Any, Progress], Any], thread_count: int) -> Worker:
+    """Start a process that takes ``thread_count`` threads."""
     spawning = get_context("spawn")
-    here, there = spawning.Pipe()
-    process = spawning.Process(target=_work, args=(there, work, each), daemon=True)
+    parent_end, child_end = spawning.Pipe()
+    process = spawning.Process(target=_work, args=(child_end, work, thread_count), daemon=True)
     with deaf():
         process.start()
-    there.close()
-    return Worker(process=process, pipe=here)
+    child_end.close()
+    return Worker(process=process, pipe=parent_end)
 
 
 def dismiss(workers: Sequence[Worker]) -> None:
@@ -154,48 +155,48 @@ def dismiss(workers: Sequence[Worker]) -> None:
         worker.process.join(_PATIENCE)
 
 
-def _heard(worker: Worker) -> Far | Done | Died | _Refused | _Warned:
-    """Return what a busy worker says."""
+def _receive(worker: Worker) -> Far | Done | Died | _PieceError | _PieceWarning:
+    """Return the next message of a busy worker; ``Died`` where its process has ended."""
     try:
-        said: Far | Done | _Refused | _Warned = worker.pipe.recv()
-    except _GONE:
+        message: Far | Done | _PieceError | _PieceWarning = worker.pipe.recv()
+    except _PIPE_ERRORS:
         worker.process.join(_PATIENCE)
         return Died(worker.process.exitcode)
-    return said
+    return message
 
 
 @contextmanager
 def deaf() -> Iterator[None]:
-    """Let processes that are started inside never hear Ctrl-C, which a terminal tells to all of them at once."""
+    """Block Ctrl-C in processes that are started inside, since a terminal sends it to all processes."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
     resource_tracker.ensure_running()  # which would let them hear it again, were it started with the first of them
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    signal_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, signal_mask)
 
 
 # --- in the process of its own ---------------------------------------------------------------------------------
 
 
-def _work(pipe: Connection, work: Callable[[Any, Progress], Any], each: int) -> None:
+def _work(pipe: Connection, work: Callable[[Any, Progress], Any], thread_count: int) -> None:
     """Take one piece after the other until the other end of the pipe is closed."""
-    os.environ["SUCHUS_THREADS"] = str(each)
+    os.environ["SUCHUS_THREADS"] = str(thread_count)
     end_with_parent()
-    with suppress(*_GONE), warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_, **__: pipe.send(_Warned(_as_warning(message)))
+    with suppress(*_PIPE_ERRORS), warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: pipe.send(_PieceWarning(_as_warning(message)))
         while True:
             item = pipe.recv()
             try:
-                said: Done | _Refused = Done(work(item, _sender(pipe)))
+                outcome: Done | _PieceError = Done(work(item, _sender(pipe)))
             except SuchusError as error:
-                said = _Refused(error)
+                outcome = _PieceError(error)
             except MemoryError:
-                said = _Refused(NoMemory())
-            pipe.send(said)
+                outcome = _PieceError(NoMemory())
+            pipe.send(outcome)
 
 
 def _as_warning(message: Warning | str) -> Warning:
@@ -205,13 +206,14 @@ def _as_warning(message: Warning | str) -> Warning:
 
 def _sender(pipe: Connection) -> Progress:
     """Return what tells the other process now and then."""
-    last_stage, last = "", -_EVERY
+    last_stage, last_time = "", -_REPORT_INTERVAL
 
-    def tell(stage: str, share: float) -> None:
-        nonlocal last_stage, last
-        now = time.monotonic()
-        if stage != last_stage or now - last > _EVERY:
-            last_stage, last = stage, now
-            pipe.send(Far(stage, share))
+    def tell(stage: str, fraction: float) -> None:
+        """Send a stage and its fraction, at most once in ``_REPORT_INTERVAL`` while the stage stays the same."""
+        nonlocal last_stage, last_time
+        clock_time = time.monotonic()
+        if stage != last_stage or clock_time - last_time > _REPORT_INTERVAL:
+            last_stage, last_time = stage, clock_time
+            pipe.send(Far(stage, fraction))
 
     return tell

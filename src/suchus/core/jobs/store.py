@@ -1,4 +1,4 @@
-"""Where tables are kept as they come: a folder of parts, each of which is there whole or not at all."""
+"""A folder of result tables, one file for each part; each file is complete or absent."""
 
 import fcntl
 import hashlib
@@ -23,7 +23,7 @@ from suchus.core.files.store import packed as packed_record
 from suchus.core.jobs.made_by import deciding
 from suchus.core.writing import keep, write
 
-_NUMBERS, _COLUMN, _ABOUT, _ORDER = "numbers", "column", "about", "order"  # of a table that is packed
+_NUMBERS, _COLUMN, _COLUMN_ATTRIBUTES, _ORDER = "numbers", "column", "about", "order"  # of a table that is packed
 MARK = "study.json"
 RESULTS, TABLE = "results.nc", "results.csv"
 _FORMAT = 4
@@ -56,6 +56,7 @@ class Store:
         kind: str = "study",
         versions: Callable[[], Mapping[str, str]] = deciding,
     ) -> None:
+        """Store the settings; the folder is neither made nor read yet."""
         self.folder = Path(folder)
         self.study = study
         self.kind = kind
@@ -78,7 +79,7 @@ class Store:
             if mark.is_file():
                 self._check(mark)
             elif any(self._foreign()):
-                raise self._taken()
+                raise self._foreign_folder_error()
             check_writable(self.folder)
             if not mark.is_file():
                 keep(mark, (json.dumps(self._origin(), indent=1, sort_keys=True) + "\n").encode())
@@ -88,31 +89,32 @@ class Store:
     @contextmanager
     def _alone(self) -> Iterator[None]:
         """Make the folder and hold a lock on it; one that was made in vain is taken away."""
-        made = not there(self.folder)
-        if not made and not self.folder.is_dir():
-            raise self._taken()
-        if made:
+        is_new = not there(self.folder)
+        if not is_new and not self.folder.is_dir():
+            raise self._foreign_folder_error()
+        if is_new:
             check_writable(self.folder)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            held = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
+            descriptor = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
         except OSError as error:
             raise Unwritable(f"{self.folder} cannot be written: {(error.strerror or str(error)).lower()}.") from error
         try:
-            self._lock(held)
+            self._lock(descriptor)
             yield
         finally:
-            os.close(held)
+            os.close(descriptor)
 
-    def _lock(self, held: int) -> None:
+    def _lock(self, descriptor: int) -> None:
+        """Lock the folder of a file descriptor, or raise ``Unwritable`` where another process holds the lock."""
         try:
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise Unwritable(f"{self.folder} is being written by another process; wait or choose another.") from None
         except OSError as error:
             raise Unwritable(f"{self.folder} lies on a disk that knows no locks; choose another place.") from error
 
-    def _taken(self) -> Unwritable:
+    def _foreign_folder_error(self) -> Unwritable:
         return Unwritable(f"{self.folder} exists and holds no {self.kind}; choose another place or move it away.")
 
     def part(self, number: int) -> Path:
@@ -120,7 +122,7 @@ class Store:
         return self.folder / "parts" / f"{number:06d}.nc"
 
     def has(self, number: int) -> bool:
-        """Return whether a batch is finished and as it was written; of one with a flipped bit we say so."""
+        """Return whether a batch is finished and undamaged; a damaged file is reported."""
         if not self.part(number).is_file():
             return False
         try:
@@ -159,12 +161,12 @@ class Store:
                     f"{self.folder} lacks part {number} of {parts}; start the {self.kind} again to finish it."
                 )
             tables.append(self.get(number))
-        whole = together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
+        table = together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
         if len(machines := self.machines()) > 1:
-            whole.attrs["machines"] = json.dumps(machines)
-        write(self.folder / RESULTS, packed_record(whole))
-        write(self.folder / TABLE, whole.to_dataframe().to_csv(lineterminator="\n"))
-        return whole
+            table.attrs["machines"] = json.dumps(machines)
+        write(self.folder / RESULTS, packed_record(table))
+        write(self.folder / TABLE, table.to_dataframe().to_csv(lineterminator="\n"))
+        return table
 
     def machines(self) -> list[dict[str, Any]]:
         """Return what the store says of the machines that wrote its parts; several only where somebody asked to mix."""
@@ -172,12 +174,13 @@ class Store:
         return list(read_json(mark).get("machines", ())) if mark.is_file() else []
 
     def _origin(self) -> dict[str, Any]:
-        held = {f.name: repr(getattr(self.study, f.name)) for f in fields(self.study)}  # type: ignore[arg-type]
+        """Return the description of this store: its format, study, versions and machine."""
+        field_texts = {f.name: repr(getattr(self.study, f.name)) for f in fields(self.study)}  # type: ignore[arg-type]
         return {
             "format": _FORMAT,
             "name": self.study.name,
             "hash": hashlib.sha256(repr(self.study).encode()).hexdigest(),
-            "fields": held,
+            "fields": field_texts,
             "versions": dict(self._versions()),
             "machines": [machine.provenance()],
         }
@@ -185,45 +188,50 @@ class Store:
     def _check(self, mark: Path) -> None:
         """Refuse what another study or another version wrote."""
         try:
-            said = read_json(mark)
-            name, held, theirs = said["name"], dict(said["fields"]), dict(said["versions"])
-            machines = [dict(one["arithmetic"]) for one in said.get("machines", ())]
+            description = read_json(mark)
+            name, stored_fields, stored_versions = (
+                description["name"],
+                dict(description["fields"]),
+                dict(description["versions"]),
+            )
+            machines = [dict(entry["arithmetic"]) for entry in description.get("machines", ())]
         except (UnreadableFile, ValueError, KeyError, TypeError) as error:
             raise IncompatibleRecord(f"{mark} is no description of a {self.kind}; choose another place.") from error
-        ours = self._origin()
-        if held != ours["fields"]:
-            other = [key for key in ours["fields"] if held.get(key) != ours["fields"][key]]
+        origin = self._origin()
+        if stored_fields != origin["fields"]:
+            differing_fields = [key for key in origin["fields"] if stored_fields.get(key) != origin["fields"][key]]
             raise IncompatibleRecord(
                 f"{self.folder} holds {self.kind} {name!r}, which differs from {self.study.name!r} in "
-                f"{', '.join(other)}; choose another place, or finish that one with its own file."
+                f"{', '.join(differing_fields)}; choose another place, or finish that one with its own file."
             )
-        changed = [
-            f"{key} {theirs.get(key)} (here {value})"
-            for key, value in ours["versions"].items()
-            if theirs.get(key) != value
+        version_changes = [
+            f"{key} {stored_versions.get(key)} (here {value})"
+            for key, value in origin["versions"].items()
+            if stored_versions.get(key) != value
         ]
-        if changed or said.get("format") != _FORMAT:
-            by = ", ".join(changed) or f"format {said.get('format')} (here {_FORMAT})"
+        if version_changes or description.get("format") != _FORMAT:
+            maker_text = ", ".join(version_changes) or f"format {description.get('format')} (here {_FORMAT})"
             raise IncompatibleRecord(
-                f"{self.folder} was written by {by}; mixed results would not be the same to the byte: choose another "
-                "place, or install those versions to finish it."
+                f"{self.folder} was written by {maker_text}; mixed results would not be the same to the byte: choose "
+                "another place, or install those versions to finish it."
             )
-        self._check_machine(mark, said, machines)
+        self._check_machine(mark, description, machines)
 
-    def _check_machine(self, mark: Path, said: dict[str, Any], machines: list[dict[str, str]]) -> None:
-        """Refuse what a machine with another arithmetic began, or note that this one goes on with it."""
-        if any(not machine.differences(one) for one in machines):
+    def _check_machine(self, mark: Path, description: dict[str, Any], machines: list[dict[str, str]]) -> None:
+        """Refuse a store of a machine with another arithmetic, or, if mixing is allowed, add this machine to it."""
+        if any(not machine.differences(arithmetic) for arithmetic in machines):
             return
         if not machine.asked_to_mix():
             parts = " and ".join(machine.differences(machines[0] if machines else {}))
             raise IncompatibleRecord(
-                f"{self.folder} was begun on a machine whose {parts} give other last bits ({_named(said)}; here "
-                f"{_named({'machines': [machine.provenance()]})}): mixed results would not be the same to the byte. "
-                "Finish it there, choose another place, or say --mixed, which the results then tell; begun with "
-                f"{machine.WANTED}=1 a {self.kind} gives the same bytes on both."
+                f"{self.folder} was begun on a machine whose {parts} give other last bits "
+                f"({_machine_names(description)}; here {_machine_names({'machines': [machine.provenance()]})}): "
+                "mixed results would not be the same to the byte. Finish it there, choose another place, or say "
+                f"--mixed, which the results then tell; begun with {machine.WANTED}=1 a {self.kind} gives the same "
+                "bytes on both."
             )
-        said["machines"] = [*said.get("machines", ()), machine.provenance()]
-        keep(mark, (json.dumps(said, indent=1, sort_keys=True) + "\n").encode())
+        description["machines"] = [*description.get("machines", ()), machine.provenance()]
+        keep(mark, (json.dumps(description, indent=1, sort_keys=True) + "\n").encode())
 
     def _foreign(self) -> Iterator[Path]:
         """Everything in the folder but drafts that a kill left behind before the study was described."""
@@ -232,17 +240,17 @@ class Store:
 
     def _sweep(self) -> None:
         """Take away drafts that a kill left behind."""
-        for place in (self.folder, self.folder / "parts"):
-            for draft in place.glob(".*.*-*"):
+        for folder in (self.folder, self.folder / "parts"):
+            for draft in folder.glob(".*.*-*"):
                 if draft.is_dir():
                     shutil.rmtree(draft, ignore_errors=True)
 
 
-def _named(said: Mapping[str, Any]) -> str:
-    """Return what a store says of the machines that wrote it, for a message."""
+def _machine_names(description: Mapping[str, Any]) -> str:
+    """Return the names of the machines in a store's description, for a message."""
     names = ("processor", "vector instructions", "linear algebra", "C library")
-    told = ["; ".join(one["described"][name] for name in names) for one in said.get("machines", ())]
-    return " and ".join(told) or "a machine that is not named"
+    machine_texts = ["; ".join(entry["described"][name] for name in names) for entry in description.get("machines", ())]
+    return " and ".join(machine_texts) or "a machine that is not named"
 
 
 @contextmanager
@@ -261,7 +269,7 @@ def _no_lock_of_dask() -> Iterator[None]:
 
 
 def together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Put tables one below the other; a column that one of them lacks is NaN there."""
+    """Concatenate tables along ``sample``; a column that a table lacks is NaN in its rows."""
     columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
     rows = {
         name: np.concatenate([t[name].values if name in t else np.full(t.sizes["sample"], np.nan) for t in tables])
@@ -274,7 +282,7 @@ def together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
 
 
 def made_by(folder: Path, *, key: str = "versions") -> dict[str, str]:
-    """Return what a store says of itself: the versions that made it, or with the key ``fields`` its study's fields.
+    """Return a part of a store's description: the versions that made it, or with the key ``fields`` its study's fields.
 
     Raises:
         UnreadableFile: there is no store.
@@ -298,19 +306,23 @@ def packed(table: xr.Dataset) -> xr.Dataset:
     dims = {table[name].dims for name in names}
     if len(dims) != 1:
         return table
-    about = [[name, dict(table[name].attrs)] for name in names]  # a list: files keep no order of names
+    column_attributes = [[name, dict(table[name].attrs)] for name in names]  # a list: files keep no order of names
     order = [str(name) for name in table.data_vars]
     numbers = np.stack([table[name].values for name in names], axis=1)
-    rest = table.drop_vars(names).assign_attrs({_ABOUT: about, _ORDER: order})
-    return rest.assign({_NUMBERS: ((*dims.pop(), _COLUMN), numbers)})
+    packed_table = table.drop_vars(names).assign_attrs({_COLUMN_ATTRIBUTES: column_attributes, _ORDER: order})
+    return packed_table.assign({_NUMBERS: ((*dims.pop(), _COLUMN), numbers)})
 
 
 def unpacked(table: xr.Dataset) -> xr.Dataset:
     """Return the table that was packed."""
-    if _ABOUT not in table.attrs:
+    if _COLUMN_ATTRIBUTES not in table.attrs:
         return table
     dim, numbers = table[_NUMBERS].dims[0], table[_NUMBERS].values
-    columns = {name: (dim, numbers[:, i].copy(), attrs) for i, (name, attrs) in enumerate(table.attrs[_ABOUT])}
-    whole = table.drop_vars(_NUMBERS).assign(columns)[table.attrs[_ORDER]]
-    whole.attrs = {name: value for name, value in table.attrs.items() if name not in (_ABOUT, _ORDER)}
-    return whole
+    columns = {
+        name: (dim, numbers[:, i].copy(), attrs) for i, (name, attrs) in enumerate(table.attrs[_COLUMN_ATTRIBUTES])
+    }
+    unpacked_table = table.drop_vars(_NUMBERS).assign(columns)[table.attrs[_ORDER]]
+    unpacked_table.attrs = {
+        name: value for name, value in table.attrs.items() if name not in (_COLUMN_ATTRIBUTES, _ORDER)
+    }
+    return unpacked_table

@@ -49,19 +49,19 @@ def from_table(table: Mapping[str, Any]) -> Fault:
     if "kind" not in table:
         raise InvalidDesign(f"a fault needs a kind ({', '.join(FAULTS)}); {_show(table)} has none.")
     make = FAULTS[str(table["kind"])[:60]]
-    known = {field.name: field for field in fields(make)}  # type: ignore[arg-type]  # every fault is a dataclass
-    part = next(iter(known))
-    given = {part if key == "joint" else key: value for key, value in table.items() if key != "kind"}
-    if part not in given:
-        raise InvalidDesign(f"the fault {make.kind()} needs a {part}; {_show(table)} has none.")
+    fields_by_name = {field.name: field for field in fields(make)}  # type: ignore[arg-type]  # every fault is a dataclass
+    part_field = next(iter(fields_by_name))
+    values = {part_field if key == "joint" else key: value for key, value in table.items() if key != "kind"}
+    if part_field not in values:
+        raise InvalidDesign(f"the fault {make.kind()} needs a {part_field}; {_show(table)} has none.")
     types = get_type_hints(make)
-    for key, value in given.items():
-        if key not in known:
-            raise UnknownName(f"field of the fault {make.kind()}", key[:60], known)
+    for key, value in values.items():
+        if key not in fields_by_name:
+            raise UnknownName(f"field of the fault {make.kind()}", key[:60], fields_by_name)
         _check(make.kind(), key, value, types[key])
         if isinstance(value, int):  # a whole number in a file is a number like any other
-            given[key] = float(value)
-    return make(**given)
+            values[key] = float(value)
+    return make(**values)
 
 
 def numbers(kind: type[Fault]) -> dict[str, float]:
@@ -77,12 +77,17 @@ def _default(field: "Field[Any]") -> Any:
     return None if field.default is MISSING else field.default
 
 
-def _check(kind: str, key: str, value: Any, wanted: Any) -> None:
-    allowed = get_args(wanted) or (wanted,)
+def _check(kind: str, key: str, value: Any, declared_type: Any) -> None:
+    """Refuse a value of a fault's table whose type differs from the declared one."""
+    allowed = get_args(declared_type) or (declared_type,)
     if float in allowed:
         allowed = (*allowed, int)
     if not isinstance(value, allowed) or isinstance(value, bool):
-        names = " or ".join("a number" if one is float else "a text" for one in allowed if one in (float, str))
+        names = " or ".join(
+            "a number" if allowed_type is float else "a text"
+            for allowed_type in allowed
+            if allowed_type in (float, str)
+        )
         raise InvalidDesign(f"{key} of the fault {kind} is {_show(value)}; {names or 'another type'} is needed.")
 
 

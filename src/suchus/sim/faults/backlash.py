@@ -29,14 +29,14 @@ class Backlash(ServoFault):
 
     def apply(self, plant: Plant) -> None:
         """Note the torque limits."""
-        low, high = plant.parameter("actuator_forcerange", self.joint)
-        plant.memory.update(low=float(low), high=float(high))
+        lower_torque, upper_torque = plant.parameter("actuator_forcerange", self.joint)
+        plant.memory.update(low=float(lower_torque), high=float(upper_torque))
 
     def command(self, plant: Plant) -> None:
         """Aim at the near end of the gap, or let go within it."""
-        wanted, now, half = plant.targets[self.joint], plant.angle(self.joint), self.gap / 2
-        free = abs(now - wanted) < half
-        plant.targets[self.joint] = min(max(now, wanted - half), wanted + half)
+        target, angle, half = plant.targets[self.joint], plant.angle(self.joint), self.gap / 2
+        free = abs(angle - target) < half
+        plant.targets[self.joint] = min(max(angle, target - half), target + half)
         limits = (0.0, 0.0) if free else (plant.memory["low"], plant.memory["high"])
         plant.parameter("actuator_forcerange", self.joint)[:] = limits
 

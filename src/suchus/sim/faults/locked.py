@@ -23,9 +23,11 @@ class Locked(ServoFault):
         """Refuse an angle that the joint cannot reach, too."""
         ServoFault.refuse(self, robot)
         if self.angle is not None:
-            low, high = servo_range(robot, self.joint)
-            if not low <= self.angle <= high:
-                raise OutsideLimits(f"{self} holds {self.angle:g} rad; {low:.3f} to {high:.3f} rad is allowed.")
+            lower_angle, upper_angle = servo_range(robot, self.joint)
+            if not lower_angle <= self.angle <= upper_angle:
+                raise OutsideLimits(
+                    f"{self} holds {self.angle:g} rad; {lower_angle:.3f} to {upper_angle:.3f} rad is allowed."
+                )
 
     def apply(self, plant: Plant) -> None:
         """Note the angle."""

@@ -15,7 +15,7 @@ from math import cos, exp, pi, sin, sqrt
 import numpy as np
 
 from suchus.robot.design.water_table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
-from suchus.sim.hydro import lanes as at
+from suchus.sim.hydro import lanes
 from suchus.sim.hydro.lanes import WaterProperties
 from suchus.sim.hydro.vectors import Vector, blend, compiled, cross, dot, lane, part, plus, put, three, times, turned
 
@@ -47,12 +47,14 @@ def immersed(kind: float, depth: float) -> tuple[float, float]:
         depth: of its centre over its half extent along the normal; beyond -1 and 1 it is dry or under water.
     """
     d = min(max(depth, -1.0), 1.0)
-    rest = 1.0 - d * d
-    root = sqrt(rest)
-    disc, ball, slab = 0.5 + (_arcsine(d) + d * root) / pi, (2.0 + 3.0 * d - d * d * d) / 4.0, (1.0 + d) / 2.0
-    flat = -2.0 / 3.0 / pi * rest * root
-    share = disc if kind == DISC else (ball if kind == BALL else slab)
-    return share, flat if kind == DISC else (-3.0 / 16.0 * rest * rest if kind == BALL else -rest / 4.0)
+    chord_squared = 1.0 - d * d
+    half_chord = sqrt(chord_squared)
+    disc, ball, slab = 0.5 + (_arcsine(d) + d * half_chord) / pi, (2.0 + 3.0 * d - d * d * d) / 4.0, (1.0 + d) / 2.0
+    flat = -2.0 / 3.0 / pi * chord_squared * half_chord
+    fraction = disc if kind == DISC else (ball if kind == BALL else slab)
+    return fraction, flat if kind == DISC else (
+        -3.0 / 16.0 * chord_squared * chord_squared if kind == BALL else -chord_squared / 4.0
+    )
 
 
 @part
@@ -74,9 +76,9 @@ def _arcsine(x: float) -> float:
     p = p * z + _SERIES[2]
     p = p * z + _SERIES[1]
     p = p * z + _SERIES[0]
-    near = y + y * z * p
-    found = near if small else 0.5 * pi - 2.0 * near
-    return found if x > 0.0 else -found
+    base_angle = y + y * z * p
+    angle = base_angle if small else 0.5 * pi - 2.0 * base_angle
+    return angle if x > 0.0 else -angle
 
 
 @compiled
@@ -84,11 +86,11 @@ def hydrostatic(
     table: np.ndarray,
     xpos: np.ndarray,
     xmat: np.ndarray,
-    up: np.ndarray,
+    up_axis: np.ndarray,
     level: float,
     air_fraction: tuple[float, float],
 ) -> np.ndarray:
-    """Return the volume under water, its first moment about the world's origin, and the work of pushing it there.
+    """Return the submerged volume, its first moment about the world's origin, and the work of submerging it.
 
     Shape (5,): [m3], three [m4], and the work over density and gravity [m4].
 
@@ -96,170 +98,222 @@ def hydrostatic(
         table: of pieces.
         xpos: origins of the bodies, shape (body, 3) [m].
         xmat: their orientations, shape (body, 9).
-        up: unit vector against gravity, shape (3,).
+        up_axis: unit vector against gravity, shape (3,).
         level: of the surface above the origin [m].
         air_fraction: shares of the air that are kept, in the front and in the rear chambers [-].
     """
-    found, ahead = np.zeros(5), three(up, 0)
+    sums, vertical = np.zeros(5), three(up_axis, 0)
     for row in table:
         body = int(row[0])
         axes = turned(xmat[body], row, 5), turned(xmat[body], row, 8), turned(xmat[body], row, 11)
-        at = plus(three(xpos[body], 0), turned(xmat[body], row, 2))
-        ua, ub, ut = row[14] * dot(ahead, axes[0]), row[15] * dot(ahead, axes[1]), row[16] * dot(ahead, axes[2])
+        centre = plus(three(xpos[body], 0), turned(xmat[body], row, 2))
+        ua, ub, ut = (
+            row[14] * dot(vertical, axes[0]),
+            row[15] * dot(vertical, axes[1]),
+            row[16] * dot(vertical, axes[2]),
+        )
         extent = sqrt(ua * ua + ub * ub + ut * ut)
-        depth = (level - dot(ahead, at)) / extent
-        share, moment = immersed(row[1], depth)
+        depth = (level - dot(vertical, centre)) / extent
+        fraction, moment = immersed(row[1], depth)
         arm = blend(row[14] * ua, axes[0], row[15] * ub, axes[1], row[16] * ut, axes[2])
         volume = row[17] - (1.0 - air_fraction[0]) * row[18] - (1.0 - air_fraction[1]) * row[19]
-        found[0] += volume * share
+        sums[0] += volume * fraction
         for i in range(3):
-            found[1 + i] += volume * (share * at[i] + moment * arm[i] / extent)
-        found[4] += volume * extent * (depth * share - moment)
-    return found
+            sums[1 + i] += volume * (fraction * centre[i] + moment * arm[i] / extent)
+        sums[4] += volume * extent * (depth * fraction - moment)
+    return sums
 
 
 @part
-def _orbit(user: np.ndarray, time: float, x: Vector, up: Vector) -> tuple[float, Vector, Vector]:
-    """Return how high waves stand at a point [m], and velocity and acceleration of the water there.
+def _orbit(user: np.ndarray, time: float, x: Vector, up_axis: Vector) -> tuple[float, Vector, Vector]:
+    """Return the surface elevation of waves at a point [m], and velocity and acceleration of the water there.
 
     Airy's waves on deep water, as they are at the surface for points above the level, and the current.
+
+    Args:
+        user: numbers of the water, see ``water_table``.
+        time: [s].
+        x: the point in the world [m].
+        up_axis: unit vector against gravity.
     """
-    current, still = three(user, CURRENT), (0.0, 0.0, 0.0)
+    current, zero = three(user, CURRENT), (0.0, 0.0, 0.0)
     height, omega = user[WAVE], user[WAVE + 4]
     if height == 0.0:
-        return 0.0, current, still
+        return 0.0, current, zero
     wave = three(user, WAVE + 1)
     number = sqrt(dot(wave, wave))
     phase = dot(wave, x) - omega * time + user[WAVE + 5]
     c, s = cos(phase), sin(phase)
-    speed = height * omega * exp(number * min(dot(up, x) - user[LEVEL], 0.0))
-    moving = blend(1.0, current, speed * c / number, wave, speed * s, up)
-    return height * c, moving, blend(omega * speed * s / number, wave, -omega * speed * c, up, 0.0, still)
+    speed = height * omega * exp(number * min(dot(up_axis, x) - user[LEVEL], 0.0))
+    moving = blend(1.0, current, speed * c / number, wave, speed * s, up_axis)
+    return height * c, moving, blend(omega * speed * s / number, wave, -omega * speed * c, up_axis, 0.0, zero)
 
 
 @part
 def place(table: np.ndarray, rows: np.ndarray) -> None:
     """Turn axes and centres of pieces from the frames of their bodies into the world."""
     for n in range(LANES):
-        turn = lane(rows, at.TURN, n), lane(rows, at.TURN + 3, n), lane(rows, at.TURN + 6, n)
-        a, b = lane(table, at.ACROSS, n), lane(table, at.UPWARD, n)
-        t, centre = lane(table, at.FORWARD, n), lane(table, at.AT, n)
-        put(rows, at.E_A, n, (dot(turn[0], a), dot(turn[1], a), dot(turn[2], a)))
-        put(rows, at.E_B, n, (dot(turn[0], b), dot(turn[1], b), dot(turn[2], b)))
-        put(rows, at.E_T, n, (dot(turn[0], t), dot(turn[1], t), dot(turn[2], t)))
+        turn = lane(rows, lanes.TURN, n), lane(rows, lanes.TURN + 3, n), lane(rows, lanes.TURN + 6, n)
+        a, b = lane(table, lanes.ACROSS, n), lane(table, lanes.UPWARD, n)
+        t, centre = lane(table, lanes.FORWARD, n), lane(table, lanes.AT, n)
+        put(rows, lanes.E_A, n, (dot(turn[0], a), dot(turn[1], a), dot(turn[2], a)))
+        put(rows, lanes.E_B, n, (dot(turn[0], b), dot(turn[1], b), dot(turn[2], b)))
+        put(rows, lanes.E_T, n, (dot(turn[0], t), dot(turn[1], t), dot(turn[2], t)))
         centre = (dot(turn[0], centre), dot(turn[1], centre), dot(turn[2], centre))
-        put(rows, at.CENTRE, n, plus(lane(rows, at.ORIGIN, n), centre))
+        put(rows, lanes.CENTRE, n, plus(lane(rows, lanes.ORIGIN, n), centre))
 
 
 @part
-def flow(rows: np.ndarray, user: np.ndarray, time: float, up: Vector) -> None:
-    """Say how high the surface stands over the level at each piece, and how the water there moves."""
-    current, still, wave = three(user, CURRENT), (0.0, 0.0, 0.0), user[WAVE] != 0.0
+def flow(rows: np.ndarray, user: np.ndarray, time: float, up_axis: Vector) -> None:
+    """Write the surface elevation at each piece, and velocity and acceleration of the water there.
+
+    Args:
+        rows: quantities of the pieces, see ``lanes``; written.
+        user: numbers of the water, see ``water_table``.
+        time: [s].
+        up_axis: unit vector against gravity.
+    """
+    current, zero, wave = three(user, CURRENT), (0.0, 0.0, 0.0), user[WAVE] != 0.0
     for n in range(LANES):
-        raised, stream, surge = 0.0, current, still
+        elevation, stream, surge = 0.0, current, zero
         if wave:
-            raised, stream, surge = _orbit(user, time, lane(rows, at.CENTRE, n), up)
-        rows[at.RAISED, n] = raised
-        put(rows, at.STREAM, n, stream)
-        put(rows, at.SURGE, n, surge)
+            elevation, stream, surge = _orbit(user, time, lane(rows, lanes.CENTRE, n), up_axis)
+        rows[lanes.RAISED, n] = elevation
+        put(rows, lanes.STREAM, n, stream)
+        put(rows, lanes.SURGE, n, surge)
 
 
 @part
 def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
-    """Compare pieces with the surface and with the water around them: how deep they are, how they move against it."""
+    """Write the depth of each piece below the surface, and its velocity relative to the water.
+
+    Args:
+        table: of the pieces, shape (column, lane).
+        rows: quantities of the pieces, see ``lanes``; written.
+        water: its properties.
+    """
     for n in range(LANES):
-        a, b, t = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n)
+        a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
         ua, ub, ut = dot(water.up, a), dot(water.up, b), dot(water.up, t)
-        ua, ub, ut = table[at.HALF, n] * ua, table[at.HALF + 1, n] * ub, table[at.HALF + 2, n] * ut
-        extent, centre = sqrt(ua * ua + ub * ub + ut * ut), lane(rows, at.CENTRE, n)
-        depth = (water.level + rows[at.RAISED, n] - dot(water.up, centre)) / extent
-        rows[at.DEPTH, n] = depth
-        arm = blend(table[at.HALF, n] * ua, a, table[at.HALF + 1, n] * ub, b, table[at.HALF + 2, n] * ut, t)
-        put(rows, at.ARM, n, times(1.0 / extent, arm))
-        r = plus(centre, times(-1.0, lane(rows, at.REFERENCE, n)))
-        v = plus(lane(rows, at.MOVING + 3, n), cross(lane(rows, at.MOVING, n), r))
-        v = plus(v, times(-1.0, lane(rows, at.STREAM, n)))  # of the centre against the water
-        put(rows, at.FROM, n, r)
-        put(rows, at.AGAINST, n, v)
-        put(rows, at.SPEED, n, (dot(v, a), dot(v, b), dot(v, t)))
+        ua, ub, ut = table[lanes.HALF, n] * ua, table[lanes.HALF + 1, n] * ub, table[lanes.HALF + 2, n] * ut
+        extent, centre = sqrt(ua * ua + ub * ub + ut * ut), lane(rows, lanes.CENTRE, n)
+        depth = (water.level + rows[lanes.RAISED, n] - dot(water.up, centre)) / extent
+        rows[lanes.DEPTH, n] = depth
+        arm = blend(table[lanes.HALF, n] * ua, a, table[lanes.HALF + 1, n] * ub, b, table[lanes.HALF + 2, n] * ut, t)
+        put(rows, lanes.ARM, n, times(1.0 / extent, arm))
+        r = plus(centre, times(-1.0, lane(rows, lanes.REFERENCE, n)))
+        v = plus(lane(rows, lanes.MOVING + 3, n), cross(lane(rows, lanes.MOVING, n), r))
+        v = plus(v, times(-1.0, lane(rows, lanes.STREAM, n)))  # of the centre against the water
+        put(rows, lanes.FROM, n, r)
+        put(rows, lanes.AGAINST, n, v)
+        put(rows, lanes.SPEED, n, (dot(v, a), dot(v, b), dot(v, t)))
 
 
 @part
 def rub(rows: np.ndarray, water: WaterProperties) -> None:
-    """Say how turbulent water rubs, where it does."""
+    """Write the coefficient of turbulent friction of each piece; 0 below the critical Reynolds number."""
     per_speed = water.length / water.viscosity
     for n in range(LANES):
-        reynolds, found = abs(rows[at.SPEED + 2, n]) * per_speed, 0.0
+        reynolds, friction = abs(rows[lanes.SPEED + 2, n]) * per_speed, 0.0
         if reynolds > _TURBULENT:
-            found = 0.074 * reynolds**-0.2
-        rows[at.TURBULENT, n] = found
+            friction = 0.074 * reynolds**-0.2
+        rows[lanes.TURBULENT, n] = friction
 
 
 @part
 def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
-    """Say what the water does to each piece: force, couple about the point of reference, volume under water."""
+    """Write the load of the water on each piece: force, couple about the point of reference, submerged volume.
+
+    Args:
+        table: of the pieces, shape (column, lane).
+        rows: quantities of the pieces, see ``lanes``; written.
+        water: its properties.
+    """
     per_speed, (front, rear) = water.length / water.viscosity, water.air_fraction
     for n in range(LANES):
-        share, moment = immersed(table[at.KIND, n], rows[at.DEPTH, n])
-        emptied = (1.0 - front) * table[at.AIR, n] + (1.0 - rear) * table[at.AIR + 1, n]
-        volume = (table[at.VOLUME, n] - emptied) * share
-        a, b, t, w = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n), lane(rows, at.SPEED, n)
-        r, omega, surge = lane(rows, at.FROM, n), lane(rows, at.MOVING, n), lane(rows, at.SURGE, n)
+        fraction, moment = immersed(table[lanes.KIND, n], rows[lanes.DEPTH, n])
+        emptied = (1.0 - front) * table[lanes.AIR, n] + (1.0 - rear) * table[lanes.AIR + 1, n]
+        volume = (table[lanes.VOLUME, n] - emptied) * fraction
+        a, b, t, w = (
+            lane(rows, lanes.E_A, n),
+            lane(rows, lanes.E_B, n),
+            lane(rows, lanes.E_T, n),
+            lane(rows, lanes.SPEED, n),
+        )
+        r, omega, surge = lane(rows, lanes.FROM, n), lane(rows, lanes.MOVING, n), lane(rows, lanes.SURGE, n)
         # buoyancy and the pressure of the waves, at the centre of what is under water
         f = times(water.density * volume, plus(times(water.gravity, water.up), surge))
-        torque = cross(times(moment / share, lane(rows, at.ARM, n)), f)
+        torque = cross(times(moment / fraction, lane(rows, lanes.ARM, n)), f)
         # drag across and along, and of a flat piece that rolls, over the share under water
-        dense = water.density * share
-        across = -0.5 * dense * water.cross_drag * sqrt(w[0] * w[0] + w[1] * w[1])
+        dense = water.density * fraction
+        cross_factor = -0.5 * dense * water.cross_drag * sqrt(w[0] * w[0] + w[1] * w[1])
         speed, roll = abs(w[2]), dot(omega, t)
-        friction = water.thickening * max(1.328 / sqrt(max(speed * per_speed, 1.0)), rows[at.TURBULENT, n])
-        along = -0.5 * dense * (table[at.SKIN, n] * friction + table[at.END, n]) * speed
+        friction = water.thickening * max(1.328 / sqrt(max(speed * per_speed, 1.0)), rows[lanes.TURBULENT, n])
+        axial_factor = -0.5 * dense * (table[lanes.SKIN, n] * friction + table[lanes.END, n]) * speed
         f = plus(
-            f, blend(across * table[at.AREA, n] * w[0], a, across * table[at.AREA + 1, n] * w[1], b, along * w[2], t)
+            f,
+            blend(
+                cross_factor * table[lanes.AREA, n] * w[0],
+                a,
+                cross_factor * table[lanes.AREA + 1, n] * w[1],
+                b,
+                axial_factor * w[2],
+                t,
+            ),
         )
-        torque = plus(torque, times(-dense * water.cross_drag * table[at.ROLL, n] * abs(roll) * roll, t))
+        torque = plus(torque, times(-dense * water.cross_drag * table[lanes.ROLL, n] * abs(roll) * roll, t))
         # momentum that is shed, where the tail ends and the water passes towards it
-        end = times(table[at.SHED_AT, n], t)
-        here = plus(lane(rows, at.AGAINST, n), cross(omega, end))
-        u, wa, wb = dot(here, t), dot(here, a), dot(here, b)
-        shed = dense * water.added * water.shedding * max(u, 0.0)
-        pa, pb = shed * table[at.SHED, n] * wa, shed * table[at.SHED + 1, n] * wb
+        end = times(table[lanes.SHED_AT, n], t)
+        end_velocity = plus(lane(rows, lanes.AGAINST, n), cross(omega, end))
+        u, wa, wb = dot(end_velocity, t), dot(end_velocity, a), dot(end_velocity, b)
+        momentum_flux = dense * water.added * water.shedding * max(u, 0.0)
+        pa, pb = momentum_flux * table[lanes.SHED, n] * wa, momentum_flux * table[lanes.SHED + 1, n] * wb
         half = (
-            0.5 * dense * water.added * water.shedding * (table[at.SHED, n] * wa * wa + table[at.SHED + 1, n] * wb * wb)
+            0.5
+            * dense
+            * water.added
+            * water.shedding
+            * (table[lanes.SHED, n] * wa * wa + table[lanes.SHED + 1, n] * wb * wb)
         )
-        lost = blend(-pa, a, -pb, b, half if u > 0.0 else 0.0, t)
-        torque = plus(plus(torque, cross(end, lost)), cross(r, plus(f, lost)))
-        put(rows, at.FORCE, n, plus(f, lost))
-        put(rows, at.FORCE - 3, n, torque)
-        rows[at.SHARE, n], rows[at.UNDER, n] = share, volume
+        shed_force = blend(-pa, a, -pb, b, half if u > 0.0 else 0.0, t)
+        torque = plus(plus(torque, cross(end, shed_force)), cross(r, plus(f, shed_force)))
+        put(rows, lanes.FORCE, n, plus(f, shed_force))
+        put(rows, lanes.FORCE - 3, n, torque)
+        rows[lanes.SHARE, n], rows[lanes.UNDER, n] = fraction, volume
 
 
 @part
 def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
-    """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force."""
+    """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force.
+
+    Args:
+        table: of the pieces, shape (column, lane).
+        rows: quantities of the pieces, see ``lanes``; written.
+        water: its properties.
+    """
     for n in range(LANES):
-        dense = water.density * rows[at.SHARE, n] * water.added
-        a, b, t = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n)
-        ma, mb, mt = dense * table[at.ADDED, n], dense * table[at.ADDED + 1, n], dense * table[at.ADDED + 2, n]
-        pushed = (
+        dense = water.density * rows[lanes.SHARE, n] * water.added
+        a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
+        ma, mb, mt = dense * table[lanes.ADDED, n], dense * table[lanes.ADDED + 1, n], dense * table[lanes.ADDED + 2, n]
+        tensor = (
             blend(ma * a[0], a, mb * b[0], b, mt * t[0], t),
             blend(ma * a[1], a, mb * b[1], b, mt * t[1], t),
             blend(ma * a[2], a, mb * b[2], b, mt * t[2], t),
         )  # rows of the tensor A
-        r, v, omega = lane(rows, at.FROM, n), lane(rows, at.AGAINST, n), lane(rows, at.MOVING, n)
-        alpha, stream = lane(rows, at.BIAS, n), lane(rows, at.STREAM, n)
-        p = dot(pushed[0], v), dot(pushed[1], v), dot(pushed[2], v)
-        rate = plus(lane(rows, at.BIAS + 3, n), plus(cross(alpha, r), cross(omega, stream)))
-        rate = plus(rate, times(-1.0, lane(rows, at.SURGE, n)))
-        f = plus((dot(pushed[0], rate), dot(pushed[1], rate), dot(pushed[2], rate)), cross(omega, p))
+        r, v, omega = lane(rows, lanes.FROM, n), lane(rows, lanes.AGAINST, n), lane(rows, lanes.MOVING, n)
+        alpha, stream = lane(rows, lanes.BIAS, n), lane(rows, lanes.STREAM, n)
+        p = dot(tensor[0], v), dot(tensor[1], v), dot(tensor[2], v)
+        rate = plus(lane(rows, lanes.BIAS + 3, n), plus(cross(alpha, r), cross(omega, stream)))
+        rate = plus(rate, times(-1.0, lane(rows, lanes.SURGE, n)))
+        f = plus((dot(tensor[0], rate), dot(tensor[1], rate), dot(tensor[2], rate)), cross(omega, p))
         torque = plus(cross(v, p), cross(r, f))
-        put(rows, at.FORCE, n, plus(lane(rows, at.FORCE, n), times(-1.0, f)))
-        put(rows, at.FORCE - 3, n, plus(lane(rows, at.FORCE - 3, n), times(-1.0, torque)))
-        x, y, z = cross(r, pushed[0]), cross(r, pushed[1]), cross(r, pushed[2])  # rows: force by rotation
-        put(rows, at.MIXED, n, x)
-        put(rows, at.MIXED + 3, n, y)
-        put(rows, at.MIXED + 6, n, z)
-        put(rows, at.SPUN, n, (r[1] * z[0] - r[2] * y[0], r[2] * x[0] - r[0] * z[0], r[2] * x[1] - r[0] * z[1]))
-        put(rows, at.SPUN + 3, n, (r[0] * y[0] - r[1] * x[0], r[0] * y[1] - r[1] * x[1], r[0] * y[2] - r[1] * x[2]))
-        put(rows, at.PUSHED, n, (pushed[0][0], pushed[1][0], pushed[1][1]))
-        put(rows, at.PUSHED + 3, n, (pushed[2][0], pushed[2][1], pushed[2][2]))
+        put(rows, lanes.FORCE, n, plus(lane(rows, lanes.FORCE, n), times(-1.0, f)))
+        put(rows, lanes.FORCE - 3, n, plus(lane(rows, lanes.FORCE - 3, n), times(-1.0, torque)))
+        x, y, z = cross(r, tensor[0]), cross(r, tensor[1]), cross(r, tensor[2])  # rows: force by rotation
+        put(rows, lanes.MIXED, n, x)
+        put(rows, lanes.MIXED + 3, n, y)
+        put(rows, lanes.MIXED + 6, n, z)
+        put(rows, lanes.SPUN, n, (r[1] * z[0] - r[2] * y[0], r[2] * x[0] - r[0] * z[0], r[2] * x[1] - r[0] * z[1]))
+        put(rows, lanes.SPUN + 3, n, (r[0] * y[0] - r[1] * x[0], r[0] * y[1] - r[1] * x[1], r[0] * y[2] - r[1] * x[2]))
+        put(rows, lanes.PUSHED, n, (tensor[0][0], tensor[1][0], tensor[1][1]))
+        put(rows, lanes.PUSHED + 3, n, (tensor[2][0], tensor[2][1], tensor[2][2]))

@@ -16,37 +16,37 @@ from suchus.sim.hydro.vectors import Vector, compiled, dot, part, plus, put, thr
 
 _BODY, _REACH = COLUMNS["body"][0], COLUMNS["reach"][0]
 _COUPLE, _LINEAR = lanes.FORCE - 3 - lanes.FOUND, lanes.FORCE - lanes.FOUND
-_SPUN, _MIXED, _PUSHED = SPUN - lanes.FOUND, MIXED - lanes.FOUND, PUSHED - lanes.FOUND
+_ROTATIONAL_INERTIA, _COUPLING_INERTIA, _LINEAR_INERTIA = SPUN - lanes.FOUND, MIXED - lanes.FOUND, PUSHED - lanes.FOUND
 
 
 @compiled
-def wet(model: int, data: int, at: np.ndarray) -> bool:
-    """Add the forces of the water to the passive forces, and its added mass to the matrix; tell whether that changed.
+def wet(model: int, data: int, offsets: np.ndarray) -> bool:
+    """Add the water's forces to the passive forces and its added mass to the mass matrix; return whether that changed.
 
     Args:
         model: address of a ``mjModel``.
         data: address of its ``mjData``.
-        at: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
     """
-    whole, count = carray(model, (4096,), np.int64), at[memory.NNUMERIC] // 8
-    if whole[count] < HEADER:
+    model_words, count = carray(model, (4096,), np.int64), offsets[memory.NNUMERIC] // 8
+    if model_words[count] < HEADER:
         return False
-    numbers = carray(pointer(whole[at[memory.NUMERIC] // 8]), (whole[count],), np.float64)
-    if numbers[0] != MAGIC or whole[at[memory.NUSER] // 8] < NUMBERS:
+    numbers = carray(pointer(model_words[offsets[memory.NUMERIC] // 8]), (model_words[count],), np.float64)
+    if numbers[0] != MAGIC or model_words[offsets[memory.NUSER] // 8] < NUMBERS:
         return False
-    if whole[at[memory.NUSER] // 8] > NUMBERS:
-        _add_given(model, data, at)
+    if model_words[offsets[memory.NUSER] // 8] > NUMBERS:
+        _add_stored_mass(model, data, offsets)
         return True
-    motion = read_motion(model, data, at)
-    user, water = motion.user, read_water(model, motion.user, at, numbers[2])
+    motion = read_motion(model, data, offsets)
+    user, water = motion.user, read_water(model, motion.user, offsets, numbers[2])
     blocks = (len(numbers) - HEADER) // (WIDTH * LANES)
-    table = carray(pointer(whole[at[memory.NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
+    table = carray(pointer(model_words[offsets[memory.NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
     for i in range(4):
         user[FORCE + i] = 0.0
     user[UNDER] = 0.0
     if _all_dry(table, int(numbers[1]), water, abs(user[WAVE]), motion):
         return False
-    bodies = read_bodies(model, at)
+    bodies = read_bodies(model, offsets)
     sums = _gathered(table, int(numbers[1]), water, bodies, motion)
     if user[UNDER] == 0.0:
         return False
@@ -58,34 +58,50 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
 
 
 @part
-def _add_given(model: int, data: int, at: np.ndarray) -> None:
-    """Add to the matrix the added mass that stands behind the numbers of the water."""
-    bodies, motion = read_bodies(model, at), read_motion(model, data, at)
-    given = read_given(model, data, at)
+def _add_stored_mass(model: int, data: int, offsets: np.ndarray) -> None:
+    """Add the stored added mass to the mass matrix; it follows the numbers of the water in the user data."""
+    bodies, motion = read_bodies(model, offsets), read_motion(model, data, offsets)
+    stored_mass = read_given(model, data, offsets)
     for n in range(len(bodies.column)):
-        motion.mass[n] += given[n]
+        motion.mass[n] += stored_mass[n]
 
 
 @part
 def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: float, motion: Motion) -> bool:
-    """Return whether all pieces are far above the surface, waves of a height included."""
+    """Return whether all pieces are far above the surface, waves of a height included.
+
+    Args:
+        table: of the pieces, shape (block, column, lane).
+        count: number of pieces [-].
+        water: its properties.
+        height: of the waves above the level, at most [m].
+        motion: positions of the bodies.
+    """
     for n in range(count):
         block, lane = n // LANES, n % LANES
-        at = three(motion.xpos[int(table[block, _BODY, lane])], 0)
-        if water.level + height - dot(water.up, at) > -table[block, _REACH, lane]:
+        origin = three(motion.xpos[int(table[block, _BODY, lane])], 0)
+        if water.level + height - dot(water.up, origin) > -table[block, _REACH, lane]:
             return False
     return True
 
 
 @part
 def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bodies, motion: Motion) -> np.ndarray:
-    """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``)."""
+    """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``).
+
+    Args:
+        table: of the pieces, shape (block, column, lane).
+        count: number of pieces [-].
+        water: its properties.
+        bodies: the tree of bodies and joints.
+        motion: positions and velocities of the bodies.
+    """
     bias = _bias(bodies, motion)
-    rows, sums, under = np.zeros((ROWS, LANES)), np.zeros((len(bodies.parent), SUMS)), 0.0
+    rows, sums, wet_volume = np.zeros((ROWS, LANES)), np.zeros((len(bodies.parent), SUMS)), 0.0
     for block in range(table.shape[0]):
-        some = table[block]
+        block_table = table[block]
         for n in range(LANES):
-            b = np.uint32(some[_BODY, n])
+            b = np.uint32(block_table[_BODY, n])
             for k in range(0, 9, 3):
                 put(rows, lanes.TURN + k, n, three(motion.xmat[b], k))
             put(rows, lanes.ORIGIN, n, three(motion.xpos[b], 0))
@@ -94,20 +110,20 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
             put(rows, lanes.MOVING + 3, n, three(motion.cvel[b], 3))
             put(rows, lanes.BIAS, n, three(bias[b], 0))
             put(rows, lanes.BIAS + 3, n, three(bias[b], 3))
-        place(some, rows)
+        place(block_table, rows)
         if block == 0 or motion.user[WAVE] != 0.0:
             flow(rows, motion.user, motion.time, water.up)
-        meet(some, rows, water)
+        meet(block_table, rows, water)
         rub(rows, water)
-        press(some, rows, water)
-        added_mass(some, rows, water)
+        press(block_table, rows, water)
+        added_mass(block_table, rows, water)
         for n in range(min(LANES, count - block * LANES)):
             if rows[lanes.SHARE, n] > 0.0:
-                under += rows[lanes.UNDER, n]
-                b = np.uint32(some[_BODY, n])
+                wet_volume += rows[lanes.UNDER, n]
+                b = np.uint32(block_table[_BODY, n])
                 for k in range(SUMS):
                     sums[b, k] += rows[lanes.FOUND + k, n]
-    motion.user[UNDER] = under
+    motion.user[UNDER] = wet_volume
     return sums
 
 
@@ -117,8 +133,8 @@ def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
     bias = np.empty((len(bodies.parent), 6))
     bias[0] = 0.0
     for b in range(1, len(bodies.parent)):
-        before = bias[bodies.parent[b]]
-        turns, moves = three(before, 0), three(before, 3)
+        parent_bias = bias[bodies.parent[b]]
+        turns, moves = three(parent_bias, 0), three(parent_bias, 3)
         for j in range(bodies.first[b], bodies.first[b] + bodies.dofs[b]):
             turns = plus(turns, times(motion.qvel[j], three(motion.cdof_dot[j], 0)))
             moves = plus(moves, times(motion.qvel[j], three(motion.cdof_dot[j], 3)))
@@ -129,7 +145,13 @@ def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
 
 @part
 def _hand_over(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
-    """Add up what acts on the bodies towards the roots, and hand the forces to the joints."""
+    """Sum the loads of the bodies from the leaves to the roots, and add the generalised forces to the joints.
+
+    Args:
+        sums: loads of the bodies, shape (body, ``SUMS``); each body's become those of its subtree.
+        bodies: the tree of bodies and joints.
+        motion: passive forces and numbers of the water, which are written.
+    """
     user, power = motion.user, 0.0
     for b in range(len(bodies.parent) - 1, 0, -1):
         parent = bodies.parent[b]
@@ -153,39 +175,54 @@ def _burden(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
     """Add the added inertia of each joint's subtree to the matrix.
 
     From force and power of the water is taken what this inertia takes by the accelerations of the last step.
+
+    Args:
+        sums: loads and inertias of the subtrees, shape (body, ``SUMS``).
+        bodies: the tree of bodies and joints.
+        motion: mass matrix and numbers of the water, which are written.
     """
-    power, pulled, cdof, qvel, qacc = 0.0, (0.0, 0.0, 0.0), motion.cdof, motion.qvel, motion.qacc
+    power, added_force, cdof, qvel, qacc = 0.0, (0.0, 0.0, 0.0), motion.cdof, motion.qvel, motion.qacc
     for i in range(len(bodies.owner)):
         turns, moves = three(cdof[i], 0), three(cdof[i], 3)
         couple, force = _answer(sums[bodies.owner[i]], turns, moves)
         start, speeds, speedings = bodies.rowadr[i], 0.0, 0.0
         for n in range(start, start + bodies.rownnz[i]):
             j = bodies.column[n]
-            more = dot(three(cdof[j], 0), couple) + dot(three(cdof[j], 3), force)
-            motion.mass[n] += more
-            speeds += more * qvel[j]
-            speedings += more * qacc[j]
-        own = (dot(turns, couple) + dot(moves, force)) * qvel[i]
-        power += qvel[i] * speedings + qacc[i] * (speeds - own)
-        pulled = plus(pulled, times(qacc[i], force))
+            inertia = dot(three(cdof[j], 0), couple) + dot(three(cdof[j], 3), force)
+            motion.mass[n] += inertia
+            speeds += inertia * qvel[j]
+            speedings += inertia * qacc[j]
+        momentum = (dot(turns, couple) + dot(moves, force)) * qvel[i]
+        power += qvel[i] * speedings + qacc[i] * (speeds - momentum)
+        added_force = plus(added_force, times(qacc[i], force))
     motion.user[POWER] -= power
-    write(motion.user, FORCE, plus(three(motion.user, FORCE), times(-1.0, pulled)))
+    write(motion.user, FORCE, plus(three(motion.user, FORCE), times(-1.0, added_force)))
 
 
 @part
 def _answer(inertia: np.ndarray, turns: Vector, moves: Vector) -> tuple[Vector, Vector]:
-    """Return couple and force of an added inertia that is accelerated."""
-    s, x, y = three(inertia, _SPUN), three(inertia, _MIXED), three(inertia, _MIXED + 3)
-    rest, z = three(inertia, _SPUN + 3), three(inertia, _MIXED + 6)
-    m, more = three(inertia, _PUSHED), three(inertia, _PUSHED + 3)
+    """Return couple and force of an added inertia that is accelerated.
+
+    Args:
+        inertia: sums of a subtree, shape (``SUMS``,).
+        turns: angular acceleration [rad/s2].
+        moves: linear acceleration [m/s2].
+    """
+    s, x, y = (
+        three(inertia, _ROTATIONAL_INERTIA),
+        three(inertia, _COUPLING_INERTIA),
+        three(inertia, _COUPLING_INERTIA + 3),
+    )
+    spun_row, z = three(inertia, _ROTATIONAL_INERTIA + 3), three(inertia, _COUPLING_INERTIA + 6)
+    m, mass_row = three(inertia, _LINEAR_INERTIA), three(inertia, _LINEAR_INERTIA + 3)
     force = (
-        dot(x, turns) + dot((m[0], m[1], more[0]), moves),
-        dot(y, turns) + dot((m[1], m[2], more[1]), moves),
-        dot(z, turns) + dot(more, moves),
+        dot(x, turns) + dot((m[0], m[1], mass_row[0]), moves),
+        dot(y, turns) + dot((m[1], m[2], mass_row[1]), moves),
+        dot(z, turns) + dot(mass_row, moves),
     )
     couple = (
-        dot((s[0], s[1], rest[0]), turns) + dot((x[0], y[0], z[0]), moves),
-        dot((s[1], s[2], rest[1]), turns) + dot((x[1], y[1], z[1]), moves),
-        dot(rest, turns) + dot((x[2], y[2], z[2]), moves),
+        dot((s[0], s[1], spun_row[0]), turns) + dot((x[0], y[0], z[0]), moves),
+        dot((s[1], s[2], spun_row[1]), turns) + dot((x[1], y[1], z[1]), moves),
+        dot(spun_row, turns) + dot((x[2], y[2], z[2]), moves),
     )
     return couple, force

@@ -42,9 +42,9 @@ def pointer(typing, address):  # type: ignore[no-untyped-def]
     """Take a number for an address."""
     del typing, address
 
-    def generate(context, builder, signature, given):  # type: ignore[no-untyped-def]
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         del context, signature
-        return builder.inttoptr(given[0], cgutils.voidptr_t)
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
 
     return types.voidptr(types.int64), generate
 
@@ -100,61 +100,76 @@ class Motion(NamedTuple):
 
 
 @part
-def read_bodies(model: int, at: np.ndarray) -> Bodies:
+def read_bodies(model: int, offsets: np.ndarray) -> Bodies:
     """Return the tree of a model."""
-    whole = carray(model, (4096,), np.int64)
-    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
-    rownnz = carray(pointer(whole[at[_ROWNNZ] // 8]), (nv,), np.uint32)
-    rowadr = carray(pointer(whole[at[_ROWADR] // 8]), (nv,), np.uint32)
+    model_words = carray(model, (4096,), np.int64)
+    nv, nbody = model_words[offsets[_NV] // 8], model_words[offsets[_NBODY] // 8]
+    rownnz = carray(pointer(model_words[offsets[_ROWNNZ] // 8]), (nv,), np.uint32)
+    rowadr = carray(pointer(model_words[offsets[_ROWADR] // 8]), (nv,), np.uint32)
     return Bodies(
-        carray(pointer(whole[at[_PARENT] // 8]), (nbody,), np.uint32),
-        carray(pointer(whole[at[_ROOT] // 8]), (nbody,), np.uint32),
-        carray(pointer(whole[at[_DOFADR] // 8]), (nbody,), np.uint32),
-        carray(pointer(whole[at[_DOFNUM] // 8]), (nbody,), np.uint32),
-        carray(pointer(whole[at[_DOFBODY] // 8]), (nv,), np.uint32),
+        carray(pointer(model_words[offsets[_PARENT] // 8]), (nbody,), np.uint32),
+        carray(pointer(model_words[offsets[_ROOT] // 8]), (nbody,), np.uint32),
+        carray(pointer(model_words[offsets[_DOFADR] // 8]), (nbody,), np.uint32),
+        carray(pointer(model_words[offsets[_DOFNUM] // 8]), (nbody,), np.uint32),
+        carray(pointer(model_words[offsets[_DOFBODY] // 8]), (nv,), np.uint32),
         rownnz,
         rowadr,
-        carray(pointer(whole[at[_COLIND] // 8]), (rowadr[nv - 1] + rownnz[nv - 1],), np.uint32),
+        carray(pointer(model_words[offsets[_COLIND] // 8]), (rowadr[nv - 1] + rownnz[nv - 1],), np.uint32),
     )
 
 
 @part
-def read_motion(model: int, data: int, at: np.ndarray) -> Motion:
-    """Return where the bodies of a model are."""
-    whole = carray(model, (4096,), np.int64)
+def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
+    """Return where the bodies of a model are.
+
+    Args:
+        model: address of a ``mjModel``.
+        data: address of its ``mjData``.
+        offsets: of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+    """
+    model_words = carray(model, (4096,), np.int64)
     state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
-    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
+    nv, nbody = model_words[offsets[_NV] // 8], model_words[offsets[_NBODY] // 8]
     return Motion(
-        clock[at[_TIME] // 8],
-        carray(pointer(state[at[_XPOS] // 8]), (nbody, 3), np.float64),
-        carray(pointer(state[at[_XMAT] // 8]), (nbody, 9), np.float64),
-        carray(pointer(state[at[_COM] // 8]), (nbody, 3), np.float64),
-        carray(pointer(state[at[_CVEL] // 8]), (nbody, 6), np.float64),
-        carray(pointer(state[at[_CDOF] // 8]), (nv, 6), np.float64),
-        carray(pointer(state[at[_CDOFDOT] // 8]), (nv, 6), np.float64),
-        carray(pointer(state[at[_QVEL] // 8]), (nv,), np.float64),
-        carray(pointer(state[at[_QACC] // 8]), (nv,), np.float64),
-        carray(pointer(state[at[_PASSIVE] // 8]), (nv,), np.float64),
-        carray(pointer(state[at[_MASS] // 8]), (nv * nv,), np.float64),
-        carray(pointer(state[at[_USER] // 8]), (NUMBERS,), np.float64),
+        clock[offsets[_TIME] // 8],
+        carray(pointer(state[offsets[_XPOS] // 8]), (nbody, 3), np.float64),
+        carray(pointer(state[offsets[_XMAT] // 8]), (nbody, 9), np.float64),
+        carray(pointer(state[offsets[_COM] // 8]), (nbody, 3), np.float64),
+        carray(pointer(state[offsets[_CVEL] // 8]), (nbody, 6), np.float64),
+        carray(pointer(state[offsets[_CDOF] // 8]), (nv, 6), np.float64),
+        carray(pointer(state[offsets[_CDOFDOT] // 8]), (nv, 6), np.float64),
+        carray(pointer(state[offsets[_QVEL] // 8]), (nv,), np.float64),
+        carray(pointer(state[offsets[_QACC] // 8]), (nv,), np.float64),
+        carray(pointer(state[offsets[_PASSIVE] // 8]), (nv,), np.float64),
+        carray(pointer(state[offsets[_MASS] // 8]), (nv * nv,), np.float64),
+        carray(pointer(state[offsets[_USER] // 8]), (NUMBERS,), np.float64),
     )
 
 
 @part
-def read_given(model: int, data: int, at: np.ndarray) -> np.ndarray:
-    """Return what stands behind the numbers of the water."""
-    whole, state = carray(model, (4096,), np.int64), carray(data, (65536,), np.int64)
-    first = 8 * NUMBERS
-    return carray(pointer(state[at[_USER] // 8] + first), (whole[at[NUSER] // 8] - NUMBERS,), np.float64)
+def read_given(model: int, data: int, offsets: np.ndarray) -> np.ndarray:
+    """Return the stored added mass, which follows the numbers of the water in the user data."""
+    model_words, state = carray(model, (4096,), np.int64), carray(data, (65536,), np.int64)
+    start_byte = 8 * NUMBERS
+    return carray(
+        pointer(state[offsets[_USER] // 8] + start_byte), (model_words[offsets[NUSER] // 8] - NUMBERS,), np.float64
+    )
 
 
 @part
-def read_water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> WaterProperties:
-    """Return what the water is."""
-    down = three(carray(model, (4096,), np.float64), at[_GRAVITY] // 8)
+def read_water(model: int, user: np.ndarray, offsets: np.ndarray, length: float) -> WaterProperties:
+    """Return what the water is.
+
+    Args:
+        model: address of a ``mjModel``.
+        user: numbers of the water, see ``water_table``.
+        offsets: of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        length: of the robot, for the Reynolds number of friction [m].
+    """
+    down = three(carray(model, (4096,), np.float64), offsets[_GRAVITY] // 8)
     gravity = sqrt(dot(down, down))
-    up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
+    up_axis = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
     return WaterProperties(
         user[LEVEL], user[DENSITY], (user[AIR_FRACTION], user[AIR_FRACTION + 1]), user[VISCOSITY], user[CROSS_DRAG],
-        user[THICKENING], user[ADDED], user[SHEDDING], up, gravity, length,
+        user[THICKENING], user[ADDED], user[SHEDDING], up_axis, gravity, length,
     )  # fmt: skip

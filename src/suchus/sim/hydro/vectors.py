@@ -29,17 +29,17 @@ FOLDER = folder()
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile what is called from outside; keep the code on disk (see ``suchus.core.kernel_cache``)."""
-    made: Callable[P, R] = njit(**_OPTIONS)(function)
+    kernel: Callable[P, R] = njit(**_OPTIONS)(function)
     if FOLDER is not None:  # else it is compiled anew every time
-        kernel_cache.keep(made, FOLDER)
-    return made
+        kernel_cache.keep(kernel, FOLDER)
+    return kernel
 
 
 def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a part of these, which nothing else calls."""
-    alone = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
-    made: Callable[P, R] = njit(**_OPTIONS, **alone)(function)
-    return made
+    inline_options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    kernel: Callable[P, R] = njit(**_OPTIONS, **inline_options)(function)
+    return kernel
 
 
 @part
@@ -85,15 +85,15 @@ def write(values: np.ndarray, start: int, three_: Vector) -> None:
 
 
 @part
-def lane(rows: np.ndarray, row: int, place: int) -> Vector:
+def lane(rows: np.ndarray, row: int, column: int) -> Vector:
     """Return three numbers that stand below each other, from a row on."""
-    return rows[row, place], rows[row + 1, place], rows[row + 2, place]
+    return rows[row, column], rows[row + 1, column], rows[row + 2, column]
 
 
 @part
-def put(rows: np.ndarray, row: int, place: int, values: Vector) -> None:
+def put(rows: np.ndarray, row: int, column: int, values: Vector) -> None:
     """Write three numbers below each other, from a row on."""
-    rows[row, place], rows[row + 1, place], rows[row + 2, place] = values
+    rows[row, column], rows[row + 1, column], rows[row + 2, column] = values
 
 
 @part

@@ -1,4 +1,4 @@
-"""A robot put on the water: whether it floats upright, and level with the surface as deep as its weight asks for."""
+"""A robot on the water: whether it floats upright, and its posture at the surface in equilibrium."""
 
 import warnings
 from functools import lru_cache
@@ -27,24 +27,24 @@ INDIFFERENT = 1e-4
 """Metacentric height over length down to which a body is not said to capsize, if it is below zero [-]."""
 AIRBORNE = 0.15
 """Share of the volume in the air from which a swimmer is told so: limbs and tail then beat the air [-]."""
-_ABOVE, _MOVED = 0.05, 0.1
+_EMERGED_FRACTION, _BALLAST_FRACTION = 0.05, 0.1
 """Share of the volume that is above the surface once it is mended, and of the mass that is moved to mend it [-]."""
 
 
 def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
-    """Return the volume of a robot wholly under water with the air that it keeps, and that of its weight [m3].
+    """Return the volume that a robot displaces fully submerged, and the volume of water that weighs as much [m3].
 
     Args:
-        robot: the design; it floats if the first is greater.
+        robot: the design; it floats if the first volume is greater than the second.
         lake: the water, as it is at the beginning.
     """
     table = pieces(robot)
-    lost = (1 - lake.at(0.0)[1]) * column(table, "air").sum()
-    return float(column(table, "volume").sum() - lost), robot.mass / lake.water.density
+    lost_air = (1 - lake.at(0.0)[1]) * column(table, "air").sum()
+    return float(column(table, "volume").sum() - lost_air), robot.mass / lake.water.density
 
 
 def hovers(robot: Robot, lake: Lake) -> bool:
-    """Return whether a robot has so much air that it hovers when it lets a part of it out."""
+    """Return whether a robot can hover in the water by releasing a part of its air."""
     spare = sum(volumes(robot).values()) - robot.mass / lake.water.density
     return 0.0 < spare <= sum(chambers(robot))
 
@@ -71,7 +71,7 @@ def check_floats(robot: Robot, lake: Lake) -> None:
 
 
 def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"]) -> None:
-    """Warn of a swimmer that sinks, capsizes or lies in the air, before it moves; say what would mend it.
+    """Warn, before it moves, of a swimmer that sinks, capsizes or floats too high; the warning says a remedy.
 
     Args:
         robot: the design.
@@ -89,12 +89,12 @@ def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"])
 
 @lru_cache(maxsize=64)
 def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[float, ...]) -> str:
-    """Return what is doubtful about a swimmer at rest in a sentence; nothing where all is well."""
-    rest = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heels=3)
-    if rest.surplus > HEAVIER * rest.mass:
-        return _sinks(robot, density, rest.surplus)
-    above = 1.0 - rest.mass / (density * rest.volume)
-    lever = -rest.metacentric_height
+    """Return a warning about a swimmer at rest as a sentence; empty if it floats upright and deep enough."""
+    equilibrium = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heels=3)
+    if equilibrium.surplus > HEAVIER * equilibrium.mass:
+        return _sinks(robot, density, equilibrium.surplus)
+    emerged_fraction = 1.0 - equilibrium.mass / (density * equilibrium.volume)
+    lever = -equilibrium.metacentric_height
     if isnan(lever):
         return (
             f"robot {robot.name!r} floats on end: no pitch up to 80 degrees balances it; give it foam where it is "
@@ -103,15 +103,16 @@ def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[flo
     if lever > INDIFFERENT * robot.length:
         return (
             f"robot {robot.name!r} capsizes: upright its metacentric height is {-1e3 * lever:.3g} mm; lower more than "
-            f"{_grams(_MOVED * rest.mass)} of its mass by {1e3 * lever / _MOVED:.3g} mm, or give its back foam."
+            f"{_grams(_BALLAST_FRACTION * equilibrium.mass)} of its mass by "
+            f"{1e3 * lever / _BALLAST_FRACTION:.3g} mm, or give its back foam."
         )
-    if above >= AIRBORNE:
-        lacking = (1.0 - _ABOVE) * density * rest.volume - rest.mass
-        spare = rest.volume - rest.mass / ((1.0 - _ABOVE) * density)
+    if emerged_fraction >= AIRBORNE:
+        lacking = (1.0 - _EMERGED_FRACTION) * density * equilibrium.volume - equilibrium.mass
+        spare = equilibrium.volume - equilibrium.mass / ((1.0 - _EMERGED_FRACTION) * density)
         return (
-            f"robot {robot.name!r} floats with {above:.0%} of its volume in the air, where it moves no water; "
-            f"{_grams(lacking)} more mass, or {_litres(spare)} less foam, air or other volume, leaves {_ABOVE:.0%} "
-            "above."
+            f"robot {robot.name!r} floats with {emerged_fraction:.0%} of its volume in the air, where it moves no "
+            f"water; {_grams(lacking)} more mass, or {_litres(spare)} less foam, air or other volume, leaves "
+            f"{_EMERGED_FRACTION:.0%} above."
         )
     return ""
 
@@ -119,10 +120,10 @@ def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[flo
 def _sinks(robot: Robot, density: float, surplus: float) -> str:
     """Return the sentence on a robot that is too heavy by a mass [kg]."""
     foam = (robot.hull or Hull(foam=())).density
-    carried = f"{_litres(surplus / (density - foam))} of foam" if foam < density else "lighter foam"
+    foam_text = f"{_litres(surplus / (density - foam))} of foam" if foam < density else "lighter foam"
     return (
         f"robot {robot.name!r} sinks: it is {_grams(surplus)} heavier than the water that it displaces; at least "
-        f"{carried} more, as design.flotation.float_hull makes, {_litres(surplus / density)} more air, or "
+        f"{foam_text} more, as design.flotation.float_hull makes, {_litres(surplus / density)} more air, or "
         f"{_grams(surplus)} less mass would carry it."
     )
 
@@ -136,7 +137,7 @@ def _litres(volume: float) -> str:
 
 
 def surfaced(
-    robot: Robot, lake: Lake, up: Float[np.ndarray, "3"], qpos: Float[np.ndarray, " q"], timestep: float
+    robot: Robot, lake: Lake, up_axis: Float[np.ndarray, "3"], qpos: Float[np.ndarray, " q"], timestep: float
 ) -> Float[np.ndarray, " q"]:
     """Return a posture lifted to the surface, level with it but for its heel, if the robot floats clear of the ground.
 
@@ -145,7 +146,7 @@ def surfaced(
     Args:
         robot: the design.
         lake: the water.
-        up: against gravity, unit vector.
+        up_axis: against gravity, unit vector.
         qpos: the posture on the ground.
         timestep: of the physics [s].
     """
@@ -158,26 +159,28 @@ def surfaced(
     model = wet_model(robot, timestep, None, len(table), acting=True)
     data = mujoco.MjData(model)
     floating = np.array(qpos)
-    floating[3:7] = multiply(multiply(_raising(up), about(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7])
+    floating[3:7] = multiply(multiply(_raising(up_axis), about(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7])
     floating[:3] = 0.0
     data.qpos[:] = floating
     mujoco.mj_kinematics(model, data)
     bodies = unpacked(model.numeric_data)
 
     def lacking(height: float) -> float:
-        return float(hydrostatic(bodies, data.xpos, data.xmat, up, -height, (air_fraction, air_fraction))[0]) - weight
+        return (
+            float(hydrostatic(bodies, data.xpos, data.xmat, up_axis, -height, (air_fraction, air_fraction))[0]) - weight
+        )
 
     reach = float(robot.length)
     height = brentq(lacking, -reach, reach, xtol=1e-9)  # of the root above the surface
-    floating[:3] = qpos[:3] + (level + height - float(up @ qpos[:3])) * up
+    floating[:3] = qpos[:3] + (level + height - float(up_axis @ qpos[:3])) * up_axis
     data.qpos[:] = floating
     mujoco.mj_forward(model, data)
     touching = any(contact.dist < 0.0 for contact in data.contact)
     return qpos if touching else floating
 
 
-def _raising(up: np.ndarray) -> np.ndarray:
-    """Return the shortest turn that takes z to ``up``, as a quaternion wxyz."""
-    axis = np.cross([0.0, 0.0, 1.0], up)
-    turn = np.array([1.0 + up[2], *axis])
+def _raising(up_axis: np.ndarray) -> np.ndarray:
+    """Return the shortest turn that takes z to ``up_axis``, as a quaternion wxyz."""
+    axis = np.cross([0.0, 0.0, 1.0], up_axis)
+    turn = np.array([1.0 + up_axis[2], *axis])
     return np.asarray(turn / np.linalg.norm(turn))

@@ -42,7 +42,7 @@ class Beginning(NamedTuple):
 
 
 class Meter:
-    """Keeps step by step what the water does to the robots and what their servos do; both jitter within a period.
+    """Records forces and powers of water and servos in each physics step, since both vary within a control period.
 
     Args:
         water: of the batch, shape (run, ``hydro.NUMBERS``); read anew at every step.
@@ -53,36 +53,37 @@ class Meter:
     """
 
     def __init__(self, water: np.ndarray, sensors: np.ndarray, velocities: slice, torques: slice, steps: int) -> None:
-        first, last = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
-        self._acts, self._felt = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, first:last]
-        self._did, self._all = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._felt.shape))
-        speeds = self._all[..., velocities.start - first : velocities.stop - first]
-        self._before, self._after = speeds[:-1], speeds[1:]
-        self._torque = self._all[1:, :, torques.start - first : torques.stop - first]
+        """Reserve arrays for the readings of one control period."""
+        first_sensor, last_sensor = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
+        self._acts, self._sensors = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, first_sensor:last_sensor]
+        self._did, self._history = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._sensors.shape))
+        speeds = self._history[..., velocities.start - first_sensor : velocities.stop - first_sensor]
+        self._start_speeds, self._end_speeds = speeds[:-1], speeds[1:]
+        self._torque = self._history[1:, :, torques.start - first_sensor : torques.stop - first_sensor]
         self._sum = np.zeros(self._torque.shape)
         self._share = np.full(steps, 1.0 / steps)
 
     def begin(self) -> None:
-        """Keep what is felt before the first step."""
-        self._all[0] = self._felt
+        """Store the sensor readings before the first step."""
+        self._history[0] = self._sensors
 
     def read(self, step: int) -> None:
-        """Keep what a physics step has left."""
+        """Store water forces and sensor readings after a physics step."""
         self._did[step] = self._acts
-        self._all[step + 1] = self._felt
+        self._history[step + 1] = self._sensors
 
-    def mean(self, into: np.ndarray, who: np.ndarray | slice) -> None:
+    def mean(self, means: np.ndarray, selection: np.ndarray | slice) -> None:
         """Write the means of force and power of the water and of the power of the servos, shape (run, 5).
 
         The power of a servo in a step is its torque times the mean of its speeds before and after.
 
         Args:
-            into: where to.
-            who: runs for which they are written.
+            means: written, shape (run, 5) [N, W].
+            selection: runs for which they are written.
         """
-        np.add(self._before, self._after, out=self._sum)
-        into[who, :4] = (self._share @ self._did.reshape(len(self._did), -1)).reshape(-1, 4)[who]
-        into[who, 4] = (0.5 * self._share @ np.vecdot(self._sum, self._torque))[who]
+        np.add(self._start_speeds, self._end_speeds, out=self._sum)
+        means[selection, :4] = (self._share @ self._did.reshape(len(self._did), -1)).reshape(-1, 4)[selection]
+        means[selection, 4] = (0.5 * self._share @ np.vecdot(self._sum, self._torque))[selection]
 
 
 class SimulationBatch:
@@ -93,30 +94,31 @@ class SimulationBatch:
     """
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
+        """Compile the models, bind the physics' arrays, and apply ground, supply and medium of each run."""
         corrections = [None if run.lake is None else run.lake.correction for run in runs]
-        bodies = [(run.robot, run.ground.relief, one) for run, one in zip(runs, corrections, strict=True)]
-        wet = any(run.lake is not None or run.solved is not None for run in runs)
-        if wet:
+        bodies = [(run.robot, run.ground.relief, correction) for run, correction in zip(runs, corrections, strict=True)]
+        has_water = any(run.lake is not None or run.solved is not None for run in runs)
+        if has_water:
             wetting.install()
-        room = max(len(pieces(run.robot)) for run in runs) if wet else 0
-        solved = runs[0].solved is not None
-        models = {body: _model(body, timestep, room, solved=solved) for body in dict.fromkeys(bodies)}
+        max_pieces = max(len(pieces(run.robot)) for run in runs) if has_water else 0
+        is_solved = runs[0].solved is not None
+        models = {body: _model(body, timestep, max_pieces, is_solved=is_solved) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
         self.model = shared
         self._single = len(models) == 1
         self._models: list[Any] = [] if self._single else [models[body] for body in bodies]
         self._owned: set[int] = set()
-        self._written = False
+        self._is_modified = False
         self._timestep, self._robots = timestep, [run.robot for run in runs]
         self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
         self._lay_ground(runs)
         if self._models:
             self.physics.set_models(self._models)
-            self._written = False
+            self._is_modified = False
         self.qpos, self.qvel, self.ctrl, self.sensors = (
             self.physics.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
         )
-        self.activations, self._pushed = self.physics.bind("act"), self.physics.bind("xfrc_applied")
+        self.activations, self._external_forces = self.physics.bind("act"), self.physics.bind("xfrc_applied")
         self.readings = self.sensors.copy()
         self._lengths = self.physics.bind("actuator_length")
         self._shafts = self._lengths.copy()
@@ -124,12 +126,15 @@ class SimulationBatch:
         self.waters = Waters([run.lake for run in runs], [run.ground for run in runs], self.physics)
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
-        self._felt, self._mean = self.sensors[:, self._forces], self.readings[:, self._forces]
-        self._sum, self._speeds = np.zeros_like(self._felt), np.zeros_like(self.qvel)
+        self._live_forces, self._mean = self.sensors[:, self._forces], self.readings[:, self._forces]
+        self._sum, self._speeds = np.zeros_like(self._live_forces), np.zeros_like(self.qvel)
         names = layout(runs[0].robot).servos
         self.velocities, self.torques = (
-            slice(int(shared.sensor(f"{names[0]}_{what}").adr[0]), int(shared.sensor(f"{names[-1]}_{what}").adr[0]) + 1)
-            for what in ("velocity", "torque")
+            slice(
+                int(shared.sensor(f"{names[0]}_{quantity}").adr[0]),
+                int(shared.sensor(f"{names[-1]}_{quantity}").adr[0]) + 1,
+            )
+            for quantity in ("velocity", "torque")
         )
         self.worked = np.zeros((len(runs), 5))
         self._meters: dict[int, Meter] = {}
@@ -142,19 +147,19 @@ class SimulationBatch:
         if self._single:
             values: np.ndarray = self.physics.expand(name)[sim]
             return values
-        self._written = True
-        owner: Any = self._own(sim)
-        for part in name.split("."):
-            owner = getattr(owner, part)
+        self._is_modified = True
+        owner: Any = self._private_model(sim)
+        for attribute in name.split("."):
+            owner = getattr(owner, attribute)
         return np.asarray(owner)
 
     def commit(self) -> None:
         """Let the physics know of written model fields."""
-        if self._models and self._written:
+        if self._models and self._is_modified:
             self.physics.set_models(self._models)
-            self._written = False
+            self._is_modified = False
 
-    def _own(self, sim: int) -> Any:
+    def _private_model(self, sim: int) -> Any:
         """Return a run's model, which it shares with no other from now on."""
         if sim not in self._owned:
             self._models[sim] = copy.copy(self._models[sim])
@@ -162,6 +167,7 @@ class SimulationBatch:
         return self._models[sim]
 
     def _lay_ground(self, runs: Sequence[Run]) -> None:
+        """Write friction, slope, supply and medium of each run into its model."""
         for sim, run in enumerate(runs):
             if run.ground.friction_scale != 1.0:
                 self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
@@ -180,43 +186,55 @@ class SimulationBatch:
         no_contact = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
 
-    def _cast_off(self, sim: int, afloat: Afloat) -> None:
+    def _cast_off(self, sim: int, medium: Afloat) -> None:
+        """Remove gravity and contacts from a run and put it into a fluid, integrated by Runge-Kutta steps."""
         self.field("opt.gravity", sim)[:] = 0.0
-        self._set_option("density", sim, afloat.density)
-        self._set_option("viscosity", sim, afloat.viscosity)
+        self._set_option("density", sim, medium.density)
+        self._set_option("viscosity", sim, medium.viscosity)
         self._set_option("integrator", sim, int(mujoco.mjtIntegrator.mjINT_RK4))
         no_contact = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
 
     def _set_option(self, name: str, sim: int, value: float) -> None:
+        """Write one physics option of one run; call ``commit`` after it."""
         if self._single:
             self.physics.expand(f"opt.{name}")[sim] = value
         else:
-            setattr(self._own(sim).opt, name, value)
-            self._written = True
+            setattr(self._private_model(sim).opt, name, value)
+            self._is_modified = True
 
     def power(self, sim: int, servo: str, *, on: bool) -> None:
-        """Give a servo its torque, or take it away, from the next ``commit`` on."""
+        """Give a servo its torque, or take it away, from the next ``commit`` on.
+
+        Args:
+            sim: the run.
+            servo: name of the servo.
+            on: whether it gets its torque.
+        """
         bit = 1 << int(self.model.actuator(servo).group[0])
-        now = self.physics.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
-        self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
+        disabled_groups = (
+            self.physics.expand("opt.disableactuator")[sim]
+            if self._single
+            else self._private_model(sim).opt.disableactuator
+        )
+        self._set_option("disableactuator", sim, int(disabled_groups) & ~bit if on else int(disabled_groups) | bit)
 
     @property
     def pressed(self) -> np.ndarray:
         """The contact forces among the readings, for writing, shape (run, 3 forces) [N]."""
         return self._mean
 
-    def supply(self, sim: int, share: float) -> None:
+    def supply(self, sim: int, fraction: float) -> None:
         """Let a run's servos that have a winding get a share of their supply, from the next ``commit`` on.
 
         Args:
             sim: the run.
-            share: of the supply of the design [-].
+            fraction: of the supply of the design [-].
         """
         volts = supplies(self._robots[sim])
         motors = ~np.isnan(volts)
         if motors.any():
-            self.field("actuator_gainprm", sim)[motors, SUPPLY] = share * volts[motors]
+            self.field("actuator_gainprm", sim)[motors, SUPPLY] = fraction * volts[motors]
 
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
@@ -236,55 +254,61 @@ class SimulationBatch:
             body: name of the body.
             force: in the world, shape (3,) [N]; zeros end the push.
         """
-        self._pushed[sim, self.model.body(body).id, :3] = force
+        self._external_forces[sim, self.model.body(body).id, :3] = force
 
-    def place(self, runs: Sequence[Run], first: np.ndarray) -> None:
+    def place(self, runs: Sequence[Run], initial_angles: np.ndarray) -> None:
         """Put every robot on the ground in its first posture, nothing below the surface.
 
         Args:
             runs: the runs.
-            first: the servo angles at the start, shape (run, servo) [rad].
+            initial_angles: the servo angles at the start, shape (run, servo) [rad].
         """
         postures: dict[object, tuple[np.ndarray, np.ndarray]] = {}
-        afloat: dict[object, np.ndarray] = {}
+        floating_postures: dict[object, np.ndarray] = {}
         for sim, run in enumerate(runs):
             height = hip_height(run.robot, run.gait)
-            key = (run.robot, height, first[sim].tobytes())
+            key = (run.robot, height, initial_angles[sim].tobytes())
             if key not in postures:
                 model = compile_model(run.robot, self._timestep)  # every run begins on even ground
-                posture = standing(model, run.robot, height, first[sim])
-                postures[key] = posture, activations(model, first[sim])
+                posture = standing(model, run.robot, height, initial_angles[sim])
+                postures[key] = posture, activations(model, initial_angles[sim])
             self.qpos[sim], self.activations[sim] = postures[key]
             if run.lake is not None:
                 float_key = (key, run.lake, run.ground)
-                if float_key not in afloat:
-                    afloat[float_key] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
-                self.qpos[sim] = afloat[float_key]
-            self.ctrl[sim] = first[sim]
+                if float_key not in floating_postures:
+                    floating_postures[float_key] = surfaced(
+                        run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep
+                    )
+                self.qpos[sim] = floating_postures[float_key]
+            self.ctrl[sim] = initial_angles[sim]
         self.physics.forward()
         self.read(slice(None))
 
-    def read(self, who: int | slice) -> None:
-        """Take the readings of some runs at rest in their present state, which has been brought up to date."""
-        self.readings[who], self._shafts[who], self.worked[who] = self.sensors[who], self._lengths[who], 0.0
+    def read(self, selection: int | slice) -> None:
+        """Copy the sensors of the selected runs into ``readings``; their mean loads become those of this instant."""
+        self.readings[selection], self._shafts[selection], self.worked[selection] = (
+            self.sensors[selection],
+            self._lengths[selection],
+            0.0,
+        )
         if self.waters:
-            self.worked[who, :4] = self.waters.acts()[who]
+            self.worked[selection, :4] = self.waters.acts()[selection]
 
     def felt(self, sim: int) -> dict[str, np.ndarray]:
-        """Return copies of what controllers and faults of a run decide by: sensors, angles at the shafts, places."""
+        """Return copies of the inputs of a run's controllers and faults: sensors, shaft angles, positions, loads."""
         return {name: values[sim].copy() for name, values in self._decided_by.items()}
 
-    def feel(self, sim: int, felt: Mapping[str, np.ndarray]) -> None:
-        """Let controllers and faults of a run decide by what was ``felt`` at another time."""
+    def feel(self, sim: int, inputs: Mapping[str, np.ndarray]) -> None:
+        """Set the inputs of a run's controllers and faults, as ``felt`` returned them at another time."""
         for name, values in self._decided_by.items():
-            values[sim] = felt[name]
+            values[sim] = inputs[name]
 
     @property
     def _decided_by(self) -> dict[str, np.ndarray]:
         return {"readings": self.readings, "shafts": self._shafts, "qpos": self.qpos, "worked": self.worked}
 
     def restart(self, sim: int, begin: Beginning) -> None:
-        """Put one robot into a state, without a push, also after it has diverged; its faults are the injector's.
+        """Put one robot into a state, without pushes, also after it has diverged; the injector handles its faults.
 
         The others stay as they are. From then on it moves as a robot of a fresh batch does, to the last bit.
 
@@ -292,13 +316,13 @@ class SimulationBatch:
             sim: index of the robot in the batch.
             begin: the state in which it begins.
         """
-        who = np.array([sim])
+        sim_ids = np.array([sim])
         self._sense(True)
-        self.physics.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
+        self.physics.reset(sim_ids, stage=mujoco.mjtStage.mjSTAGE_NONE)
         self.qpos[sim], self.qvel[sim], self.ctrl[sim] = begin.qpos, begin.qvel, begin.commanded
         self.activations[sim] = begin.act
         self.waters.refill(sim)
-        self.physics.forward(who)
+        self.physics.forward(sim_ids)
         self.read(sim)
         self.alive[sim], self.ended[sim], self.cause[sim] = True, np.inf, ""
 
@@ -307,12 +331,14 @@ class SimulationBatch:
         targets: np.ndarray,
         steps: int,
         time: float,
-        who: np.ndarray | None = None,
+        selection: np.ndarray | None = None,
         *,
         felt: bool = True,
         read: bool = True,
     ) -> None:
-        """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
+        """Command servo angles and advance the runs that are alive by some physics steps.
+
+        A run that diverges is stopped; ``ended`` and ``cause`` hold the time and the reason.
 
         On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure
         sensor filters them, everything else as it is now.
@@ -321,12 +347,12 @@ class SimulationBatch:
             targets: shape (run, servo) [rad].
             steps: number of physics steps.
             time: at which they begin [s].
-            who: whether each run is advanced, shape (run,); None for all.
-            felt: whether contact forces will be read; if not, they are those of the last step, which takes less time.
-            read: whether any of ``readings`` will be; if not, they are older, and a step takes a ninth less time.
+            selection: whether each run is advanced, shape (run,); None advances all.
+            felt: whether contact forces are needed as means; if not, they are those of the last step, which is faster.
+            read: whether ``readings`` are needed; if not, they stay as they were, and a step takes a ninth less time.
         """
         # what all runs share is done at once: with one run alone each of these lines shows in its time
-        going = self._going(who)
+        going = self._going(selection)
         if going is None or self.alive.all():
             self.ctrl[:] = targets
         else:
@@ -341,47 +367,47 @@ class SimulationBatch:
             except SimulationError as error:
                 for sim in error.ids:
                     self._end(int(sim), time, self.physics.error(int(sim)))
-                going = self._going(who)
-            self._sum += self._felt
+                going = self._going(selection)
+            self._sum += self._live_forces
             if meter is not None:
                 meter.read(call)
         if meter is not None:
-            meter.mean(self.worked, slice(None) if who is None else who)
+            meter.mean(self.worked, slice(None) if selection is None else selection)
         self.readings[:], self._shafts[:] = self.sensors, self._lengths
         np.divide(self._sum, calls, out=self._mean)
         np.abs(self.qvel, out=self._speeds)
         if not self._speeds.max() < _TOO_FAST:  # a NaN is not below anything
             fastest = self._speeds.max(axis=1)
-            for sim in np.flatnonzero(self._living(who) & ~(fastest < _TOO_FAST)):
+            for sim in np.flatnonzero(self._living(selection) & ~(fastest < _TOO_FAST)):
                 self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
 
     def copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
-        """Let runs be where others are, and feel and suffer the same.
+        """Copy the states, readings and failures of some runs to others.
 
         Args:
-            sims: indices of the runs, shape (n,).
-            whom: for each of them the index of the other, shape (n,).
+            sims: indices of the runs that are overwritten, shape (n,).
+            whom: index of the run that each of them copies, shape (n,).
         """
         self.physics.state[sims] = self.physics.state[whom]
         self.readings[sims], self._shafts[sims] = self.readings[whom], self._shafts[whom]
         self.worked[sims] = self.worked[whom]
-        for sim, other in zip(sims, whom, strict=True):
-            if not self.alive[other]:
-                self._end(int(sim), float(self.ended[other]), self.cause[other])
+        for sim, source in zip(sims, whom, strict=True):
+            if not self.alive[source]:
+                self._end(int(sim), float(self.ended[source]), self.cause[source])
 
-    def _sense(self, on: bool) -> None:
-        """Let the physics work out its sensors from now on, or not; the states that it comes to are the same."""
-        if on == self._sensing:
+    def _sense(self, is_on: bool) -> None:
+        """Switch the computation of sensors on or off; the computed states are the same."""
+        if is_on == self._sensing:
             return
-        self._sensing, bit = on, int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+        self._sensing, bit = is_on, int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
         if self._single:
             flags = self.physics.expand("opt.disableflags")
-            flags[:] = flags & ~bit if on else flags | bit
+            flags[:] = flags & ~bit if is_on else flags | bit
             return
         for model in {id(model): model for model in self._models}.values():
-            now = int(model.opt.disableflags)
-            model.opt.disableflags = now & ~bit if on else now | bit
-        self._written = True
+            model_flags = int(model.opt.disableflags)
+            model.opt.disableflags = model_flags & ~bit if is_on else model_flags | bit
+        self._is_modified = True
         self.commit()
 
     def _meter(self, steps: int) -> Meter | None:
@@ -393,13 +419,13 @@ class SimulationBatch:
         self._meters[steps].begin()
         return self._meters[steps]
 
-    def _living(self, who: np.ndarray | None) -> np.ndarray:
-        """Return who is alive, of some or of all."""
-        return self.alive if who is None else self.alive & who
+    def _living(self, selection: np.ndarray | None) -> np.ndarray:
+        """Return whether each selected run is alive, shape (run,)."""
+        return self.alive if selection is None else self.alive & selection
 
-    def _going(self, who: np.ndarray | None) -> np.ndarray | None:
-        """Return which simulations are stepped; None for all."""
-        going = self._living(who)
+    def _going(self, selection: np.ndarray | None) -> np.ndarray | None:
+        """Return the indices of the runs that are stepped; None for all."""
+        going = self._living(selection)
         return None if going.all() else np.flatnonzero(going)
 
     def _end(self, sim: int, time: float, cause: str) -> None:
@@ -408,18 +434,28 @@ class SimulationBatch:
 
 
 def _model(
-    body: tuple[Robot, Relief | None, SectionCorrection | None], timestep: float, room: int, *, solved: bool = False
-) -> Any:  # fmt: skip
-    """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
+    body: tuple[Robot, Relief | None, SectionCorrection | None],
+    timestep: float,
+    max_pieces: int,
+    *,
+    is_solved: bool = False,
+) -> Any:
+    """Return a compiled model without island discovery, with a table of water pieces if ``max_pieces`` is above 0.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
+
+    Args:
+        body: robot, relief of its ground, and correction of its sections.
+        timestep: of the physics [s].
+        max_pieces: pieces that the table of the water has room for; 0 on dry land.
+        is_solved: whether a flow solver computes the water.
     """
     robot, relief, correction = body
-    if room:
-        made = wet_model(robot, timestep, relief, room, acting=True, solved=solved)
+    if max_pieces:
+        base_model = wet_model(robot, timestep, relief, max_pieces, acting=True, solved=is_solved)
     else:
-        made = compile_model(robot, timestep, relief)
-    model = copy.copy(made)
+        base_model = compile_model(robot, timestep, relief)
+    model = copy.copy(base_model)
     if correction is not None:
         correct(model, correction)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)

@@ -7,7 +7,7 @@ import numpy as np
 from suchus.robot.design.correction import SectionCorrection
 from suchus.robot.design.water_table import HEADER, WIDTH, column, packed, unpacked
 
-_ADDED, _DRAG = ("added", "shed"), ("area", "roll", "skin", "end")
+_ADDED_MASS_COLUMNS, _DRAG_COLUMNS = ("added", "shed"), ("area", "roll", "skin", "end")
 """Columns of the table of pieces that each factor is on."""
 
 
@@ -22,8 +22,8 @@ def correct(model: Any, correction: SectionCorrection) -> None:
     table = unpacked(numbers)
     for name, factors in correction.factors.items():
         ids = [body for body in range(model.nbody) if model.body(body).name == name]
-        mine = np.isin(table[:, 0].astype(int), ids)
-        for columns, factor in ((_ADDED, factors.added), (_DRAG, factors.drag)):
-            for one in columns:
-                column(table, one)[mine] *= factor
+        is_corrected = np.isin(table[:, 0].astype(int), ids)
+        for columns, factor in ((_ADDED_MASS_COLUMNS, factors.added), (_DRAG_COLUMNS, factors.drag)):
+            for column_name in columns:
+                column(table, column_name)[is_corrected] *= factor
     numbers[:] = packed(table, float(numbers[2]), (len(numbers) - HEADER) // WIDTH)

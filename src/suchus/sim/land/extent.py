@@ -18,8 +18,8 @@ def record_bytes(run: Run, samples: float) -> float:
         run: whose.
         samples: how many samples it keeps [-].
     """
-    place = layout(run.robot)
-    numbers = len(place.hinges) + 4 * len(servo_names(run.robot)) + 7 * len(place.limb_names)
+    robot_layout = layout(run.robot)
+    numbers = len(robot_layout.hinges) + 4 * len(servo_names(run.robot)) + 7 * len(robot_layout.limb_names)
     return 8.0 * samples * (_PER_SAMPLE + numbers + 3 * len(run.robot.axis))
 
 
@@ -34,7 +34,7 @@ def processor_seconds(run: Run, duration: float, timestep: float) -> float:
     return _SECONDS * len(layout(run.robot).hinges) * duration / timestep
 
 
-def check_extent(runs: Sequence[Run], duration: float, timestep: float, period: float, every: int) -> None:
+def check_extent(runs: Sequence[Run], duration: float, timestep: float, period: float, stride: int) -> None:
     """Refuse runs that the machine cannot hold, or that compute for longer than a day, see ``suchus.core.large``.
 
     Args:
@@ -42,14 +42,14 @@ def check_extent(runs: Sequence[Run], duration: float, timestep: float, period: 
         duration: of each [s].
         timestep: of the physics [s].
         period: of control [s].
-        every: control periods for each sample that is kept [-].
+        stride: control periods for each sample that is kept [-].
 
     Raises:
         InvalidDesign: with the estimate.
     """
-    what = f"a batch of {len(runs)} runs of {duration:g} s" if len(runs) > 1 else f"a run of {duration:g} s"
-    samples = duration / period / every
+    subject = f"a batch of {len(runs)} runs of {duration:g} s" if len(runs) > 1 else f"a run of {duration:g} s"
+    samples = duration / period / stride
     need = _COPIES * sum(record_bytes(run, samples) for run in runs)
-    large.check_memory(what, need, "ask for fewer or shorter runs, or keep one sample of many (every)")
+    large.check_memory(subject, need, "ask for fewer or shorter runs, or keep one sample of many (every)")
     seconds = sum(processor_seconds(run, duration, timestep) for run in runs)
-    large.check_work(what, seconds, "ask for fewer or shorter runs, or a longer time step")
+    large.check_work(subject, seconds, "ask for fewer or shorter runs, or a longer time step")

@@ -25,12 +25,12 @@ def failing_joints(robot: Robot) -> tuple[str, ...]:
     A girdle is ``front``, ``hind``, or ``middle`` with its number where there are several; only the hind one is there
     where there is one.
     """
-    place = layout(robot)
-    words = girdle_words(len(place.robot.girdles))
+    robot_layout = layout(robot)
+    words = girdle_words(len(robot_layout.robot.girdles))
     ranked = [
         (i, number, f"{words[number]}_{name.partition('_')[2]}")
         for number in range(len(words))
-        for i, name in enumerate(place.servos[place.limbs[2 * number].servos])
+        for i, name in enumerate(robot_layout.servos[robot_layout.limbs[2 * number].servos])
     ]
     return tuple(name for _, _, name in sorted(ranked))
 
@@ -59,17 +59,17 @@ def joint_failure(
     """
     if joint not in failing_joints(robot):
         raise UnknownName("joint of a girdle", joint, failing_joints(robot))
-    place = layout(robot)
+    robot_layout = layout(robot)
     word, _, axis = joint.partition("_")
-    girdle = place.robot.girdles[girdle_words(len(place.robot.girdles)).index(word)].name
+    girdle = robot_layout.robot.girdles[girdle_words(len(robot_layout.robot.girdles)).index(word)].name
     names = [f"{side}{girdle}_{axis}" for side in ("L", "R")[: 1 if legs == "one" else 2]]
     if kind == "limp":
         return tuple(Limp(name) for name in names)
     return tuple(Locked(name, angle=angle_at(robot, gait, name, hold)) for name in names)
 
 
-def angle_at(robot: Robot, gait: Gait, servo: str, share: float) -> float:
+def angle_at(robot: Robot, gait: Gait, servo: str, fraction: float) -> float:
     """Return an angle in the range that a gait asks of a servo: 0 the least, 1 the greatest [rad]."""
     clock = np.arange(128) / 128
     angles = cycle_targets(robot, gait, clock)[:, layout(robot).servos.index(servo)]
-    return float(angles.min() + share * (angles.max() - angles.min()))
+    return float(angles.min() + fraction * (angles.max() - angles.min()))

@@ -20,7 +20,7 @@ from suchus.sim.model.wet import with_pieces
 
 Point = tuple[float, float, float]
 Integrator = Literal["Euler", "implicitfast", "RK4"]
-_UP = np.array([0.0, 0.0, 1.0])
+_UP_AXIS = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,6 +43,7 @@ class FloatBody:
     """Strips along a cylinder, or columns along each side of a box [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse sizes, masses and inertias outside their ranges."""
         with Checks("float_body", self) as check:
             check.each("half", ("length", "width", "height"), 1e-4, 100.0, "m")
             check.number("mass", 1e-6, 1e6, "kg")
@@ -59,21 +60,23 @@ class FloatBody:
     def table(self) -> Float[np.ndarray, "piece column"]:
         """Return its pieces, on body 1 of a model; no drag."""
         c, a, b = self.half
-        across, upward, forward = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-        middles = (np.arange(self.parts) + 0.5) / self.parts * 2 - 1
+        axis_a, axis_b, axis_t = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+        positions = (np.arange(self.parts) + 0.5) / self.parts * 2 - 1
         if self.shape == "ellipsoid":
-            places, kind, half = [(0.0, 0.0, 0.0)], BALL, (a, b, c)
+            centres, kind, half = [(0.0, 0.0, 0.0)], BALL, (a, b, c)
         elif self.shape == "cylinder":
-            places, kind, half = [(c * m, 0.0, 0.0) for m in middles], DISC, (a, b, c / self.parts)
+            centres, kind, half = [(c * m, 0.0, 0.0) for m in positions], DISC, (a, b, c / self.parts)
         else:
-            places = [(c * m, a * n, 0.0) for m in middles for n in middles]
+            centres = [(c * m, a * n, 0.0) for m in positions for n in positions]
             kind, half = SLAB, (c / self.parts, a / self.parts, b)
-            across, upward, forward = forward, across, upward
-        added = np.array(self.added)[[("xyz").index("xyz"[int(np.argmax(axis))]) for axis in (across, upward, forward)]]
-        table = np.zeros((len(places), WIDTH))
+            axis_a, axis_b, axis_t = axis_t, axis_a, axis_b
+        added_mass = np.array(self.added)[
+            [("xyz").index("xyz"[int(np.argmax(axis))]) for axis in (axis_a, axis_b, axis_t)]
+        ]
+        table = np.zeros((len(centres), WIDTH))
         for name, values in (
-            ("body", 1), ("kind", kind), ("at", places), ("across", across), ("upward", upward), ("forward", forward),
-            ("half", half), ("volume", self.volume / len(places)), ("added", added * self.volume / len(places)),
+            ("body", 1), ("kind", kind), ("at", centres), ("across", axis_a), ("upward", axis_b), ("forward", axis_t),
+            ("half", half), ("volume", self.volume / len(centres)), ("added", added_mass * self.volume / len(centres)),
         ):  # fmt: skip
             table[:, slice(*COLUMNS[name])] = np.reshape(values, (-1, COLUMNS[name][1] - COLUMNS[name][0]))
         return table
@@ -92,6 +95,7 @@ class FloatTank:
     def __init__(
         self, body: FloatBody, lake: Lake, *, timestep: float = 0.002, integrator: Integrator = "implicitfast"
     ) -> None:
+        """Build the model of the body with its pieces, and fill the tank."""
         self._body, self._lake = body, lake
         spec = mujoco.MjSpec()
         spec.option.timestep = timestep
@@ -100,23 +104,23 @@ class FloatTank:
         spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         # MuJoCo keeps no off-diagonal inertia of a body whose frame is that of its mass, and would lose that of the
         # water: the frame stands beside it.
-        frame = spec.worldbody.add_body(name="float", ipos=list(np.add(body.centre, _ASIDE)), mass=body.mass)
+        frame = spec.worldbody.add_body(name="float", ipos=list(np.add(body.centre, _SHAPE_CENTRE)), mass=body.mass)
         frame.inertia, frame.explicitinertial = list(body.inertia), True
         frame.add_freejoint()
         table = body.table()
-        column(table, "at")[:] += _ASIDE
+        column(table, "at")[:] += _SHAPE_CENTRE
         wetting.install()
         self.model = with_pieces(spec, table, 2 * max(body.half), acting=True)
         self.data = mujoco.MjData(self.model)
-        self.data.userdata[:] = lake.numbers(_UP)
+        self.data.userdata[:] = lake.numbers(_UP_AXIS)
         self._table = unpacked(self.model.numeric_data)
 
-    def place(self, at: Point, turn: Float[np.ndarray, "4"] | None = None, velocity: Point = (0, 0, 0),
+    def place(self, centre: Point, turn: Float[np.ndarray, "4"] | None = None, velocity: Point = (0, 0, 0),
               spin: Point = (0, 0, 0)) -> None:  # fmt: skip
         """Put the body somewhere.
 
         Args:
-            at: middle of its shape [m].
+            centre: middle of its shape [m].
             turn: its orientation, wxyz; upright if None.
             velocity: of the middle of its shape [m/s].
             spin: in its own frame [rad/s].
@@ -126,15 +130,15 @@ class FloatTank:
         data.qvel[3:6] = spin
         matrix = np.empty(9)
         mujoco.mju_quat2Mat(matrix, data.qpos[3:7])
-        beside = matrix.reshape(3, 3) @ _ASIDE
-        data.qpos[:3] = np.array(at) - beside
-        data.qvel[:3] = np.array(velocity) - np.cross(matrix.reshape(3, 3) @ spin, beside)
+        frame_offset = matrix.reshape(3, 3) @ _SHAPE_CENTRE
+        data.qpos[:3] = np.array(centre) - frame_offset
+        data.qvel[:3] = np.array(velocity) - np.cross(matrix.reshape(3, 3) @ spin, frame_offset)
         mujoco.mj_forward(self.model, data)
 
     @property
     def middle(self) -> Float[np.ndarray, "3"]:
         """Position of the middle of the shape in the world [m]."""
-        return np.array(self.data.xpos[1] + self.data.xmat[1].reshape(3, 3) @ _ASIDE)
+        return np.array(self.data.xpos[1] + self.data.xmat[1].reshape(3, 3) @ _SHAPE_CENTRE)
 
     @property
     def acceleration(self) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
@@ -145,18 +149,18 @@ class FloatTank:
         """Return what ``hydro.forces.hydrostatic`` says of the body as it lies."""
         level, air_fraction = self._lake.at(self.data.time)
         return np.asarray(
-            hydrostatic(self._table, self.data.xpos, self.data.xmat, _UP, level, (air_fraction, air_fraction))
+            hydrostatic(self._table, self.data.xpos, self.data.xmat, _UP_AXIS, level, (air_fraction, air_fraction))
         )
 
     def energy(self) -> float:
         """Return kinetic energy of body and added mass, and potential energy of body and water [J]."""
         data = self.data
-        moved = np.zeros(self.model.nv)
+        generalized_momentum = np.zeros(self.model.nv)
         mujoco.mj_forward(self.model, data)
-        mujoco.mj_mulM(self.model, data, moved, data.qvel)
+        mujoco.mj_mulM(self.model, data, generalized_momentum, data.qvel)
         pull = -float(self.model.opt.gravity[2])
         lifted = self._body.mass * float(data.xipos[1, 2]) + self._lake.water.density * self.statics()[4]
-        return float(0.5 * data.qvel @ moved + pull * lifted)
+        return float(0.5 * data.qvel @ generalized_momentum + pull * lifted)
 
     def mass_matrix(self) -> Float[np.ndarray, "6 6"]:
         """Return the inertia of body and added mass for motions along and turns about its forward, left and up axes.
@@ -168,7 +172,7 @@ class FloatTank:
         turn = data.xmat[1].reshape(3, 3)
         moving = np.zeros((6, 6))  # of the frame that stands beside, for each unit motion of the middle
         moving[:3, :3], moving[3:, 3:] = turn, np.eye(3)
-        moving[:3, 3:] = np.array([-turn @ np.cross(axis, _ASIDE) for axis in np.eye(3)]).T
+        moving[:3, 3:] = np.array([-turn @ np.cross(axis, _SHAPE_CENTRE) for axis in np.eye(3)]).T
         answers = np.zeros((6, 6))
         for motion, answer in zip(np.ascontiguousarray(moving.T), answers, strict=True):
             mujoco.mj_mulM(self.model, data, answer, motion)
@@ -176,11 +180,11 @@ class FloatTank:
 
     def momenta(self) -> Float[np.ndarray, "6"]:
         """Return momentum of body and added mass, and its moment about the world's origin [kg m/s], [kg m2/s]."""
-        data, moved = self.data, np.zeros(self.model.nv)
+        data, generalized_momentum = self.data, np.zeros(self.model.nv)
         mujoco.mj_forward(self.model, data)
-        mujoco.mj_mulM(self.model, data, moved, data.qvel)
-        about = data.xmat[1].reshape(3, 3) @ moved[3:6]
-        return np.concatenate([moved[:3], about + np.cross(data.xpos[1], moved[:3])])
+        mujoco.mj_mulM(self.model, data, generalized_momentum, data.qvel)
+        moment = data.xmat[1].reshape(3, 3) @ generalized_momentum[3:6]
+        return np.concatenate([generalized_momentum[:3], moment + np.cross(data.xpos[1], generalized_momentum[:3])])
 
     def step(self, count: int = 1) -> None:
         """Let some steps pass.
@@ -218,5 +222,5 @@ class FloatTank:
         )
 
 
-_ASIDE = np.array([0.01, 0.0, 0.0])
+_SHAPE_CENTRE = np.array([0.01, 0.0, 0.0])
 """The middle of the shape in the frame of the body [m]; see ``FloatTank``."""

@@ -26,29 +26,30 @@ class Injector:
     """
 
     def __init__(self, batch: SimulationBatch, period: float, robot: Robot) -> None:
+        """Note which columns of the sensors belong to which servo, limb and trunk body."""
         self._batch, self._period = batch, period
-        place = layout(robot)
+        robot_layout = layout(robot)
         self._columns = {
             group: {name: i for i, name in enumerate(names)}
             for group, names in (
-                ("servo", place.servos),
-                ("foot_pressure", place.limb_names),
-                ("belly_pressure", place.trunk),
+                ("servo", robot_layout.servos),
+                ("foot_pressure", robot_layout.limb_names),
+                ("belly_pressure", robot_layout.trunk),
             )
         }
         self._broken: dict[tuple[int, str], tuple[Fault, Site]] = {}
 
     def begin(self, sim: int, fault: Fault) -> None:
-        """Let a fault of a run begin now, instead of what was wrong with the same part before."""
+        """Begin a fault of a run now; an earlier fault of the same part ends."""
         self.mend(sim, fault.part)
         site = Site(self._batch, sim, self._columns)
         self._broken[sim, fault.part] = fault, site
         fault.apply(site)
         self._batch.commit()
 
-    def mend(self, sim: int, part: str | None = None) -> None:
+    def mend(self, sim: int, part_name: str | None = None) -> None:
         """Mend a part of a run, or all of them; nothing happens where nothing is broken."""
-        for key in [key for key in self._broken if key[0] == sim and part in (None, key[1])]:
+        for key in [key for key in self._broken if key[0] == sim and part_name in (None, key[1])]:
             fault, site = self._broken.pop(key)
             fault.mend(site)
         self._batch.commit()
@@ -72,7 +73,7 @@ class Injector:
         return targets
 
     def sense(self, sensed: Sensed) -> Sensed:
-        """Return what is felt by sensors that may be broken; the arrays of ``sensed`` are written."""
+        """Apply the sensor faults to readings and return them; the arrays of ``sensed`` are written."""
         for fault, site in self._broken.values():
             site.sensed = sensed
             fault.sense(site)
@@ -89,9 +90,10 @@ class Site:
     """
 
     def __init__(self, batch: SimulationBatch, sim: int, columns: Mapping[str, Mapping[str, int]]) -> None:
+        """Begin without changes: nothing is written to the model yet."""
         self._batch, self._sim, self._groups, self._columns = batch, sim, columns, columns["servo"]
         self._since: int | None = None
-        self._before: dict[tuple[str, int], np.ndarray] = {}
+        self._original_rows: dict[tuple[str, int], np.ndarray] = {}
         self._unpowered: list[str] = []
         self.time = 0.0
         self.memory: dict[str, float] = {}
@@ -101,28 +103,28 @@ class Site:
     def enter(self, tick: int, period: float, targets: np.ndarray) -> None:
         """Begin a control period with the angles that the run's servos are commanded, shape (servo,) [rad]."""
         self._since = tick if self._since is None else self._since
-        self.time, self.targets = (tick - self._since) * period, Named(self._columns, targets)
+        self.time, self.targets = (tick - self._since) * period, NamedRow(self._columns, targets)
 
     def angle(self, servo: str) -> float:
         """Return the angle of a joint at its servo's shaft [rad]."""
         return float(self._batch.angles(self._sim)[self._columns[servo]])
 
-    def felt(self, group: str, of: str | None = None) -> np.ndarray:
+    def felt(self, group: str, part_name: str | None = None) -> np.ndarray:
         """Return readings for writing, see ``fault.Plant.felt``."""
-        whole: np.ndarray = getattr(self.sensed, group)[self._sim : self._sim + 1]
-        if of is None:
-            return whole[0] if whole.ndim > 1 else whole
-        column = self._groups.get(group, self._columns)[of]
-        return whole[0, column : column + 1]
+        readings: np.ndarray = getattr(self.sensed, group)[self._sim : self._sim + 1]
+        if part_name is None:
+            return readings[0] if readings.ndim > 1 else readings
+        column = self._groups.get(group, self._columns)[part_name]
+        return readings[0, column : column + 1]
 
-    def parameter(self, field: str, of: str) -> np.ndarray:
+    def parameter(self, field: str, element: str) -> np.ndarray:
         """Return a row of a model field for writing, see ``fault.Plant.parameter``."""
         kind = _KINDS.get(field.partition("_")[0], "dof")
-        part = getattr(self._batch.model, "joint" if kind == "dof" else kind)(of)
-        row = int(part.dofadr[0]) if kind == "dof" else int(part.id)
+        accessor = getattr(self._batch.model, "joint" if kind == "dof" else kind)(element)
+        row = int(accessor.dofadr[0]) if kind == "dof" else int(accessor.id)
         view = self._batch.field(field, self._sim)[row : row + 1]
         view = view[0] if view.ndim > 1 else view
-        self._before.setdefault((field, row), view.copy())
+        self._original_rows.setdefault((field, row), view.copy())
         return view
 
     def speed_limit(self, servo: str) -> np.ndarray:
@@ -137,14 +139,14 @@ class Site:
 
     def restore(self) -> None:
         """Undo what was written."""
-        for (field, row), before in self._before.items():
-            self._batch.field(field, self._sim)[row : row + 1] = before
+        for (field, row), original in self._original_rows.items():
+            self._batch.field(field, self._sim)[row : row + 1] = original
         for servo in self._unpowered:
             self._batch.power(self._sim, servo, on=True)
-        self._before, self._unpowered = {}, []
+        self._original_rows, self._unpowered = {}, []
 
 
-class Named(MutableMapping[str, float]):
+class NamedRow(MutableMapping[str, float]):
     """A row of an array, read and written by name; no name can be added or taken away."""
 
     def __init__(self, columns: Mapping[str, int], row: np.ndarray) -> None:
@@ -166,9 +168,9 @@ class Named(MutableMapping[str, float]):
         return len(self._columns)
 
 
-_NEVER = np.iinfo(np.int64).max
-_EARLY = 1e-6
-"""By how much too early rather than too late a push may be awaited [control period]."""
+_NO_TICK = np.iinfo(np.int64).max
+_TICK_TOLERANCE = 1e-6
+"""Rounding tolerance of the time of a push; it is expected rather too early than too late [control period]."""
 
 
 class Disturbances:
@@ -182,27 +184,28 @@ class Disturbances:
     """
 
     def __init__(self, runs: Sequence[Run], batch: SimulationBatch, ticks: int, period: float) -> None:
+        """Draw the servo noise of each run, and schedule its faults and pushes."""
         self._batch, self._period = batch, period
         self.injector = Injector(batch, period, runs[0].robot)
         self._faults: list[dict[int, list[Fault]]] = [{} for _ in runs]
         self._pushes: list[list[Push]] = [[] for _ in runs]
-        self._next, self._ahead = np.full(len(runs), _NEVER), False
+        self._next_ticks, self._has_pending = np.full(len(runs), _NO_TICK), False
         servos = len(layout(runs[0].robot).servos)
         self._noise = {
             sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, servos))
             for sim, run in enumerate(runs)
             if run.noise > 0
         }
-        self._built = [sim for sim, run in enumerate(runs) if any(run.zero_error) or any(run.play)]
-        none = (0.0,) * servos
-        self._zero_error = np.array([runs[sim].zero_error or none for sim in self._built])
-        self._half_play = np.array([runs[sim].play or none for sim in self._built]) / 2
-        self._answered = np.full((len(runs), servos), np.nan)  # the angle that each servo turned to last
+        self._inexact_sims = [sim for sim, run in enumerate(runs) if any(run.zero_error) or any(run.play)]
+        zeros = (0.0,) * servos
+        self._zero_error = np.array([runs[sim].zero_error or zeros for sim in self._inexact_sims])
+        self._half_play = np.array([runs[sim].play or zeros for sim in self._inexact_sims]) / 2
+        self._reached_angles = np.full((len(runs), servos), np.nan)  # the angle that each servo turned to last
         for sim, run in enumerate(runs):
             self.schedule(sim, run.faults, run.pushes)
 
     def schedule(self, sim: int, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:
-        """Let other faults and pushes than before be ahead of a run, whose clock is at 0; all that is broken is mended.
+        """Replace the future faults and pushes of a run, whose clock is at 0; its present faults end.
 
         Args:
             sim: the run.
@@ -210,14 +213,14 @@ class Disturbances:
             pushes: forces from outside, each at its time.
         """
         self.injector.mend(sim)
-        self._answered[sim] = np.nan
+        self._reached_angles[sim] = np.nan
         self._faults[sim], self._pushes[sim] = {}, list(pushes)
         for fault in faults:
             self._faults[sim].setdefault(int(np.ceil(fault.at / self._period - 1e-9)), []).append(fault)
         self._await(sim, -1)
 
     def push(self, sim: int, push: Push) -> None:
-        """Add a push to those that are ahead of a run."""
+        """Add a push to the future ones of a run."""
         self._pushes[sim].append(push)
         self._await(sim, -1)
 
@@ -228,8 +231,8 @@ class Disturbances:
             clocks: number of the control period of each run since it began, shape (run,).
             going: whether each run goes on in it, shape (run,).
         """
-        if self._ahead:
-            for sim in np.flatnonzero((self._next <= clocks) & going):
+        if self._has_pending:
+            for sim in np.flatnonzero((self._next_ticks <= clocks) & going):
                 self._happen(int(sim), int(clocks[sim]))
 
     def disturb(self, clocks: np.ndarray, tick: int, targets: np.ndarray) -> np.ndarray:
@@ -244,15 +247,19 @@ class Disturbances:
             targets = targets.copy()
             for sim, noise in self._noise.items():
                 targets[sim] += noise[clocks[sim]]
-        if self._built:
+        if self._inexact_sims:
             targets = targets.copy()
-            wanted, before = targets[self._built] + self._zero_error, self._answered[self._built]
-            before = np.where(np.isnan(before), wanted, before)
-            answer = np.clip(before, wanted - self._half_play, wanted + self._half_play)
-            targets[self._built] = self._answered[self._built] = answer
+            target_angles, reached_angles = (
+                targets[self._inexact_sims] + self._zero_error,
+                self._reached_angles[self._inexact_sims],
+            )
+            reached_angles = np.where(np.isnan(reached_angles), target_angles, reached_angles)
+            answer = np.clip(reached_angles, target_angles - self._half_play, target_angles + self._half_play)
+            targets[self._inexact_sims] = self._reached_angles[self._inexact_sims] = answer
         return self.injector.command(tick, targets)
 
     def _happen(self, sim: int, tick: int) -> None:
+        """Apply the mean pushes of a control period to a run, and begin the faults that are due in it."""
         start, end = tick * self._period, (tick + 1) * self._period
         forces: dict[str, np.ndarray] = {}
         for push in self._pushes[sim]:
@@ -267,6 +274,6 @@ class Disturbances:
 
     def _await(self, sim: int, tick: int) -> None:
         """Note the next control period after ``tick`` in which something may happen to a run."""
-        begins = [floor(push.at / self._period - _EARLY) for push in self._pushes[sim]]
-        self._next[sim] = max(min([*self._faults[sim], *begins], default=_NEVER), tick + 1)
-        self._ahead = bool((self._next < _NEVER).any())
+        begins = [floor(push.at / self._period - _TICK_TOLERANCE) for push in self._pushes[sim]]
+        self._next_ticks[sim] = max(min([*self._faults[sim], *begins], default=_NO_TICK), tick + 1)
+        self._has_pending = bool((self._next_ticks < _NO_TICK).any())

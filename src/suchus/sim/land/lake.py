@@ -42,14 +42,15 @@ class Wave:
     """Phase at the world's origin at time 0, a crest at 0 [cycle]."""
 
     def __post_init__(self) -> None:
+        """Refuse heights, lengths and directions outside their ranges, and waves that would break."""
         with Checks("wave", self) as check:
             check.number("height", 0.0, 100.0, "m")
             check.number("length", 0.01, 1000.0, "m")
             check.number("heading", -2 * pi, 2 * pi, "rad")
             check.number("phase", -1.0, 1.0, "cycle")
-            steep = self.height / self.length if self.length > 0 else 0.0
+            steepness = self.height / self.length if self.length > 0 else 0.0
             check.that(
-                not steep > STEEPEST,
+                not steepness > STEEPEST,
                 f"a wave {self.height:g} m high and {self.length:g} m long is steeper than {STEEPEST:g}, where waves "
                 f"break: at this length at most {STEEPEST * self.length:.3g} m are allowed",
             )
@@ -88,6 +89,7 @@ class Lake:
     are. ``coupling.earned_correction`` makes one."""
 
     def __post_init__(self) -> None:
+        """Refuse currents, levels, air fractions and factors outside their ranges."""
         with Checks("lake", self) as check:
             check.each("current", ("forward", "left"), -FASTEST, FASTEST, "m/s")
             check.number("heel", -pi, pi, "rad")
@@ -98,7 +100,7 @@ class Lake:
 
     def at(self, time: float) -> tuple[float, float]:
         """Return level [m] and air fraction [-] at a time [s]."""
-        return _now(self.level, time), _now(self.air_fraction, time)
+        return _value_at(self.level, time), _value_at(self.air_fraction, time)
 
     def shore(self, uphill: float) -> float:
         """Return where the level at time 0 meets ground that rises by ``uphill`` [rad], ahead along the ground [m]."""
@@ -108,11 +110,11 @@ class Lake:
         """Return whether level or air fraction change while the run goes."""
         return not isinstance(self.level, (int, float)) or not isinstance(self.air_fraction, (int, float))
 
-    def numbers(self, up: Float[np.ndarray, "3"], time: float = 0.0) -> Float[np.ndarray, " n"]:
+    def numbers(self, up_axis: Float[np.ndarray, "3"], time: float = 0.0) -> Float[np.ndarray, " n"]:
         """Return the row of numbers that the physics reads, see ``hydro``.
 
         Args:
-            up: unit vector against gravity.
+            up_axis: unit vector against gravity.
             time: [s].
         """
         row = np.zeros(hydro.NUMBERS)
@@ -120,11 +122,11 @@ class Lake:
         row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
         row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
         row[hydro.ADDED], row[hydro.SHEDDING] = self.added_mass, self.shedding
-        ahead, left = _level_axes(up)
-        row[hydro.CURRENT : hydro.CURRENT + 3] = self.current[0] * ahead + self.current[1] * left
+        forward, leftward = _level_axes(up_axis)
+        row[hydro.CURRENT : hydro.CURRENT + 3] = self.current[0] * forward + self.current[1] * leftward
         if self.wave is not None:
             number = tau / self.wave.length
-            heading = cos(self.wave.heading) * ahead + sin(self.wave.heading) * left
+            heading = cos(self.wave.heading) * forward + sin(self.wave.heading) * leftward
             numbers = [self.wave.height / 2, *(number * heading), tau * self.wave.frequency, tau * self.wave.phase]
             row[hydro.WAVE : hydro.WAVE + len(numbers)] = numbers
         return row
@@ -132,14 +134,14 @@ class Lake:
 
 def lake_text(lake: Lake | None) -> str:
     """Return a lake as JSON text; the empty one stands for none."""
-    said = {} if lake is None else asdict(lake)
-    if said.get("correction", 0) is None:
-        del said["correction"]
-    return json.dumps(said, sort_keys=True) if said else ""
+    lake_fields = {} if lake is None else asdict(lake)
+    if lake_fields.get("correction", 0) is None:
+        del lake_fields["correction"]
+    return json.dumps(lake_fields, sort_keys=True) if lake_fields else ""
 
 
 def check_lake(robot: Robot, lake: Lake) -> None:
-    """Refuse an air fraction that a robot's hull has no air for, and a correction of another robot.
+    """Refuse an air fraction below 1 for a hull without air, and a correction made for another robot.
 
     Raises:
         InvalidDesign: air is let out, and the robot has no hull with air; or it lacks a body that is corrected.
@@ -154,17 +156,17 @@ def check_lake(robot: Robot, lake: Lake) -> None:
         )
 
 
-def _now(course: Course, time: float) -> float:
+def _value_at(course: Course, time: float) -> float:
     if isinstance(course, (int, float)):
         return float(course)
     return float(np.interp(time, [instant for instant, _ in course], [value for _, value in course]))
 
 
-def _level_axes(up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _level_axes(up_axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return forward and left along the surface."""
-    ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
-    ahead /= np.linalg.norm(ahead)
-    return ahead, np.cross(up, ahead)
+    forward = np.array([1.0, 0.0, 0.0]) - up_axis[0] * up_axis
+    forward /= np.linalg.norm(forward)
+    return forward, np.cross(up_axis, forward)
 
 
 _AIR_FRACTION = slice(hydro.AIR_FRACTION, hydro.AIR_FRACTION + 2)
@@ -180,6 +182,7 @@ class Waters:
     """
 
     def __init__(self, lakes: Sequence[Lake | None], grounds: Sequence[Ground], physics: Any) -> None:
+        """Bind the physics' memory and write the water of each run into it."""
         self._lakes = {sim: lake for sim, lake in enumerate(lakes) if lake is not None}
         self._changing = {sim: lake for sim, lake in self._lakes.items() if lake.changes()}
         self._ups = np.array([up(ground) for ground in grounds])
@@ -194,7 +197,7 @@ class Waters:
         return bool(self._lakes)
 
     def flood(self, time: float, air_fraction: Float[np.ndarray, "run chamber"] | None = None) -> None:
-        """Let level and air fraction of the lakes be what they are at a time, where they change or are commanded.
+        """Update level and air fraction of the lakes to a time, where they change or are commanded.
 
         Args:
             time: [s].
@@ -208,29 +211,29 @@ class Waters:
             self.rows[commanded, _AIR_FRACTION] = air_fraction[commanded]
 
     def fill(self, sim: int, lake: Lake, time: float) -> None:
-        """Let the water of a run be another one from now on; what the water did last stays to be read.
+        """Replace the water of a run; the last forces and power of the water stay readable.
 
         Args:
             sim: a run that has a lake.
-            lake: the other one.
+            lake: the new water.
             time: [s].
         """
         self._lakes[sim] = lake
-        self._changing = {run: other for run, other in self._lakes.items() if other.changes()}
+        self._changing = {run: water for run, water in self._lakes.items() if water.changes()}
         self.rows[sim, : hydro.FORCE] = lake.numbers(self._ups[sim], time)[: hydro.FORCE]
 
     def refill(self, sim: int) -> None:
-        """Write the water of a run anew, as it is at the beginning; a reset of the physics drains it."""
+        """Write the initial water of a run; a reset of the physics had removed it."""
         if sim in self._lakes:
             self.rows[sim] = self._lakes[sim].numbers(self._ups[sim])
 
     def tilt(self, sim: int, ground: Ground) -> None:
-        """Let the ground of a run slope otherwise from now on; the level stays level."""
+        """Change the slope of a run's ground; the surface of the water stays level."""
         if sim in self._lakes:
             self._ups[sim] = up(ground)
 
     def depths(self, roots: Float[np.ndarray, "run 3"]) -> Float[np.ndarray, " run"] | None:
-        """Return how deep the roots are below the level of their water, 0 above it [m]; None if all is dry.
+        """Return the depth of the roots below the water level, 0 above it [m]; None without water.
 
         Args:
             roots: their places in the world [m].

@@ -51,6 +51,7 @@ class RobotLinks:
     """
 
     def __init__(self, model: Any) -> None:
+        """Collect bodies with solid shapes, those shapes, and the hinges of the model."""
         self._model, self._data = model, mujoco.MjData(model)
         solid = [g for g in range(model.ngeom) if model.geom_bodyid[g] > 0 and model.geom_conaffinity[g]]
         self._bodies = sorted({int(model.geom_bodyid[g]) for g in solid})
@@ -83,7 +84,7 @@ class RobotLinks:
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
-        out = np.zeros((len(self._bodies), 6, model.nv))
-        for part, body in zip(out, self._bodies, strict=True):
-            mujoco.mj_jacBody(model, data, part[:3], part[3:], body)
-        return out
+        jacobians = np.zeros((len(self._bodies), 6, model.nv))
+        for link_jacobian, body in zip(jacobians, self._bodies, strict=True):
+            mujoco.mj_jacBody(model, data, link_jacobian[:3], link_jacobian[3:], body)
+        return jacobians

@@ -35,6 +35,7 @@ class Live:
     """
 
     def __init__(self, run: Run, *, timestep: float | None = None) -> None:
+        """Check the run, and start its loop and recorder."""
         swims = isinstance(run.control, Swimming) and not run.control.feels
         if run.noise > 0.0 or not (swims or isinstance(run.control, Coordinated)):
             raise InvalidDesign(
@@ -49,11 +50,11 @@ class Live:
         self._start = round(START / self._period)  # [control period]
         check_faults(run.faults, run.robot, inf)
         check_pushes(run.pushes, run.robot, inf)
-        self.run = self._whole(run)
+        self.run = self._with_whole_period(run)
         self._loop = Loop([self.run], timestep, ticks=self._ticks(self.run))
         self._recorder = self._loop.recorder(1)
         self._beat = 0
-        self._look()
+        self._decide_and_read()
 
     @property
     def time(self) -> float:
@@ -63,7 +64,7 @@ class Live:
     @property
     def now(self) -> dict[str, np.ndarray]:
         """What a record would hold of this instant: the variables of ``record.VARIABLES``, without run and time."""
-        return self._now
+        return self._current_sample
 
     @property
     def positions(self) -> np.ndarray:
@@ -83,27 +84,29 @@ class Live:
         self._beat += 1
         if self._beat >= self._start + self._cycle(self.run):
             self._beat -= self._cycle(self.run)
-        self._look()
+        self._decide_and_read()
 
     def walk(self, gait: Gait | None = None, control: Coordinated | Swimming | None = None) -> None:
-        """Walk on in another gait or by other rules, or swim, from the same phase of the cycle.
+        """Continue in another gait or with another control, from the same phase of the cycle.
 
         Raises:
             OutsideLimits: the robot's joints cannot follow the gait, or the rules cannot coordinate it.
         """
-        share = max(self._beat - self._start, 0) / self._cycle(self.run)
-        run = self._whole(replace(self.run, gait=gait or self.run.gait, control=control or self.run.control))
+        cycle_fraction = max(self._beat - self._start, 0) / self._cycle(self.run)
+        run = self._with_whole_period(
+            replace(self.run, gait=gait or self.run.gait, control=control or self.run.control)
+        )
         controller = start([run], self._ticks(run), self._period)
         if isinstance(controller, Coordinator) and isinstance(self._loop.controller, Coordinator):
             controller.take_over(self._loop.controller)
         self.run, self._loop.controller, self._loop.feels = run, controller, run.control.feels
         if self._beat >= self._start:
-            self._beat = self._start + round(share * self._cycle(run)) % self._cycle(run)
+            self._beat = self._start + round(cycle_fraction * self._cycle(run)) % self._cycle(run)
 
     def begin(self, fault: Fault) -> None:
-        """Let something break now; what was wrong with the same part before is over.
+        """Begin a fault now; an earlier fault of the same part ends.
 
-        All goes as in a run whose fault happens at this time; only what the controller hears of it, it hears one
+        The robot moves as in a run whose fault begins at this time, except that the controller senses the fault one
         control period later.
 
         Raises:
@@ -114,16 +117,16 @@ class Live:
         check_faults([replace(fault, at=0.0)], self.run.robot, inf)  # type: ignore[type-var]  # all are dataclasses
         self._loop.disturbances.injector.begin(0, fault)
         self._loop.disturb()
-        self._read()
+        self._read_sample()
 
-    def mend(self, part: str) -> None:
-        """Repair a part."""
-        self._loop.disturbances.injector.mend(0, part)
+    def mend(self, part_name: str) -> None:
+        """End the fault of a part."""
+        self._loop.disturbances.injector.mend(0, part_name)
         self._loop.disturb()
-        self._read()
+        self._read_sample()
 
     def push(self, push: Push) -> None:
-        """Push at the push's time, which may be now.
+        """Add a push, which may begin now.
 
         Raises:
             UnknownName: the robot has no such body.
@@ -132,11 +135,11 @@ class Live:
         self._loop.disturbances.push(0, push)
 
     def tilt(self, ground: Ground) -> None:
-        """Let the ground slope as another one does; friction and relief stay."""
+        """Give the ground the slopes of another one; friction and relief stay."""
         self._loop.batch.tilt(0, ground)
 
     def fill(self, lake: Lake) -> None:
-        """Let the water be another one from now on: its level, its waves, the robot's air fraction.
+        """Replace the water: its level, its waves, the robot's air fraction.
 
         Raises:
             InvalidDesign: the run is on dry land, or the robot has no air that it could let out.
@@ -147,14 +150,14 @@ class Live:
         self.run = replace(self.run, lake=lake)
         self._loop.batch.waters.fill(0, lake, self.time)
 
-    def _look(self) -> None:
-        """Decide what the servos are commanded next, and read everything."""
+    def _decide_and_read(self) -> None:
+        """Let the controller decide the next command, and read all sensors."""
         self._loop.decide(self._beat)
-        self._read()
+        self._read_sample()
 
-    def _read(self) -> None:
+    def _read_sample(self) -> None:
         self._recorder.store(0, self._loop.command.phase, self._loop.command.targets)
-        self._now = self._recorder.sample(0, 0)
+        self._current_sample = self._recorder.sample(0, 0)
 
     def _cycle(self, run: Run) -> int:
         """Return the length of a cycle in control periods."""
@@ -164,7 +167,7 @@ class Live:
         """Return how many control periods a controller must know."""
         return self._start + self._cycle(run) + 1
 
-    def _whole(self, run: Run) -> Run:
+    def _with_whole_period(self, run: Run) -> Run:
         """Return a run whose gait's period is a whole number of control periods, checked."""
         period = max(1, round(run.gait.period / self._period)) * self._period
         gait, control = replace(run.gait, period=period), run.control

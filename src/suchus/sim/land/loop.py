@@ -80,6 +80,7 @@ class Loop:
     def __init__(
         self, runs: Sequence[Run], timestep: float, *, ticks: int, controller: Controller | None = None
     ) -> None:
+        """Build the batch, start the controller, and place each robot in its first posture."""
         self.runs = runs
         self.period = control_period(runs[0].robot)
         self.steps = physics_steps(timestep, self.period)
@@ -88,12 +89,12 @@ class Loop:
         self.sensors = Sensors(self.batch, runs[0].robot)
         self.feels = any(run.control.feels for run in runs)
         self.controller = start(runs, ticks, self.period) if controller is None else controller
-        first = self.controller.rest()
-        for run, posture in zip(runs, first, strict=True):
+        initial_angles = self.controller.rest()
+        for run, posture in zip(runs, initial_angles, strict=True):
             if run.lake is not None and _swims(run.control):
                 check_afloat(run.robot, run.lake, posture)
-        self.batch.place(runs, first)
-        self._deduplication = Deduplication(runs, first, self.period)
+        self.batch.place(runs, initial_angles)
+        self._deduplication = Deduplication(runs, initial_angles, self.period)
         self.disturbances = Disturbances(runs, self.batch, ticks, self.period)
         self.tick = 0
         """Number of the control period."""
@@ -111,24 +112,24 @@ class Loop:
         return Recorder(self.batch, self.sensors, self.runs, samples)
 
     def sensed(self) -> Sensed:
-        """Return what the robots feel now, by sensors that may be broken."""
+        """Return the present sensor readings of the robots, with their sensor faults."""
         return self.disturbances.injector.sense(self.sensors.sensed(self.time))
 
     def decide(self, beat: int | None = None) -> None:
-        """Let happen what is due, ask the controller, and disturb what it commands: ``command`` is the result.
+        """Begin due faults and pushes, call the controller, and disturb its command: ``command`` is the result.
 
         Args:
-            beat: the control period that the controller takes this one for; the same if None.
+            beat: number of the control period that is passed to the controller; ``tick`` if None.
         """
         self.disturbances.happen(self.clocks, self._going)
         sensed = self.sensed() if self.feels else None
-        self._wanted = self.controller.command(self.tick if beat is None else beat, sensed)
+        self._intended_command = self.controller.command(self.tick if beat is None else beat, sensed)
         self.disturb()
 
     def disturb(self) -> None:
-        """Disturb anew what the controller commanded last: with noise, and with what is broken by now."""
-        targets = self.disturbances.disturb(self.clocks, self.tick, self._wanted.targets)
-        self.command = Command(targets, self._wanted.phase, self._wanted.air_fraction)
+        """Disturb the last command of the controller again: with noise and with the present faults."""
+        targets = self.disturbances.disturb(self.clocks, self.tick, self._intended_command.targets)
+        self.command = Command(targets, self._intended_command.phase, self._intended_command.air_fraction)
 
     def advance(self, *, felt: bool = True, read: bool = True, before: tuple[np.ndarray, int] | None = None) -> None:
         """Let one control period pass in which the servos do as they are commanded.
@@ -153,20 +154,20 @@ class Loop:
             self.batch.advance(targets, self.steps, self.time, felt=felt, read=read)
         self._count()
 
-    def _advance_late(self, early: np.ndarray, steps: int) -> None:
+    def _advance_late(self, previous_targets: np.ndarray, steps: int) -> None:
         """Let a control period pass whose command acts after some physics steps; forces are means over all of it."""
         targets, _, air_fraction = self.command
         self.batch.waters.flood(self.time, air_fraction)
-        self.batch.advance(early, steps, self.time)
-        means, share = (self.batch.pressed, self.batch.worked), steps / self.steps
-        first = [share * mean for mean in means]
+        self.batch.advance(previous_targets, steps, self.time)
+        means, early_fraction = (self.batch.pressed, self.batch.worked), steps / self.steps
+        early_means = [early_fraction * mean for mean in means]
         self.batch.advance(targets, self.steps - steps, self.time)
-        for mean, part in zip(means, first, strict=True):
-            mean[:] = part + (1.0 - share) * mean
+        for mean, early_mean in zip(means, early_means, strict=True):
+            mean[:] = early_mean + (1.0 - early_fraction) * mean
         self._count()
 
     def skip(self, periods: int) -> None:
-        """Let control periods pass in which others move the robots that go on."""
+        """Advance the clocks by some control periods, in which other code moves the robots."""
         for _ in range(periods):
             self._count()
 
@@ -198,12 +199,12 @@ def _swims(control: Control) -> bool:
     return isinstance(control, Swimming) or (isinstance(control, Amphibious) and control.begins == "swimming")
 
 
-_EARLY = 1e-6
-"""By how much too early rather than too late a trouble may be awaited [control period]."""
+_TICK_TOLERANCE = 1e-6
+"""Rounding tolerance of the time of a fault or push; it is expected rather too early than too late [control period]."""
 
 
 class Deduplication:
-    """The runs of a batch in groups that differ in nothing that the physics has felt yet.
+    """Groups of runs that have been identical for the physics so far, so that one run of a group is computed.
 
     Such are the runs of one robot that is pushed in many ways, up to the push. Members of a group have the same robot,
     ground, supply and first posture, and had the same commanded servo angles to the last bit; a run with another
@@ -215,23 +216,24 @@ class Deduplication:
         period: of control [s].
     """
 
-    def __init__(self, runs: Sequence[Run], first: np.ndarray, period: float) -> None:
+    def __init__(self, runs: Sequence[Run], initial_angles: np.ndarray, period: float) -> None:
+        """Group the runs that begin equal, and note in which control period a fault or push separates each."""
         groups: dict[object, list[int]] = {}
         for sim, run in enumerate(runs):
             world = (run.ground, run.afloat, run.lake, run.supply)
-            key = (run.robot, *world, hip_height(run.robot, run.gait), first[sim].tobytes())
+            key = (run.robot, *world, hip_height(run.robot, run.gait), initial_angles[sim].tobytes())
             groups.setdefault(key, []).append(sim)
         self._groups = [members for members in groups.values() if len(members) > 1]
         self._leaves: dict[int, set[int]] = {}
         for sim, run in enumerate(runs):
             times = [*(fault.at for fault in run.faults), *(push.at for push in run.pushes)]
             if times:
-                self._leaves.setdefault(max(floor(min(times) / period - _EARLY), 0), set()).add(sim)
+                self._leaves.setdefault(max(floor(min(times) / period - _TICK_TOLERANCE), 0), set()).add(sim)
         self._count = len(runs)
         self._number()
 
     def part(self, tick: int, targets: np.ndarray) -> None:
-        """Let those leave whose first trouble is due, and those that have other commands than the others.
+        """Remove runs from their groups whose first fault or push is due, or whose commands differ.
 
         Args:
             tick: number of the control period.
@@ -253,12 +255,12 @@ class Deduplication:
     def leave(self, sim: int) -> None:
         """Let a run go on alone."""
         if self._groups:
-            left = [[other for other in members if other != sim] for members in self._groups]
-            self._groups = [members for members in left if len(members) > 1]
+            remaining_groups = [[member for member in members if member != sim] for members in self._groups]
+            self._groups = [members for members in remaining_groups if len(members) > 1]
             self._number()
 
     def _number(self) -> None:
-        """Note who follows whom."""
+        """Select the first run of each group as its leader, and note the leader of each other run."""
         self.first = np.ones(self._count, dtype=bool)
         self.others = np.array([sim for members in self._groups for sim in members[1:]], dtype=int)
         self.whom = np.array([members[0] for members in self._groups for _ in members[1:]], dtype=int)

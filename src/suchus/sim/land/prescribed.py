@@ -1,7 +1,7 @@
 """The water of the runs on a body whose motion is given: section by section, as in every run with a lake.
 
 The robot's own model without limbs, wholly under water and without weight, is moved along a motion of its joints, and
-the kernel of the runs says what the water does (``hydro``). So the section model can be set beside a flow in which the
+the kernel of the runs says what the water does (``hydro``). So the section model can be compared to a flow in which the
 same body moves in the same manner. Names and signs are those of ``water.resolved`` in space, held and free.
 """
 
@@ -47,12 +47,14 @@ def towed_sections(robot: Robot, speed: float, lake: Lake) -> float:
         lake: the water; its level does not matter.
     """
     body = _Submerged(robot, lake)
-    body.move(body.qpos(np.zeros(3), np.zeros(body.joints)), body.rates(np.array([speed, 0.0, 0.0]), 0.0), body.still)
+    body.move(
+        body.qpos(np.zeros(3), np.zeros(body.joints)), body.rates(np.array([speed, 0.0, 0.0]), 0.0), body.zero_rates
+    )
     return -float(body.force[0])
 
 
 def held_sections(robot: Robot, gait: Gait, lake: Lake, *, sway: complex = 0j, turn: complex = 0j) -> xr.Dataset:
-    """Return the forces over a cycle on a body that swims on the spot, its head moved as it is said.
+    """Return the forces over a cycle on a body that swims in place, with a given motion of its head.
 
     Args:
         robot: whose body, limbs left out.
@@ -70,18 +72,18 @@ def held_sections(robot: Robot, gait: Gait, lake: Lake, *, sway: complex = 0j, t
     amplitude = body.amplitudes(gait)
     angles = (turning[:, None] * amplitude).real
     root = np.array(
-        [body.root_at(one, -(sway * z).real, (turn * z).real) for one, z in zip(angles, turning, strict=True)]
+        [body.root_at(posture, -(sway * z).real, (turn * z).real) for posture, z in zip(angles, turning, strict=True)]
     )
-    moved = np.hstack([root, angles])
-    rate, bend = (_derived(moved, gait.frequency, order) for order in (1, 2))
-    found = np.empty((count, 3))
+    coordinates = np.hstack([root, angles])
+    rate, bend = (_derived(coordinates, gait.frequency, order) for order in (1, 2))
+    loads = np.empty((count, 3))
     for i in range(count):
         body.move(
             body.qpos(root[i], angles[i]), body.rates(rate[i, :3], rate[i, 3:]), body.rates(bend[i, :3], bend[i, 3:])
         )
-        found[i] = body.force[0], -body.force[1], body.power
+        loads[i] = body.force[0], -body.force[1], body.power
     names = {"thrust": "N", "aside": "N", "power": "W"}
-    series = {name: ("phase", found[:, k], {"units": unit}) for k, (name, unit) in enumerate(names.items())}
+    series = {name: ("phase", loads[:, k], {"units": unit}) for k, (name, unit) in enumerate(names.items())}
     return xr.Dataset(series, coords={"phase": phase})
 
 
@@ -107,14 +109,14 @@ def free_sections(robot: Robot, gait: Gait, lake: Lake, cycles: int) -> xr.Datas
         return np.concatenate([v, body.freed(body.qpos(x, angle), body.rates(v, rate), body.rates(np.zeros(3), bend))])
 
     times = np.arange(cycles * INSTANTS + 1) / INSTANTS / gait.frequency
-    swum = solve_ivp(accelerated, (0.0, times[-1]), np.zeros(6), t_eval=times, rtol=1e-6, atol=1e-8,
+    solution = solve_ivp(accelerated, (0.0, times[-1]), np.zeros(6), t_eval=times, rtol=1e-6, atol=1e-8,
                      max_step=0.02 / gait.frequency)  # fmt: skip
     power, centre, force = np.empty(times.size), np.empty(times.size), np.empty((times.size, 2))
-    for i, (time, state) in enumerate(zip(times, swum.y.T, strict=True)):
+    for i, (time, state) in enumerate(zip(times, solution.y.T, strict=True)):
         (angle, rate, bend), x, v = joints(float(time)), state[:3], state[3:]
-        where, moving = body.qpos(x, angle), body.rates(v, rate)
-        root = body.freed(where, moving, body.rates(np.zeros(3), bend))
-        body.move(where, moving, body.rates(root, bend))
+        posture, moving = body.qpos(x, angle), body.rates(v, rate)
+        root = body.freed(posture, moving, body.rates(np.zeros(3), bend))
+        body.move(posture, moving, body.rates(root, bend))
         power[i], centre[i], force[i] = body.power, body.centre, body.force[:2]
     means = power[1:].reshape(cycles, INSTANTS).mean(axis=1)
     speed = np.diff(centre[::INSTANTS]) * gait.frequency
@@ -143,66 +145,71 @@ class SectionLoads(NamedTuple):
 def sections_along(
     robot: Robot,
     joints: Sequence[str],
-    place: Float[np.ndarray, "sample coordinate"],
+    positions: Float[np.ndarray, "sample coordinate"],
     rate: Float[np.ndarray, "sample coordinate"],
     push: Float[np.ndarray, "sample coordinate"],
     lake: Lake,
 ) -> SectionLoads:
-    """Return what the section model says of a motion of root and joints in the plane, such as one that was recorded.
+    """Return the loads of the section model along a motion of root and joints in the plane, such as a recorded one.
 
     Args:
         robot: whose body, limbs left out.
         joints: lateral joints, from the head on.
-        place: of the root (x, y, yaw) and of these joints [m, rad].
+        positions: of the root (x, y, yaw) and of these joints [m, rad].
         rate: their rates.
         push: their accelerations.
         lake: the water; its level does not matter.
     """
     body = _Submerged(robot, lake, joints)
-    count = len(place)
+    count = len(positions)
     links, moments = np.zeros((count, len(joints) + 1, 3)), np.zeros((count, len(joints)))
     for i in range(count):
-        where = body.qpos(place[i, :3], place[i, 3:])
-        moving, gaining = (body.rates(one[i, :3], one[i, 3:]) for one in (rate, push))
-        forces = body.joint_forces(where, moving, gaining)
+        posture = body.qpos(positions[i, :3], positions[i, 3:])
+        moving, gaining = (body.rates(sample_rates[i, :3], sample_rates[i, 3:]) for sample_rates in (rate, push))
+        forces = body.joint_forces(posture, moving, gaining)
         moments[i] = forces[3:]
     for link, members in enumerate(body.links(joints)):
-        one = body.only(members)
+        link_body = body.restricted_to(members)
         for i in range(count):
-            where = one.qpos(place[i, :3], place[i, 3:])
-            moving, gaining = (one.rates(part[i, :3], part[i, 3:]) for part in (rate, push))
-            links[i, link] = one.joint_forces(where, moving, gaining)[:3]
+            posture = link_body.qpos(positions[i, :3], positions[i, 3:])
+            moving, gaining = (
+                link_body.rates(sample_rates[i, :3], sample_rates[i, 3:]) for sample_rates in (rate, push)
+            )
+            links[i, link] = link_body.joint_forces(posture, moving, gaining)[:3]
     return SectionLoads(links, moments)
 
 
 def link_bodies(robot: Robot, joints: Sequence[str]) -> list[tuple[str, ...]]:
     """Return the bodies of each link between two lateral joints, from the head on."""
-    found: list[list[str]] = [[]]
+    link_names: list[list[str]] = [[]]
     for segment in robot.axis:
-        found[-1].append(segment.name)
+        link_names[-1].append(segment.name)
         if any(hinge.name in joints for hinge in segment.hinges):
-            found.append([])
-    return [tuple(one) for one in found]
+            link_names.append([])
+    return [tuple(names) for names in link_names]
 
 
 def _limbless(robot: Robot) -> tuple[Robot, dict[str, str]]:
-    """Return a robot without limbs, and what its hinges that had another name are called there.
+    """Return a robot without limbs, and the new names of its renamed hinges.
 
     Without a girdle there is no neck: hinges ahead of the foremost girdle are some more of the trunk's.
     """
-    own = [hinge.name for segment in robot.axis for hinge in segment.hinges]
-    called: dict[str, str] = {}
+    hinge_names = [hinge.name for segment in robot.axis for hinge in segment.hinges]
+    new_names: dict[str, str] = {}
     for neck, spine in (("neck_yaw_", "spine_yaw_"), ("neck_pitch_", "spine_pitch_")):
-        count = sum(name.startswith(spine) for name in own)
-        called |= {f"{neck}{k}": f"{spine}{count + k}" for k in range(1, sum(one.startswith(neck) for one in own) + 1)}
+        count = sum(name.startswith(spine) for name in hinge_names)
+        new_names |= {
+            f"{neck}{k}": f"{spine}{count + k}"
+            for k in range(1, sum(hinge_name.startswith(neck) for hinge_name in hinge_names) + 1)
+        }
     axis = tuple(
         replace(
             segment,
-            hinges=tuple(replace(hinge, name=called.get(hinge.name, hinge.name)) for hinge in segment.hinges),
+            hinges=tuple(replace(hinge, name=new_names.get(hinge.name, hinge.name)) for hinge in segment.hinges),
         )
         for segment in robot.axis
     )
-    return replace(robot, axis=axis, girdles=(), hull=None), called
+    return replace(robot, axis=axis, girdles=(), hull=None), new_names
 
 
 class _Submerged:
@@ -210,9 +217,9 @@ class _Submerged:
 
     def __init__(self, robot: Robot, lake: Lake, joints: Sequence[str] | None = None) -> None:
         """Build it; ``joints`` are the lateral joints that move, from the head on, all driven ones if None."""
-        self._robot, (bare, called) = robot, _limbless(robot)
+        self._robot, (limbless, new_names) = robot, _limbless(robot)
         wetting.install()
-        self._model = copy(wet_model(bare, _TIMESTEP, None, len(pieces(bare)), acting=True))
+        self._model = copy(wet_model(limbless, _TIMESTEP, None, len(pieces(limbless)), acting=True))
         self._model.opt.gravity[:] = 0.0
         if lake.correction is not None:
             correct(self._model, lake.correction)
@@ -220,10 +227,10 @@ class _Submerged:
         self._lake = replace(lake, level=DEEPEST)
         self._hinges = yaw_hinges(robot)
         names = self._hinges.names if joints is None else joints
-        self._places = [int(self._model.joint(called.get(name, name)).qposadr[0]) for name in names]
-        self._dofs = [int(self._model.joint(called.get(name, name)).dofadr[0]) for name in names]
+        self._places = [int(self._model.joint(new_names.get(name, name)).qposadr[0]) for name in names]
+        self._dofs = [int(self._model.joint(new_names.get(name, name)).dofadr[0]) for name in names]
         self.joints = len(names)
-        self.still = np.zeros(self._model.nv)
+        self.zero_rates = np.zeros(self._model.nv)
 
     def amplitudes(self, gait: Gait) -> np.ndarray:
         """Return the harmonics of the lateral joints, a cable's bend shared evenly [rad]."""
@@ -231,30 +238,36 @@ class _Submerged:
 
     def qpos(self, root: np.ndarray, angles: np.ndarray) -> np.ndarray:
         """Return a posture: the root in the plane (x, y, yaw) and the lateral joints."""
-        out = np.zeros(self._model.nq)
-        out[:2], out[3], out[6] = root[:2], cos(0.5 * root[2]), sin(0.5 * root[2])
-        out[self._places] = angles
-        return out
+        posture = np.zeros(self._model.nq)
+        posture[:2], posture[3], posture[6] = root[:2], cos(0.5 * root[2]), sin(0.5 * root[2])
+        posture[self._places] = angles
+        return posture
 
     def rates(self, root: np.ndarray, joints: Any) -> np.ndarray:
         """Return velocities or accelerations of the root in the plane and of the lateral joints."""
-        out = np.zeros(self._model.nv)
-        out[_PLANE], out[self._dofs] = root, joints
-        return out
+        dof_rates = np.zeros(self._model.nv)
+        dof_rates[_PLANE], dof_rates[self._dofs] = root, joints
+        return dof_rates
 
-    def root_at(self, angles: np.ndarray, left: float, heading: float) -> np.ndarray:
-        """Return the root (x, y, yaw) of a body whose snout is at (0, left) [m], its head turned by a heading [rad]."""
+    def root_at(self, angles: np.ndarray, lateral: float, heading: float) -> np.ndarray:
+        """Return the root (x, y, yaw) of a body from its snout and head.
+
+        Args:
+            angles: of the lateral joints [rad].
+            lateral: distance of the snout to the left of the world's x axis [m]; its x is 0.
+            heading: yaw of the head [rad].
+        """
         model, data = self._model, self._data
         data.qpos[:] = self.qpos(np.zeros(3), angles)
         mujoco.mj_kinematics(model, data)
         site = model.site(SNOUT).id
-        ahead = data.xmat[model.site_bodyid[site]].reshape(3, 3)[:, 0]
-        yaw = heading - float(np.arctan2(ahead[1], ahead[0]))
+        forward_axis = data.xmat[model.site_bodyid[site]].reshape(3, 3)[:, 0]
+        yaw = heading - float(np.arctan2(forward_axis[1], forward_axis[0]))
         x, y = data.site_xpos[site][:2]
-        return np.array([-(cos(yaw) * x - sin(yaw) * y), left - (sin(yaw) * x + cos(yaw) * y), yaw])
+        return np.array([-(cos(yaw) * x - sin(yaw) * y), lateral - (sin(yaw) * x + cos(yaw) * y), yaw])
 
     def move(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> None:
-        """Let the water act on a posture that moves and accelerates so."""
+        """Compute the water forces on a posture with these velocities and accelerations."""
         data = self._data
         data.qpos[:], data.qvel[:], data.qacc[:] = qpos, qvel, qacc
         data.userdata[:] = self._lake.numbers(np.array([0.0, 0.0, 1.0]))
@@ -262,8 +275,14 @@ class _Submerged:
         mujoco.mj_fwdVelocity(self._model, data)
 
     def joint_forces(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> Float[np.ndarray, " coordinate"]:
-        """Return the generalised forces of the water alone on root in the plane and lateral joints [N, N m]."""
-        both = []
+        """Return the generalised forces of the water alone on root in the plane and lateral joints [N, N m].
+
+        Args:
+            qpos: generalised positions.
+            qvel: generalised velocities.
+            qacc: generalised accelerations.
+        """
+        forces = []
         for density in (1.0, 0.0):
             self._data.qacc[:] = qacc
             self.move(qpos, qvel, qacc)
@@ -272,50 +291,56 @@ class _Submerged:
                 self._data.userdata[hydro.LEVEL] = -DEEPEST
                 mujoco.mj_fwdPosition(self._model, self._data)
                 mujoco.mj_fwdVelocity(self._model, self._data)
-            whole = np.zeros((self._model.nv, self._model.nv))
-            mujoco.mj_fullM(self._model, self._data, whole)
-            both.append(self._data.qfrc_passive - whole @ qacc)
-        acts: np.ndarray = both[0] - both[1]
+            mass_matrix = np.zeros((self._model.nv, self._model.nv))
+            mujoco.mj_fullM(self._model, self._data, mass_matrix)
+            forces.append(self._data.qfrc_passive - mass_matrix @ qacc)
+        acts: np.ndarray = forces[0] - forces[1]
         return np.concatenate([acts[_PLANE], acts[self._dofs]])
 
     def links(self, joints: Sequence[str]) -> list[list[int]]:
         """Return the bodies of each link between two of the lateral joints, from the head on."""
         return [[int(self._model.body(name).id) for name in names] for names in link_bodies(self._robot, joints)]
 
-    def only(self, bodies: Sequence[int]) -> "_Submerged":
+    def restricted_to(self, bodies: Sequence[int]) -> "_Submerged":
         """Return the same where water acts on some of the bodies alone."""
-        other = copy(self)
-        other._model = copy(self._model)
-        other._data = mujoco.MjData(other._model)
-        numbers = other._model.numeric_data
+        restricted = copy(self)
+        restricted._model = copy(self._model)
+        restricted._data = mujoco.MjData(restricted._model)
+        numbers = restricted._model.numeric_data
         table = unpacked(numbers)
-        away = ~np.isin(table[:, 0].astype(int), bodies)
+        is_removed = ~np.isin(table[:, 0].astype(int), bodies)
         for name in ("volume", "added", "area", "skin", "end", "roll", "shed"):
-            column(table, name)[away] = 0.0
+            column(table, name)[is_removed] = 0.0
         numbers[:] = packed(table, float(numbers[2]), (len(numbers) - HEADER) // WIDTH)
-        return other
+        return restricted
 
     def freed(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> Float[np.ndarray, "3"]:
-        """Return the acceleration of a root in the plane that nothing holds, whatever ``qacc`` has for it."""
+        """Return the acceleration of a free root in the plane, x, y and yaw; that in ``qacc`` does not matter."""
         self.move(qpos, qvel, qacc)
-        whole = np.zeros((self._model.nv, self._model.nv))
-        mujoco.mj_fullM(self._model, self._data, whole)
-        rest = self._data.qfrc_passive - self._data.qfrc_bias - whole[:, self._dofs] @ qacc[self._dofs]
-        return np.asarray(np.linalg.solve(whole[np.ix_(_PLANE, _PLANE)], rest[_PLANE]))
+        mass_matrix = np.zeros((self._model.nv, self._model.nv))
+        mujoco.mj_fullM(self._model, self._data, mass_matrix)
+        free_force = self._data.qfrc_passive - self._data.qfrc_bias - mass_matrix[:, self._dofs] @ qacc[self._dofs]
+        return np.asarray(np.linalg.solve(mass_matrix[np.ix_(_PLANE, _PLANE)], free_force[_PLANE]))
 
     def fill(self, density: float) -> None:
         """Give every body the mass of the water that its pieces displace, and its inertia."""
         model, table = self._model, unpacked(self._model.numeric_data)
         for body in range(1, model.nbody):
-            mine = table[table[:, 0] == body]
-            if not len(mine):
+            body_pieces = table[table[:, 0] == body]
+            if not len(body_pieces):
                 continue
-            mass, at, half = density * column(mine, "volume")[:, 0], column(mine, "at"), column(mine, "half")
-            middle = np.average(at, axis=0, weights=mass)
-            square = (at - middle) ** 2
-            own = np.column_stack([half[:, 2] ** 2 / 3, half[:, 0] ** 2 / 4, half[:, 1] ** 2 / 4])  # along x, y and z
-            second = (mass[:, None] * (square + own)).sum(axis=0)
-            model.body_mass[body], model.body_ipos[body] = mass.sum(), middle
+            mass, centres, half = (
+                density * column(body_pieces, "volume")[:, 0],
+                column(body_pieces, "at"),
+                column(body_pieces, "half"),
+            )
+            mass_centre = np.average(centres, axis=0, weights=mass)
+            square = (centres - mass_centre) ** 2
+            piece_inertia = np.column_stack(
+                [half[:, 2] ** 2 / 3, half[:, 0] ** 2 / 4, half[:, 1] ** 2 / 4]
+            )  # along x, y and z
+            second = (mass[:, None] * (square + piece_inertia)).sum(axis=0)
+            model.body_mass[body], model.body_ipos[body] = mass.sum(), mass_centre
             model.body_inertia[body] = second.sum() - second
             model.body_iquat[body] = (1.0, 0.0, 0.0, 0.0)
         mujoco.mj_setConst(model, self._data)
@@ -338,22 +363,23 @@ class _Submerged:
 
 def _growing(amplitude: np.ndarray, frequency: float) -> Callable[[float], tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Return angles, rates and accelerations over time [s] of joints whose motion grows from nothing."""
-    over, omega = _GROWS / frequency, tau * frequency
+    duration, omega = _GROWS / frequency, tau * frequency
 
-    def at(time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        p = min(time / over, 1.0)
-        grown = p**3 * (10 - 15 * p + 6 * p**2)
-        first = 30 * p**2 * (1 - p) ** 2 / over
-        second = 60 * p * (1 - p) * (1 - 2 * p) / over**2
+    def motion(time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return angles [rad], rates [rad/s] and accelerations [rad/s2] of the joints at a time [s]."""
+        p = min(time / duration, 1.0)
+        envelope = p**3 * (10 - 15 * p + 6 * p**2)
+        envelope_rate = 30 * p**2 * (1 - p) ** 2 / duration
+        envelope_acceleration = 60 * p * (1 - p) * (1 - 2 * p) / duration**2
         z = amplitude * np.exp(1j * omega * time)
         rate, bend = 1j * omega * z, -(omega**2) * z
         return (
-            np.asarray(grown * z.real),
-            np.asarray((grown * rate + first * z).real),
-            np.asarray((grown * bend + 2 * first * rate + second * z).real),
+            np.asarray(envelope * z.real),
+            np.asarray((envelope * rate + envelope_rate * z).real),
+            np.asarray((envelope * bend + 2 * envelope_rate * rate + envelope_acceleration * z).real),
         )
 
-    return at
+    return motion
 
 
 def _derived(values: np.ndarray, frequency: float, order: int) -> np.ndarray:

@@ -39,14 +39,14 @@ def smallest_pushes(
         directions: unit vectors in the world: forward, left, up.
         at: when the push begins [s].
         levels: forces to try, increasing [N].
-        fell: returns from a record which runs fell, along the dimension ``run``; its last sample is ``wait`` after the
-            push.
+        fell: returns from a record whether each run fell, along the dimension ``run``; the last sample of the record is
+            ``wait`` after the push.
         finer: number of forces of the second batch; the answer is off by at most the gap between two of them.
         duration: of the push [s].
         body: what is pushed.
-        wait: how long is waited for the fall [s].
+        wait: time from the end of the push to the end of a run [s].
         timestep: of the physics [s].
-        progress: told the share that is done.
+        progress: called with the finished fraction.
 
     Raises:
         InvalidDesign: the levels do not increase from above zero.
@@ -59,16 +59,16 @@ def smallest_pushes(
     )
     forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
     coarse = topples(forces, staged(progress, "coarse levels", 0.0, 0.6))
-    first = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
-    low, smallest = scan[first], np.append(scan[1:], np.inf)[first]
+    first_level = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
+    lower_force, smallest = scan[first_level], np.append(scan[1:], np.inf)[first_level]
     if finer:
         gap = np.where(
-            np.isfinite(smallest), smallest - low, 1.0
+            np.isfinite(smallest), smallest - lower_force, 1.0
         )  # of those that never fall any will do: it is not used
-        between = low[..., None] + gap[..., None] * (np.arange(1, finer + 1) / (finer + 1))
-        fine = topples(between, staged(progress, "finer levels", 0.6, 1.0))
-        nearer = np.take_along_axis(between, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
-        smallest = np.where(fine.any(axis=-1) & np.isfinite(smallest), nearer, smallest)
+        fine_forces = lower_force[..., None] + gap[..., None] * (np.arange(1, finer + 1) / (finer + 1))
+        fine = topples(fine_forces, staged(progress, "finer levels", 0.6, 1.0))
+        fine_smallest = np.take_along_axis(fine_forces, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+        smallest = np.where(fine.any(axis=-1) & np.isfinite(smallest), fine_smallest, smallest)
     progress("finer levels", 1.0)
     return smallest
 
@@ -86,11 +86,11 @@ class _Trial(NamedTuple):
     def __call__(
         self, forces: Float[np.ndarray, "run direction force"], progress: Progress
     ) -> Bool[np.ndarray, "run direction force"]:
-        """Tell which of the forces topple [N]."""
+        """Return whether each force [N] topples its run, shape (run, direction, force)."""
         batch = [
-            replace(run, pushes=(replace(self.push, force=_along(toward, force)),))
+            replace(run, pushes=(replace(self.push, force=_force_vector(direction, force)),))
             for run, of_run in zip(self.runs, forces, strict=True)
-            for toward, levels in zip(self.directions, of_run, strict=True)
+            for direction, levels in zip(self.directions, of_run, strict=True)
             for force in levels
         ]
         end = self.push.at + self.push.duration + self.wait
@@ -98,6 +98,6 @@ class _Trial(NamedTuple):
         return np.asarray(self.fell(record).values, dtype=bool).reshape(forces.shape)
 
 
-def _along(direction: tuple[float, float, float], force: float) -> tuple[float, float, float]:
+def _force_vector(direction: tuple[float, float, float], force: float) -> tuple[float, float, float]:
     x, y, z = direction
     return float(x * force), float(y * force), float(z * force)

@@ -1,4 +1,4 @@
-"""The sensors of a batch: what they say now, for controllers, and what is kept of it, as a record."""
+"""The sensors of a batch: their present readings for controllers, and their samples as a record."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -20,31 +20,32 @@ from suchus.sim.record import HEAT, WATER, dataset, ground_text
 
 
 class Sensors:
-    """Where the sensors of the robots of a batch stand, and what they say now."""
+    """Columns and present readings of the sensors of a batch."""
 
     def __init__(self, batch: SimulationBatch, robot: Robot) -> None:
+        """Look up the columns of each sensor in the model."""
         self._batch = batch
-        self.layout = place = layout(robot)
+        self.layout = robot_layout = layout(robot)
         model = batch.model
         self._columns = {
             name: slice(int(model.sensor(name).adr[0]), int(model.sensor(name).adr[0] + model.sensor(name).dim[0]))
-            for name in sensor_names(place.robot)
+            for name in sensor_names(robot_layout.robot)
         }
-        self._felt = {
-            "servo_position": self.span(place.servos, "position"),
-            "servo_velocity": self.span(place.servos, "velocity"),
-            "servo_torque": self.span(place.servos, "torque"),
+        self._sensor_columns = {
+            "servo_position": self.span(robot_layout.servos, "position"),
+            "servo_velocity": self.span(robot_layout.servos, "velocity"),
+            "servo_torque": self.span(robot_layout.servos, "torque"),
             "orientation": self._columns["imu_orientation"],
             "angular_velocity": self._columns["imu_gyroscope"],
             "acceleration": self._columns["imu_accelerometer"],
         }
         self._pressed = {
-            "foot_pressure": self._upward(place.limb_names),
-            "belly_pressure": self._upward(place.trunk),
+            "foot_pressure": self._upward(robot_layout.limb_names),
+            "belly_pressure": self._upward(robot_layout.trunk),
         }
 
     def __getitem__(self, name: str) -> Float[np.ndarray, "run n"]:
-        """Return what a sensor says of every run now; a view, which the next control period overwrites."""
+        """Return the present readings of a sensor in every run; a view, which the next control period overwrites."""
         return self._batch.readings[:, self._columns[name]]
 
     def columns(self, name: str) -> slice:
@@ -63,12 +64,12 @@ class Sensors:
         return np.zeros((*rows.shape[:-1], 3)) if columns is None else rows[..., columns]
 
     def sensed(self, time: float) -> Sensed:
-        """Return what the robots feel now, in arrays of its own."""
+        """Return the present sensor readings of the robots, in new arrays."""
         rows = self._batch.readings
-        felt = {name: rows[:, columns].copy() for name, columns in self._felt.items()}
+        readings = {name: rows[:, columns].copy() for name, columns in self._sensor_columns.items()}
         pressed = {name: -rows[:, columns] for name, columns in self._pressed.items()}
         depth = self._batch.waters.depths(self._batch.qpos[:, :3])
-        return Sensed(time=time, **felt, **pressed, tail_pressure=-self.tail(rows)[..., 2], depth=depth)
+        return Sensed(time=time, **readings, **pressed, tail_pressure=-self.tail(rows)[..., 2], depth=depth)
 
     def _upward(self, names: Sequence[str]) -> slice:
         """Return where the vertical parts of neighbouring forces stand."""
@@ -87,23 +88,24 @@ class Recorder:
     """
 
     def __init__(self, batch: SimulationBatch, sensors: Sensors, runs: Sequence[Run], samples: int) -> None:
+        """Reserve an array of NaN for each quantity that is sampled."""
         self._batch, self._sensors, self._runs = batch, sensors, runs
-        self._layout = place = sensors.layout
-        self._joints = joint_addresses(batch.model, place.hinges)
+        self._layout = robot_layout = sensors.layout
+        self._joints = joint_addresses(batch.model, robot_layout.hinges)
         shape = len(runs), samples
         self._readings = np.full((*shape, batch.readings.shape[1]), np.nan)
         self._qpos = np.full((*shape, batch.qpos.shape[1]), np.nan)
-        self._phase = np.full((*shape, len(place.limbs)), np.nan)
-        self._targets = np.full((*shape, len(place.servos)), np.nan)
+        self._phase = np.full((*shape, len(robot_layout.limbs)), np.nan)
+        self._targets = np.full((*shape, len(robot_layout.servos)), np.nan)
         self._water = np.full((*shape, batch.waters.rows.shape[1]), np.nan)
-        self._worked = np.full((*shape, batch.worked.shape[1]), np.nan)
-        self._warm = warming(batch.model, runs[0].robot)
+        self._period_means = np.full((*shape, batch.worked.shape[1]), np.nan)
+        self._temperature_columns = warming(batch.model, runs[0].robot)
         self._air = np.array([ambient(run.robot) for run in runs])
-        heated = len(place.servos) if (self._warm >= 0).any() else 0
+        heated = len(robot_layout.servos) if (self._temperature_columns >= 0).any() else 0
         self._temperature = np.full((*shape, heated), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
-        """Keep one sample of the living.
+        """Store one sample of the runs that are alive.
 
         Args:
             sample: its number.
@@ -116,24 +118,26 @@ class Recorder:
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
         self._water[alive, sample] = self._batch.waters.rows[alive]
-        self._worked[alive, sample] = self._batch.worked[alive]
+        self._period_means[alive, sample] = self._batch.worked[alive]
         if self._temperature.shape[-1]:
-            self._temperature[alive, sample] = self._batch.activations[alive][:, self._warm] + self._air[alive]
+            self._temperature[alive, sample] = (
+                self._batch.activations[alive][:, self._temperature_columns] + self._air[alive]
+            )
 
     def state(self) -> dict[str, np.ndarray]:
         """Return copies of all samples, by name."""
-        return {name: values.copy() for name, values in self._kept.items()}
+        return {name: values.copy() for name, values in self._stored_arrays.items()}
 
     def resume(self, state: Mapping[str, np.ndarray]) -> None:
-        """Take up the samples that another recorder of the same runs kept."""
-        for name, values in self._kept.items():
+        """Load the samples that another recorder of the same runs stored."""
+        for name, values in self._stored_arrays.items():
             values[:] = state[name]
 
     @property
-    def _kept(self) -> dict[str, np.ndarray]:
+    def _stored_arrays(self) -> dict[str, np.ndarray]:
         return {
             "readings": self._readings, "qpos": self._qpos, "phase": self._phase, "targets": self._targets,
-            "water": self._water, "worked": self._worked, "temperature": self._temperature,
+            "water": self._water, "worked": self._period_means, "temperature": self._temperature,
         }  # fmt: skip
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
@@ -142,20 +146,22 @@ class Recorder:
         In water those of ``record.WATER`` too, with servos that warm up that of ``record.HEAT``.
         """
         arrays = self._arrays()
-        wet = self._wet(arrays["foot_force"]) if self._water.shape[-1] else {}
-        return {name: np.array(values[run, sample]) for name, values in (arrays | wet | self._warmed()).items()}
+        water_arrays = self._water_arrays(arrays["foot_force"]) if self._water.shape[-1] else {}
+        return {
+            name: np.array(values[run, sample]) for name, values in (arrays | water_arrays | self._warmed()).items()
+        }
 
     def record(self, time: np.ndarray) -> xr.Dataset:
-        """Return everything that was read, in the schema of a run."""
+        """Return all samples as a record, see ``record.schema``."""
         robots = [run.robot for run in self._runs]
         # parts of a block of all sensors would keep the whole block
         arrays = {name: np.ascontiguousarray(values) for name, values in self._arrays().items()}
-        last = np.minimum(self._batch.ended, time[-1])
+        end_times = np.minimum(self._batch.ended, time[-1])
         per_run = {
             "mass": np.array([robot.mass for robot in robots]),
             "period": np.array([run.gait.period for run in self._runs]),
             "duty_factor": np.array([run.gait.duty_factor for run in self._runs]),
-            "ended": last,
+            "ended": end_times,
             "cause": np.array(self._batch.cause),
             "stands_on": np.array(
                 [ground_text(None if run.afloat or run.solved else run.ground) for run in self._runs]
@@ -174,19 +180,21 @@ class Recorder:
         }
         record = dataset(arrays, per_run, coordinates)
         for name, values in self._warmed().items():
-            dims, unit, what = HEAT[name]
-            record[name] = (("run", *dims), values, {"units": unit, "long_name": what})
+            dims, unit, long_name = HEAT[name]
+            record[name] = (("run", *dims), values, {"units": unit, "long_name": long_name})
         if not self._water.shape[-1]:
             return record
-        return _put(record, self._wet(arrays["foot_force"]), [lake_text(run.lake) for run in self._runs])
+        return _with_water(
+            record, self._water_arrays(arrays["foot_force"]), [lake_text(run.lake) for run in self._runs]
+        )
 
     def _warmed(self) -> dict[str, np.ndarray]:
         """Return how warm the servos are, by the name of ``record.HEAT``; nothing where none warms up."""
         return {"servo_temperature": self._temperature} if self._temperature.shape[-1] else {}
 
-    def _wet(self, foot_force: np.ndarray) -> dict[str, np.ndarray]:
-        """Return what the water does, by the names of ``record.WATER``."""
-        water, worked = self._water, self._worked
+    def _water_arrays(self, foot_force: np.ndarray) -> dict[str, np.ndarray]:
+        """Return the samples of the water by the names of ``record.WATER``."""
+        water, period_means = self._water, self._period_means
         total = np.array([column(pieces(run.robot), "volume").sum() for run in self._runs])
         ups = np.array([up(run.ground) for run in self._runs])
         air = np.array([chambers(run.robot) for run in self._runs])
@@ -198,14 +206,15 @@ class Recorder:
             "air_fraction": np.einsum("rtc,rc->rt", air_kept, air / air.sum(axis=1, keepdims=True)),
             "air_fraction_front": air_kept[..., 0],
             "share_under": water[..., hydro.UNDER] / total[:, None],
-            "water_force": worked[..., :3],
-            "water_power": worked[..., 3],
-            "servo_power": worked[..., 4],
+            "water_force": period_means[..., :3],
+            "water_power": period_means[..., 3],
+            "servo_power": period_means[..., 4],
             "feet_share": (foot_force.sum(axis=2) @ ups[:, :, None])[..., 0] / weight[:, None],
         }
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        rows, place = self._readings, self._layout
+        """Return the samples by the names of ``record.VARIABLES``, each of shape (run, time, ...)."""
+        rows, robot_layout = self._readings, self._layout
 
         def block(names: Sequence[str], suffix: str) -> np.ndarray:
             return np.array(rows[..., self._sensors.span(names, suffix)])
@@ -221,14 +230,14 @@ class Recorder:
             "angular_momentum": rows[..., self._sensors.columns("angular_momentum")],
             "snout": block(("snout",), "position"),
             "tail_tip": block(("tail_tip",), "position"),
-            "foot_position": points([f"{limb}_foot" for limb in place.limb_names], "position"),
+            "foot_position": points([f"{limb}_foot" for limb in robot_layout.limb_names], "position"),
             # the sensors read the robot's force on the ground; the record holds the ground's on the robot
-            "foot_force": -points(place.limb_names, "force"),
-            "belly_force": -points(place.trunk, "force"),
+            "foot_force": -points(robot_layout.limb_names, "force"),
+            "belly_force": -points(robot_layout.trunk, "force"),
             "tail_force": -self._sensors.tail(rows),
-            "servo_angle": block(place.servos, "position"),
-            "servo_velocity": block(place.servos, "velocity"),
-            "servo_torque": block(place.servos, "torque"),
+            "servo_angle": block(robot_layout.servos, "position"),
+            "servo_velocity": block(robot_layout.servos, "velocity"),
+            "servo_torque": block(robot_layout.servos, "torque"),
             "servo_target": self._targets,
             "limb_phase": self._phase,
             "angular_velocity": rows[..., self._sensors.columns("imu_gyroscope")],
@@ -247,15 +256,15 @@ def with_equal_variables(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
             continue
         shape = record.sizes["run"], record.sizes["time"]
         dry = {name: np.zeros((*shape, *(3 for dim in dims if dim == "xyz"))) for name, (dims, _, _) in WATER.items()}
-        equal.append(_put(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
+        equal.append(_with_water(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
     return equal
 
 
-def _put(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:
-    """Return a record with what the water does beside the rest."""
-    about = {"units": "1", "long_name": "the lake as JSON; empty on dry land"}
-    wet: dict[str, Any] = {
-        name: (("run", *dims), values[name], {"units": unit, "long_name": what})
-        for name, (dims, unit, what) in WATER.items()
+def _with_water(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:
+    """Return a record with the variables of the water added."""
+    attributes = {"units": "1", "long_name": "the lake as JSON; empty on dry land"}
+    water_variables: dict[str, Any] = {
+        name: (("run", *dims), values[name], {"units": unit, "long_name": long_name})
+        for name, (dims, unit, long_name) in WATER.items()
     }
-    return record.assign(wet | {"swims_in": ("run", np.array(lakes, dtype=object).astype(str), about)})
+    return record.assign(water_variables | {"swims_in": ("run", np.array(lakes, dtype=object).astype(str), attributes)})

@@ -41,7 +41,7 @@ VACUUM = Afloat(density=0.0, viscosity=0.0)
 """Surroundings that exert no force."""
 WATER = Afloat(density=WATER_DENSITY, viscosity=WATER_VISCOSITY)
 """Fresh water of 20 degrees Celsius."""
-_MOST = 1e4  # [N]; more is a slip of the keyboard, not a push
+_MAX_FORCE = 1e4  # [N]; more is a slip of the keyboard, not a push
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,7 +63,7 @@ class Push:
 
     def __post_init__(self) -> None:
         with Checks("push", self) as check:
-            check.each("force", ("x", "y", "z"), -_MOST, _MOST, "N")
+            check.each("force", ("x", "y", "z"), -_MAX_FORCE, _MAX_FORCE, "N")
             check.number("at", 0.0, 86400.0, "s")
             check.number("duration", 1e-3, 86400.0, "s")
 
@@ -115,6 +115,7 @@ class Run:
     """Name in tables and legends."""
 
     def __post_init__(self) -> None:
+        """Resolve the names of robot, gait and water, and refuse settings that contradict each other."""
         object.__setattr__(self, "robot", ROBOTS.resolve(self.robot))
         object.__setattr__(self, "gait", gait_of(self.robot, self.gait))
         self._take_water()
@@ -122,15 +123,15 @@ class Run:
             check.number("supply", 0.01, 2.0, "")
             check.number("noise", 0.0, 1.0, "rad")
             servos = len(servo_names(self.robot))
-            for name, least in (("zero_error", -1.0), ("play", 0.0)):
+            for name, minimum in (("zero_error", -1.0), ("play", 0.0)):
                 values = getattr(self, name)
                 check.that(
                     len(values) in (0, servos),
                     f"{name} has {len(values)} values, and {self.robot.name} {servos} servos; give each one or none",
                 )
                 check.that(
-                    all(least <= value <= 1.0 for value in values),
-                    f"{name} is {show(values)}; each of its values must be from {least:g} to 1 rad",
+                    all(minimum <= value <= 1.0 for value in values),
+                    f"{name} is {show(values)}; each of its values must be from {minimum:g} to 1 rad",
                 )
             check.whole("seed", 0, 2**32 - 1)
             check.that(

@@ -81,24 +81,31 @@ def simulate(
 
 
 def _own_step(runs: Sequence[Run]) -> float:
-    """Return the time step of runs that are asked for none [s]."""
+    """Return the default time step of a batch of runs [s]."""
     step, period = physics_step(runs[0].robot), control_period(runs[0].robot)
-    longest = [longest_step(robot) for robot in {run.robot for run in runs if run.afloat is not None}]
-    return step if not longest or min(longest) >= step else period / ceil(period / min(longest))
+    max_steps = [longest_step(robot) for robot in {run.robot for run in runs if run.afloat is not None}]
+    return step if not max_steps or min(max_steps) >= step else period / ceil(period / min(max_steps))
 
 
-def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) -> float:
-    """Refuse what cannot be simulated; return the control period [s]."""
+def _check(runs: Sequence[Run], duration: float, timestep: float, stride: int) -> float:
+    """Refuse what cannot be simulated; return the control period [s].
+
+    Args:
+        runs: of the batch.
+        duration: of each run [s].
+        timestep: of the physics [s].
+        stride: control periods for each sample [-].
+    """
     periods = {control_period(run.robot) for run in runs}
     if len(periods) > 1:
-        known = " and ".join(f"{period:g}" for period in sorted(periods))
+        period_text = " and ".join(f"{period:g}" for period in sorted(periods))
         raise InvalidDesign(
-            f"the robots of one batch have control periods of {known} s, "
+            f"the robots of one batch have control periods of {period_text} s, "
             "since they differ so much in size; simulate them one after another."
         )
     (period,) = periods
     require("simulate", "duration", duration, period, 86400.0, "s")
-    require("simulate", "every", every, 1, 10000, "control periods")
+    require("simulate", "every", stride, 1, 10000, "control periods")
     physics_steps(timestep, period)
     for robot in {run.robot for run in runs}:
         check_step(robot, timestep)
@@ -136,20 +143,29 @@ def _groups(runs: Sequence[Run]) -> list[list[int]]:
     return list(groups.values())
 
 
-def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, every: int, progress: Progress) -> xr.Dataset:
+def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, stride: int, progress: Progress) -> xr.Dataset:
+    """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled.
+
+    Args:
+        runs: of the group.
+        ticks: number of control periods.
+        timestep: of the physics [s].
+        stride: control periods for each sample [-].
+        progress: called with the finished fraction.
+    """
     loop = Loop(runs, timestep, ticks=ticks + 1)
-    recorder = loop.recorder(ticks // every + 1)
+    recorder = loop.recorder(ticks // stride + 1)
     for tick in range(ticks + 1):
         loop.decide()
-        if tick % every == 0:
-            recorder.store(tick // every, loop.command.phase, loop.command.targets)
+        if tick % stride == 0:
+            recorder.store(tick // stride, loop.command.phase, loop.command.targets)
         if tick < ticks:
-            read = loop.feels or (tick + 1) % every == 0
-            loop.advance(felt=read, read=read)
+            need_readings = loop.feels or (tick + 1) % stride == 0
+            loop.advance(felt=need_readings, read=need_readings)
         if tick % 16 == 0:
             progress("simulating", tick / ticks)
     progress("simulating", 1.0)
-    return recorder.record(np.arange(0, ticks + 1, every) * loop.period)
+    return recorder.record(np.arange(0, ticks + 1, stride) * loop.period)
 
 
 def crawl(
@@ -215,7 +231,7 @@ def crawl(
     return record
 
 
-_USUAL = 9.0
+_DEFAULT_DURATION = 9.0
 """Duration of a crawl that names none [s]: one second to settle, and two cycles of the article's gait."""
 
 
@@ -226,7 +242,7 @@ def _duration(gait: Gait, duration: float | None, cycles: float | None) -> float
         InvalidDesign: both are given, or ``cycles`` is out of range.
     """
     if cycles is None:
-        return _USUAL if duration is None else duration
+        return _DEFAULT_DURATION if duration is None else duration
     if duration is not None:
         raise InvalidDesign(f"crawl was given duration = {duration!r} s and cycles = {cycles!r}; give one of the two.")
     require("crawl", "cycles", cycles, 0.01, 10_000.0, "")

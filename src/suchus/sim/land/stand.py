@@ -69,13 +69,12 @@ def on_stand(
         mujoco.mj_step(model, data)
         angle[i], torque[i] = data.qpos[hinge.qposadr[0]], data.actuator_force[servo]
         if not np.isfinite(angle[i]):
-            raise Diverged(
-                f"{joint} on the stand diverged hinge {data.time:.3f} s.", time=float(data.time), record=None
-            )
+            raise Diverged(f"{joint} on the stand diverged at {data.time:.3f} s.", time=float(data.time), record=None)
     return Response(timestep * np.arange(1, len(target) + 1), angle, torque)
 
 
 def _model(robot: Robot, joint: str, timestep: float) -> mujoco.MjModel:
+    """Compile a robot whose root is fixed in the air, with a clamp on one joint."""
     spec = build(robot, timestep=timestep)
     if spec.joint(joint) is None:
         raise InvalidDesign(f"servo {joint!r} turns no joint of its own; name one that does.")

@@ -1,14 +1,14 @@
 """One robot with its servos, springs, controller and troubles, stepped by whoever knows what the water does to it.
 
-Time goes on in stretches of whole physics steps. A stretch can be gone through as often as it takes until force and
-motion agree: it begins each time in the same state, and what was commanded and pushed the first time is kept. A stretch
-ends where a fault begins, or a push does or ends.
+Time advances in intervals of whole physics steps. An interval is repeated until force and motion converge: each
+iteration begins in the same state, and repeats the commands and pushes of the first one. An interval ends where a fault
+begins, or where a push begins or ends.
 
-``state`` and ``resume`` let a run that was stopped go on to the same bytes. Controllers and faults have no state to
-write down: they decide again by all that they felt, and must come to the same commands.
+``state`` and ``resume`` continue a stopped run to the same bytes. Controllers and faults have no stored state: they
+decide again from their stored inputs, and must return the same commands.
 
-In the plane the root moves along, to the left and about the vertical; the others of its coordinates are as good as
-locked, by an inertia that ``LOCKED`` times exceeds the robot's. Else all coordinates of the robot are the water's too.
+In the plane the root moves forward, to the left and about the vertical. Its other coordinates are locked by an inertia
+of ``LOCKED`` times the robot's. In space the water acts on all coordinates of the robot.
 """
 
 from collections.abc import Mapping
@@ -36,7 +36,7 @@ from suchus.sim.model.stability import damping_of
 
 LOCKED = 1e7
 """Inertia of the root against heave, roll and pitch, over the robot's own [-]."""
-_PLANE, _ACROSS = (0, 1, 5), (2, 3, 4)
+_PLANE, _LOCKED_DOFS = (0, 1, 5), (2, 3, 4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +55,7 @@ class CoordinateState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stretch:
-    """What became of the robot in a stretch of time.
+    """Displacement, works and momentum of the robot over an interval of time.
 
     Works are those of the forces as they act over each step, dampers and the servos' loops with the velocity at its
     end, along the mean of its velocities at both ends: they add up to the kinetic energy that is gained.
@@ -75,48 +75,48 @@ class Stretch:
     """Momentum of the whole robot at its end, along and to the left, in space upwards too, the water's not counted
     [kg m/s]."""
     strayed: Float[np.ndarray, " axis"]
-    """Momentum that the robot gained without a force: MuJoCo's step holds the mass matrix of its start [kg m/s]."""
+    """Momentum gained without a force, since MuJoCo's step uses the mass matrix of its start [kg m/s]."""
 
 
 @dataclass(slots=True)
 class _Saved:
-    """A state to begin from."""
+    """State at the beginning of an interval, to which each iteration returns."""
 
     state: np.ndarray
     step: int
-    last: "_Decision | None"
+    last_decision: "_Decision | None"
     passive: np.ndarray
     bias: np.ndarray
     inertia: np.ndarray
-    carried: np.ndarray
+    added_mass: np.ndarray
     momentum: np.ndarray
     decisions: dict[int, "_Decision"] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
 class _Tape:
-    """What was seen in each physics step of a stretch, one a row.
+    """Velocities, forces and power in each physics step of an interval.
 
-    Velocities, passive forces and those of the motion itself are of its start too.
+    Velocities, passive and bias forces have one more entry, that of the start.
     """
 
     velocity: list[np.ndarray]
     passive: list[np.ndarray]
     bias: list[np.ndarray]
-    served: list[np.ndarray] = field(default_factory=list)
-    held: list[np.ndarray] = field(default_factory=list)
+    servo_force: list[np.ndarray] = field(default_factory=list)
+    constraint_force: list[np.ndarray] = field(default_factory=list)
     smooth: list[np.ndarray] = field(default_factory=list)
     power: list[float] = field(default_factory=list)
 
 
 class _Decision(NamedTuple):
-    """What was decided at the beginning of a control period, by what was felt then."""
+    """Command and pushes of a control period, with the inputs that they were decided from."""
 
     command: Command
     """What the servos are commanded."""
-    pushed: np.ndarray
+    external_force: np.ndarray
     """Forces from outside [N]."""
-    felt: dict[str, np.ndarray]
+    inputs: dict[str, np.ndarray]
     """What controller and faults decided by; see ``SimulationBatch.felt``."""
 
 
@@ -143,6 +143,7 @@ class Stepper:
         controller: Controller | None = None,
         begin: Beginning | None = None,
     ) -> None:
+        """Start the loop, select the coordinates of the water, and find the steps at which faults and pushes change."""
         self._loop = loop = Loop([run], timestep, ticks=ticks + 1, controller=controller)
         if begin is not None:
             loop.restart(0, begin, run.faults, run.pushes)
@@ -173,18 +174,18 @@ class Stepper:
         ]  # fmt: skip
         self._data = mujoco.MjData(self.model)
         self._applied = self._physics.bind("qfrc_applied")
-        self._pushed = self._physics.bind("xfrc_applied")
+        self._external_forces = self._physics.bind("xfrc_applied")
         self._user = self._physics.bind("userdata")
-        self._served, self._passive, self._held = (
+        self._servo_force, self._passive, self._constraint_force = (
             self._physics.bind(f"qfrc_{name}") for name in ("actuator", "passive", "constraint")
         )
         self._smooth, self._bias = self._physics.bind("qfrc_smooth"), self._physics.bind("qfrc_bias")
-        self._whole = np.zeros((self.model.nv, self.model.nv))
+        self._mass_matrix = np.zeros((self.model.nv, self.model.nv))
         self.steps = 0
         self.at_begin: CoordinateState = self.now
         """State in which the present stretch began."""
         self._saved: _Saved | None = None
-        self._last: _Decision | None = None
+        self._decision: _Decision | None = None
         self._decided: list[_Decision] = []
         self._is_read = False
         ends = [time / loop.period for push in run.pushes for time in (push.at, push.at + push.duration)]
@@ -195,7 +196,7 @@ class Stepper:
         self._physics.forward()
         self._batch.read(slice(None))
         self._is_looked_at = False
-        self._look()
+        self._update_kinematics()
         self._damping = damping_of(self.model, self._data)
         self._tape = _Tape([], [], [])
 
@@ -224,33 +225,34 @@ class Stepper:
         bends = {
             name: float(self._batch.qpos[0, int(self.model.joint(name).qposadr[0])]) for name in self._other_hinges
         }
-        worst = max(bends, key=lambda name: abs(bends[name]), default="")
-        return worst, bends.get(worst, 0.0)
+        bent_joint = max(bends, key=lambda name: abs(bends[name]), default="")
+        return bent_joint, bends.get(bent_joint, 0.0)
 
     @property
     def at_stops(self) -> dict[str, float]:
         """Joints that are at the end of their range, with their angles [rad]."""
-        angles, (low, high) = self._batch.qpos[0, self._places], self._ranges.T
-        found = np.flatnonzero((angles <= low) | (angles >= high))
-        return {self._joints[k]: float(angles[k]) for k in found}
+        angles, (lower_limits, upper_limits) = self._batch.qpos[0, self._places], self._ranges.T
+        joint_indices = np.flatnonzero((angles <= lower_limits) | (angles >= upper_limits))
+        return {self._joints[k]: float(angles[k]) for k in joint_indices}
 
     def mass(self) -> Float[np.ndarray, "coordinate coordinate"]:
         """Return the mass matrix of the coordinates as they are now, without the water's [kg, kg m, kg m2]."""
-        self._look()
-        return np.array(self._whole[np.ix_(self.dofs, self.dofs)])
+        self._update_kinematics()
+        return np.array(self._mass_matrix[np.ix_(self.dofs, self.dofs)])
 
     def centre(self) -> Float[np.ndarray, "3"]:
         """Return the centre of mass in the world [m]."""
-        self._look()
+        self._update_kinematics()
         return np.array(self._data.subtree_com[1])
 
     def show(self, batch: SimulationBatch, row: int) -> None:
         """Let a run of another batch of such robots be where this one is, and feel the same."""
-        self._read()
+        self._read_sensors()
         batch.feel(row, self._batch.felt(0))
         batch.physics.state[row] = self._physics.state[0]
 
-    def _look(self) -> None:
+    def _update_kinematics(self) -> None:
+        """Compute positions, centre of mass and mass matrix of the present state, once in each state."""
         if self._is_looked_at:
             return
         self._is_looked_at = True
@@ -260,29 +262,31 @@ class Stepper:
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_crb(model, data)
-        mujoco.mj_fullM(model, data, self._whole)
+        mujoco.mj_fullM(model, data, self._mass_matrix)
 
     # --- what the water does -----------------------------------------------------------------------------------
 
-    def burden(self, added: Float[np.ndarray, "coordinate coordinate"]) -> Float[np.ndarray, "coordinate coordinate"]:
+    def burden(
+        self, added_mass: Float[np.ndarray, "coordinate coordinate"]
+    ) -> Float[np.ndarray, "coordinate coordinate"]:
         """Let joints and root have an added mass from now on; return how much of it MuJoCo's matrix has room for.
 
         It has none between joints on different branches of the tree, as trunk and tail. What it takes in the place of
         these is never too little in any motion, so that the matrix stays positive definite.
         """
         model = self.model
-        whole = np.zeros((model.nv, model.nv))
-        whole[np.ix_(self.dofs, self.dofs)] = added
+        matrix = np.zeros((model.nv, model.nv))
+        matrix[np.ix_(self.dofs, self.dofs)] = added_mass
         heavy = LOCKED * float(model.body_mass.sum())
-        for dof in _ACROSS if self.in_plane else ():
-            whole[dof, dof] = heavy
+        for dof in _LOCKED_DOFS if self.in_plane else ():
+            matrix[dof, dof] = heavy
         rows, columns = self._entries
-        room = np.zeros(whole.shape, bool)
-        room[rows, columns] = room[columns, rows] = True
-        whole = np.where(room, whole, 0.0) + _above(np.where(room, 0.0, whole), room)
+        is_entry = np.zeros(matrix.shape, bool)
+        is_entry[rows, columns] = is_entry[columns, rows] = True
+        matrix = np.where(is_entry, matrix, 0.0) + _dominating_matrix(np.where(is_entry, 0.0, matrix), is_entry)
         self._user[0, hydro.NUMBERS :] = 0.0
-        self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)] = whole[rows, columns]
-        return np.array(whole[np.ix_(self.dofs, self.dofs)])
+        self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)] = matrix[rows, columns]
+        return np.array(matrix[np.ix_(self.dofs, self.dofs)])
 
     @cached_property
     def _entries(self) -> tuple[np.ndarray, np.ndarray]:
@@ -290,12 +294,12 @@ class Stepper:
         rows = np.repeat(np.arange(self.model.nv), self.model.M_rownnz)
         return rows, np.array(self.model.M_colind)[: len(rows)]
 
-    def _carried(self) -> Float[np.ndarray, "dof dof"]:
-        """Return what the mass matrix of all that moves has been burdened with."""
-        (rows, columns), whole = self._entries, np.zeros_like(self._whole)
-        given = self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)]
-        whole[rows, columns] = whole[columns, rows] = given
-        return whole
+    def _added_mass_matrix(self) -> Float[np.ndarray, "dof dof"]:
+        """Return the added mass in the mass matrix of all degrees of freedom."""
+        (rows, columns), matrix = self._entries, np.zeros_like(self._mass_matrix)
+        entries = self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)]
+        matrix[rows, columns] = matrix[columns, rows] = entries
+        return matrix
 
     @property
     def axes(self) -> int:
@@ -304,35 +308,35 @@ class Stepper:
 
     def _momentum(self) -> Float[np.ndarray, " axis"]:
         """Return the momentum of the whole robot along the axes in which the root moves [kg m/s]."""
-        self._look()
-        return np.asarray(self._whole[: self.axes] @ self._batch.qvel[0])
+        self._update_kinematics()
+        return np.asarray(self._mass_matrix[: self.axes] @ self._batch.qvel[0])
 
     # --- going on ----------------------------------------------------------------------------------------------
 
     def begin(self) -> None:
-        """Begin a stretch here."""
+        """Begin an interval in the present state."""
         self.at_begin = self.now
         state, passive, bias = self._physics.state[0].copy(), self._passive[0].copy(), self._bias[0].copy()
-        carried, momentum = self._carried(), self._momentum()
+        added_mass, momentum = self._added_mass_matrix(), self._momentum()
         self._saved = _Saved(
-            state, self.steps, self._last, passive, bias, self._whole + carried, carried, momentum
+            state, self.steps, self._decision, passive, bias, self._mass_matrix + added_mass, added_mass, momentum
         )  # fmt: skip
 
-    def until(self, time: float, most: int, landing: int = 0) -> int:
-        """Return how many physics steps the next stretch has, so that none goes beyond a time [s] or a trouble.
+    def until(self, time: float, max_steps: int, landing: int = 0) -> int:
+        """Return the number of physics steps of the next interval; it ends at a time [s], fault or push at the latest.
 
         Args:
-            time: at which a stretch ends [s].
-            most: physics steps in a stretch, at most [-].
-            landing: stretches before such an end that are about equally long, so that the last is no jolt [-].
+            time: at which an interval must end [s].
+            max_steps: greatest number of physics steps in an interval [-].
+            landing: number of intervals of about equal length before such an end, so that none is very short [-].
         """
-        ahead = self._troubles[self._troubles > self.steps]
-        left = max(min([round(time / self.timestep) - self.steps, *(ahead[:1] - self.steps).tolist()]), 1)
-        stretches = -(-left // most)
-        return -(-left // stretches) if stretches <= max(landing, 1) else most
+        later_troubles = self._troubles[self._troubles > self.steps]
+        remaining = max(min([round(time / self.timestep) - self.steps, *(later_troubles[:1] - self.steps).tolist()]), 1)
+        stretches = -(-remaining // max_steps)
+        return -(-remaining // stretches) if stretches <= max(landing, 1) else max_steps
 
     def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> CoordinateState:
-        """Go through the stretch that was begun, in so many steps, under a constant force of the water; ``account`` it.
+        """Step through the interval that was begun, under a constant force of the water; ``account`` evaluates it.
 
         Args:
             count: physics steps.
@@ -346,10 +350,10 @@ class Stepper:
         """
         saved = self._saved
         assert saved is not None
-        kept = self._user[0].copy()
+        water_numbers = self._user[0].copy()
         self._physics.state[0] = saved.state
-        self._user[0] = kept
-        self.steps, self._last = saved.step, saved.last
+        self._user[0] = water_numbers
+        self.steps, self._decision = saved.step, saved.last_decision
         self._is_looked_at = False
         self._applied[0] = 0.0
         self._applied[0, self.dofs] = force
@@ -358,8 +362,8 @@ class Stepper:
         for _ in range(count):
             if self.steps % self._per_tick == 0:
                 self._decide(saved)
-            assert self._last is not None
-            self._batch.ctrl[0] = self._last.command.targets[0]
+            assert self._decision is not None
+            self._batch.ctrl[0] = self._decision.command.targets[0]
             try:
                 self._physics.step(None, 1, int(mujoco.mjtStage.mjSTAGE_VEL))
             except SimulationError as error:
@@ -370,81 +374,83 @@ class Stepper:
             tape.velocity.append(self._batch.qvel[0].copy())
             tape.passive.append(self._passive[0].copy())
             tape.bias.append(self._bias[0].copy())
-            tape.served.append(self._served[0].copy())
-            tape.held.append(self._held[0].copy())
+            tape.servo_force.append(self._servo_force[0].copy())
+            tape.constraint_force.append(self._constraint_force[0].copy())
             tape.smooth.append(self._smooth[0].copy())
             tape.power.append(float(np.abs(sensors[speeds] * sensors[torques]).sum()))
             self.steps += 1
         return self.now
 
     def account(self) -> Stretch:
-        """Return what became of the robot in the stretch that it went through last."""
+        """Return displacement, works and momentum of the last iteration of the interval."""
         saved = self._saved
         assert saved is not None
         tape, dt = self._tape, self.timestep
         rate = np.array(tape.velocity)
-        way, gained = 0.5 * dt * (rate[1:] + rate[:-1]), np.diff(rate, axis=0)
+        displacement, gained = 0.5 * dt * (rate[1:] + rate[:-1]), np.diff(rate, axis=0)
         # MuJoCo's implicit step takes dampers and servos at the velocity it leads to: by so much they differ from qfrc
-        later = gained / dt @ saved.inertia - np.array(tape.smooth) - np.array(tape.held)
+        implicit_force = gained / dt @ saved.inertia - np.array(tape.smooth) - np.array(tape.constraint_force)
         damped = -gained @ self._damping
-        last, momentum = rate[-1], self._momentum()
-        pushed = dt * (np.array(tape.smooth) + np.array(tape.bias[:-1]) + np.array(tape.held)).sum(axis=0)
-        given = (pushed - saved.carried @ (last - rate[0]))[: self.axes]
+        end_rate, momentum = rate[-1], self._momentum()
+        impulse = dt * (np.array(tape.smooth) + np.array(tape.bias[:-1]) + np.array(tape.constraint_force)).sum(axis=0)
+        applied_impulse = (impulse - saved.added_mass @ (end_rate - rate[0]))[: self.axes]
         return Stretch(
-            way=way.sum(axis=0)[self.dofs],
-            worked=float(((np.array(tape.served) + later - damped) * way).sum()),
-            yielded=float(((np.array(tape.passive[:-1]) + np.array(tape.held) + damped) * way).sum()),
-            energy=0.5 * float(last @ self._whole @ last), effort=dt * sum(tape.power),
-            momentum=momentum, strayed=momentum - saved.momentum - given,
+            way=displacement.sum(axis=0)[self.dofs],
+            worked=float(((np.array(tape.servo_force) + implicit_force - damped) * displacement).sum()),
+            yielded=float(
+                ((np.array(tape.passive[:-1]) + np.array(tape.constraint_force) + damped) * displacement).sum()
+            ),
+            energy=0.5 * float(end_rate @ self._mass_matrix @ end_rate), effort=dt * sum(tape.power),
+            momentum=momentum, strayed=momentum - saved.momentum - applied_impulse,
         )  # fmt: skip
 
     def _decide(self, saved: _Saved) -> None:
-        """Take what a control period is commanded, which is thought of once, and keep a sample."""
+        """Apply the decision of a control period, which is made in the first iteration alone, and store a sample."""
         tick = self.steps // self._per_tick
-        again = tick in saved.decisions
-        first = not (again and self.steps == saved.step)  # else the sensors are those of the end of the last go
-        if first:
-            self._read()
-        if not again:
+        is_known = tick in saved.decisions
+        is_first = not (is_known and self.steps == saved.step)  # else the sensors are those of the end of the last go
+        if is_first:
+            self._read_sensors()
+        if not is_known:
             saved.decisions[tick] = self._thought(tick)
             self._decided.append(saved.decisions[tick])
-        self._last = saved.decisions[tick]
-        self._pushed[0] = self._last.pushed
+        self._decision = saved.decisions[tick]
+        self._external_forces[0] = self._decision.external_force
         self._is_read = False
-        if first:
+        if is_first:
             self._store(tick)
 
     def _thought(self, tick: int) -> _Decision:
-        felt = self._batch.felt(0)
+        inputs = self._batch.felt(0)
         self._loop.tick = self._loop.clocks[:] = tick
         self._loop.decide()
-        return _Decision(self._loop.command, self._pushed[0].copy(), felt)
+        return _Decision(self._loop.command, self._external_forces[0].copy(), inputs)
 
-    def _read(self) -> None:
+    def _read_sensors(self) -> None:
         if not self._is_read:
             self._batch.read(slice(None))
 
     def _store(self, tick: int) -> None:
-        assert self._last is not None
+        assert self._decision is not None
         if tick <= self._ticks:
-            self._recorder.store(tick, self._last.command.phase, self._last.command.targets)
+            self._recorder.store(tick, self._decision.command.phase, self._decision.command.targets)
 
     def finish(self) -> None:
         """Keep the last sample, if the run has come to the end of a control period."""
         if self.steps % self._per_tick == 0:
-            self._read()
+            self._read_sensors()
             self._store(self.steps // self._per_tick)
 
     # --- stopped and gone on -----------------------------------------------------------------------------------
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all with which this run can go on in another process, between two stretches."""
-        self._read()  # where a control period ends the next decision is by this, else by what is read later
-        felt = [one.felt for one in self._decided]
+        self._read_sensors()  # where a control period ends the next decision is by this, else by what is read later
+        inputs = [decision.inputs for decision in self._decided]
         return {
             "steps": np.array(self.steps), "physics": self._physics.state[0].copy(),
-            "targets": np.array([one.command.targets[0] for one in self._decided]),
-            **{f"felt.{name}": np.array([one[name] for one in felt]) for name in (felt[0] if felt else ())},
+            "targets": np.array([decision.command.targets[0] for decision in self._decided]),
+            **{f"felt.{name}": np.array([sample[name] for sample in inputs]) for name in (inputs[0] if inputs else ())},
             **{f"now.{name}": values for name, values in self._batch.felt(0).items()},
             **{f"samples.{name}": values for name, values in self._recorder.state().items()},
         }  # fmt: skip
@@ -455,12 +461,12 @@ class Stepper:
         Raises:
             UnreadableFile: controller or faults decide otherwise than they did then.
         """
-        parts = {kind: _under(state, f"{kind}.") for kind in ("felt", "now", "samples")}
+        parts = {kind: _with_prefix(state, f"{kind}.") for kind in ("felt", "now", "samples")}
         for tick, targets in enumerate(state["targets"]):
             self._batch.feel(0, {name: values[tick] for name, values in parts["felt"].items()})
-            self._last = self._thought(tick)
-            self._decided.append(self._last)
-            if not np.array_equal(self._last.command.targets[0], targets):
+            self._decision = self._thought(tick)
+            self._decided.append(self._decision)
+            if not np.array_equal(self._decision.command.targets[0], targets):
                 raise UnreadableFile(
                     f"what was kept of the run {self._loop.runs[0].label!r} cannot go on: its controller commands "
                     f"otherwise at t = {tick * self.period:.4g} s than it did. Delete what was kept to start anew."
@@ -483,18 +489,24 @@ class Stepper:
         return self._recorder.record(np.arange(self._ticks + 1) * self.period)
 
 
-def _under(state: Mapping[str, np.ndarray], start: str) -> dict[str, np.ndarray]:
-    """Return the values whose names begin so, by the rest of their names."""
+def _with_prefix(state: Mapping[str, np.ndarray], start: str) -> dict[str, np.ndarray]:
+    """Return the values whose names begin with ``start``, by the rest of their names."""
     return {name.removeprefix(start): values for name, values in state.items() if name.startswith(start)}
 
 
-def _above(left: Float[np.ndarray, "n n"], room: Bool[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:
-    """Return a matrix that is nowhere smaller than another one, as quadratic forms, with entries where there is room.
+def _dominating_matrix(
+    missing: Float[np.ndarray, "n n"], is_entry: Bool[np.ndarray, "n n"]
+) -> Float[np.ndarray, "n n"]:
+    """Return a matrix whose quadratic form is nowhere smaller than that of another one, with allowed entries alone.
 
-    Between two branches it is the absolute value, else a diagonal of sums.
+    It is the absolute value where that has allowed entries alone, else a diagonal of sums.
+
+    Args:
+        missing: the symmetric matrix.
+        is_entry: whether each entry of the result may differ from zero.
     """
-    values, vectors = np.linalg.eigh(left)
+    values, vectors = np.linalg.eigh(missing)
     size = (vectors * np.abs(values)) @ vectors.T
-    if np.abs(np.where(room, 0.0, size)).max() <= 1e-9 * np.abs(size).max(initial=1e-300):
-        return np.where(room, size, 0.0)
-    return np.diag(np.abs(left).sum(axis=1))
+    if np.abs(np.where(is_entry, 0.0, size)).max() <= 1e-9 * np.abs(size).max(initial=1e-300):
+        return np.where(is_entry, size, 0.0)
+    return np.diag(np.abs(missing).sum(axis=1))

@@ -41,16 +41,16 @@ def offset(struct: str, field: str) -> int:
     Raises:
         OtherMuJoCo: MuJoCo's description has no such struct or field, or a type that is not known.
     """
-    first, _, rest = field.partition(".")
+    member_name, _, subfield = field.partition(".")
     kind = _struct(struct)
-    if not hasattr(kind, first):
+    if not hasattr(kind, member_name):
         raise OtherMuJoCo(f"{struct}.{field}", mujoco.__version__, "its description has no such field")
-    begins = int(getattr(kind, first).offset)
-    if not rest:
+    begins = int(getattr(kind, member_name).offset)
+    if not subfield:
         return begins
     members: Any = kind._fields_
-    inner = next(member[1] for member in members if member[0] == first)
-    return begins + offset(inner.__name__, rest)
+    inner = next(member[1] for member in members if member[0] == member_name)
+    return begins + offset(inner.__name__, subfield)
 
 
 @lru_cache(maxsize=1)
@@ -83,32 +83,33 @@ def _struct(name: str) -> type[ctypes.Structure]:
     """Return a struct with the fields of MuJoCo's description in their order."""
     if name not in structs.STRUCTS:
         raise OtherMuJoCo(name, mujoco.__version__, "its description has no such struct")
-    return _made(name, structs.STRUCTS[name].fields)
+    return _ctypes_struct(name, structs.STRUCTS[name].fields)
 
 
-def _made(name: str, members: Sequence[Any]) -> type[ctypes.Structure]:
+def _ctypes_struct(name: str, members: Sequence[Any]) -> type[ctypes.Structure]:
     fields = [(member.name, _type(f"{name}.{member.name}", member.type)) for member in members]
     return type(name, (ctypes.Structure,), {"_fields_": fields})
 
 
-def _type(where: str, declared: Any) -> Any:
-    if isinstance(declared, PointerType):
+def _type(field_path: str, declaration: Any) -> Any:
+    """Return the ctypes type of a declaration in MuJoCo's description."""
+    if isinstance(declaration, PointerType):
         return ctypes.c_void_p
-    if isinstance(declared, ArrayType):
-        return _type(where, declared.inner_type) * int(np.prod(declared.extents))
-    if isinstance(declared, AnonymousStructDecl):
-        return _made(where, declared.fields)
-    if declared.name in _PLAIN:
-        return _PLAIN[declared.name]
-    if declared.name in structs.STRUCTS:
-        return _struct(declared.name)
-    if hasattr(mujoco, declared.name):  # an enumeration
+    if isinstance(declaration, ArrayType):
+        return _type(field_path, declaration.inner_type) * int(np.prod(declaration.extents))
+    if isinstance(declaration, AnonymousStructDecl):
+        return _ctypes_struct(field_path, declaration.fields)
+    if declaration.name in _PLAIN:
+        return _PLAIN[declaration.name]
+    if declaration.name in structs.STRUCTS:
+        return _struct(declaration.name)
+    if hasattr(mujoco, declaration.name):  # an enumeration
         return ctypes.c_int
-    raise OtherMuJoCo(where, mujoco.__version__, f"its type {declared.name} is not known")
+    raise OtherMuJoCo(field_path, mujoco.__version__, f"its type {declaration.name} is not known")
 
 
 def verify(struct: str, instance: Any, fields: Sequence[str]) -> None:
-    """Compare what lies at the derived offsets with what MuJoCo's bindings say.
+    """Compare the memory at the derived offsets with the values of MuJoCo's bindings.
 
     Args:
         struct: as ``mjModel``.
@@ -118,10 +119,10 @@ def verify(struct: str, instance: Any, fields: Sequence[str]) -> None:
     Raises:
         OtherMuJoCo: another thing lies there; the message names field and version.
     """
-    for field, derived in _found(struct, instance._address, fields):
+    for field, derived in _field_values(struct, instance._address, fields):
         bound = _bound(instance, field)
-        same = derived == bound.ctypes.data if isinstance(bound, np.ndarray) else derived == bound
-        if not same:
+        is_equal = derived == bound.ctypes.data if isinstance(bound, np.ndarray) else derived == bound
+        if not is_equal:
             raise OtherMuJoCo(
                 f"{struct}.{field}", mujoco.__version__, f"{derived} lies at its offset, not what it holds"
             )
@@ -133,18 +134,18 @@ def _bound(instance: Any, field: str) -> Any:
     return instance
 
 
-def _found(struct: str, address: int, fields: Sequence[str]) -> Iterator[tuple[str, float]]:
-    """Yield what lies at the offset of each field: the address of an array, or the number itself."""
+def _field_values(struct: str, address: int, fields: Sequence[str]) -> Iterator[tuple[str, float]]:
+    """Yield each field with the content of its offset: the address of an array, or the number itself."""
     for field in fields:
-        place = address + offset(struct, field)
+        field_address = address + offset(struct, field)
         owner, name = (structs.STRUCTS[struct], field)
         while "." in name:
-            first, _, name = name.partition(".")
-            owner = structs.STRUCTS[next(member.type.name for member in owner.fields if member.name == first)]
-        declared = next(member.type for member in owner.fields if member.name == name)
-        if isinstance(declared, ArrayType):
-            yield field, place
-        elif isinstance(declared, PointerType):
-            yield field, ctypes.c_size_t.from_address(place).value
+            member_name, _, name = name.partition(".")
+            owner = structs.STRUCTS[next(member.type.name for member in owner.fields if member.name == member_name)]
+        declaration = next(member.type for member in owner.fields if member.name == name)
+        if isinstance(declaration, ArrayType):
+            yield field, field_address
+        elif isinstance(declaration, PointerType):
+            yield field, ctypes.c_size_t.from_address(field_address).value
         else:
-            yield field, _PLAIN[declared.name].from_address(place).value
+            yield field, _PLAIN[declaration.name].from_address(field_address).value

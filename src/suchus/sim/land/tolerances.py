@@ -37,6 +37,7 @@ class Tolerances:
     cables and fillings of printed parts, which a drawing leaves out."""
 
     def __post_init__(self) -> None:
+        """Refuse errors that are negative or larger than any build has."""
         with Checks("tolerances", self) as check:
             for name in ("zero_error", "dead_band", "backlash"):
                 check.number(name, 0.0, 1.0, "rad")
@@ -67,14 +68,14 @@ class Tolerances:
     def repeats(self, runs: Iterable[Run], count: int, seed: int = 0) -> list[Run]:
         """Return so many built robots of each run, run by run; the i-th of each has the same errors."""
         seeds = np.random.SeedSequence(seed).generate_state(count).tolist()
-        return [self.built(run, one) for run in runs for one in seeds]
+        return [self.built(run, robot_seed) for run in runs for robot_seed in seeds]
 
 
 def _weighted(robot: Robot, factors: list[float]) -> Robot:
     """Return a robot with other masses: a factor for each segment of the axis, then one for each girdle's limbs."""
-    axis = tuple(_segment(one, factor) for one, factor in zip(robot.axis, factors, strict=False))
+    axis = tuple(_segment(segment, factor) for segment, factor in zip(robot.axis, factors, strict=False))
     limbs = factors[len(robot.axis) :]
-    girdles = tuple(_girdle(one, factor) for one, factor in zip(robot.girdles, limbs, strict=True))
+    girdles = tuple(_girdle(girdle, factor) for girdle, factor in zip(robot.girdles, limbs, strict=True))
     return replace(robot, axis=axis, girdles=girdles)
 
 

@@ -12,7 +12,7 @@ from suchus.sim.land.lake import Lake
 
 Form = Literal["sections", "slice", "space"]
 """Short forms of the rungs."""
-_FINEST = {"slice": 4096, "space": 1024}
+_MAX_CELLS = {"slice": 4096, "space": 1024}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,8 +54,9 @@ class _Resolved:
     """In space: water beside the widest swing, to each side; None for that of a commanded swim [body length]."""
 
     def _check(self, name: str) -> None:
+        """Refuse settings of a resolved flow outside their ranges, and settings of a body in space for a slice."""
         with Checks(name, self) as check:
-            check.whole("cells", 32, _FINEST[name])
+            check.whole("cells", 32, _MAX_CELLS[name])
             check.number("reynolds", 10.0, 1e7, "")
             check.whole("corrections", 0, 20)
             check.number("tolerance", 1e-8, 1.0, "")
@@ -64,13 +65,16 @@ class _Resolved:
             check.number("tail_height", 0.0, 1.0, "m")
             if self.beside is not None:
                 check.number("beside", 0.0, 3.0, "body lengths")
-            given = [one for one in ("tail_height", "limbs", "linked", "beside") if getattr(self, one)]
+            space_options = [option for option in ("tail_height", "limbs", "linked", "beside") if getattr(self, option)]
             check.that(
                 not (self.linked and (self.limbs or self.tail_height)),
                 f"{name}.linked has all of the robot's own pieces in the water, its limbs among them and no raised "
                 "tail: leave out limbs and tail_height",
             )
-            check.that(name == "space" or not given, f"{name}.{', '.join(given)} is for a body in space: leave it out")
+            check.that(
+                name == "space" or not space_options,
+                f"{name}.{', '.join(space_options)} is for a body in space: leave it out",
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,6 +90,7 @@ class Slice(_Resolved):
     """Least half-width; where the body is thinner it is thickened, its ends made round [cell]."""
 
     def __post_init__(self) -> None:
+        """Refuse cells, thickness or depth outside their ranges."""
         self._check("slice")
         with Checks("slice", self) as check:
             check.number("blunt", 0.0, 5.0, "cells")

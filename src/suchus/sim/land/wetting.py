@@ -25,7 +25,7 @@ from suchus.sim.land.structs import offset, plugin_struct, verify
 from suchus.sim.model.wet import PLUGIN, with_pieces
 
 _FACTOR, _DEFAULT, _REGISTER = "mj_factorM", "mjp_defaultPlugin", "mjp_registerPlugin"
-_kept: list[Any] = []
+_plugin_objects: list[Any] = []
 _lock = Lock()
 
 
@@ -36,8 +36,8 @@ def install() -> None:
         OtherMuJoCo: what the kernel needs is not where MuJoCo's own description says.
     """
     with _lock:
-        if not _kept:
-            _kept.append(_register(offsets()))
+        if not _plugin_objects:
+            _plugin_objects.append(_register(offsets()))
         _check_that_it_acts()
 
 
@@ -53,17 +53,17 @@ def offsets() -> np.ndarray:
     data.time = 0.375
     verify("mjModel", model, FIELDS)
     verify("mjData", data, DATA_FIELDS)
-    needed = [("mjModel", field) for field in FIELDS] + [("mjData", field) for field in DATA_FIELDS]
-    places = np.array([offset(struct, field) for struct, field in needed])
-    for (struct, field), place in zip(needed, places, strict=True):
-        if place % 8:
+    fields = [("mjModel", field) for field in FIELDS] + [("mjData", field) for field in DATA_FIELDS]
+    positions = np.array([offset(struct, field) for struct, field in fields])
+    for (struct, field), position in zip(fields, positions, strict=True):
+        if position % 8:
             raise OtherMuJoCo(
-                f"{struct}.{field}", mujoco.__version__, f"it begins places byte {place}, not places a whole word"
+                f"{struct}.{field}", mujoco.__version__, f"it begins at byte {position}, not at a whole word"
             )
-    return places
+    return positions
 
 
-def _register(at: np.ndarray) -> list[Any]:
+def _register(field_offsets: np.ndarray) -> list[Any]:
     """Compile the functions of the plugin, register it, and return what must stay in memory."""
     library = _library()
     binding.add_symbol(f"suchus_{_FACTOR}", _address(library, _FACTOR))
@@ -71,7 +71,7 @@ def _register(at: np.ndarray) -> list[Any]:
     factor = types.ExternalFunction(f"suchus_{_FACTOR}", types.void(*pair))
 
     def act(model: Any, data: Any, _instance: int, _capability: int) -> None:
-        if wet(model, data, at):
+        if wet(model, data, field_offsets):
             factor(model, data)
 
     def no_state(_model: Any, _instance: int) -> int:
@@ -83,7 +83,7 @@ def _register(at: np.ndarray) -> list[Any]:
     def reset(_model: Any, _state: Any, _plugin_data: Any, _instance: int) -> None:
         return None
 
-    made = {
+    functions = {
         "compute": cfunc(types.void(*pair, number, number), nopython=True)(act),
         "nstate": cfunc(number(types.voidptr, number), nopython=True)(no_state),
         "init": cfunc(number(*pair, number), nopython=True)(begin),
@@ -95,15 +95,15 @@ def _register(at: np.ndarray) -> list[Any]:
     getattr(library, _DEFAULT)(ctypes.byref(plugin))
     plugin.name = PLUGIN.encode()
     plugin.capabilityflags = int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE)
-    for name, function in made.items():
+    for name, function in functions.items():
         setattr(plugin, name, function.address)
     getattr(library, _REGISTER)(ctypes.byref(plugin))
-    return [made, plugin, at]
+    return [functions, plugin, field_offsets]
 
 
 @lru_cache(maxsize=1)
 def _check_that_it_acts() -> None:
-    """Put a ball under water and look whether the kernel saw it there; once, if it did."""
+    """Submerge a ball and check that the kernel computes its volume; a success is checked once in a process."""
     spec = mujoco.MjSpec()
     ball = spec.worldbody.add_body()
     ball.add_freejoint()
@@ -118,8 +118,8 @@ def _check_that_it_acts() -> None:
     data.userdata[[LEVEL, DENSITY, AIR_FRACTION, AIR_FRACTION + 1]] = 5.0, 1000.0, 1.0, 1.0
     mujoco.mj_forward(model, data)
     if data.userdata[UNDER] != 0.004:
-        why = f"a ball of 4 l under water displaces {1000 * data.userdata[UNDER]:g} l"
-        raise OtherMuJoCo("mjpPlugin.compute", mujoco.__version__, why)
+        reason = f"a ball of 4 l under water displaces {1000 * data.userdata[UNDER]:g} l"
+        raise OtherMuJoCo("mjpPlugin.compute", mujoco.__version__, reason)
 
 
 def _address(library: ctypes.CDLL, name: str) -> int:

@@ -26,28 +26,28 @@ def tail_joint_spread(angles: xr.DataArray, joints: Sequence[str]) -> xr.DataArr
 
 def tail_joint_spread_max(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the greatest difference between the angles of two cable joints of the tail at one time [rad]."""
-    part = between(record, start, end)
-    names = [str(name) for name in part.joint.values if str(name).startswith("tail_yaw")]
-    return tail_joint_spread(part.joint_angle, names).max("time").assign_attrs(units="rad")
+    window = between(record, start, end)
+    names = [str(name) for name in window.joint.values if str(name).startswith("tail_yaw")]
+    return tail_joint_spread(window.joint_angle, names).max("time").assign_attrs(units="rad")
 
 
 Bent = Literal["spine", "tail"]
 _WIGGLE = 0.1  # of the range of an angle: less is no change of side
 
 
-def lateral_bend(record: xr.Dataset, part: Bent) -> xr.DataArray:
+def lateral_bend(record: xr.Dataset, region: Bent) -> xr.DataArray:
     """Return the lateral bend of the spine or the tail's cable section over time, the sum of its joints [rad]."""
-    names = [str(name) for name in record.joint.values if str(name).startswith(f"{part}_yaw")]
+    names = [str(name) for name in record.joint.values if str(name).startswith(f"{region}_yaw")]
     bend = record.joint_angle.sel(joint=names).sum("joint")
-    return (spine_lateral(bend) if part == "spine" else bend).assign_attrs(units="rad")
+    return (spine_lateral(bend) if region == "spine" else bend).assign_attrs(units="rad")
 
 
-def vertical_bend(record: xr.Dataset, part: Bent) -> xr.DataArray:
+def vertical_bend(record: xr.Dataset, region: Bent) -> xr.DataArray:
     """Return the vertical bend of the spine, the sum of its pitch joints, or the angle of the tail's pitch joint [rad].
 
     The signs of the joints and of the article agree here, see ``suchus.article.paper.signs``.
     """
-    names = [str(name) for name in record.joint.values if str(name).startswith(f"{part}_pitch")]
+    names = [str(name) for name in record.joint.values if str(name).startswith(f"{region}_pitch")]
     return record.joint_angle.sel(joint=names).sum("joint").assign_attrs(units="rad")
 
 
@@ -64,8 +64,8 @@ def tail_amplitude(record: xr.Dataset, start: float = START, end: float | None =
 def tail_swing_least(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how far the tail swings to the side that it swings to less, negative if it never gets there [rad]."""
     bend = _window(record, "tail", start, end)
-    right, left = bend.max("time"), -bend.min("time")
-    return right.where(right < left, left)
+    right_swing, left_swing = bend.max("time"), -bend.min("time")
+    return right_swing.where(right_swing < left_swing, left_swing)
 
 
 def spine_sine_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -85,17 +85,17 @@ def tail_swings(record: xr.Dataset, start: float = START, end: float | None = No
     return _swings(record, "tail", start, end)
 
 
-def _window(record: xr.Dataset, part: Bent, start: float, end: float | None) -> xr.DataArray:
+def _window(record: xr.Dataset, region: Bent, start: float, end: float | None) -> xr.DataArray:
     """Return a bend over whole cycles: the last sample, which begins the next one, is left out."""
-    return lateral_bend(between(record, start, end).isel(time=slice(0, -1)), part)
+    return lateral_bend(between(record, start, end).isel(time=slice(0, -1)), region)
 
 
 def _amplitude(bend: xr.DataArray) -> xr.DataArray:
     return (bend.max("time") - bend.min("time")) / 2
 
 
-def _swings(record: xr.Dataset, part: Bent, start: float, end: float | None) -> xr.DataArray:
-    return bend_swings(_window(record, part, start, end), record.period)
+def _swings(record: xr.Dataset, region: Bent, start: float, end: float | None) -> xr.DataArray:
+    return bend_swings(_window(record, region, start, end), record.period)
 
 
 def bend_swings(bend: xr.DataArray, period: xr.DataArray) -> xr.DataArray:
@@ -113,10 +113,10 @@ def bend_swings(bend: xr.DataArray, period: xr.DataArray) -> xr.DataArray:
 
 def _explained(angle: np.ndarray, turn: np.ndarray) -> float:
     """Return the share of an angle's variance in the cosine and sine of a phase that takes whole turns."""
-    off = angle - angle.mean()
+    deviation = angle - angle.mean()
     terms = (np.cos(turn), np.sin(turn))  # orthogonal over whole cycles
-    explained = sum((off * term).mean() ** 2 / (term**2).mean() for term in terms)
-    variance = (off**2).mean()
+    explained = sum((deviation * term).mean() ** 2 / (term**2).mean() for term in terms)
+    variance = (deviation**2).mean()
     return float(explained / variance) if variance > 0 else 0.0
 
 

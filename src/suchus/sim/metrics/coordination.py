@@ -7,7 +7,7 @@ from suchus.robot.motion import Gait
 from suchus.sim.metrics.gait import diagonals
 
 WITHIN = 0.1
-"""A limb this close to its place against another counts as coordinated [cycle]."""
+"""Greatest phase error against another limb with which a limb counts as coordinated [cycle]."""
 
 
 def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
@@ -20,16 +20,20 @@ def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
         phase: of the limbs, with the dimension ``leg`` [cycle].
         gait: whose phases are meant.
     """
-    meant, legs = gait.limb_phases, phase.sizes["leg"]
+    target_phases, legs = gait.limb_phases, phase.sizes["leg"]
     errors = []
-    for one, other in [*diagonals(legs), *((i, i + 1) for i in range(0, legs, 2))]:
-        off = phase.isel(leg=one, drop=True) - phase.isel(leg=other, drop=True) - (meant[one] - meant[other])
-        errors.append(abs(np.mod(off + 0.5, 1.0) - 0.5))
+    for first_leg, second_leg in [*diagonals(legs), *((i, i + 1) for i in range(0, legs, 2))]:
+        deviation = (
+            phase.isel(leg=first_leg, drop=True)
+            - phase.isel(leg=second_leg, drop=True)
+            - (target_phases[first_leg] - target_phases[second_leg])
+        )
+        errors.append(abs(np.mod(deviation + 0.5, 1.0) - 0.5))
     return xr.concat(errors, "pair", join="exact").max("pair").rename("phase_error")
 
 
 def cycles_until(
-    error: xr.DataArray, period: float, *, start: float, hold: float, within: float = WITHIN
+    error: xr.DataArray, period: float, *, start: float, hold: float, tolerance: float = WITHIN
 ) -> xr.DataArray:
     """Return after how many cycles an error has come within bounds for good, infinity if it has not [cycle].
 
@@ -39,12 +43,12 @@ def cycles_until(
         error: with the dimension ``time`` [cycle].
         period: of one cycle [s].
         start: from when the cycles count [s].
-        hold: for how long it must stay [cycle].
-        within: the bounds [cycle].
+        hold: least time within the tolerance until the end of the record [cycle].
+        tolerance: the bounds [cycle].
     """
     cycles = (error.time - start) / period
-    outside = (error > within) & (cycles >= 0.0)
+    is_outside = (error > tolerance) & (cycles >= 0.0)
     step = float(cycles[1] - cycles[0])
-    last = cycles.where(outside).max("time") + step
-    found = last.fillna(0.0)
-    return found.where(found <= float(cycles[-1]) - hold, np.inf)
+    last_violation = cycles.where(is_outside).max("time") + step
+    settling_cycles = last_violation.fillna(0.0)
+    return settling_cycles.where(settling_cycles <= float(cycles[-1]) - hold, np.inf)

@@ -7,8 +7,8 @@ from jaxtyping import Bool, Float
 from scipy import stats
 
 SURE = 0.01
-"""What counts as chance: how often the greatest of all parameters reaches as much without any reason [-]."""
-_FEW = 5  # samples on one side; fewer say nothing about a border
+"""Greatest probability by chance of the best separation among all parameters that counts as decisive [-]."""
+_MIN_SAMPLES = 5  # samples on one side; fewer say nothing about a border
 
 
 class DecisionBoundary(NamedTuple):
@@ -36,13 +36,13 @@ def rank_correlation(
 
     Samples without the quantity (NaN) are left out; a quantity that never changes correlates with nothing.
     """
-    there = np.isfinite(quantity)
+    is_finite = np.isfinite(quantity)
     number = parameters.shape[1]
-    if there.sum() < 3 or np.ptp(quantity[there]) == 0.0:
+    if is_finite.sum() < 3 or np.ptp(quantity[is_finite]) == 0.0:
         return np.zeros(number), np.ones(number)
-    ranks = stats.rankdata(parameters[there], axis=0)
-    found = stats.pearsonr(ranks, stats.rankdata(quantity[there])[:, None], axis=0)
-    return np.asarray(found.statistic), np.asarray(found.pvalue)
+    ranks = stats.rankdata(parameters[is_finite], axis=0)
+    correlation = stats.pearsonr(ranks, stats.rankdata(quantity[is_finite])[:, None], axis=0)
+    return np.asarray(correlation.statistic), np.asarray(correlation.pvalue)
 
 
 def border(
@@ -53,14 +53,18 @@ def border(
     None where it nearly always or never holds, and where the best of so many parameters would separate as well by
     chance once in a hundred times.
     """
-    if min(int(holds.sum()), int((~holds).sum())) < _FEW:
+    if min(int(holds.sum()), int((~holds).sum())) < _MIN_SAMPLES:
         return None
-    found = [stats.ks_2samp(column[holds], column[~holds], method="asymp") for column in parameters.T]
-    best = int(np.argmax([each.statistic for each in found]))
-    one = found[best]
-    if float(one.pvalue) * len(found) > SURE:
+    tests = [stats.ks_2samp(column[holds], column[~holds], method="asymp") for column in parameters.T]
+    best = int(np.argmax([test.statistic for test in tests]))
+    best_test = tests[best]
+    if float(best_test.pvalue) * len(tests) > SURE:
         return None
     # the sign is positive where more of the first sample lies below the location
     return DecisionBoundary(
-        best, float(one.statistic_location), one.statistic_sign < 0, float(one.statistic), float(one.pvalue)
+        best,
+        float(best_test.statistic_location),
+        best_test.statistic_sign < 0,
+        float(best_test.statistic),
+        float(best_test.pvalue),
     )

@@ -19,15 +19,15 @@ METRES = {
 
 def work(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the work of all servos, braking counted as much as driving [J]."""
-    part = between(record, start, end)
-    power = abs(part.servo_torque * part.servo_velocity).sum("servo", skipna=False)
+    window = between(record, start, end)
+    power = abs(window.servo_torque * window.servo_velocity).sum("servo", skipna=False)
     return power.integrate("time")
 
 
 def cost_of_transport(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the work per weight and displacement along the ground, the cost of transport [-]."""
-    displaced = displacement(record, start, end).sel(xyz=["x", "y"])
-    return work(record, start, end) / (record.mass * GRAVITY * (displaced**2).sum("xyz") ** 0.5)
+    horizontal = displacement(record, start, end).sel(xyz=["x", "y"])
+    return work(record, start, end) / (record.mass * GRAVITY * (horizontal**2).sum("xyz") ** 0.5)
 
 
 def peak_torque(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

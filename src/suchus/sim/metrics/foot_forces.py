@@ -35,29 +35,31 @@ def weight(record: xr.Dataset) -> float:
     return float(record.mass) * GRAVITY
 
 
-def advance(record: xr.Dataset, when: Window) -> np.ndarray:
+def advance(record: xr.Dataset, window: Window) -> np.ndarray:
     """Return how far the centre of mass of one run comes over the ground in a cycle, forward and left [m]."""
-    place = record.centre_of_mass.sel(xyz=["x", "y"]).transpose("time", "xyz").values
-    first, last = (
-        np.array([np.interp(t, record.time.values, column) for column in place.T]) for t in (when.start, when.end)
+    centre_of_mass = record.centre_of_mass.sel(xyz=["x", "y"]).transpose("time", "xyz").values
+    start_position, end_position = (
+        np.array([np.interp(t, record.time.values, column) for column in centre_of_mass.T])
+        for t in (window.start, window.end)
     )
-    return np.asarray(last - first) / when.cycles
+    return np.asarray(end_position - start_position) / window.cycles
 
 
-def stance_forces(record: xr.Dataset, when: Window) -> xr.DataArray:
+def stance_forces(record: xr.Dataset, window: Window) -> xr.DataArray:
     """Return the mean cycle of the force on each foot, ``phase leg part`` [body weight].
 
     ``vertical`` up, ``sideways`` toward the midline of the course, ``foreaft`` along the course.
     """
-    force = mean_cycle(record.foot_force, *when) / weight(record)
-    return _turned(force, record, when)
+    force = mean_cycle(record.foot_force, *window) / weight(record)
+    return _in_course_frame(force, record, window)
 
 
-def _turned(force: xr.DataArray, record: xr.Dataset, when: Window) -> xr.DataArray:
-    along, left = advance(record, when)
-    size = np.hypot(along, left)
-    c, s = (along / size, left / size) if size > 0 else (1.0, 0.0)
-    x, y, z = (force.sel(xyz=one, drop=True) for one in "xyz")
+def _in_course_frame(force: xr.DataArray, record: xr.Dataset, window: Window) -> xr.DataArray:
+    """Return the components of a force along the course of a run: up, toward the midline, forward."""
+    forward, leftward = advance(record, window)
+    size = np.hypot(forward, leftward)
+    c, s = (forward / size, leftward / size) if size > 0 else (1.0, 0.0)
+    x, y, z = (force.sel(xyz=axis, drop=True) for axis in "xyz")
     side = xr.DataArray([1.0 if str(leg).startswith("L") else -1.0 for leg in force.leg.values], dims="leg")
     parts = [z, -side * (c * y - s * x), c * x + s * y]
     return xr.concat(parts, xr.DataArray(list(PARTS), dims="part", name="part"))
@@ -76,23 +78,23 @@ class FootStep(NamedTuple):
     """Duration of the stance that holds it [cycle]."""
 
 
-def step(force: xr.DataArray, least: float) -> FootStep:
+def step(force: xr.DataArray, min_force: float) -> FootStep:
     """Return what stands out in the force on one foot over a cycle.
 
     Args:
         force: of one foot, ``phase part`` [body weight].
-        least: vertical force from which it stands [body weight].
+        min_force: vertical force from which it stands [body weight].
     """
     parts = {name: force.sel(part=name).values for name in PARTS}
-    net = np.sqrt(sum(one**2 for one in parts.values()))
+    net = np.sqrt(sum(component**2 for component in parts.values()))
     top, count = int(np.argmax(net)), len(net)
-    stands = np.roll(parts["vertical"], -top) > least  # begins at the peak
-    after = count if stands.all() else int(np.argmin(stands))
-    before = 0 if stands.all() else int(np.argmin(stands[::-1]))
-    length = min(after + before, count)
+    stands = np.roll(parts["vertical"], -top) > min_force  # begins at the peak
+    samples_after = count if stands.all() else int(np.argmin(stands))
+    samples_before = 0 if stands.all() else int(np.argmin(stands[::-1]))
+    length = min(samples_after + samples_before, count)
     return FootStep(
         net=float(net[top]),
-        parts={name: float(one[top]) for name, one in parts.items()},
-        time=before / length if length else nan,
+        parts={name: float(component[top]) for name, component in parts.items()},
+        time=samples_before / length if length else nan,
         stance=length / count,
     )

@@ -52,9 +52,9 @@ def sensed_phase(record: xr.Dataset, start: float = START, end: float | None = N
         start: [s].
         end: [s]; the last sample if None.
     """
-    part = _cycles(record, start, end)
-    stands = loaded(part).astype(float)
-    turn = np.exp(-2j * np.pi * (part.time - part.time[0]) / part.period)
+    window = _cycles(record, start, end)
+    stands = loaded(window).astype(float)
+    turn = np.exp(-2j * np.pi * (window.time - window.time[0]) / window.period)
     angle = xr.apply_ufunc(np.angle, (stands * turn).sum("time"))
     return np.mod((angle - angle.isel(leg=0, drop=True)) / (2 * np.pi), 1.0)
 
@@ -65,13 +65,13 @@ def diagonal_phase_error(record: xr.Dataset, start: float = START, end: float | 
     Diagonal are a limb and that of the other side of the next girdle; a body of one girdle has no such pair.
     """
     phase = sensed_phase(record, start, end)
-    apart = [
-        abs((phase.isel(leg=one, drop=True) - phase.isel(leg=other, drop=True) + 0.5) % 1.0 - 0.5)
-        for one, other in diagonals(phase.sizes["leg"])
+    phase_errors = [
+        abs((phase.isel(leg=first_leg, drop=True) - phase.isel(leg=second_leg, drop=True) + 0.5) % 1.0 - 0.5)
+        for first_leg, second_leg in diagonals(phase.sizes["leg"])
     ]
-    if not apart:
+    if not phase_errors:
         return phase.isel(leg=0, drop=True) * float("nan")
-    return xr.concat(apart, "pair", coords="minimal", compat="override").max("pair")
+    return xr.concat(phase_errors, "pair", coords="minimal", compat="override").max("pair")
 
 
 def diagonals(legs: int) -> list[tuple[int, int]]:
@@ -89,13 +89,13 @@ def flight_share(record: xr.Dataset, start: float = START, end: float | None = N
 
     Carrying is more than a thousandth of the weight, so that the rounding of a contact does not count.
     """
-    part = between(record, start, end)
-    up = (
-        part.foot_force.sel(xyz="z").sum("leg", skipna=False)
-        + part.belly_force.sel(xyz="z").sum("segment", skipna=False)
-        + part.tail_force.sel(xyz="z")
+    window = between(record, start, end)
+    vertical_force = (
+        window.foot_force.sel(xyz="z").sum("leg", skipna=False)
+        + window.belly_force.sel(xyz="z").sum("segment", skipna=False)
+        + window.tail_force.sel(xyz="z")
     )
-    return (up < 1e-3 * record.mass * GRAVITY).mean("time")
+    return (vertical_force < 1e-3 * record.mass * GRAVITY).mean("time")
 
 
 measures = (diagonal_phase_error, duty_factor, flight_share, foot_clearance, sensed_phase, two_feet_share)

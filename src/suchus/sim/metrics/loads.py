@@ -14,22 +14,22 @@ def swing_loads(record: xr.Dataset, leg: str, start: float = START, end: float |
 
     The parts are the four legs, ``tail`` and ``belly``.
     """
-    part = between(record, start, end)
+    window = between(record, start, end)
     loads = xr.concat(
         [
-            part.foot_force.sel(xyz="z", drop=True).rename(leg="part"),
-            part.tail_force.sel(xyz="z", drop=True).expand_dims(part=["tail"]),
-            part.belly_force.sel(xyz="z", drop=True).sum("segment").expand_dims(part=["belly"]),
+            window.foot_force.sel(xyz="z", drop=True).rename(leg="part"),
+            window.tail_force.sel(xyz="z", drop=True).expand_dims(part=["tail"]),
+            window.belly_force.sel(xyz="z", drop=True).sum("segment").expand_dims(part=["belly"]),
         ],
         "part",
     )
-    return loads.where(_swings(part, leg)).mean("time").assign_attrs(units="N")
+    return loads.where(_swings(window, leg)).mean("time").assign_attrs(units="N")
 
 
 def swing_lift(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how far the centre of a foot rises while it is meant to swing: from lowest to highest [m]."""
-    part = between(record, start, end)
-    height = part.foot_position.sel(leg=leg, xyz="z", drop=True).where(_swings(part, leg))
+    window = between(record, start, end)
+    height = window.foot_position.sel(leg=leg, xyz="z", drop=True).where(_swings(window, leg))
     return (height.max("time") - height.min("time")).assign_attrs(units="m")
 
 
@@ -41,20 +41,20 @@ def tail_load_share(record: xr.Dataset, start: float = START, end: float | None 
 
 def swing_height(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the mean height of the centre of mass while a leg is meant to swing [m]."""
-    part = between(record, start, end)
-    height = part.centre_of_mass.sel(xyz="z", drop=True).where(_swings(part, leg))
+    window = between(record, start, end)
+    height = window.centre_of_mass.sel(xyz="z", drop=True).where(_swings(window, leg))
     return height.mean("time").assign_attrs(units="m")
 
 
 def swing_unloaded(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the share of the time in which a foot is off the ground while it is meant to swing [-]."""
-    part = between(record, start, end)
-    free = ~loaded(part).sel(leg=leg, drop=True)
-    return free.where(_swings(part, leg)).mean("time").assign_attrs(units="1")
+    window = between(record, start, end)
+    free = ~loaded(window).sel(leg=leg, drop=True)
+    return free.where(_swings(window, leg)).mean("time").assign_attrs(units="1")
 
 
-def _swings(part: xr.Dataset, leg: str) -> xr.DataArray:
-    return np.mod(part.limb_phase.sel(leg=leg, drop=True), 1.0) < 1.0 - part.duty_factor
+def _swings(window: xr.Dataset, leg: str) -> xr.DataArray:
+    return np.mod(window.limb_phase.sel(leg=leg, drop=True), 1.0) < 1.0 - window.duty_factor
 
 
 measures = (tail_load_share,)

@@ -23,8 +23,8 @@ def speed(record: xr.Dataset, start: float = START, end: float | None = None) ->
     Whoever turns on the way comes less far than the way is long, and on a circle nowhere: see ``path_speed``, and
     ``heading_change`` beside it.
     """
-    part = between(record, start, end)
-    return displacement(record, start, end).sel(xyz="x", drop=True) / float(part.time[-1] - part.time[0])
+    window = between(record, start, end)
+    return displacement(record, start, end).sel(xyz="x", drop=True) / float(window.time[-1] - window.time[0])
 
 
 def heading(record: xr.Dataset) -> xr.DataArray:
@@ -50,11 +50,11 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
     if len(periods) > 1:  # each run is sampled at its own period
         lengths = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
         return xr.concat(lengths, "run", coords="different", compat="equals")
-    places = between(record, start, end).centre_of_mass.sel(xyz=["x", "y"]).transpose(..., "time", "xyz")
-    every = max(1, round(float(periods[0]) / float(places.time[1] - places.time[0])))
-    points = places.isel(time=slice(None, None, every))
+    path = between(record, start, end).centre_of_mass.sel(xyz=["x", "y"]).transpose(..., "time", "xyz")
+    stride = max(1, round(float(periods[0]) / float(path.time[1] - path.time[0])))
+    points = path.isel(time=slice(None, None, stride))
     if points.sizes["time"] < 2:
-        points = places.isel(time=[0, -1])
+        points = path.isel(time=[0, -1])
     return ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
 
 
@@ -69,9 +69,9 @@ def path_speed(record: xr.Dataset, start: float = START, end: float | None = Non
         speeds = [path_speed(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
         return xr.concat(speeds, "run", coords="different", compat="equals")
     time = between(record, start, end).time
-    every = max(1, round(float(periods[0]) / float(time[1] - time[0])))
-    last = every * ((len(time) - 1) // every) or -1  # a part of a cycle at the end is not in the path's length
-    return path_length(record, start, end) / float(time[last] - time[0])
+    stride = max(1, round(float(periods[0]) / float(time[1] - time[0])))
+    last_sample = stride * ((len(time) - 1) // stride) or -1  # a part of a cycle at the end is not in the path's length
+    return path_length(record, start, end) / float(time[last_sample] - time[0])
 
 
 def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -79,12 +79,12 @@ def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> 
 
     Each foot's sliding counts by the share of the weight that the foot carries meanwhile.
     """
-    part = between(record, start, end)
-    steps = part.foot_position.sel(xyz=["x", "y"]).diff("time")
-    carried = part.foot_force.sel(xyz="z").isel(time=slice(1, None)) / (part.mass * GRAVITY)
-    slid = ((steps**2).sum("xyz") ** 0.5 * carried).sum(["time", "leg"])
-    displaced = displacement(part, start, end).sel(xyz=["x", "y"])
-    return slid / (displaced**2).sum("xyz") ** 0.5
+    window = between(record, start, end)
+    steps = window.foot_position.sel(xyz=["x", "y"]).diff("time")
+    load_fraction = window.foot_force.sel(xyz="z").isel(time=slice(1, None)) / (window.mass * GRAVITY)
+    slid = ((steps**2).sum("xyz") ** 0.5 * load_fraction).sum(["time", "leg"])
+    horizontal = displacement(window, start, end).sel(xyz=["x", "y"])
+    return slid / (horizontal**2).sum("xyz") ** 0.5
 
 
 measures = (displacement, heading_change, path_length, path_speed, slip, speed)

@@ -30,21 +30,30 @@ def reach(robot: Robot, record: xr.Dataset) -> xr.DataArray:
 
 
 def _tops(robot: Robot, q: np.ndarray, position: np.ndarray, angles: np.ndarray) -> Float[np.ndarray, "*batch shape"]:
-    """Return the highest point of every shape from the root forward [m]."""
-    place, found, up = layout(robot), frames(robot, angles), rotation.upward(q)
-    segments = {segment.name: segment for segment in place.robot.axis}
+    """Return the highest point of every shape from the root forward [m].
+
+    Args:
+        robot: the design.
+        q: orientation of the root, shape (..., 4).
+        position: of the root in the world, shape (..., 3) [m].
+        angles: of the hinges, shape (..., joint) [rad].
+    """
+    robot_layout, body_frames, up_axis = layout(robot), frames(robot, angles), rotation.upward(q)
+    segments = {segment.name: segment for segment in robot_layout.robot.axis}
     tops = []
-    for i, body in enumerate(place.bodies):
+    for i, body in enumerate(robot_layout.bodies):
         shift = np.array([body.shift, 0.0, 0.0])
-        for shape in segments[body.name].shapes if body.name in place.trunk else ():
-            over = np.einsum("...i,...ij->...j", up, found.turns[..., i, :, :])  # upward, in the frame of the body
-            base = np.einsum("...i,...i", up, found.places[..., i, :])
+        for shape in segments[body.name].shapes if body.name in robot_layout.trunk else ():
+            local_up = np.einsum(
+                "...i,...ij->...j", up_axis, body_frames.turns[..., i, :, :]
+            )  # upward, in the frame of the body
+            base = np.einsum("...i,...i", up_axis, body_frames.places[..., i, :])
             if isinstance(shape, Rod):
                 ends = [np.array(end) + shift for end in (shape.start, shape.end)]
-                tops.append(base + np.maximum(*(over @ end for end in ends)) + shape.radius)
+                tops.append(base + np.maximum(*(local_up @ end for end in ends)) + shape.radius)
             else:
                 centre = np.array(shape.at) + shift
-                tops.append(base + over @ centre + np.linalg.norm(over * np.array(shape.half), axis=-1))
+                tops.append(base + local_up @ centre + np.linalg.norm(local_up * np.array(shape.half), axis=-1))
     return np.asarray(position[..., 2, None] + np.stack(tops, axis=-1))
 
 
@@ -52,8 +61,8 @@ def lead(record: xr.Dataset) -> xr.DataArray:
     """Return how far the centre of mass lies behind the middle of the hind feet, seen along the body [m]."""
     hind = record.foot_position.sel(leg=record.leg.values[-2:], xyz=["x", "y"])
     forward = _forward(hind)
-    behind = hind.mean("leg") - record.centre_of_mass.sel(xyz=["x", "y"])
-    return (behind * forward).sum("xyz", skipna=False).assign_attrs(units="m")
+    offset = hind.mean("leg") - record.centre_of_mass.sel(xyz=["x", "y"])
+    return (offset * forward).sum("xyz", skipna=False).assign_attrs(units="m")
 
 
 def static_margin(record: xr.Dataset) -> xr.DataArray:
@@ -66,7 +75,9 @@ def static_margin(record: xr.Dataset) -> xr.DataArray:
     hind = [feet.isel(leg=i, drop=True).sel(xyz=xy) for i in (-2, -1)]
     corners = [*hind, record.tail_tip.sel(xyz=xy)]
     com = record.centre_of_mass.sel(xyz=xy)
-    margins = [_inside(com, corners[i], corners[(i + 2) % 3]) for i in range(3)]  # clockwise from above: left to tail
+    margins = [
+        _left_distance(com, corners[i], corners[(i + 2) % 3]) for i in range(3)
+    ]  # clockwise from above: left to tail
     return (
         xr.concat(margins, "side", coords="minimal", compat="override")
         .min("side", skipna=False)
@@ -74,36 +85,37 @@ def static_margin(record: xr.Dataset) -> xr.DataArray:
     )
 
 
-def _inside(point: xr.DataArray, start: xr.DataArray, end: xr.DataArray) -> xr.DataArray:
+def _left_distance(point: xr.DataArray, start: xr.DataArray, end: xr.DataArray) -> xr.DataArray:
     """Return how far a point lies to the left of a line from ``start`` to ``end`` [m]."""
-    along, to = (d.drop_vars("leg", errors="ignore") for d in (end - start, point - start))
-    cross = along.sel(xyz="x") * to.sel(xyz="y") - along.sel(xyz="y") * to.sel(xyz="x")
-    return (cross / np.hypot(along.sel(xyz="x"), along.sel(xyz="y"))).drop_vars("xyz", errors="ignore")
+    side, offset = (d.drop_vars("leg", errors="ignore") for d in (end - start, point - start))
+    cross = side.sel(xyz="x") * offset.sel(xyz="y") - side.sel(xyz="y") * offset.sel(xyz="x")
+    return (cross / np.hypot(side.sel(xyz="x"), side.sel(xyz="y"))).drop_vars("xyz", errors="ignore")
 
 
 def _forward(hind: xr.DataArray) -> xr.DataArray:
     """Return the direction across the line from the right hind foot to the left one, to the front."""
-    across = hind.isel(leg=0, drop=True) - hind.isel(leg=1, drop=True)
-    turned = xr.concat([across.sel(xyz="y"), -across.sel(xyz="x")], "xyz", coords="minimal", compat="override")
-    turned = turned.assign_coords(xyz=["x", "y"]).drop_vars("leg", errors="ignore")
-    return turned / np.sqrt((turned**2).sum("xyz"))
+    foot_line = hind.isel(leg=0, drop=True) - hind.isel(leg=1, drop=True)
+    forward = xr.concat([foot_line.sel(xyz="y"), -foot_line.sel(xyz="x")], "xyz", coords="minimal", compat="override")
+    forward = forward.assign_coords(xyz=["x", "y"]).drop_vars("leg", errors="ignore")
+    return forward / np.sqrt((forward**2).sum("xyz"))
 
 
-def held(height: xr.DataArray, least: float) -> xr.DataArray:
-    """Return the longest time without a break in which a height is at least ``least`` [s].
+def held(height: xr.DataArray, min_height: float) -> xr.DataArray:
+    """Return the longest time without a break in which a height is at least ``min_height`` [s].
 
     Args:
         height: over time [m].
-        least: [m].
+        min_height: height that the samples must reach [m].
     """
     step = float(height.time[1] - height.time[0])
 
-    def longest(values: np.ndarray) -> float:
-        best = now = 0
+    def longest_run(values: np.ndarray) -> float:
+        """Return the duration of the longest run of samples at or above the height [s]."""
+        best = run_length = 0
         for value in values:
-            now = now + 1 if value >= least else 0
-            best = max(best, now)
+            run_length = run_length + 1 if value >= min_height else 0
+            best = max(best, run_length)
         return max(best - 1, 0) * step
 
-    found = xr.apply_ufunc(longest, height, input_core_dims=[["time"]], vectorize=True, output_dtypes=[float])
-    return found.assign_attrs(units="s")
+    durations = xr.apply_ufunc(longest_run, height, input_core_dims=[["time"]], vectorize=True, output_dtypes=[float])
+    return durations.assign_attrs(units="s")

@@ -19,16 +19,16 @@ def roll_angle(record: xr.Dataset, start: float = 0.0, end: float | None = None)
         start: of the measurement, where the angle is zero [s].
         end: of the measurement [s]; the last sample if None.
     """
-    part = between(record, start, end)
-    along = part.snout - part.tail_tip
-    axis = (along / (along**2).sum("xyz") ** 0.5).mean("time")
+    window = between(record, start, end)
+    body_line = window.snout - window.tail_tip
+    axis = (body_line / (body_line**2).sum("xyz") ** 0.5).mean("time")
     axis = axis / (axis**2).sum("xyz") ** 0.5
-    now = part.orientation.transpose(..., "time", "wxyz").values
-    first = now[..., :1, :] * np.array([1.0, -1.0, -1.0, -1.0])
-    since = rotation.multiply(now, first)
-    about = np.einsum("...tx,...x->...t", since[..., 1:], axis.transpose(..., "xyz").values)
-    half = np.unwrap(np.arctan2(about, since[..., 0]), axis=-1, period=np.pi)
-    angle = part.orientation.isel(wxyz=0, drop=True).transpose(..., "time").copy(data=2 * half)
+    orientations = window.orientation.transpose(..., "time", "wxyz").values
+    initial_inverse = orientations[..., :1, :] * np.array([1.0, -1.0, -1.0, -1.0])
+    since = rotation.multiply(orientations, initial_inverse)
+    twist = np.einsum("...tx,...x->...t", since[..., 1:], axis.transpose(..., "xyz").values)
+    half = np.unwrap(np.arctan2(twist, since[..., 0]), axis=-1, period=np.pi)
+    angle = window.orientation.isel(wxyz=0, drop=True).transpose(..., "time").copy(data=2 * half)
     angle.attrs = {"units": "rad", "long_name": "turned about the long axis"}
     return angle
 

@@ -48,11 +48,11 @@ def support_polygon(record: xr.Dataset, time: float, threshold: float | None = N
         time: [s].
         threshold: least normal force of what carries [N]; a share of the weight if None.
     """
-    now = record.sel(time=time, method="nearest")
-    stands = loaded(now, threshold).values
-    points = np.asarray(now.foot_position.sel(xyz=["x", "y"]).values[stands], dtype=float)
-    if float(now.tail_force.sel(xyz="z")) > float(threshold_of(record, threshold)):
-        points = np.vstack([points, now.tail_tip.sel(xyz=["x", "y"]).values.astype(float)])
+    instant = record.sel(time=time, method="nearest")
+    stands = loaded(instant, threshold).values
+    points = np.asarray(instant.foot_position.sel(xyz=["x", "y"]).values[stands], dtype=float)
+    if float(instant.tail_force.sel(xyz="z")) > float(threshold_of(record, threshold)):
+        points = np.vstack([points, instant.tail_tip.sel(xyz=["x", "y"]).values.astype(float)])
     if len(points) < 3:
         return points
     try:
@@ -78,8 +78,8 @@ def support_distance(record: xr.Dataset, time: float, threshold: float | None = 
         return float("nan")
     if len(corners) == 1:
         return float(np.linalg.norm(com - corners[0]))
-    nearest = min(_to_segment(com, a, b) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True))
-    return -nearest if len(corners) >= 3 and _inside(com, corners) else nearest
+    distance = min(_to_segment(com, a, b) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True))
+    return -distance if len(corners) >= 3 and _is_inside(com, corners) else distance
 
 
 def line_distance(record: xr.Dataset) -> xr.DataArray:
@@ -90,14 +90,14 @@ def line_distance(record: xr.Dataset) -> xr.DataArray:
     stands = loaded(record).transpose(..., "leg")
     feet = record.foot_position.sel(xyz=["x", "y"]).transpose(*stands.dims, "xyz").values.astype(float)
     com = record.centre_of_mass.sel(xyz=["x", "y"]).transpose(*stands.dims[:-1], "xyz").values.astype(float)
-    first = stands.values.argmax(axis=-1)
-    second = stands.sizes["leg"] - 1 - stands.values[..., ::-1].argmax(axis=-1)
-    start, end = (np.take_along_axis(feet, i[..., None, None], axis=-2)[..., 0, :] for i in (first, second))
-    along, to = end - start, com - start
+    first_leg = stands.values.argmax(axis=-1)
+    second_leg = stands.sizes["leg"] - 1 - stands.values[..., ::-1].argmax(axis=-1)
+    start, end = (np.take_along_axis(feet, i[..., None, None], axis=-2)[..., 0, :] for i in (first_leg, second_leg))
+    line, offset = end - start, com - start
     with np.errstate(invalid="ignore", divide="ignore"):
-        apart = abs(along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]) / np.linalg.norm(along, axis=-1)
+        distance = abs(line[..., 0] * offset[..., 1] - line[..., 1] * offset[..., 0]) / np.linalg.norm(line, axis=-1)
     two = stands.sum("leg") == 2
-    return two.copy(data=apart).where(two).assign_attrs(units="m")
+    return two.copy(data=distance).where(two).assign_attrs(units="m")
 
 
 def line_distance_max(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -105,8 +105,8 @@ def line_distance_max(record: xr.Dataset, start: float = START, end: float | Non
 
     Not a number where two feet never carry alone: a tail or a belly on the ground is a third support.
     """
-    part = between(record, start, end)
-    return line_distance(part).where(_on_two_feet(part)).max("time").assign_attrs(units="m")
+    window = between(record, start, end)
+    return line_distance(window).where(_on_two_feet(window)).max("time").assign_attrs(units="m")
 
 
 def two_feet_alone_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -116,21 +116,21 @@ def two_feet_alone_share(record: xr.Dataset, start: float = START, end: float | 
 
 def _on_two_feet(record: xr.Dataset) -> xr.DataArray:
     """Tell when two feet and nothing else carry."""
-    others = record.tail_force.sel(xyz="z") + record.belly_force.sel(xyz="z").sum("segment")
-    return (loaded(record).sum("leg") == 2) & (others <= threshold_of(record))
+    other_load = record.tail_force.sel(xyz="z") + record.belly_force.sel(xyz="z").sum("segment")
+    return (loaded(record).sum("leg") == 2) & (other_load <= threshold_of(record))
 
 
 def _to_segment(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
-    along = end - start
-    length2 = float(along @ along)
-    share = 0.0 if length2 == 0 else float(np.clip((point - start) @ along / length2, 0.0, 1.0))
-    return float(np.linalg.norm(point - start - share * along))
+    segment = end - start
+    length2 = float(segment @ segment)
+    fraction = 0.0 if length2 == 0 else float(np.clip((point - start) @ segment / length2, 0.0, 1.0))
+    return float(np.linalg.norm(point - start - fraction * segment))
 
 
-def _inside(point: np.ndarray, corners: np.ndarray) -> bool:
-    ahead = np.roll(corners, -1, axis=0) - corners
-    to = point - corners
-    cross = ahead[:, 0] * to[:, 1] - ahead[:, 1] * to[:, 0]
+def _is_inside(point: np.ndarray, corners: np.ndarray) -> bool:
+    edges = np.roll(corners, -1, axis=0) - corners
+    offsets = point - corners
+    cross = edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]
     return bool((cross >= 0).all() or (cross <= 0).all())
 
 

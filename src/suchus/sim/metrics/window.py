@@ -20,14 +20,14 @@ def between(record: xr.Dataset, start: float = START, end: float | None = None) 
     Raises:
         IncompatibleRecord: fewer than two samples are left.
     """
-    last = float(record.time[-1])
-    part = record.sel(time=slice(start - _SLACK, (last if end is None else end) + _SLACK))
-    if part.sizes["time"] < 2:
+    end_time = float(record.time[-1])
+    window = record.sel(time=slice(start - _SLACK, (end_time if end is None else end) + _SLACK))
+    if window.sizes["time"] < 2:
         raise IncompatibleRecord(
-            f"the record reaches from {float(record.time[0]):.2f} to {last:.2f} s; "
-            f"nothing to measure is left between {start} and {last if end is None else end} s."
+            f"the record reaches from {float(record.time[0]):.2f} to {end_time:.2f} s; "
+            f"nothing to measure is left between {start} and {end_time if end is None else end} s."
         )
-    return part
+    return window
 
 
 def whole(record: xr.Dataset) -> xr.Dataset:
@@ -41,13 +41,13 @@ def whole(record: xr.Dataset) -> xr.Dataset:
     """
     for i, cause in enumerate(record.cause.values):
         if cause:
-            one = record.isel(run=i)
-            time = float(one.ended)
+            run_record = record.isel(run=i)
+            time = float(run_record.ended)
             raise Diverged(
-                f"run {i} of {record.sizes['run']}, {one.label.item()}, diverged at {time:.2f} s: {cause}. "
+                f"run {i} of {record.sizes['run']}, {run_record.label.item()}, diverged at {time:.2f} s: {cause}. "
                 "A shorter timestep may help.",
                 time=time,
-                record=one.sel(time=slice(None, time + _SLACK)),
+                record=run_record.sel(time=slice(None, time + _SLACK)),
             )
     return record
 
@@ -68,9 +68,9 @@ def mean_cycle(values: xr.DataArray, start: float, period: float, cycles: int) -
 
 
 def each_cycle(values: xr.DataArray, start: float, period: float, cycles: int) -> xr.DataArray:
-    """Return whole cycles beside each other, dimensions ``cycle`` and ``phase`` [cycle]; see ``mean_cycle``.
+    """Return whole cycles along the dimensions ``cycle`` and ``phase`` [cycle]; see ``mean_cycle``.
 
-    Between samples it is interpolated, as a period need not be a whole number of them.
+    Values are interpolated between samples, since a period need not be a whole number of samples.
     """
     time = values.time.values
     if start + cycles * period > time[-1] + 1e-9 or start < time[0] - 1e-9 or cycles < 1:
@@ -80,15 +80,15 @@ def each_cycle(values: xr.DataArray, start: float, period: float, cycles: int) -
         )
     count = max(2, round(period / float(time[1] - time[0])))
     phase = np.arange(count) / count
-    wanted = start + period * (np.arange(cycles)[:, None] + phase)
+    times = start + period * (np.arange(cycles)[:, None] + phase)
     flat = values.transpose("time", ...)
-    rest = flat.dims[1:]
+    other_dims = flat.dims[1:]
     columns = flat.values.reshape(len(time), -1)
-    found = np.stack([np.interp(wanted, time, column) for column in columns.T], axis=-1)
+    cycle_values = np.stack([np.interp(times, time, column) for column in columns.T], axis=-1)
     return xr.DataArray(
-        found.reshape(cycles, count, *flat.shape[1:]),
-        dims=("cycle", "phase", *rest),
-        coords={"phase": phase, **{dim: flat[dim] for dim in rest if dim in flat.coords}},
+        cycle_values.reshape(cycles, count, *flat.shape[1:]),
+        dims=("cycle", "phase", *other_dims),
+        coords={"phase": phase, **{dim: flat[dim] for dim in other_dims if dim in flat.coords}},
         attrs=values.attrs,
     )
 

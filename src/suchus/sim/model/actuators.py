@@ -15,7 +15,7 @@ _SLEW_PID, _SLEW_MOTOR = 1, 7
 _POSITION_INPUT = 1  # the servo takes an angle; the other inputs of MuJoCo's actuators stay unused
 
 
-def add_servo(spec: Any, number: int, name: str, servo: Servo, place: Layout) -> None:
+def add_servo(spec: Any, number: int, name: str, servo: Servo, robot_layout: Layout) -> None:
     """Add a servo to a ``mujoco.MjSpec``: MuJoCo's pid, or its dcmotor for a servo with a winding.
 
     Args:
@@ -23,7 +23,7 @@ def add_servo(spec: Any, number: int, name: str, servo: Servo, place: Layout) ->
         number: of the servo in the layout.
         name: of the servo, and of its joint or cable.
         servo: its design.
-        place: the layout.
+        robot_layout: the layout.
     """
     actuator = spec.add_actuator(name=name, group=number)
     if servo.winding is None:
@@ -37,11 +37,11 @@ def add_servo(spec: Any, number: int, name: str, servo: Servo, place: Layout) ->
         )
     else:
         _wind(actuator, servo, servo.winding)
-    if number in place.cables:
+    if number in robot_layout.cables:
         actuator.trntype = mujoco.mjtTrn.mjTRN_TENDON
         actuator.target = name
         actuator.gear[0] = (
-            1.0 / place.cable(number).pulley
+            1.0 / robot_layout.cable(number).pulley
         )  # cable length to angle of the pulley, and its torque to tension
     else:
         actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
@@ -59,8 +59,8 @@ def _wind(actuator: Any, servo: Servo, winding: Winding) -> None:
     """
     heat, thermal = winding.heat, [0.0] * 6
     if heat is not None:
-        more = winding.volts * winding.stall_current / (servo.torque * servo.ideal_speed)
-        thermal = [heat.resistance * more, heat.capacity / more, 0.0, COPPER, ROOM, heat.ambient]
+        heat_ratio = winding.volts * winding.stall_current / (servo.torque * servo.ideal_speed)
+        thermal = [heat.resistance * heat_ratio, heat.capacity / heat_ratio, 0.0, COPPER, ROOM, heat.ambient]
     integral = servo.integral_limit / servo.ki if servo.ki > 0 else 0.0
     actuator.set_to_dcmotor(
         motorconst=[0.0, 0.0],
@@ -74,8 +74,8 @@ def _wind(actuator: Any, servo: Servo, winding: Winding) -> None:
 
 def slew_column(model: Any, servo: str) -> int:
     """Return the column of ``actuator_dynprm`` in which MuJoCo keeps the slew limit of a servo."""
-    wound = int(model.actuator(servo).dyntype[0]) == int(mujoco.mjtDyn.mjDYN_DCMOTOR)
-    return _SLEW_MOTOR if wound else _SLEW_PID
+    is_motor = int(model.actuator(servo).dyntype[0]) == int(mujoco.mjtDyn.mjDYN_DCMOTOR)
+    return _SLEW_MOTOR if is_motor else _SLEW_PID
 
 
 def activations(model: Any, servos: np.ndarray) -> np.ndarray:
@@ -92,8 +92,8 @@ def warms(servo: Servo) -> bool:
 
 def warming(model: Any, robot: Robot) -> np.ndarray:
     """Return where the servos keep by how much they are warmer than the air, in ``act``; -1 for one that does not."""
-    last = model.actuator_actadr + model.actuator_actnum - 1
-    return np.where([warms(servo) for servo in _servos(robot)], last, -1)
+    temperature_columns = model.actuator_actadr + model.actuator_actnum - 1
+    return np.where([warms(servo) for servo in _servos(robot)], temperature_columns, -1)
 
 
 def supplies(robot: Robot) -> np.ndarray:
@@ -109,5 +109,5 @@ def ambient(robot: Robot) -> np.ndarray:
 
 def _servos(robot: Robot) -> list[Servo]:
     """Return the servos in the order of the layout, which is that of the model's actuators."""
-    found = servos_of(robot)
-    return [found[name] for name in layout(robot).servos]
+    servos = servos_of(robot)
+    return [servos[name] for name in layout(robot).servos]

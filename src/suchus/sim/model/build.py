@@ -33,22 +33,22 @@ def build(robot: Robot, *, timestep: float = TIMESTEP, relief: Relief | None = N
     Returns:
         The ``mujoco.MjSpec``, ready for ``compile()`` or for further edits.
     """
-    place = layout(robot)
+    robot_layout = layout(robot)
     spec = mujoco.MjSpec()
     spec.modelname = robot.name
     spec.compiler.degree = False
     _set_options(spec, timestep)
     add_ground(spec, relief)
-    root = spec.worldbody.add_body(name=place.robot.root, pos=[0, 0, 0.2])
+    root = spec.worldbody.add_body(name=robot_layout.robot.root, pos=[0, 0, 0.2])
     root.add_freejoint(name="root")
-    add_bodies(root, place)
-    add_foam(spec, place)
-    state_inertia(spec, place)
-    lay_cables(spec, place.robot)
-    servos = servos_of(place.robot)
-    for number, name in enumerate(place.servos):
-        add_servo(spec, number, name, servos[name], place)
-    _add_sensors(spec, place)
+    add_bodies(root, robot_layout)
+    add_foam(spec, robot_layout)
+    state_inertia(spec, robot_layout)
+    lay_cables(spec, robot_layout.robot)
+    servos = servos_of(robot_layout.robot)
+    for number, name in enumerate(robot_layout.servos):
+        add_servo(spec, number, name, servos[name], robot_layout)
+    _add_sensors(spec, robot_layout)
     return spec
 
 
@@ -76,13 +76,13 @@ def topology(robot: Robot) -> tuple[object, ...]:
     That is every body with its parent and its hinges, which of them are free of limits or springs, the servos, and
     which of them have integral action or warm up, and so a state of its own.
     """
-    place = layout(robot)
-    bodies = tuple((body.name, body.parent, tuple(name for _, name, _ in body.hinges)) for body in place.bodies)
+    robot_layout = layout(robot)
+    bodies = tuple((body.name, body.parent, tuple(name for _, name, _ in body.hinges)) for body in robot_layout.bodies)
     servos = servos_of(robot)
-    states = tuple((servos[name].ki > 0, warms(servos[name])) for name in place.servos)
-    shapes = tuple(len(segment.shapes) for segment in place.robot.axis)
-    foam = () if place.robot.hull is None else tuple(one.body for one in place.robot.hull.foam)
-    return bodies, foam, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), states
+    states = tuple((servos[name].ki > 0, warms(servos[name])) for name in robot_layout.servos)
+    shapes = tuple(len(segment.shapes) for segment in robot_layout.robot.axis)
+    foam = () if robot_layout.robot.hull is None else tuple(piece.body for piece in robot_layout.robot.hull.foam)
+    return bodies, foam, robot_layout.servos, shapes, tuple(cable.hinges for cable in robot_layout.robot.cables), states
 
 
 def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
@@ -91,6 +91,7 @@ def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
 
 
 def _set_options(spec: Any, timestep: float) -> None:
+    """Set time step, gravity, integrator and contact solver of a model."""
     option = spec.option
     option.timestep = timestep
     option.gravity = [0.0, 0.0, -GRAVITY]
@@ -101,41 +102,54 @@ def _set_options(spec: Any, timestep: float) -> None:
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # divergence ends a run, it does not restart it
 
 
-def _add_sensors(spec: Any, place: Layout) -> None:
-    kind, of = mujoco.mjtSensor, mujoco.mjtObj
+def _add_sensors(spec: Any, robot_layout: Layout) -> None:
+    """Add the sensors in the order of ``sensor_names``."""
+    kind, object_types = mujoco.mjtSensor, mujoco.mjtObj
     for suffix, sensor in (
         ("position", kind.mjSENS_ACTUATORPOS),
         ("velocity", kind.mjSENS_ACTUATORVEL),
         ("torque", kind.mjSENS_ACTUATORFRC),
     ):
-        for servo in place.servos:
-            spec.add_sensor(name=f"{servo}_{suffix}", type=sensor, objtype=of.mjOBJ_ACTUATOR, objname=servo)
-    for limb in place.limb_names:
-        _add_force(spec, f"{limb}_force", of.mjOBJ_GEOM, f"{limb}_foot")
-    for body in place.trunk:
-        _add_force(spec, f"{body}_force", of.mjOBJ_BODY, body)
-    for body in place.tail[:1]:
-        _add_force(spec, "tail_force", of.mjOBJ_XBODY, body)  # an x-body stands for its whole subtree
-    spec.add_sensor(name="imu_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=of.mjOBJ_SITE, objname="imu")
-    spec.add_sensor(name="imu_gyroscope", type=kind.mjSENS_GYRO, objtype=of.mjOBJ_SITE, objname="imu")
-    spec.add_sensor(name="imu_accelerometer", type=kind.mjSENS_ACCELEROMETER, objtype=of.mjOBJ_SITE, objname="imu")
-    spec.add_sensor(name="centre_of_mass", type=kind.mjSENS_SUBTREECOM, objtype=of.mjOBJ_BODY, objname=place.robot.root)
+        for servo in robot_layout.servos:
+            spec.add_sensor(name=f"{servo}_{suffix}", type=sensor, objtype=object_types.mjOBJ_ACTUATOR, objname=servo)
+    for limb in robot_layout.limb_names:
+        _add_force(spec, f"{limb}_force", object_types.mjOBJ_GEOM, f"{limb}_foot")
+    for body in robot_layout.trunk:
+        _add_force(spec, f"{body}_force", object_types.mjOBJ_BODY, body)
+    for body in robot_layout.tail[:1]:
+        _add_force(spec, "tail_force", object_types.mjOBJ_XBODY, body)  # an x-body stands for its whole subtree
+    spec.add_sensor(name="imu_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=object_types.mjOBJ_SITE, objname="imu")
+    spec.add_sensor(name="imu_gyroscope", type=kind.mjSENS_GYRO, objtype=object_types.mjOBJ_SITE, objname="imu")
     spec.add_sensor(
-        name="angular_momentum", type=kind.mjSENS_SUBTREEANGMOM, objtype=of.mjOBJ_BODY, objname=place.robot.root
+        name="imu_accelerometer", type=kind.mjSENS_ACCELEROMETER, objtype=object_types.mjOBJ_SITE, objname="imu"
     )
-    for site in sites(place.robot):
-        spec.add_sensor(name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=of.mjOBJ_SITE, objname=site)
+    spec.add_sensor(
+        name="centre_of_mass",
+        type=kind.mjSENS_SUBTREECOM,
+        objtype=object_types.mjOBJ_BODY,
+        objname=robot_layout.robot.root,
+    )
+    spec.add_sensor(
+        name="angular_momentum",
+        type=kind.mjSENS_SUBTREEANGMOM,
+        objtype=object_types.mjOBJ_BODY,
+        objname=robot_layout.robot.root,
+    )
+    for site in sites(robot_layout.robot):
+        spec.add_sensor(
+            name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=object_types.mjOBJ_SITE, objname=site
+        )
 
 
-def _add_force(spec: Any, name: str, of: Any, touching: str) -> None:
+def _add_force(spec: Any, name: str, object_type: Any, touching: str) -> None:
     """Add a sensor of the net contact force of a part on the ground, in the world frame."""
-    force, net, one = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE), 3, 1
+    force, net, count = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE), 3, 1
     spec.add_sensor(
         name=name,
         type=mujoco.mjtSensor.mjSENS_CONTACT,
-        objtype=of,
+        objtype=object_type,
         objname=touching,
-        intprm=[force, net, one],
+        intprm=[force, net, count],
     )
 
 
@@ -153,11 +167,11 @@ def force_sensors(robot: Robot) -> tuple[str, ...]:
 
     They stand side by side in the model's readings.
     """
-    place = layout(robot)
+    robot_layout = layout(robot)
     return (
-        *(f"{limb}_force" for limb in place.limb_names),
-        *(f"{body}_force" for body in place.trunk),
-        *(("tail_force",) if place.tail else ()),
+        *(f"{limb}_force" for limb in robot_layout.limb_names),
+        *(f"{body}_force" for body in robot_layout.trunk),
+        *(("tail_force",) if robot_layout.tail else ()),
     )
 
 
@@ -192,7 +206,17 @@ def sole(body: Any, name: str, pos: list[float], radius: float, mass: float, con
 def skin(
     body: Any, name: str, start: list[float], end: list[float], radius: float, mass: float, contact: Contact
 ) -> None:
-    """Add a capsule of skin from ``start`` to ``end``."""
+    """Add a capsule of skin from ``start`` to ``end``.
+
+    Args:
+        body: that carries the capsule.
+        name: of the geom.
+        start: centre of one end in the body's frame [m].
+        end: centre of the other end [m].
+        radius: [m].
+        mass: [kg].
+        contact: friction and stiffness of the skin.
+    """
     geom = body.add_geom(
         name=name,
         type=mujoco.mjtGeom.mjGEOM_CAPSULE,
@@ -212,6 +236,15 @@ def shell(
 
 
 def _touches(geom: Any, friction: float, contact: Contact, dimensions: int, colour: tuple[float, ...]) -> None:
+    """Give a geom its friction, its contact stiffness and its colour; it touches the ground alone.
+
+    Args:
+        geom: the shape.
+        friction: sliding friction coefficient [-].
+        contact: stiffness, torsional and rolling friction.
+        dimensions: of the contact, MuJoCo's ``condim`` [-].
+        colour: red, green, blue and opacity, 0 to 1.
+    """
     # MuJoCo takes the maximum of two frictions at equal priority, so the robot's surfaces take precedence.
     geom.priority = 1
     geom.friction = [friction, contact.torsion, contact.rolling]
@@ -224,55 +257,57 @@ def _touches(geom: Any, friction: float, contact: Contact, dimensions: int, colo
 
 
 _SITE = 0.002  # [m]; as they are drawn
-_LEAST = 1e-9  # [kg] of foam; less than MuJoCo takes for a mass
+_MIN_FOAM_MASS = 1e-9  # [kg] of foam; less than MuJoCo takes for a mass
 
 
-def add_bodies(root: Any, place: Layout) -> None:
+def add_bodies(root: Any, robot_layout: Layout) -> None:
     """Give the root its shape and hang all other bodies on it.
 
     Args:
         root: the ``MjsBody`` that carries the free joint.
-        place: the layout of the robot.
+        robot_layout: the layout of the robot.
     """
-    robot = place.robot
+    robot = robot_layout.robot
     segments = {segment.name: segment for segment in robot.axis}
     links = {
         limb.tip - i: (limb, len(limb.girdle.limb.links) - 1 - i)
-        for limb in place.limbs
+        for limb in robot_layout.limbs
         for i in range(len(limb.girdle.limb.links))
     }
-    made: list[Any] = []
-    for number, body in enumerate(place.bodies):
-        here = root if body.parent < 0 else made[body.parent].add_body(name=body.name, pos=list(body.offset))
-        made.append(here)
+    body_specs: list[Any] = []
+    for number, body in enumerate(robot_layout.bodies):
+        body_spec = root if body.parent < 0 else body_specs[body.parent].add_body(name=body.name, pos=list(body.offset))
+        body_specs.append(body_spec)
         for hinge, name, axis in body.hinges:
-            _add_hinge(here, hinge, name, list(axis))
+            _add_hinge(body_spec, hinge, name, list(axis))
         if number in links:
-            _add_link(here, *links[number], robot.contact)
+            _add_link(body_spec, *links[number], robot.contact)
         else:
-            _add_segment(here, segments[body.name], body.shift, robot)
+            _add_segment(body_spec, segments[body.name], body.shift, robot)
 
 
 def _add_hinge(body: Any, hinge: Hinge, name: str, axis: list[float]) -> None:
-    made: dict[str, Any] = {"name": name, "type": mujoco.mjtJoint.mjJNT_HINGE, "axis": axis}
+    """Add a hinge with its range and with armature, friction and damping of its servo or spring."""
+    attributes: dict[str, Any] = {"name": name, "type": mujoco.mjtJoint.mjJNT_HINGE, "axis": axis}
     if hinge.range is not None:
-        made |= {"range": list(hinge.range), "limited": mujoco.mjtLimited.mjLIMITED_TRUE}
+        attributes |= {"range": list(hinge.range), "limited": mujoco.mjtLimited.mjLIMITED_TRUE}
     servo = hinge.servo
     if servo is not None:
-        made |= {"armature": servo.armature, "frictionloss": servo.friction, "damping": servo.damping}
+        attributes |= {"armature": servo.armature, "frictionloss": servo.friction, "damping": servo.damping}
     elif isinstance(hinge.drive, Spring):
         spring = hinge.drive
-        made |= {"stiffness": spring.stiffness, "damping": spring.damping, "armature": spring.armature}
-    body.add_joint(**made)
+        attributes |= {"stiffness": spring.stiffness, "damping": spring.damping, "armature": spring.armature}
+    body.add_joint(**attributes)
 
 
 def _add_segment(body: Any, segment: Segment, shift: float, robot: Robot) -> None:
+    """Add the shapes of a segment, moved forward by ``shift`` [m], and the sites that it carries."""
     for shape in segment.shapes:
         if isinstance(shape, Rod):
-            start, end = _moved(shape.start, shift), _moved(shape.end, shift)
+            start, end = _shifted(shape.start, shift), _shifted(shape.end, shift)
             skin(body, shape.name, start, end, shape.radius, shape.mass, robot.contact)
         else:
-            shell(body, shape.name, _moved(shape.at, shift), shape.half, shape.mass, robot.contact)
+            shell(body, shape.name, _shifted(shape.at, shift), shape.half, shape.mass, robot.contact)
     if segment.name == robot.root:
         body.add_site(name=IMU, pos=[shift, 0, 0], size=[2 * _SITE, 0, 0])
     if segment is robot.axis[0]:
@@ -281,11 +316,12 @@ def _add_segment(body: Any, segment: Segment, shift: float, robot: Robot) -> Non
         body.add_site(name=TAIL_TIP, pos=[shift - segment.rear, 0, 0], size=[_SITE, 0, 0])
 
 
-def _moved(point: Point, shift: float) -> list[float]:
+def _shifted(point: Point, shift: float) -> list[float]:
     return [point[0] + shift, point[1], point[2]]
 
 
 def _add_link(body: Any, limb: LimbPlace, number: int, contact: Contact) -> None:
+    """Add a link of a limb; the last one carries the foot."""
     design = limb.girdle.limb
     link = design.links[number]
     end = [link.end[0], limb.side * link.end[1], link.end[2]]
@@ -295,14 +331,14 @@ def _add_link(body: Any, limb: LimbPlace, number: int, contact: Contact) -> None
         body.add_site(name=f"{limb.name}_foot", pos=end, size=[_SITE, 0, 0])
 
 
-def add_foam(spec: Any, place: Layout) -> None:
+def add_foam(spec: Any, robot_layout: Layout) -> None:
     """Add the mass of the robot's foam: balls of its volume around its centres, which touch nothing."""
-    hull = place.robot.hull
+    hull = robot_layout.robot.hull
     if hull is None:
         return
-    centres = foam_centres(place.robot)
+    centres = foam_centres(robot_layout.robot)
     for foam in hull.foam:
-        if foam.volume * hull.density < _LEAST:
+        if foam.volume * hull.density < _MIN_FOAM_MASS:
             continue
         spec.body(foam.body).add_geom(
             name=f"{foam.body}_foam",
@@ -317,22 +353,24 @@ def add_foam(spec: Any, place: Layout) -> None:
         )
 
 
-def state_inertia(spec: Any, place: Layout) -> None:
+def state_inertia(spec: Any, robot_layout: Layout) -> None:
     """Give the bodies whose design states where their mass lies that mass, with their foam, in the shapes' place."""
-    foams = {} if place.robot.hull is None else {one.body: one.volume for one in place.robot.hull.foam}
-    density = 0.0 if place.robot.hull is None else place.robot.hull.density
-    bare = masses(place.robot)
-    for body in (one for one in place.bodies if one.inertia is not None):
+    foams = (
+        {} if robot_layout.robot.hull is None else {piece.body: piece.volume for piece in robot_layout.robot.hull.foam}
+    )
+    density = 0.0 if robot_layout.robot.hull is None else robot_layout.robot.hull.density
+    shape_masses = masses(robot_layout.robot)
+    for body in (candidate for candidate in robot_layout.bodies if candidate.inertia is not None):
         assert body.inertia is not None
         volume = foams.get(body.name, 0.0)
-        parts = [(bare[body.name], np.array(body.inertia.centre), body.inertia.tensor)]
-        if volume * density >= _LEAST:
+        parts = [(shape_masses[body.name], np.array(body.inertia.centre), body.inertia.tensor)]
+        if volume * density >= _MIN_FOAM_MASS:
             ball = 0.4 * density * volume * (3 * volume / (4 * pi)) ** (2 / 3)
-            parts.append((density * volume, np.array(foam_centres(place.robot)[body.name]), ball * np.eye(3)))
+            parts.append((density * volume, np.array(foam_centres(robot_layout.robot)[body.name]), ball * np.eye(3)))
         mass, centre, tensor = together(parts)
-        made = spec.body(body.name)
-        made.mass, made.ipos, made.explicitinertial = mass, centre.tolist(), True
-        made.fullinertia = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
+        body_spec = spec.body(body.name)
+        body_spec.mass, body_spec.ipos, body_spec.explicitinertial = mass, centre.tolist(), True
+        body_spec.fullinertia = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
 
 
 def lay_cables(spec: Any, robot: Robot) -> None:
@@ -380,11 +418,12 @@ def add_ground(spec: Any, relief: Relief | None) -> None:
         plane.pos = [0, 0, _raise(spec, relief)]  # as deep as the field
 
 
-def _block(spec: Any, at: tuple[float, float], half: tuple[float, float], height: float) -> None:
+def _block(spec: Any, centre: tuple[float, float], half: tuple[float, float], height: float) -> None:
+    """Add a box on the ground: centre and half widths along x and y, and its height [m]."""
     spec.worldbody.add_geom(
         name=RELIEF,
         type=mujoco.mjtGeom.mjGEOM_BOX,
-        pos=[*at, height / 2],
+        pos=[*centre, height / 2],
         size=[*half, height / 2],
         contype=1,
         conaffinity=0,
@@ -394,26 +433,26 @@ def _block(spec: Any, at: tuple[float, float], half: tuple[float, float], height
 
 def _raise(spec: Any, bumps: Bumps) -> float:
     """Add a height field; return the height of its lowest point [m]."""
-    heights, (first, last) = field(bumps), bumps.reach
-    low, high = float(heights.min()), float(heights.max())
-    middle = (first + last) / 2
+    heights, (x_start, x_end) = field(bumps), bumps.reach
+    min_height, max_height = float(heights.min()), float(heights.max())
+    x_centre = (x_start + x_end) / 2
     spec.add_hfield(
         name=RELIEF,
-        size=[last - middle, bumps.aside, high - low, _BASE * bumps.scale],
+        size=[x_end - x_centre, bumps.aside, max_height - min_height, _BASE * bumps.scale],
         nrow=heights.shape[0],
         ncol=heights.shape[1],
-        userdata=((heights - low) / (high - low)).ravel(),
+        userdata=((heights - min_height) / (max_height - min_height)).ravel(),
     )
     spec.worldbody.add_geom(
         name=RELIEF,
         type=mujoco.mjtGeom.mjGEOM_HFIELD,
         hfieldname=RELIEF,
-        pos=[middle, 0.0, low],
+        pos=[x_centre, 0.0, min_height],
         contype=1,
         conaffinity=0,
         rgba=list(_COLOUR),
     )
-    return low
+    return min_height
 
 
 def standing(model: Any, robot: Robot, hip_height: float, servos: np.ndarray) -> np.ndarray:
@@ -428,14 +467,14 @@ def standing(model: Any, robot: Robot, hip_height: float, servos: np.ndarray) ->
         servos: shape (servo,) [rad].
     """
     data = mujoco.MjData(model)
-    place = layout(robot)
+    robot_layout = layout(robot)
     data.qpos[2] = hip_height
-    turn = -sum(servos[i] for i in place.trunk_yaw) / 2
+    turn = -sum(servos[i] for i in robot_layout.trunk_yaw) / 2
     data.qpos[3:7] = about(np.array([0.0, 0.0, 1.0]), turn)
-    direct = len(place.servos) - len(place.cables)
-    data.qpos[joint_addresses(model, place.servos[:direct])] = servos[:direct]
-    for i in place.cables:
-        cable = place.cable(i)
+    direct = len(robot_layout.servos) - len(robot_layout.cables)
+    data.qpos[joint_addresses(model, robot_layout.servos[:direct])] = servos[:direct]
+    for i in robot_layout.cables:
+        cable = robot_layout.cable(i)
         pulley_per_bend = cable.cord_spacing / 2 / cable.pulley
         data.qpos[joint_addresses(model, cable.hinges)] = servos[i] / pulley_per_bend / cable.joints
     mujoco.mj_forward(model, data)

@@ -56,20 +56,23 @@ class Hydrostatics:
     @property
     def vanishing(self) -> float:
         """Least heel beyond which it does not right itself; that of the end of the curve if it does all along [rad]."""
-        lost = np.flatnonzero((self.lever <= 0.0) & (self.heel > 0.0))
-        if not lost.size:
+        unstable = np.flatnonzero((self.lever <= 0.0) & (self.heel > 0.0))
+        if not unstable.size:
             return float(self.heel[-1])
-        last = int(lost[0])
-        if last == 0 or self.lever[last - 1] <= 0.0:
-            return float(self.heel[max(last - 1, 0)])
-        share = self.lever[last - 1] / (self.lever[last - 1] - self.lever[last])
-        return float(self.heel[last - 1] + share * (self.heel[last] - self.heel[last - 1]))
+        first_unstable = int(unstable[0])
+        if first_unstable == 0 or self.lever[first_unstable - 1] <= 0.0:
+            return float(self.heel[max(first_unstable - 1, 0)])
+        fraction = self.lever[first_unstable - 1] / (self.lever[first_unstable - 1] - self.lever[first_unstable])
+        return float(
+            self.heel[first_unstable - 1] + fraction * (self.heel[first_unstable] - self.heel[first_unstable - 1])
+        )
 
 
 class _Rigid:
     """A robot frozen in a posture: its pieces, its weight and its centre of mass, root at the origin."""
 
     def __init__(self, robot: Robot, servos: np.ndarray, density: float, air_fraction: AirFractions) -> None:
+        """Compute positions, mass and volume of the robot in its posture."""
         table = np.array(pieces(robot))
         model = wet_model(robot, TIMESTEP, None, len(table))
         self.data = data = mujoco.MjData(model)
@@ -83,57 +86,60 @@ class _Rigid:
         self.reach = 2.0 * float(robot.length)
         self.sunk = self.volume <= self.mass / density
 
-    def at(self, heel: float, rise: float) -> tuple[np.ndarray, np.ndarray, float]:
+    def lever_at(self, heel: float, rise: float) -> tuple[np.ndarray, np.ndarray, float]:
         """Return up in the body's frame, the lever from the centre of mass to that of buoyancy, and the level [m]."""
-        up = np.array([sin(rise), cos(rise) * sin(heel), cos(rise) * cos(heel)])
-        level = self.reach if self.sunk else brentq(lambda one: self._statics(up, one)[0] - self.mass / self.density,
-                                               -self.reach, self.reach, xtol=1e-10)  # fmt: skip
-        found = self._statics(up, level)
-        return up, found[1:4] / found[0] - self.centre, level
+        up_axis = np.array([sin(rise), cos(rise) * sin(heel), cos(rise) * cos(heel)])
 
-    def _statics(self, up: np.ndarray, level: float) -> np.ndarray:
-        return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up, level, self.air_fraction))
+        def surplus(height: float) -> float:
+            return float(self._statics(up_axis, height)[0] - self.mass / self.density)
+
+        level = self.reach if self.sunk else brentq(surplus, -self.reach, self.reach, xtol=1e-10)
+        sums = self._statics(up_axis, level)
+        return up_axis, sums[1:4] / sums[0] - self.centre, level
+
+    def _statics(self, up_axis: np.ndarray, level: float) -> np.ndarray:
+        return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up_axis, level, self.air_fraction))
 
     def trim_submerged(self) -> float:
         """Return the pitch at which the centre of buoyancy is above that of mass, under water, nose down [rad]."""
-        found = self._statics(np.array([0.0, 0.0, 1.0]), 2.0 * self.reach)
-        arm = found[1:4] / found[0] - self.centre
+        sums = self._statics(np.array([0.0, 0.0, 1.0]), 2.0 * self.reach)
+        arm = sums[1:4] / sums[0] - self.centre
         return -atan2(arm[0], arm[2]) + 0.0  # no -0
 
-    def rest(self, heel: float, near: float) -> tuple[float, float, float]:
-        """Return by how much the nose rises [rad], righting lever and level [m] at a heel; afloat it rises as it likes.
+    def balance(self, heel: float, guess: float) -> tuple[float, float, float]:
+        """Return rise of the nose [rad], righting lever and level [m] at a heel; afloat the trim is in equilibrium.
 
-        It is looked for from a rise nearby on. All three are NaN where none up to 80 degrees balances it: it would hang
-        upright in the water.
+        The search begins at the rise ``guess``. All three are NaN where no rise up to 80 degrees is an equilibrium: the
+        body would float on end.
         """
 
-        def along(rise: float) -> float:
-            up, arm, _ = self.at(heel, rise)
-            ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
-            return float(arm @ ahead)
+        def trim_moment(rise: float) -> float:
+            up_axis, arm, _ = self.lever_at(heel, rise)
+            forward = np.array([1.0, 0.0, 0.0]) - up_axis[0] * up_axis
+            return float(arm @ forward)
 
-        rise = 0.0 if self.sunk else _root(along, near)
+        rise = 0.0 if self.sunk else _root(trim_moment, guess)
         if isnan(rise):
             return nan, nan, nan
-        up, arm, level = self.at(heel, rise)
-        ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
-        left = np.cross(up, ahead / np.linalg.norm(ahead))
-        return rise, -float(arm @ left), level
+        up_axis, arm, level = self.lever_at(heel, rise)
+        forward = np.array([1.0, 0.0, 0.0]) - up_axis[0] * up_axis
+        leftward = np.cross(up_axis, forward / np.linalg.norm(forward))
+        return rise, -float(arm @ leftward), level
 
 
-def _root(function: Any, near: float) -> float:
-    """Return the zero that lies nearest to a place, by widening around it; NaN if none lies up to the steepest."""
+def _root(function: Any, guess: float) -> float:
+    """Return the zero nearest to a guess, by widening brackets around it; NaN if there is none up to the steepest."""
     for width in np.geomspace(radians(0.5), 2 * _STEEPEST, 12):
-        low, high = max(near - width, -_STEEPEST), min(near + width, _STEEPEST)
-        if function(low) * function(high) <= 0:
-            return float(brentq(function, low, high, xtol=1e-7))
+        lower_bound, upper_bound = max(guess - width, -_STEEPEST), min(guess + width, _STEEPEST)
+        if function(lower_bound) * function(upper_bound) <= 0:
+            return float(brentq(function, lower_bound, upper_bound, xtol=1e-7))
     return float("nan")
 
 
 def _bend(model: Any, data: Any, robot: Robot, servos: np.ndarray) -> None:
-    place = layout(robot)
-    direct = [i for i in range(len(place.servos)) if i not in place.cables]
-    data.qpos[joint_addresses(model, [place.servos[i] for i in direct])] = servos[direct]
+    robot_layout = layout(robot)
+    direct = [i for i in range(len(robot_layout.servos)) if i not in robot_layout.cables]
+    data.qpos[joint_addresses(model, [robot_layout.servos[i] for i in direct])] = servos[direct]
 
 
 def hydrostatics(
@@ -157,7 +163,7 @@ def hydrostatics(
         InvalidDesign: a density or air fraction that cannot be, or another number of servo angles.
     """
     require("hydrostatics", "density", density, 1.0, 2e4, "kg/m3")
-    fractions = _both(air_fraction)
+    fractions = _fraction_pair(air_fraction)
     require("hydrostatics", "heels", heels, 3, 1000, "")
     angles = np.zeros(len(servo_names(robot))) if servos is None else np.asarray(servos, dtype=float)
     if len(angles) != len(servo_names(robot)):
@@ -166,15 +172,15 @@ def hydrostatics(
         )
     body = _Rigid(robot, angles, density, fractions)
     floats = body.volume * density > body.mass
-    rise, _, level = body.rest(0.0, 0.0)
+    rise, _, level = body.balance(0.0, 0.0)
     heel = np.linspace(0.0, np.pi, int(heels))
-    lever, near = np.zeros(len(heel)), 0.0 if isnan(rise) else rise
+    lever, guess = np.zeros(len(heel)), 0.0 if isnan(rise) else rise
     for i, angle in enumerate(heel):
-        balanced, lever[i], _ = body.rest(float(angle), near)
-        near = near if isnan(balanced) else balanced
-    near = 0.0 if isnan(rise) else rise
-    slope = (body.rest(_SMALL, near)[1] - body.rest(-_SMALL, near)[1]) / (2 * _SMALL)
-    ends = nan if isnan(rise) else _lowest(body, body.at(0.0, rise)[0])
+        balanced, lever[i], _ = body.balance(float(angle), guess)
+        guess = guess if isnan(balanced) else balanced
+    guess = 0.0 if isnan(rise) else rise
+    slope = (body.balance(_SMALL, guess)[1] - body.balance(-_SMALL, guess)[1]) / (2 * _SMALL)
+    ends = nan if isnan(rise) else _lowest_point(body, body.lever_at(0.0, rise)[0])
     return Hydrostatics(
         mass=body.mass,
         volume=body.volume,
@@ -190,23 +196,23 @@ def hydrostatics(
     )
 
 
-def _both(air_fraction: float | AirFractions) -> AirFractions:
+def _fraction_pair(air_fraction: float | AirFractions) -> AirFractions:
     """Return the shares of the air in front and rear chambers."""
     if isinstance(air_fraction, tuple):
-        for name, share in zip(("front", "rear"), air_fraction, strict=True):
-            require("hydrostatics", f"air_fraction ({name})", share, 0.0, 1.0, "")
+        for name, fraction in zip(("front", "rear"), air_fraction, strict=True):
+            require("hydrostatics", f"air_fraction ({name})", fraction, 0.0, 1.0, "")
         return air_fraction
     require("hydrostatics", "air_fraction", air_fraction, 0.0, 1.0, "")
     return float(air_fraction), float(air_fraction)
 
 
-def _lowest(body: _Rigid, up: np.ndarray) -> float:
+def _lowest_point(body: _Rigid, up_axis: np.ndarray) -> float:
     """Return the height of the lowest point of the pieces [m]."""
     ids = body.table[:, 0].astype(int)
     turn = body.data.xmat[ids].reshape(-1, 3, 3)
-    middle = body.data.xpos[ids] + np.einsum("nij,nj->ni", turn, column(body.table, "at"))
+    centres = body.data.xpos[ids] + np.einsum("nij,nj->ni", turn, column(body.table, "at"))
     extent = [
-        (np.einsum("nij,nj->ni", turn, column(body.table, axis)) @ up) * column(body.table, "half")[:, k]
+        (np.einsum("nij,nj->ni", turn, column(body.table, axis)) @ up_axis) * column(body.table, "half")[:, k]
         for k, axis in enumerate(("across", "upward", "forward"))
     ]
-    return float((middle @ up - np.sqrt(np.sum(np.square(extent), axis=0))).min())
+    return float((centres @ up_axis - np.sqrt(np.sum(np.square(extent), axis=0))).min())

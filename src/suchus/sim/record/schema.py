@@ -12,7 +12,7 @@ from suchus.core.errors import IncompatibleRecord, SuchusError
 from suchus.robot.design.ground import Bumps, Ground, Step, Stone
 from suchus.robot.design.layout import LEGS
 
-_LARGEST, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
+_MAX_NUMBER, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
 XYZ = ("x", "y", "z")
 WXYZ = ("w", "x", "y", "z")
 
@@ -130,70 +130,88 @@ def dataset(
     missing = [name for name in VARIABLES if name not in arrays] + [name for name in PER_RUN if name not in per_run]
     if missing:
         raise IncompatibleRecord(f"a record needs {', '.join(missing)} too.")
-    along = {name: name if name in _INDEXED else "run" for name in coordinates}
+    label_dims = {name: name if name in _INDEXED else "run" for name in coordinates}
     data = xr.Dataset(
         coords={
             "xyz": list(XYZ),
             "wxyz": list(WXYZ),
-            **{name: (along[name], np.asarray(labels)) for name, labels in coordinates.items()},
+            **{name: (label_dims[name], np.asarray(labels)) for name, labels in coordinates.items()},
         },
         attrs={"schema": "suchus land record 1"},
     )
     data.coords["time"].attrs["units"] = "s"
     sampled = {
-        name: (("run", *dims), arrays[name], {"units": unit, "long_name": what})
-        for name, (dims, unit, what) in VARIABLES.items()
+        name: (("run", *dims), arrays[name], {"units": unit, "long_name": long_name})
+        for name, (dims, unit, long_name) in VARIABLES.items()
     }
-    of_runs = {name: ("run", per_run[name], {"units": u, "long_name": what}) for name, (u, what) in PER_RUN.items()}
+    of_runs = {
+        name: ("run", per_run[name], {"units": u, "long_name": long_name}) for name, (u, long_name) in PER_RUN.items()
+    }
     # all at once: one at a time each copies and aligns what is there, a twentieth of the time of a run alone
     return data.assign(sampled | of_runs)
 
 
-def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
-    """Refuse what is no record of runs on land, however it came to be.
+def check_land(record: xr.Dataset, names: Sequence[str], source: str) -> None:
+    """Refuse a dataset that is no record of runs on land.
 
     Args:
         record: any.
-        names: which of ``VARIABLES`` are going to be looked at.
-        where: what it is called in messages.
+        names: names among ``VARIABLES`` that are needed.
+        source: name of the record in messages.
 
     Raises:
         IncompatibleRecord: a variable is missing, or has other dimensions, labels or numbers than the schema says.
     """
     missing = [name for name in names if name not in record]
     if missing or "time" not in record.coords:
-        raise IncompatibleRecord(f"{where} is no record of a run on land: it lacks {', '.join(missing) or 'time'}.")
+        raise IncompatibleRecord(f"{source} is no record of a run on land: it lacks {', '.join(missing) or 'time'}.")
     if not record.time.size:
-        raise IncompatibleRecord(f"{where} has no frame; run for longer than one sample.")
-    if others := list(filter(None, (_other_meaning(record, name) for name in ("time", *names)))):
-        raise IncompatibleRecord(f"{where} holds {'; '.join(others)}: records are in SI units, as suchus writes them.")
-    wrong = [name for name in names if not _as_said(record, name)]
-    wrong += [name for name in ("label", "gait", "robot", *PER_RUN) if name in record and not _per_run(record[name])]
-    if wrong:
-        raise IncompatibleRecord(f"{where} holds {', '.join(wrong)} otherwise than records of runs on land do.")
+        raise IncompatibleRecord(f"{source} has no frame; run for longer than one sample.")
+    if meaning_errors := list(filter(None, (_other_meaning(record, name) for name in ("time", *names)))):
+        raise IncompatibleRecord(
+            f"{source} holds {'; '.join(meaning_errors)}: records are in SI units, as suchus writes them."
+        )
+    invalid_names = [name for name in names if not _fits_schema(record, name)]
+    invalid_names += [
+        name for name in ("label", "gait", "robot", *PER_RUN) if name in record and not _per_run(record[name])
+    ]
+    if invalid_names:
+        raise IncompatibleRecord(
+            f"{source} holds {', '.join(invalid_names)} otherwise than records of runs on land do."
+        )
     time = record.time
     if time.dims != ("time",) or time.dtype.kind not in "fiu" or not _rising(time.values):
-        raise IncompatibleRecord(f"{where} has times that do not rise.")
+        raise IncompatibleRecord(f"{source} has times that do not rise.")
     legs = [str(leg) for leg in record.leg.values.ravel()] if "leg" in record else []
     if not _in_pairs(legs):
-        seen = ", ".join(legs[:8])
-        raise IncompatibleRecord(f"{where} has the legs {seen}, not pairs of left and right, as {', '.join(LEGS)}.")
+        legs_text = ", ".join(legs[:8])
+        raise IncompatibleRecord(
+            f"{source} has the legs {legs_text}, not pairs of left and right, as {', '.join(LEGS)}."
+        )
 
 
 def _other_meaning(record: xr.Dataset, name: str) -> str:
-    """Return in words what a variable says of itself that the schema does not: another unit, or to be another variable.
+    """Return in words how a variable's attributes contradict the schema: another unit, or another variable's meaning.
 
-    Nothing where it says the same or nothing of itself.
+    The text is empty where they agree or are missing.
     """
     variable, unit = record[name], VARIABLES[name][1] if name in VARIABLES else "s"
-    if (said := variable.attrs.get("units", unit)) != unit:
-        return f"{name} in {str(said)[:20]!r} instead of {unit}"
-    what = variable.attrs.get("long_name")
-    other = next((one for one, (_, _, meaning) in VARIABLES.items() if one != name and meaning == what), None)
-    return f"{other} under the name of {name}" if other else ""
+    if (unit_attribute := variable.attrs.get("units", unit)) != unit:
+        return f"{name} in {str(unit_attribute)[:20]!r} instead of {unit}"
+    long_name = variable.attrs.get("long_name")
+    other_name = next(
+        (
+            variable_name
+            for variable_name, (_, _, meaning) in VARIABLES.items()
+            if variable_name != name and meaning == long_name
+        ),
+        None,
+    )
+    return f"{other_name} under the name of {name}" if other_name else ""
 
 
-def _as_said(record: xr.Dataset, name: str) -> bool:
+def _fits_schema(record: xr.Dataset, name: str) -> bool:
+    """Return whether a variable has dimensions, labels and numbers of the schema."""
     variable, dims = record[name], VARIABLES[name][0]
     if variable.dims not in (dims, ("run", *dims)) or variable.dtype.kind not in "fiu":
         return False
@@ -202,11 +220,11 @@ def _as_said(record: xr.Dataset, name: str) -> bool:
     if not all(size for dim, size in variable.sizes.items() if dim != "leg"):  # a swimmer may have no limbs
         return False
     labels = all(record[dim].dims == (dim,) for dim in dims if dim in record.coords)
-    named = all(dim in record.coords for dim in dims if dim in ("leg", "joint", "servo", "segment"))
+    has_labels = all(dim in record.coords for dim in dims if dim in ("leg", "joint", "servo", "segment"))
     sizes = all(variable.sizes[dim] == size for dim, size in (("xyz", 3), ("wxyz", 4)) if dim in dims)
     numbers = np.asarray(variable.values, dtype=float)
     numbers = numbers[np.isfinite(numbers)]
-    if not (labels and named and sizes) or (numbers.size and np.abs(numbers).max() > _LARGEST):
+    if not (labels and has_labels and sizes) or (numbers.size and np.abs(numbers).max() > _MAX_NUMBER):
         return False
     if name == "orientation":
         length = np.sqrt((np.asarray(variable, dtype=float) ** 2).sum(axis=variable.dims.index("wxyz")))

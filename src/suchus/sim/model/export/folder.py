@@ -70,6 +70,7 @@ def _texts(robot: Robot, gait: Gait, kind: Format, timestep: float) -> dict[str,
 
 
 def _mjcf(robot: Robot, gait: Gait, timestep: float) -> dict[str, str]:
+    """Return the texts of the files of an MJCF export by name."""
     model, scene = mjcf(robot, gait, timestep=timestep)
     files = {
         f"{robot.name}.xml": "the robot: bodies, joints, tendon, servos, sensors, keyframe `home`",
@@ -104,54 +105,65 @@ def _cords(robot: Robot) -> str:
 
 
 def _urdf(robot: Robot) -> dict[str, str]:
+    """Return the texts of the files of a URDF export by name."""
     files = {f"{robot.name}.urdf": "the robot: links, joints, limits, shapes", BALL: "a ball that ellipsoids stretch"}
-    about = (
+    introduction = (
         "Joints and frames (feet, snout, tail_tip, imu) carry the names that suchus gives them; x forward, y left, z "
         "up, in metres, kilograms and radians."
     )
-    text = _readme(robot, files, f"yourdfpy {_quoted(robot.name + '.urdf')}", about, unsaid(robot))
+    text = _readme(robot, files, f"yourdfpy {_quoted(robot.name + '.urdf')}", introduction, unsaid(robot))
     return {f"{robot.name}.urdf": urdf(robot), BALL: ball(), "README.md": text}
 
 
 def _usd(robot: Robot, gait: Gait) -> dict[str, str]:
+    """Return the texts of the files of a USD export by name."""
     name = f"{robot.name}.usda"
     files = {
         name: "the robot: bodies, joints with limits and drives, shapes, frames",
         "scene.usda": "the robot on level ground, with gravity and a light",
     }
-    about = (
+    introduction = (
         "UsdPhysics, in metres and kilograms, z up, x forward; angles are degrees, as the schema has them. All joints "
         f"are at zero; their drives lead to the mid-stance of {gait.name}. Bodies, joints (below `joints`) and frames "
         "(feet, snout, tail_tip, imu, below their bodies) carry the names that suchus gives them."
     )
-    text = _readme(robot, files, f"usdview {_quoted('scene.usda')}", about, unsaid_in_usd(robot))
+    text = _readme(robot, files, f"usdview {_quoted('scene.usda')}", introduction, unsaid_in_usd(robot))
     return {name: usd(robot, gait), "scene.usda": scene(robot), "README.md": text}
 
 
-def _readme(robot: Robot, files: Mapping[str, str], look: str, about: str, left_out: tuple[str, ...]) -> str:
+def _readme(robot: Robot, files: Mapping[str, str], command: str, introduction: str, omissions: tuple[str, ...]) -> str:
+    """Return the README of an export in Markdown.
+
+    Args:
+        robot: the design.
+        files: what each file holds, by name.
+        command: shell command that shows the model.
+        introduction: text before the table of files.
+        omissions: what the format leaves out, a sentence or more each.
+    """
     files = {
         **files,
         "robot.toml": "every number, with its meaning and unit",
         "LICENSE": "Apache-2.0",
         MARK: "which robot, which software",
     }
-    what = "A robot" if robot.tables is None else "A crocodile-like robot"
+    robot_text = "A robot" if robot.tables is None else "A crocodile-like robot"
     lines = [
         f"# {robot.name}",
         "",
-        f"{what} of {robot.mass:.2f} kg and {robot.length:.2f} m, written by suchus.",
+        f"{robot_text} of {robot.mass:.2f} kg and {robot.length:.2f} m, written by suchus.",
         "",
-        about,
+        introduction,
         "",
         "| file | holds |",
         "|---|---|",
-        *(f"| `{name}` | {what} |" for name, what in files.items()),
+        *(f"| `{name}` | {description} |" for name, description in files.items()),
         "",
-        f"Look at it: `{look}`",
+        f"Look at it: `{command}`",
         "",
         "## What this format does not say",
         "",
-        *(f"* {text}" for text in left_out),
+        *(f"* {text}" for text in omissions),
     ]
     return "\n".join(lines) + "\n"
 

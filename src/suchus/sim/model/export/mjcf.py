@@ -33,7 +33,7 @@ def mjcf(robot: Robot, gait: Gait, *, timestep: float = TIMESTEP) -> tuple[str, 
     model = spec.compile()
     root = ElementTree.fromstring(spec.to_xml())
     _restore(root, spec, model)
-    world = _part(root, "worldbody")
+    world = _child(root, "worldbody")
     scene = ElementTree.Element("mujoco", model=f"{robot.name} on the ground")
     ElementTree.SubElement(scene, "include", file=f"{robot.name}.xml")
     ElementTree.SubElement(ElementTree.SubElement(scene, "asset"), "texture", {**_SKY, "width": "64", "height": "384"})
@@ -60,6 +60,7 @@ def numbers(values: Sequence[float] | np.ndarray) -> str:
 
 
 def _home(model: Any, robot: Robot, gait: Gait) -> ElementTree.Element:
+    """Return the keyframe ``home``: positions, servo states and servo angles in mid-stance."""
     qpos, servos = home(model, robot, gait)
     keys = ElementTree.Element("keyframe")
     values = {"qpos": qpos, "act": activations(model, servos), "ctrl": servos}
@@ -78,12 +79,17 @@ def _restore(root: ElementTree.Element, spec: Any, model: Any) -> None:
             element.set("coef", numbers([next(wraps)]))
         name, kind = element.get("name"), _kind(element)
         if name and kind:
-            held = getattr(model, kind)(name)
-            written = getattr(spec, kind)(name) if hasattr(spec, kind) else None
-            _refine(element, (held, written))
+            model_view = getattr(model, kind)(name)
+            spec_view = getattr(spec, kind)(name) if hasattr(spec, kind) else None
+            _refine(element, (model_view, spec_view))
             stated = element.find("inertial") if kind == "body" else None
             if stated is not None:
-                values = {"pos": held.ipos, "quat": held.iquat, "mass": held.mass, "diaginertia": held.inertia}
+                values = {
+                    "pos": model_view.ipos,
+                    "quat": model_view.iquat,
+                    "mass": model_view.mass,
+                    "diaginertia": model_view.inertia,
+                }
                 stated.attrib.update({key: numbers(value) for key, value in values.items()})
 
 
@@ -93,14 +99,15 @@ def _kind(element: ElementTree.Element) -> str:
 
 
 def _refine(element: ElementTree.Element, owners: Sequence[Any]) -> None:
+    """Replace the rounded numbers of an element by exact ones of the first owner that has the same digits."""
     for key, text in element.attrib.items():
         if key == "rgba":  # single precision: what is printed is the number that was meant
             continue
-        printed = text.split()
+        printed_numbers = text.split()
         for owner in owners:
             exact = _numbers_of(owner, key)
-            if exact is not None and [f"{v:.{_DIGITS}g}" for v in exact[: len(printed)]] == printed:
-                element.set(key, numbers(exact[: len(printed)]))
+            if exact is not None and [f"{v:.{_DIGITS}g}" for v in exact[: len(printed_numbers)]] == printed_numbers:
+                element.set(key, numbers(exact[: len(printed_numbers)]))
                 break
 
 
@@ -111,10 +118,10 @@ def _numbers_of(owner: Any, key: str) -> np.ndarray | None:
         return None
 
 
-def _part(root: ElementTree.Element, tag: str) -> ElementTree.Element:
-    part = root.find(tag)
-    assert part is not None
-    return part
+def _child(root: ElementTree.Element, tag: str) -> ElementTree.Element:
+    child = root.find(tag)
+    assert child is not None
+    return child
 
 
 def _text(root: ElementTree.Element) -> str:

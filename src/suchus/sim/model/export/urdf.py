@@ -13,7 +13,7 @@ from suchus.sim.model.build import IMU, compile_model, sites
 from suchus.sim.model.export.mjcf import numbers
 
 _CABLES, _SPRINGS = "The cable.", "Springs"
-_BESIDE = "{name} {stiffness:g} N m/rad"
+_SPRING_TEXT = "{name} {stiffness:g} N m/rad"
 
 
 def pulls(cable: Cable) -> str:
@@ -21,19 +21,19 @@ def pulls(cable: Cable) -> str:
     return "one servo turns a pulley" if cable.linear is None else "one linear actuator moves two cords"
 
 
-def filled(texts: Sequence[str], robot: Robot, **own: object) -> tuple[str, ...]:
+def filled(texts: Sequence[str], robot: Robot, **format_values: object) -> tuple[str, ...]:
     """Return sentences with the robot's numbers in their braces; those about cables or springs only if it has some.
 
     Args:
         texts: what a format leaves out, and what to do about it.
         robot: the design.
-        own: further values, of the format.
+        format_values: further values, of the format.
     """
-    place, contact = layout(robot), robot.contact
-    cables = place.robot.cables
+    robot_layout, contact = layout(robot), robot.contact
+    cables = robot_layout.robot.cables
     springs = [
-        _BESIDE.format(name=name, stiffness=hinge.drive.stiffness)
-        for body in place.bodies
+        _SPRING_TEXT.format(name=name, stiffness=hinge.drive.stiffness)
+        for body in robot_layout.bodies
         for hinge, name, _ in body.hinges
         if isinstance(hinge.drive, Spring)
     ]
@@ -45,14 +45,14 @@ def filled(texts: Sequence[str], robot: Robot, **own: object) -> tuple[str, ...]
         "springs": ", ".join(springs),
         "foot": contact.foot_friction,
         "skin": contact.skin_friction,
-        "root": place.robot.root,
+        "root": robot_layout.robot.root,
     }
     fitting = [
         text
         for text in texts
         if (cables or not text.startswith(_CABLES)) and (springs or not text.startswith(_SPRINGS))
     ]
-    return tuple(text.format(**values, **own) for text in fitting)
+    return tuple(text.format(**values, **format_values) for text in fitting)
 
 
 BALL = "meshes/ball.obj"
@@ -99,11 +99,11 @@ def urdf(robot: Robot) -> str:
     for body in range(1, model.nbody):
         _add_body(root, model, body, robot)
     for site in (*sites(robot), IMU):
-        where = model.site(site)
+        site_view = model.site(site)
         ElementTree.SubElement(root, "link", name=site)
-        parent = model.body(int(where.bodyid[0])).name
+        parent = model.body(int(site_view.bodyid[0])).name
         joint = _joint(root, f"{site}_fixed", "fixed", parent, site)
-        _origin(joint, where.pos, where.quat)
+        _origin(joint, site_view.pos, site_view.quat)
     ElementTree.indent(root)
     return '<?xml version="1.0"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
@@ -121,7 +121,7 @@ def ball() -> str:
             corners.append((np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)))
     corners.append((0.0, 0.0, -1.0))
 
-    def at(ring: int, sector: int) -> int:
+    def corner_index(ring: int, sector: int) -> int:
         if ring in (0, _RINGS):
             return 1 if ring == 0 else len(corners)
         return 2 + (ring - 1) * _SECTORS + sector % _SECTORS
@@ -129,8 +129,8 @@ def ball() -> str:
     lines = ["# a ball of radius 1, written by suchus", *(f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in corners)]
     for ring in range(_RINGS):
         for sector in range(_SECTORS):
-            a, b = at(ring, sector), at(ring, sector + 1)
-            c, d = at(ring + 1, sector), at(ring + 1, sector + 1)
+            a, b = corner_index(ring, sector), corner_index(ring, sector + 1)
+            c, d = corner_index(ring + 1, sector), corner_index(ring + 1, sector + 1)
             lines += [f"f {a} {c} {d}"] if ring < _RINGS - 1 else []
             lines += [f"f {a} {d} {b}"] if 0 < ring < _RINGS - 1 else []
             lines += [f"f {a} {c} {b}"] if ring == _RINGS - 1 else []
@@ -141,8 +141,8 @@ def _add_body(root: ElementTree.Element, model: Any, body: int, robot: Robot) ->
     """Add a body's link, and before it the joints that carry it: all but the last end in a massless link."""
     name = model.body(body).name
     parent = model.body(int(model.body_parentid[body])).name
-    first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
-    hinges = [j for j in range(first, first + count) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE]
+    first_joint, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+    hinges = [j for j in range(first_joint, first_joint + count) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE]
     for number, hinge in enumerate(hinges):
         label = model.joint(hinge).name
         child = name if number == len(hinges) - 1 else f"{label}_link"
@@ -150,10 +150,8 @@ def _add_body(root: ElementTree.Element, model: Any, body: int, robot: Robot) ->
             ElementTree.SubElement(root, "link", name=child)
         kind = "revolute" if model.jnt_limited[hinge] else "continuous"
         joint = _joint(root, label, kind, parent, child)
-        place = (
-            (model.body_pos[body], model.body_quat[body]) if number == 0 else (np.zeros(3), np.array([1.0, 0, 0, 0]))
-        )
-        _origin(joint, *place)
+        pose = (model.body_pos[body], model.body_quat[body]) if number == 0 else (np.zeros(3), np.array([1.0, 0, 0, 0]))
+        _origin(joint, *pose)
         _turn(joint, model, hinge, robot)
         parent = child
     if body > 1 and not hinges:
@@ -176,18 +174,18 @@ def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Robot) -> N
     name = model.joint(hinge).name
     dof = int(model.jnt_dofadr[hinge])
     ElementTree.SubElement(joint, "axis", xyz=numbers(model.jnt_axis[hinge]))
-    place = layout(robot)
-    pulled = [cable for cable in place.robot.cables if name in cable.hinges]
-    if name in place.servos:
+    robot_layout = layout(robot)
+    cables = [cable for cable in robot_layout.robot.cables if name in cable.hinges]
+    if name in robot_layout.servos:
         servo = robot.servo(name)
         effort, speed = servo.torque, servo.speed
-    elif pulled:
-        cable = pulled[0]
+    elif cables:
+        cable = cables[0]
         effort, speed = cable.turning.torque * cable.cord_spacing / 2 / cable.pulley, cable.turning.speed
     else:
         effort, speed = 0.0, _FREE_SPEED
-    low, high = model.jnt_range[hinge]
-    limit = {"lower": low, "upper": high} if model.jnt_limited[hinge] else {}
+    lower_limit, upper_limit = model.jnt_range[hinge]
+    limit = {"lower": lower_limit, "upper": upper_limit} if model.jnt_limited[hinge] else {}
     limit |= {"effort": effort, "velocity": speed}
     ElementTree.SubElement(joint, "limit", {k: numbers([v]) for k, v in limit.items()})
     rubbing = {"damping": model.dof_damping[dof], "friction": model.dof_frictionloss[dof]}
@@ -195,6 +193,7 @@ def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Robot) -> N
 
 
 def _inertial(link: ElementTree.Element, model: Any, body: int) -> None:
+    """Add mass, centre of mass and principal moments of a body to its link."""
     inertial = ElementTree.SubElement(link, "inertial")
     _origin(inertial, model.body_ipos[body], model.body_iquat[body])
     ElementTree.SubElement(inertial, "mass", value=numbers([model.body_mass[body]]))
@@ -204,32 +203,33 @@ def _inertial(link: ElementTree.Element, model: Any, body: int) -> None:
 
 
 def _shape(link: ElementTree.Element, model: Any, geom: int) -> None:
+    """Add a geom to its link, as visual and as collision shape."""
     kinds = mujoco.mjtGeom
-    kind, size, place = model.geom_type[geom], model.geom_size[geom], model.geom_pos[geom]
+    kind, size, centre = model.geom_type[geom], model.geom_size[geom], model.geom_pos[geom]
     quat, colour = model.geom_quat[geom], model.geom_rgba[geom]
     pieces: list[tuple[str, dict[str, str], np.ndarray]]
     if kind == kinds.mjGEOM_SPHERE:
-        pieces = [("sphere", {"radius": numbers([size[0]])}, place)]
+        pieces = [("sphere", {"radius": numbers([size[0]])}, centre)]
     elif kind == kinds.mjGEOM_ELLIPSOID:
-        pieces = [("mesh", {"filename": BALL, "scale": numbers(size)}, place)]
+        pieces = [("mesh", {"filename": BALL, "scale": numbers(size)}, centre)]
     else:
         end = _rotation(quat).apply([0.0, 0.0, size[1]])
         rod = {"radius": numbers([size[0]]), "length": numbers([2 * size[1]])}
         cap = {"radius": numbers([size[0]])}
-        pieces = [("cylinder", rod, place), ("sphere", cap, place - end), ("sphere", cap, place + end)]
+        pieces = [("cylinder", rod, centre), ("sphere", cap, centre - end), ("sphere", cap, centre + end)]
     shade = " ".join(f"{c:.3g}" for c in colour)
     for purpose in ("visual", "collision"):
-        for tag, attributes, where in pieces:
-            part = ElementTree.SubElement(link, purpose)
-            _origin(part, where, quat)
-            ElementTree.SubElement(ElementTree.SubElement(part, "geometry"), tag, attributes)
+        for tag, attributes, position in pieces:
+            element = ElementTree.SubElement(link, purpose)
+            _origin(element, position, quat)
+            ElementTree.SubElement(ElementTree.SubElement(element, "geometry"), tag, attributes)
             if purpose == "visual":
-                material = ElementTree.SubElement(part, "material", name=f"colour_{shade.replace(' ', '_')}")
+                material = ElementTree.SubElement(element, "material", name=f"colour_{shade.replace(' ', '_')}")
                 ElementTree.SubElement(material, "color", rgba=shade)
 
 
-def _origin(element: ElementTree.Element, place: np.ndarray, quat: np.ndarray) -> None:
-    ElementTree.SubElement(element, "origin", xyz=numbers(place), rpy=numbers(_roll_pitch_yaw(quat)))
+def _origin(element: ElementTree.Element, position: np.ndarray, quat: np.ndarray) -> None:
+    ElementTree.SubElement(element, "origin", xyz=numbers(position), rpy=numbers(_roll_pitch_yaw(quat)))
 
 
 def _roll_pitch_yaw(quat: np.ndarray) -> tuple[float, float, float]:

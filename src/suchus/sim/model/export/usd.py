@@ -137,6 +137,7 @@ def prim_name(robot: Robot) -> str:
 
 
 def _library() -> Any:
+    """Return the library that writes USD, or raise ``NoUsd`` where it is not installed."""
     try:
         import pxr  # noqa: PLC0415  an optional extra
         from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt  # noqa: F401, PLC0415  they load on import
@@ -164,48 +165,53 @@ class _Writer:
     def body(self, body: int, data: Any) -> None:
         """Write a body, the joints that carry it with links between them, its shapes and its frames."""
         model, name = self.model, self.model.body(body).name
-        at = _Link(name, data.xpos[body], Rotation.from_quat(data.xquat[body], scalar_first=True))
+        body_link = _Link(name, data.xpos[body], Rotation.from_quat(data.xquat[body], scalar_first=True))
         parent = self.links.get(model.body(int(model.body_parentid[body])).name)
-        first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
-        hinges = [j for j in range(first, first + count) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE]
+        first_joint, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+        hinges = [
+            j for j in range(first_joint, first_joint + count) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE
+        ]
         for hinge in hinges[:-1]:
-            link = at._replace(name=f"{model.joint(hinge).name}_link")
+            link = body_link._replace(name=f"{model.joint(hinge).name}_link")
             self._mass(self._place(link), LINK_MASS, np.zeros(3), np.full(3, LINK_INERTIA), np.array([1.0, 0, 0, 0]))
             parent = self._joint(hinge, parent, link)
-        prim = self._place(at)
+        prim = self._place(body_link)
         self._mass(prim, model.body_mass[body], model.body_ipos[body], model.body_inertia[body], model.body_iquat[body])
         if hinges:
-            self._joint(hinges[-1], parent, at)
+            self._joint(hinges[-1], parent, body_link)
         elif parent is not None:
-            self._fixed(parent, at)
+            self._fixed(parent, body_link)
         for geom in range(int(model.body_geomadr[body]), int(model.body_geomadr[body] + model.body_geomnum[body])):
             self._shape(geom, name)
         for site in (*sites(self.robot), IMU):
-            where = model.site(site)
-            if int(where.bodyid[0]) == body:
+            site_view = model.site(site)
+            if int(site_view.bodyid[0]) == body:
                 frame = self.pxr.UsdGeom.Xform.Define(self.stage, f"{self.root}/{name}/{site}")
-                self._move(frame, where.pos, where.quat)
+                self._move(frame, site_view.pos, site_view.quat)
 
     def _place(self, link: _Link) -> Any:
+        """Define a rigid body at the place of a link and return its prim."""
         self.links[link.name] = link
         prim = self.pxr.UsdGeom.Xform.Define(self.stage, f"{self.root}/{link.name}")
         self._move(prim, link.place, link.turn.as_quat(scalar_first=True))
         self.pxr.UsdPhysics.RigidBodyAPI.Apply(prim.GetPrim())
         return prim.GetPrim()
 
-    def _move(self, prim: Any, place: np.ndarray, quat: np.ndarray) -> None:
+    def _move(self, prim: Any, position: np.ndarray, quat: np.ndarray) -> None:
         double = self.pxr.UsdGeom.XformOp.PrecisionDouble
-        prim.AddTranslateOp(double).Set(self.pxr.Gf.Vec3d(*map(float, place)))
+        prim.AddTranslateOp(double).Set(self.pxr.Gf.Vec3d(*map(float, position)))
         prim.AddOrientOp(double).Set(self.pxr.Gf.Quatd(*map(float, quat)))
 
-    def _mass(self, prim: Any, mass: float, place: np.ndarray, inertia: np.ndarray, quat: np.ndarray) -> None:
-        held = self.pxr.UsdPhysics.MassAPI.Apply(prim)
-        held.CreateMassAttr(float(mass))
-        held.CreateCenterOfMassAttr(self.pxr.Gf.Vec3f(*map(float, place)))
-        held.CreateDiagonalInertiaAttr(self.pxr.Gf.Vec3f(*map(float, inertia)))
-        held.CreatePrincipalAxesAttr(self.pxr.Gf.Quatf(*map(float, quat)))
+    def _mass(self, prim: Any, mass: float, centre: np.ndarray, inertia: np.ndarray, quat: np.ndarray) -> None:
+        """Set mass [kg], centre of mass [m] and principal moments [kg m2] of a body."""
+        mass_api = self.pxr.UsdPhysics.MassAPI.Apply(prim)
+        mass_api.CreateMassAttr(float(mass))
+        mass_api.CreateCenterOfMassAttr(self.pxr.Gf.Vec3f(*map(float, centre)))
+        mass_api.CreateDiagonalInertiaAttr(self.pxr.Gf.Vec3f(*map(float, inertia)))
+        mass_api.CreatePrincipalAxesAttr(self.pxr.Gf.Quatf(*map(float, quat)))
 
     def _fixed(self, parent: _Link, child: _Link) -> None:
+        """Define a joint that fixes a child to its parent."""
         gf, back = self.pxr.Gf, parent.turn.inv()
         joint = self.pxr.UsdPhysics.FixedJoint.Define(self.stage, f"{self.root}/joints/{child.name}_fixed")
         joint.CreateBody0Rel().SetTargets([f"{self.root}/{parent.name}"])
@@ -214,6 +220,7 @@ class _Writer:
         joint.CreateLocalRot0Attr(gf.Quatf(*(back * child.turn).as_quat(scalar_first=True).tolist()))
 
     def _joint(self, hinge: int, parent: _Link | None, child: _Link) -> _Link:
+        """Define a revolute joint with its limits and its drive, and return the child."""
         assert parent is not None  # only the root has none, and no hinge
         name, gf = self.model.joint(hinge).name, self.pxr.Gf
         joint = self.pxr.UsdPhysics.RevoluteJoint.Define(self.stage, f"{self.root}/joints/{name}")
@@ -227,9 +234,9 @@ class _Writer:
         joint.CreateLocalPos1Attr(gf.Vec3f(0.0, 0.0, 0.0))
         joint.CreateLocalRot1Attr(gf.Quatf(*turn.as_quat(scalar_first=True).tolist()))
         if self.model.jnt_limited[hinge]:
-            low, high = np.degrees(self.model.jnt_range[hinge]).tolist()
-            joint.CreateLowerLimitAttr(low)
-            joint.CreateUpperLimitAttr(high)
+            lower_limit, upper_limit = np.degrees(self.model.jnt_range[hinge]).tolist()
+            joint.CreateLowerLimitAttr(lower_limit)
+            joint.CreateUpperLimitAttr(upper_limit)
         self._drive(joint.GetPrim(), name, hinge)
         return child
 
@@ -250,6 +257,7 @@ class _Writer:
         drive.CreateTargetPositionAttr(np.degrees(self.targets.get(name, 0.0)).item())
 
     def _shape(self, geom: int, body: str) -> None:
+        """Define the shape of a geom and the shape that collides, with the material of foot or skin."""
         kinds, geometry, model = mujoco.mjtGeom, self.pxr.UsdGeom, self.model
         kind, size, name = model.geom_type[geom], model.geom_size[geom].tolist(), model.geom(geom).name
         path = f"{self.root}/{body}/{name}_shape"
@@ -271,8 +279,8 @@ class _Writer:
             shape.AddScaleOp().Set(self.pxr.Gf.Vec3f(*size))
             shape = self._hull(f"{self.root}/{body}/{name}_hull", geom)
         self.pxr.UsdPhysics.CollisionAPI.Apply(shape.GetPrim())
-        made_of = "foot" if name.endswith("_foot") else "skin"
-        material = self.pxr.UsdShade.Material.Get(self.stage, f"{self.root}/materials/{made_of}")
+        material_name = "foot" if name.endswith("_foot") else "skin"
+        material = self.pxr.UsdShade.Material.Get(self.stage, f"{self.root}/materials/{material_name}")
         binding = self.pxr.UsdShade.MaterialBindingAPI.Apply(shape.GetPrim())
         binding.Bind(material, self.pxr.UsdShade.Tokens.fallbackStrength, "physics")
 
@@ -296,9 +304,9 @@ class _Writer:
 
 def _axis(vector: np.ndarray) -> tuple[str, Rotation]:
     """Return a joint's axis as USD names it, and how its frame is turned: not at all or half about, where it can be."""
-    along = int(np.argmax(np.abs(vector)))
+    axis_index = int(np.argmax(np.abs(vector)))
     if np.count_nonzero(vector) == 1:
-        turn = Rotation.identity() if vector[along] > 0 else Rotation.from_quat(np.eye(4)[(along + 1) % 3])
-        return "XYZ"[along], turn
+        turn = Rotation.identity() if vector[axis_index] > 0 else Rotation.from_quat(np.eye(4)[(axis_index + 1) % 3])
+        return "XYZ"[axis_index], turn
     turn, _ = Rotation.align_vectors([vector], [np.eye(3)[0]])
     return "X", turn

@@ -1,4 +1,4 @@
-"""What of a URDF or an MJCF describes its tree of hinges, checked, and freed of all that names files or makes bodies.
+"""The tree of hinges in a URDF or an MJCF: checked, and without elements that name files or generate bodies.
 
 XML from outside is parsed without entities, within a size and a depth, or refused in one sentence.
 """
@@ -18,7 +18,7 @@ from suchus.sim.model.importing.meshes import Meshes, inside
 
 LARGEST = 16 * 2**20
 """Size of a file of a robot [byte]."""
-_DEEPEST, _MOST = 200, 200_000  # levels of nesting; elements
+_MAX_DEPTH, _MAX_ELEMENTS = 200, 200_000  # levels of nesting; elements
 
 
 def parse(path: Path) -> ElementTree.Element:
@@ -32,12 +32,13 @@ def parse(path: Path) -> ElementTree.Element:
     depth = count = 0
 
     def start(tag: str, attributes: dict[str, str]) -> None:
+        """Begin an element; refuse too many elements, too deep ones, and those of a macro language."""
         nonlocal depth, count
         depth, count = depth + 1, count + 1
-        if depth > _DEEPEST:
-            raise UnreadableFile(f"{path} nests more than {_DEEPEST} elements; no robot needs so many.")
-        if count > _MOST:
-            raise UnreadableFile(f"{path} holds more than {_MOST} elements; no robot needs so many.")
+        if depth > _MAX_DEPTH:
+            raise UnreadableFile(f"{path} nests more than {_MAX_DEPTH} elements; no robot needs so many.")
+        if count > _MAX_ELEMENTS:
+            raise UnreadableFile(f"{path} holds more than {_MAX_ELEMENTS} elements; no robot needs so many.")
         if ":" in tag:
             raise UnreadableFile(
                 f"{path} holds <{tag[:40]}>, an element of a macro language; expand it first, as with "
@@ -64,7 +65,7 @@ def parse(path: Path) -> ElementTree.Element:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """What moves a hinge, as far as the file says."""
+    """Torque and speed of the drive of a hinge, where the file states them."""
 
     torque: float | None
     """Greatest torque [N m]; None if not said."""
@@ -75,13 +76,13 @@ class Drive:
 
 
 _TURNING = ("revolute", "continuous")
-_OTHER = ("prismatic", "planar", "floating")
+_UNSUPPORTED_JOINTS = ("prismatic", "planar", "floating")
 
 
 def clean_urdf(
     root: ElementTree.Element, meshes: Meshes
 ) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
-    """Return a URDF of links and joints alone, what drives each hinge, and sentences on what was left out.
+    """Return a URDF of links and joints alone, the drive of each hinge, and remarks on omitted elements.
 
     Raises:
         UnreadableFile: it has loops, joints that do not turn, or no links.
@@ -89,16 +90,16 @@ def clean_urdf(
     links, joints = root.findall("link"), root.findall("joint")
     if not links:
         raise UnreadableFile("the URDF has no <link>; a robot needs some.")
-    links, joints, afloat = _freed(links, joints)
+    links, joints, floating_remarks = _freed(links, joints)
     _refuse_kinds(joints)
     _refuse_loops(links, joints)
-    made = ElementTree.Element("robot", name="imported")
+    clean_root = ElementTree.Element("robot", name="imported")
     compiler = {**MUJOCO, "discardvisual": "true"}
-    ElementTree.SubElement(ElementTree.SubElement(made, "mujoco"), "compiler", compiler)
+    ElementTree.SubElement(ElementTree.SubElement(clean_root, "mujoco"), "compiler", compiler)
     for link in links:
-        _add_link(made, link, meshes)
+        _add_link(clean_root, link, meshes)
     for joint in joints:
-        copy = ElementTree.SubElement(made, "joint", {k: joint.get(k, "") for k in ("name", "type")})
+        copy = ElementTree.SubElement(clean_root, "joint", {k: joint.get(k, "") for k in ("name", "type")})
         bounded = ("limit",) if joint.get("type") == "revolute" else ()  # MuJoCo before 4.0 bounds continuous ones too
         copy.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", *bounded))
     turning = [joint for joint in joints if joint.get("type") in _TURNING]
@@ -107,37 +108,38 @@ def clean_urdf(
         for joint in turning
         if (mimic := joint.find("mimic")) is not None
     ]
-    remarks += afloat
+    remarks += floating_remarks
     remarks.append("A URDF holds no cables, springs, rotor inertia or gains: what the draft has of them is a guess.")
     drives = {str(joint.get("name")): _drive(joint) for joint in turning}
     if drives and all(drive.torque == 0.0 for drive in drives.values()):
         drives = {name: Drive(torque=None, speed=drive.speed, passive=False) for name, drive in drives.items()}
-    return made, drives, tuple(remarks)
+    return clean_root, drives, tuple(remarks)
 
 
 def _freed(
     links: list[ElementTree.Element], joints: list[ElementTree.Element]
 ) -> tuple[list[ElementTree.Element], list[ElementTree.Element], list[str]]:
-    """Return links and joints without a floating joint between the world and the robot, whose root is free anyway."""
+    """Return links, joints and remarks without a floating joint to the world, since the root of a robot is free."""
     children = {_linked(joint, "child") for joint in joints}
     floating = [j for j in joints if j.get("type") == "floating" and _linked(j, "parent") not in children]
     if len(floating) != 1:
         return links, joints, []
     robot = {_linked(floating[0], "child")}
-    carried: list[ElementTree.Element] = []
-    while found := [j for j in joints if _linked(j, "parent") in robot and j not in carried]:
-        carried += found
-        robot |= {_linked(joint, "child") for joint in found}
-    left = [link for link in links if link.get("name") not in robot]
-    solid = [str(link.get("name")) for link in left if len(link)]
-    told = [f"Beside the robot the file holds {', '.join(solid[:4])}, which was not taken."] if solid else []
-    return [link for link in links if link not in left], carried, told
+    robot_joints: list[ElementTree.Element] = []
+    while next_joints := [j for j in joints if _linked(j, "parent") in robot and j not in robot_joints]:
+        robot_joints += next_joints
+        robot |= {_linked(joint, "child") for joint in next_joints}
+    other_links = [link for link in links if link.get("name") not in robot]
+    solid = [str(link.get("name")) for link in other_links if len(link)]
+    remarks = [f"Beside the robot the file holds {', '.join(solid[:4])}, which was not taken."] if solid else []
+    return [link for link in links if link not in other_links], robot_joints, remarks
 
 
 def _refuse_kinds(joints: list[ElementTree.Element]) -> None:
+    """Refuse joints that are neither hinges nor fixed."""
     for joint in joints:
         kind, name = joint.get("type", ""), joint.get("name", "")
-        if kind in _OTHER:
+        if kind in _UNSUPPORTED_JOINTS:
             raise UnreadableFile(
                 f"joint {name!r} is {kind}; suchus takes hinges (revolute, continuous) and fixed joints: make it one "
                 "of these, or remove what it carries. A floating joint may carry the whole robot, and nothing else."
@@ -150,25 +152,25 @@ def _refuse_loops(links: list[ElementTree.Element], joints: list[ElementTree.Ele
     """Refuse what is no tree: a link with two parents, or links that carry each other."""
     names = {link.get("name") for link in links}
     parent: dict[str, str] = {}
-    counted = Counter(_linked(joint, "child") for joint in joints)
+    parent_counts = Counter(_linked(joint, "child") for joint in joints)
     for joint in joints:
-        child, above = _linked(joint, "child"), _linked(joint, "parent")
-        for name in (child, above):
+        child, parent_name = _linked(joint, "child"), _linked(joint, "parent")
+        for name in (child, parent_name):
             if name not in names:
                 raise UnreadableFile(f"joint {joint.get('name')!r} names link {name!r}, which is not there.")
-        if counted[child] > 1:
+        if parent_counts[child] > 1:
             raise UnreadableFile(
-                f"link {child!r} hangs on {counted[child]} joints, which makes a loop; suchus takes trees: open the "
-                "loop at one of them."
+                f"link {child!r} hangs on {parent_counts[child]} joints, which makes a loop; suchus takes trees: open "
+                "the loop at one of them."
             )
-        parent[child] = above
+        parent[child] = parent_name
     for link in parent:
-        seen, now = {link}, link
-        while now in parent:
-            now = parent[now]
-            if now in seen:
+        visited, ancestor = {link}, link
+        while ancestor in parent:
+            ancestor = parent[ancestor]
+            if ancestor in visited:
                 raise UnreadableFile(f"link {link!r} carries itself, a loop of joints; suchus takes trees: open it.")
-            seen.add(now)
+            visited.add(ancestor)
     roots = [name for name in names if name not in parent]
     if len(roots) > 1:
         raise UnreadableFile(
@@ -177,30 +179,31 @@ def _refuse_loops(links: list[ElementTree.Element], joints: list[ElementTree.Ele
         )
 
 
-def _linked(joint: ElementTree.Element, which: str) -> str:
-    element = joint.find(which)
+def _linked(joint: ElementTree.Element, end: str) -> str:
+    element = joint.find(end)
     return "" if element is None else element.get("link", "")
 
 
-def _add_link(made: ElementTree.Element, link: ElementTree.Element, meshes: Meshes) -> None:
-    copy = ElementTree.SubElement(made, "link", name=link.get("name", ""))
+def _add_link(clean_root: ElementTree.Element, link: ElementTree.Element, meshes: Meshes) -> None:
+    """Add a link with its inertia and its collision shapes; meshes that are not read are noted."""
+    copy = ElementTree.SubElement(clean_root, "link", name=link.get("name", ""))
     copy.extend(e for e in link if e.tag == "inertial")
-    lost = ""
+    unread_file = ""
     for shape in link.findall("collision") or link.findall("visual"):
         geometry = shape.find("geometry")
-        named = None if geometry is None else geometry.find("mesh")
+        mesh = None if geometry is None else geometry.find("mesh")
         if geometry is None or not len(geometry):
             continue
-        if named is not None:
-            given = meshes.given(named.get("filename", ""))
-            if given is None:
-                lost = named.get("filename", "")
+        if mesh is not None:
+            asset_name = meshes.given(mesh.get("filename", ""))
+            if asset_name is None:
+                unread_file = mesh.get("filename", "")
                 continue
-            named.set("filename", given)
-        part = ElementTree.SubElement(copy, "collision")
-        part.extend(e for e in shape if e.tag in ("origin", "geometry"))
-    if lost and copy.find("collision") is None:
-        meshes.bare[f"link {link.get('name', '')}"] = lost
+            mesh.set("filename", asset_name)
+        collision = ElementTree.SubElement(copy, "collision")
+        collision.extend(e for e in shape if e.tag in ("origin", "geometry"))
+    if unread_file and copy.find("collision") is None:
+        meshes.bare[f"link {link.get('name', '')}"] = unread_file
 
 
 def _drive(joint: ElementTree.Element) -> Drive:
@@ -210,6 +213,7 @@ def _drive(joint: ElementTree.Element) -> Drive:
 
 
 def _number(element: ElementTree.Element | None, key: str) -> float | None:
+    """Return a number of a limit, None where the file has none; refuse negative and infinite ones."""
     if element is None or element.get(key) is None:
         return None
     try:
@@ -222,40 +226,41 @@ def _number(element: ElementTree.Element | None, key: str) -> float | None:
 
 
 _BODIES = ("replicate", "composite", "flexcomp", "attach")
-_KEPT = ("body", "joint", "freejoint", "geom", "inertial", "site", "frame")
+_BODY_TAGS = ("body", "joint", "freejoint", "geom", "inertial", "site", "frame")
 _COMPILER = ("angle", "eulerseq", "autolimits", "coordinate", "inertiafromgeom", "inertiagrouprange", "settotalmass")
 _UNTOLD = ("compiler", "option", "size", "visual", "statistic", "default", "asset", "worldbody", "actuator", "equality")
 _FILES = 50  # included ones at most
 
 
 def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
-    """Put what an MJCF includes in its place; only files in its own folder are opened, each once.
+    """Replace the includes of an MJCF by their content; only files in its own folder are opened, each once.
 
     Raises:
         UnreadableFile: an included file lies elsewhere, is included twice, or cannot be read, or all together nest too
             deeply.
     """
-    home, seen = path.resolve().parent, [path.resolve()]
+    home, opened_files = path.resolve().parent, [path.resolve()]
 
     def expand(element: ElementTree.Element, depth: int) -> None:
-        if depth > _DEEPEST:
-            raise UnreadableFile(f"{path.name} and what it includes nest more than {_DEEPEST} elements.")
-        for place, child in reversed(list(enumerate(element))):
+        """Replace the includes below an element by what the included files hold."""
+        if depth > _MAX_DEPTH:
+            raise UnreadableFile(f"{path.name} and what it includes nest more than {_MAX_DEPTH} elements.")
+        for index, child in reversed(list(enumerate(element))):
             if child.tag != "include":
                 expand(child, depth + 1)
                 continue
-            where = inside(home, child.get("file", ""))
-            if where is None:
+            included_file = inside(home, child.get("file", ""))
+            if included_file is None:
                 raise UnreadableFile(
                     f"the MJCF includes {child.get('file', '')[:100]!r}, which lies outside its folder and is not "
                     "read; put it beside the file."
                 )
-            if where in seen or len(seen) > _FILES:
-                raise UnreadableFile(f"the MJCF includes {where.name!r} twice, or includes too many files.")
-            seen.append(where)
-            part = parse(where)
-            expand(part, depth)
-            element[place : place + 1] = list(part)
+            if included_file in opened_files or len(opened_files) > _FILES:
+                raise UnreadableFile(f"the MJCF includes {included_file.name!r} twice, or includes too many files.")
+            opened_files.append(included_file)
+            included_root = parse(included_file)
+            expand(included_root, depth)
+            element[index : index + 1] = list(included_root)
 
     expand(root, 1)
     return root
@@ -264,7 +269,7 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
 def clean_mjcf(
     root: ElementTree.Element, meshes: Meshes
 ) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
-    """Return an MJCF of bodies, joints and shapes alone, what drives each hinge, and sentences on what was left out.
+    """Return an MJCF of bodies, joints and shapes alone, the drive of each hinge, and remarks on omitted elements.
 
     Raises:
         UnreadableFile: it has loops, makes bodies by rule, or has no bodies.
@@ -272,13 +277,13 @@ def clean_mjcf(
     remarks = _equalities(root)
     drives, of_tendons = _actuators(root)
     remarks += of_tendons
-    made = ElementTree.Element("mujoco", model="imported")
+    clean_root = ElementTree.Element("mujoco", model="imported")
     compiler = {k: v for e in root.findall("compiler") for k, v in e.attrib.items() if k in _COMPILER}
     bounds = {key: MUJOCO[key] for key in ("boundmass", "boundinertia")}
-    ElementTree.SubElement(made, "compiler", {**compiler, **bounds})
+    ElementTree.SubElement(clean_root, "compiler", {**compiler, **bounds})
     for element in root.findall("default"):
-        made.append(_cleaned(element, (*_KEPT, "mesh", "default"), None))
-    lost = _meshes(root, made, meshes)
+        clean_root.append(_cleaned(element, (*_BODY_TAGS, "mesh", "default"), None))
+    unread_meshes = _meshes(root, clean_root, meshes)
     worlds = root.findall("worldbody")
     if not any(world.find(".//body") is not None for world in worlds):
         raise UnreadableFile("the MJCF has no <body>; a robot needs some.")
@@ -288,57 +293,70 @@ def clean_mjcf(
                 raise UnreadableFile(
                     f"the MJCF makes bodies with <{element.tag}>; write them out first, as with mujoco.mj_saveLastXML."
                 )
-        made.append(_cleaned(world, _KEPT, lost))
-        meshes.bare |= _bare(world, lost)
-    left = sorted({element.tag for element in root if element.tag not in _UNTOLD})
-    if left:
-        remarks += (f"Of the MJCF these are not part of a body and were not read: {', '.join(left)}.",)
-    return made, drives, remarks
+        clean_root.append(_cleaned(world, _BODY_TAGS, unread_meshes))
+        meshes.bare |= _shapeless_bodies(world, unread_meshes)
+    unread_tags = sorted({element.tag for element in root if element.tag not in _UNTOLD})
+    if unread_tags:
+        remarks += (f"Of the MJCF these are not part of a body and were not read: {', '.join(unread_tags)}.",)
+    return clean_root, drives, remarks
 
 
 def _cleaned(
-    element: ElementTree.Element, tags: tuple[str, ...], lost: Mapping[str, str] | None
+    element: ElementTree.Element, tags: tuple[str, ...], unread_meshes: Mapping[str, str] | None
 ) -> ElementTree.Element:
-    """Return a copy with these tags alone, without materials, and without geoms whose mesh or field is not read."""
+    """Return a copy of an element that has children of some tags alone.
+
+    Materials are left out, and geoms whose mesh or height field is not read.
+
+    Args:
+        element: the element.
+        tags: of the children that are copied.
+        unread_meshes: file of each mesh that is not read, by name.
+    """
     copy = ElementTree.Element(element.tag, {k: v for k, v in element.attrib.items() if k not in ("material", "mocap")})
     for child in element:
-        gone = child.tag == "geom" and (child.get("type") in ("hfield", "sdf") or child.get("mesh") in (lost or ()))
-        if child.tag in tags and not gone:
-            copy.append(_cleaned(child, tags, lost))
+        is_dropped = child.tag == "geom" and (
+            child.get("type") in ("hfield", "sdf") or child.get("mesh") in (unread_meshes or ())
+        )
+        if child.tag in tags and not is_dropped:
+            copy.append(_cleaned(child, tags, unread_meshes))
     return copy
 
 
-def _bare(world: ElementTree.Element, lost: Mapping[str, str]) -> dict[str, str]:
-    """Return the mesh that was not read of each body that has no other shape."""
+def _shapeless_bodies(world: ElementTree.Element, unread_meshes: Mapping[str, str]) -> dict[str, str]:
+    """Return the file of the unread mesh of each body that has no other shape, by body."""
     shapes = {f"body {body.get('name', '')}": [geom.get("mesh") for geom in body.findall("geom")]
               for body in world.iter("body")}  # fmt: skip
     return {
-        body: lost[str(meshes[0])] for body, meshes in shapes.items() if meshes and all(one in lost for one in meshes)
+        body: unread_meshes[str(meshes[0])]
+        for body, meshes in shapes.items()
+        if meshes and all(mesh_name in unread_meshes for mesh_name in meshes)
     }
 
 
-def _meshes(root: ElementTree.Element, made: ElementTree.Element, meshes: Meshes) -> dict[str, str]:
+def _meshes(root: ElementTree.Element, clean_root: ElementTree.Element, meshes: Meshes) -> dict[str, str]:
     """Add the meshes that are read as assets; return the files of the others by name."""
-    asset, lost = ElementTree.SubElement(made, "asset"), {}
+    asset, unread_meshes = ElementTree.SubElement(clean_root, "asset"), {}
     folder = next((v for e in root.findall("compiler") for k in ("meshdir", "assetdir") if (v := e.get(k))), "")
-    for element in (e for part in root.findall("asset") for e in part.findall("mesh")):
-        own = element.get("file", "")
-        file = f"{folder.rstrip('/')}/{own}" if folder and own else own
-        name = element.get("name") or Path(own).stem
+    for element in (e for section in root.findall("asset") for e in section.findall("mesh")):
+        file_name = element.get("file", "")
+        file = f"{folder.rstrip('/')}/{file_name}" if folder and file_name else file_name
+        name = element.get("name") or Path(file_name).stem
         attributes = {k: v for k, v in element.attrib.items() if k in ("class", "scale", "refpos", "refquat", "vertex")}
-        if own or "vertex" not in attributes:
-            given = meshes.given(file)
-            if given is None:
-                lost[name] = file
+        if file_name or "vertex" not in attributes:
+            asset_name = meshes.given(file)
+            if asset_name is None:
+                unread_meshes[name] = file
                 continue
-            attributes["file"] = given
+            attributes["file"] = asset_name
         ElementTree.SubElement(asset, "mesh", {"name": name, **attributes})
-    return lost
+    return unread_meshes
 
 
 def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
+    """Return remarks on equalities that are not taken; refuse those that close a loop."""
     remarks = []
-    for element in (e for part in root.findall("equality") for e in part):
+    for element in (e for section in root.findall("equality") for e in section):
         if element.get("active") == "false":
             continue
         if element.tag in ("connect", "weld"):
@@ -354,50 +372,52 @@ def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
 def _actuators(root: ElementTree.Element) -> tuple[dict[str, Drive], tuple[str, ...]]:
     """Return the drive of each hinge; where a file drives some hinges, the others are passive."""
     defaults = dict(_defaults(root))
-    driven: dict[str, Drive] = {}
+    drives: dict[str, Drive] = {}
     remarks = []
-    tendons = {e.get("name"): e for part in root.findall("tendon") for e in part}
-    for element in (e for part in root.findall("actuator") for e in part):
+    tendons = {e.get("name"): e for section in root.findall("tendon") for e in section}
+    for element in (e for section in root.findall("actuator") for e in section):
         joint = element.get("joint") or element.get("jointinparent")
-        given = {**defaults.get((element.get("class", "main"), element.tag), {}), **element.attrib}
+        attributes = {**defaults.get((element.get("class", "main"), element.tag), {}), **element.attrib}
         if joint:
-            driven[joint] = Drive(torque=_torque(given), speed=None, passive=False)
+            drives[joint] = Drive(torque=_torque(attributes), speed=None, passive=False)
         elif element.get("tendon") in tendons:
-            over = [e.get("joint", "") for e in tendons[element.get("tendon")].iter("joint")]
+            tendon_joints = [e.get("joint", "") for e in tendons[element.get("tendon")].iter("joint")]
             remarks.append(
-                f"Actuator {element.get('name', element.tag)} pulls a tendon over {', '.join(over) or 'sites'}; this "
-                "drive was not taken: these hinges are springs in the draft. Say it as [[cables]], with cord spacing "
-                "and pulley, or give them servos."
+                f"Actuator {element.get('name', element.tag)} pulls a tendon over "
+                f"{', '.join(tendon_joints) or 'sites'}; "
+                "this drive was not taken: these hinges are springs in the draft. Say it as [[cables]], with cord "
+                "spacing and pulley, or give them servos."
             )
         else:
             remarks.append(f"Actuator {element.get('name', element.tag)} drives no joint and was not taken.")
-    if not driven:
+    if not drives:
         return {}, tuple(remarks)
-    others = {e.get("name", ""): Drive(torque=None, speed=None, passive=True) for e in root.iter("joint")}
-    return {**others, **driven}, tuple(remarks)
+    passive_drives = {e.get("name", ""): Drive(torque=None, speed=None, passive=True) for e in root.iter("joint")}
+    return {**passive_drives, **drives}, tuple(remarks)
 
 
 def _defaults(root: ElementTree.Element) -> Iterator[tuple[tuple[str, str], Mapping[str, str]]]:
     """Yield the default attributes of each class and tag, those of the classes above it included."""
 
     def walk(
-        element: ElementTree.Element, above: Mapping[str, Mapping[str, str]], name: str
+        element: ElementTree.Element, inherited: Mapping[str, Mapping[str, str]], name: str
     ) -> Iterator[tuple[tuple[str, str], Mapping[str, str]]]:
-        own = {e.tag: {**above.get(e.tag, {}), **e.attrib} for e in element if e.tag != "default"}
-        here = {**above, **own}
-        for tag, attributes in here.items():
+        """Yield the default attributes of a class and of the classes inside it."""
+        class_attributes = {e.tag: {**inherited.get(e.tag, {}), **e.attrib} for e in element if e.tag != "default"}
+        merged = {**inherited, **class_attributes}
+        for tag, attributes in merged.items():
             yield (name, tag), attributes
         for child in element.findall("default"):
-            yield from walk(child, here, child.get("class", ""))
+            yield from walk(child, merged, child.get("class", ""))
 
     for element in root.findall("default"):
         yield from walk(element, {}, element.get("class", "main"))
 
 
-def _torque(given: Mapping[str, str]) -> float | None:
+def _torque(attributes: Mapping[str, str]) -> float | None:
     """Return the greatest torque that an actuator may give; None if the file does not say."""
     try:
-        ends = [abs(float(word)) for word in given.get("forcerange", "").split()]
+        ends = [abs(float(word)) for word in attributes.get("forcerange", "").split()]
     except ValueError:
-        raise UnreadableFile(f'forcerange="{given["forcerange"][:60]}" is not two numbers.') from None
+        raise UnreadableFile(f'forcerange="{attributes["forcerange"][:60]}" is not two numbers.') from None
     return max(ends) if len(ends) == 2 and 0 < max(ends) < float("inf") else None

@@ -59,12 +59,12 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
             )
         if not without_meshes:
             meshes.check()
-        model, mended = _compiled(clean, meshes)
+        model, inertia_remarks = _compiled(clean, meshes)
     except SuchusError as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
     if meshes.lost:
         remarks += (f"{len(meshes.lost)} meshes were not read: {'; '.join(list(meshes.lost.values())[:3])}.",)
-    return Loaded(kind=kind, model=model, drives=drives, remarks=(*remarks, *mended))
+    return Loaded(kind=kind, model=model, drives=drives, remarks=(*remarks, *inertia_remarks))
 
 
 def _check_numbers(clean: ElementTree.Element) -> None:
@@ -100,12 +100,12 @@ def _compiled(clean: ElementTree.Element, meshes: Meshes) -> tuple[Any, tuple[st
         for mesh in spec.meshes:
             exact = mesh.file not in meshes.open
             mesh.inertia = getattr(mujoco.mjtMeshInertia, f"mjMESH_INERTIA_{'EXACT' if exact else 'CONVEX'}")
-        model, mended = _balanced(spec)
+        model, inertia_remarks = _balanced(spec)
     except (ValueError, mujoco.FatalError) as error:
-        said = " ".join(str(error).split())
-        raise UnreadableFile(f"MuJoCo says: {said[:240].rstrip('.')}.") from error
+        message = " ".join(str(error).split())
+        raise UnreadableFile(f"MuJoCo says: {message[:240].rstrip('.')}.") from error
     if meshes.open:
-        mended += (
+        inertia_remarks += (
             f"{len(meshes.open)} meshes are no closed surfaces: where a body has no <inertial>, its mass is that of "
             "the convex hull.",
         )
@@ -122,7 +122,7 @@ def _compiled(clean: ElementTree.Element, meshes: Meshes) -> tuple[Any, tuple[st
             )
     if not (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).any():
         raise UnreadableFile("it has no hinge; a robot needs some.")
-    return model, mended
+    return model, inertia_remarks
 
 
 def _balanced(spec: Any) -> tuple[Any, tuple[str, ...]]:
@@ -134,8 +134,8 @@ def _balanced(spec: Any) -> tuple[Any, tuple[str, ...]]:
         spec.compiler.balanceinertia = True
         model = spec.compile()
         body = re.search(r"Element name '([^']*)'", str(error))
-        which = f"of {body[1]}" if body else "of a body"
+        body_text = f"of {body[1]}" if body else "of a body"
         return model, (
-            f"The inertia {which} is none that a body can have, one principal moment being greater than the sum of the "
-            "others; MuJoCo gives all such bodies three equal moments of the same sum.",
+            f"The inertia {body_text} is none that a body can have, one principal moment being greater than the sum of "
+            "the others; MuJoCo gives all such bodies three equal moments of the same sum.",
         )

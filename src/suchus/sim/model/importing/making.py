@@ -1,4 +1,4 @@
-"""What is gathered while a robot is drafted from a body plan: its hinges, remarks, and guesses with their reasons."""
+"""State of a draft during its construction from a body plan: hinges, remarks, and guesses with their reasons."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -46,7 +46,7 @@ class Size:
 
 
 def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, float]:
-    """Return what a hinge turns, and 1 where its axis points along x, y or z of the robot, else -1.
+    """Return the kind of a hinge, and 1 where its axis points along x, y or z of the robot, else -1.
 
     Args:
         joint: the hinge.
@@ -56,29 +56,29 @@ def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, f
     Raises:
         UnreadableFile: it is skew.
     """
-    along = int(np.argmax(np.abs(axis)))
-    off = degrees(np.arccos(min(abs(axis[along]), 1.0)))
-    if off > SKEW:
+    axis_index = int(np.argmax(np.abs(axis)))
+    skew = degrees(np.arccos(min(abs(axis[axis_index]), 1.0)))
+    if skew > SKEW:
         raise UnreadableFile(
-            f"hinge {joint.name} turns about ({', '.join(f'{v:.2f}' for v in axis)}), {off:.0f} degrees off "
+            f"hinge {joint.name} turns about ({', '.join(f'{v:.2f}' for v in axis)}), {skew:.0f} degrees off "
             "the robot's axes (forward, left, up) at zero posture; suchus takes hinges along them: draw its limb so."
         )
-    if off > _EXACT:
-        remarks.append(f"Hinge {joint.name} is {off:.1f} degrees skew; the draft has it along an axis of the robot.")
-    turn: Turn = ("roll", "pitch", "yaw")[along]
-    return turn, float(np.sign(axis[along]))
+    if skew > _EXACT:
+        remarks.append(f"Hinge {joint.name} is {skew:.1f} degrees skew; the draft has it along an axis of the robot.")
+    turn: Turn = ("roll", "pitch", "yaw")[axis_index]
+    return turn, float(np.sign(axis[axis_index]))
 
 
 def limb_turn(joint: Joint, axis: np.ndarray, side: float, remarks: list[str]) -> tuple[Turn, float]:
-    """Return what a hinge of a limb turns, and 1 where it turns as ours does, else -1."""
-    along, sense = turn_of(joint, axis, remarks)
-    turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[along]  # type: ignore[assignment]
-    ours = LIMB_AXES[turn][("roll", "pitch", "yaw").index(along)]
-    return turn, sense * ours * (side if turn != "roll" else 1.0)
+    """Return the kind of a limb's hinge, and 1 where its positive sense is that of the robot's hinge, else -1."""
+    file_turn, sense = turn_of(joint, axis, remarks)
+    turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[file_turn]  # type: ignore[assignment]
+    robot_sign = LIMB_AXES[turn][("roll", "pitch", "yaw").index(file_turn)]
+    return turn, sense * robot_sign * (side if turn != "roll" else 1.0)
 
 
 def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
-    """Return 1 where a hinge of the axis turns as ours does, else -1.
+    """Return 1 where the positive sense of an axis hinge is that of the robot's hinge, else -1.
 
     Args:
         turn: what it turns.
@@ -86,11 +86,13 @@ def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
         ahead: whether it lies ahead of the root.
         onward: whether a positive angle of the file moves the part farther from our root.
     """
-    ours = 1.0 if ahead or turn == "yaw" else -1.0
-    return sense * ours * (1.0 if onward else -1.0)
+    robot_sign = 1.0 if ahead or turn == "yaw" else -1.0
+    return sense * robot_sign * (1.0 if onward else -1.0)
 
 
-def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share: float, *, lone: bool) -> Hinge:
+def hinge_of(
+    name: str, turn: Turn, sign: float, joint: Joint, size: Size, mass_fraction: float, *, lone: bool
+) -> Hinge:
     """Return a hinge of the robot.
 
     Args:
@@ -99,61 +101,66 @@ def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share
         sign: of its angles against those of the file.
         joint: of the file.
         size: of the robot.
-        share: mass of what it carries over that of the heaviest part, for a spring.
+        mass_fraction: mass of what it carries over that of the heaviest part, for a spring.
         lone: whether it is the only hinge of a limb, which may turn all round.
     """
     servo = _servo(joint, size)
     if joint.range is None and lone and servo is not None:
         return Hinge(name=name, turn=turn, drive=Crank(servo=servo))
-    low, high = sorted(sign * end for end in joint.range or (-pi, pi))
-    low, high = max(low, -_WIDEST), min(high, _WIDEST)
-    if not low < high:
+    lower_limit, upper_limit = sorted(sign * end for end in joint.range or (-pi, pi))
+    lower_limit, upper_limit = max(lower_limit, -_WIDEST), min(upper_limit, _WIDEST)
+    if not lower_limit < upper_limit:
         raise UnreadableFile(
-            f"hinge {joint.name} has a range of {low:g} to {high:g} rad; give it one that is not empty."
+            f"hinge {joint.name} has a range of {lower_limit:g} to {upper_limit:g} rad; give it one that is not empty."
         )
-    return Hinge(name=name, turn=turn, drive=servo or _spring(joint, size, share), range=(low, high))
+    return Hinge(
+        name=name, turn=turn, drive=servo or _spring(joint, size, mass_fraction), range=(lower_limit, upper_limit)
+    )
 
 
 def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
-    """Return names for hinges of the axis: those of the file where they follow the rule, else made ones.
+    """Return names for hinges of the axis: those of the file if all follow the rule of names, else new ones.
 
     Args:
         turns: what each turns, its part of the body (``spine``, ``neck`` or ``tail``), its name in the file; of each
             part of the body from the root on.
     """
-    theirs = [name for _, _, name in turns]
-    rule = all((turn == "yaw" and part == "spine") == name.startswith("spine_yaw_") for turn, part, name in turns)
-    if rule and len(set(theirs)) == len(theirs):
-        return theirs
+    file_names = [name for _, _, name in turns]
+    rule = all((turn == "yaw" and region == "spine") == name.startswith("spine_yaw_") for turn, region, name in turns)
+    if rule and len(set(file_names)) == len(file_names):
+        return file_names
     count: dict[tuple[str, str], int] = {}
     names = []
-    for turn, part, _ in turns:
-        count[part, turn] = count.get((part, turn), 0) + 1
-        names.append(f"{part}_{turn}_{count[part, turn]}")
+    for turn, region, _ in turns:
+        count[region, turn] = count.get((region, turn), 0) + 1
+        names.append(f"{region}_{turn}_{count[region, turn]}")
     return names
 
 
-def limb_names(left: Sequence[str], right: Sequence[str], girdle: str) -> list[str] | None:
-    """Return what follows the limb's name in names as ``LF_yaw`` and ``RF_yaw``; None if they are not such."""
+def limb_names(left_names: Sequence[str], right_names: Sequence[str], girdle: str) -> list[str] | None:
+    """Return the suffixes of names as ``LF_yaw`` and ``RF_yaw``; None if names are not of this form."""
     heads = f"L{girdle}_", f"R{girdle}_"
-    alike = all(
-        one.startswith(heads[0]) and two.startswith(heads[1]) and one[len(heads[0]) :] == two[len(heads[1]) :]
-        for one, two in zip(left, right, strict=True)
+    is_mirrored = all(
+        left_name.startswith(heads[0])
+        and right_name.startswith(heads[1])
+        and left_name[len(heads[0]) :] == right_name[len(heads[1]) :]
+        for left_name, right_name in zip(left_names, right_names, strict=True)
     )
-    suffixes = [name.removeprefix(heads[0]) for name in left]
-    return suffixes if alike and all(suffixes) and len(set(suffixes)) == len(suffixes) else None
+    suffixes = [name.removeprefix(heads[0]) for name in left_names]
+    return suffixes if is_mirrored and all(suffixes) and len(set(suffixes)) == len(suffixes) else None
 
 
 def numbered(turns: Sequence[str]) -> list[str]:
     """Return a name for each hinge of a limb: what it turns, with a number from the second one on."""
     names: list[str] = []
     for i, turn in enumerate(turns):
-        before = list(turns[:i]).count(turn)
-        names.append(turn if not before else f"{turn}_{before + 1}")
+        earlier_count = list(turns[:i]).count(turn)
+        names.append(turn if not earlier_count else f"{turn}_{earlier_count + 1}")
     return names
 
 
 def _servo(joint: Joint, size: Size) -> Servo | None:
+    """Return a servo for the robot's size with torque and speed of the file; None for a passive hinge."""
     if joint.drive is not None and joint.drive.passive:
         return None
     servo = servo_for(size.mass, size.length)
@@ -166,8 +173,8 @@ def _servo(joint: Joint, size: Size) -> Servo | None:
     )
 
 
-def _spring(joint: Joint, size: Size, share: float) -> Spring:
-    spring = spring_for(size.mass, size.length, share)
+def _spring(joint: Joint, size: Size, mass_fraction: float) -> Spring:
+    spring = spring_for(size.mass, size.length, mass_fraction)
     if joint.stiffness > 0:
         return replace(spring, stiffness=joint.stiffness, damping=joint.damping)
     return spring
@@ -202,44 +209,44 @@ class Making:
         """Return a direction of the file in the robot's frame, shape (3,) [-]."""
         return np.asarray(self.plan.plane.turn @ axis)
 
-    def inertia(self, place: str, parts: Sequence[TreePart], origin: np.ndarray) -> Inertia | None:
-        """Return where the mass of parts that move as one lies, in a frame like the robot's.
+    def inertia(self, note_path: str, parts: Sequence[TreePart], origin: np.ndarray) -> Inertia | None:
+        """Return centre and moments of the mass of parts that move as one, along the robot's axes.
 
         Args:
-            place: of the segment or link in the robot's file.
+            note_path: of the segment or link in the robot's file.
             parts: the parts.
             origin: of the frame, in that of the robot [m].
 
         Returns:
             None where the file does not say.
         """
-        if not parts or not all(np.any(part.tensor) for part in parts):
+        if not parts or not all(np.any(tree_part.tensor) for tree_part in parts):
             return None
-        _, com, tensor = together([(part.mass, part.com, part.tensor) for part in parts])
-        turned = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
-        self.notes[f"{place}.inertia.moments"] = "of the file, as its centre and its products"
+        _, com, tensor = together([(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in parts])
+        rotated_tensor = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
+        self.notes[f"{note_path}.inertia.moments"] = "of the file, as its centre and its products"
         return Inertia(
             centre=point(self.into(com) - origin),
-            moments=point(np.diag(turned)),
-            products=point(turned[[0, 0, 1], [1, 2, 2]]),
+            moments=point(np.diag(rotated_tensor)),
+            products=point(rotated_tensor[[0, 0, 1], [1, 2, 2]]),
         )
 
     def hip(self, chain: LimbChain) -> np.ndarray:
         """Return where a limb begins in the frame of the file, shape (3,) [m]."""
         return self.plan.part(chain.parts[0]).joints[0].anchor
 
-    def note_hinge(self, place: str, hinge: Hinge, joint: Joint, sign: float) -> None:
-        """Say beside a hinge which one of the file it is, and what of it is guessed."""
-        turned = "" if sign > 0 else ", turning the other way"
-        drawn = "" if joint.zero == 0.0 else f", which calls this zero {joint.zero:.6g}"
-        self.notes[f"{place}.name"] = f"the file's {joint.name}{turned}{drawn}"
+    def note_hinge(self, note_path: str, hinge: Hinge, joint: Joint, sign: float) -> None:
+        """Add notes to a hinge: its name in the file, and which of its values are guesses."""
+        turn_text = "" if sign > 0 else ", turning the other way"
+        zero_text = "" if joint.zero == 0.0 else f", which calls this zero {joint.zero:.6g}"
+        self.notes[f"{note_path}.name"] = f"the file's {joint.name}{turn_text}{zero_text}"
         if joint.range is None and hinge.range is not None:
-            self.notes[f"{place}.range"] = "guess: the file gives no limits"
+            self.notes[f"{note_path}.range"] = "guess: the file gives no limits"
         if isinstance(hinge.drive, Spring):
-            known = "the file's stiffness and damping" if joint.stiffness > 0 else "guess: from the size"
-            self.notes[f"{place}.drive.stiffness"] = known
+            spring_note = "the file's stiffness and damping" if joint.stiffness > 0 else "guess: from the size"
+            self.notes[f"{note_path}.drive.stiffness"] = spring_note
             return
-        drive = f"{place}.drive" if hinge.range is not None else f"{place}.drive.servo"
+        drive = f"{note_path}.drive" if hinge.range is not None else f"{note_path}.drive.servo"
         self.notes[f"{drive}.kp"] = "guess: from the size, as all of this servo that has no note (design.servo_for)"
         for name in ("torque", "speed"):
             if joint.drive is not None and getattr(joint.drive, name):
@@ -255,7 +262,7 @@ def making_of(plan: BodyPlan, words: Words) -> Making:
         words=words,
         level=_level(plan),
         size=Size(mass=plan.tree.mass, length=length),
-        heaviest=max(part.mass for part in plan.tree.parts),
+        heaviest=max(tree_part.mass for tree_part in plan.tree.parts),
     )
 
 
@@ -268,11 +275,11 @@ def _level(plan: BodyPlan) -> float:
     """Return the height of the axis: that of its pitch and roll hinges in the middle, else of the root's origin [m]."""
     heights = [
         float(plan.plane.into(joint.anchor)[2])
-        for near, far in zip(plan.axis[:-1], plan.axis[1:], strict=True)
-        for joint, _ in links_between(plan, near, far)
+        for inner_index, outer_index in zip(plan.axis[:-1], plan.axis[1:], strict=True)
+        for joint, _ in links_between(plan, inner_index, outer_index)
         if abs((plan.plane.turn @ joint.axis)[2]) < 0.5
     ]
     if heights:
         return sorted(heights)[len(heights) // 2]
-    place = 0 if 0 in plan.axis else plan.axis[0]
-    return float(plan.plane.into(plan.part(place).origin)[2])
+    root_index = 0 if 0 in plan.axis else plan.axis[0]
+    return float(plan.plane.into(plan.part(root_index).origin)[2])

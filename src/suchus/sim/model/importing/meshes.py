@@ -9,12 +9,12 @@ from pathlib import Path
 from suchus.core.errors import UnreadableFile
 from suchus.core.reading import NoMeshes, check_file, read_mesh
 
-_MOST = 64 * 2**20  # bytes of all meshes
+_MAX_TOTAL_SIZE = 64 * 2**20  # bytes of all meshes
 _SCHEME = "package://"
 
 
 class Meshes:
-    """What MuJoCo is given of the meshes of a robot's file.
+    """The meshes of a robot's file as assets for MuJoCo.
 
     Args:
         home: the folder of the file.
@@ -22,13 +22,14 @@ class Meshes:
     """
 
     def __init__(self, home: Path, packages: Sequence[str | Path] = ()) -> None:
+        """Resolve the folders; no file is opened yet."""
         self._home, self._packages = home.resolve(), [Path(folder).resolve() for folder in packages]
         self.assets: dict[str, bytes] = {}
         """STL files by the names under which MuJoCo finds them."""
         self.open: list[str] = []
         """Those of ``assets`` that are no closed surfaces."""
         self.lost: dict[str, str] = {}
-        """Why a mesh was not read, by what the file calls it."""
+        """Reason why a mesh was not read, by its name in the file."""
         self.bare: dict[str, str] = {}
         """The mesh that was lost, by the body that has no other shape."""
         self._size = 0
@@ -36,19 +37,19 @@ class Meshes:
     def given(self, name: str) -> str | None:
         """Return the name under which MuJoCo finds a mesh of the file; None where it is not read."""
         try:
-            where = self._found(name)
-            stl, closed = _stl(where, self._bytes(where))
+            mesh_file = self._locate(name)
+            stl, closed = _stl(mesh_file, self._bytes(mesh_file))
         except NoMeshes:
             raise
         except UnreadableFile as error:
             self.lost[name] = str(error).rstrip(".")
             return None
-        known = next((key for key, held in self.assets.items() if held == stl), None)
-        given = known or f"mesh_{len(self.assets)}.stl"
-        self.assets[given] = stl
-        if not closed and given not in self.open:
-            self.open.append(given)
-        return given
+        stored_name = next((key for key, stored_data in self.assets.items() if stored_data == stl), None)
+        asset = stored_name or f"mesh_{len(self.assets)}.stl"
+        self.assets[asset] = stl
+        if not closed and asset not in self.open:
+            self.open.append(asset)
+        return asset
 
     def check(self) -> None:
         """Refuse bodies that would have no shape since their mesh was not read.
@@ -59,18 +60,18 @@ class Meshes:
         if not self.bare:
             return
         body, name = next(iter(self.bare.items()))
-        more = f" and of {len(self.bare) - 1} more" if len(self.bare) > 1 else ""
+        others_text = f" and of {len(self.bare) - 1} more" if len(self.bare) > 1 else ""
         raise UnreadableFile(
-            f"the shape of {body}{more} is a mesh that was not read: {self.lost[name]}. Say --packages FOLDER for the "
-            "folder in which the package lies, or --without-meshes to have rods in the place of such shapes."
+            f"the shape of {body}{others_text} is a mesh that was not read: {self.lost[name]}. Say --packages FOLDER "
+            "for the folder in which the package lies, or --without-meshes to have rods in the place of such shapes."
         )
 
-    def _found(self, name: str) -> Path:
+    def _locate(self, name: str) -> Path:
         """Return the file of a mesh, inside the folder of the robot's file or of a package."""
-        for root, rest in self._places(name):
-            where = inside(root, rest)
-            if where is not None and where.is_file():
-                return where
+        for root, relative_path in self._places(name):
+            mesh_file = inside(root, relative_path)
+            if mesh_file is not None and mesh_file.is_file():
+                return mesh_file
         if name.startswith(_SCHEME):
             raise UnreadableFile(f"{name[:100]} is in none of the folders of packages")
         if inside(self._home, name) is None:
@@ -78,36 +79,42 @@ class Meshes:
         raise UnreadableFile(f"there is no file {name[:100]}")
 
     def _places(self, name: str) -> list[tuple[Path, str]]:
+        """Return folders and relative paths at which a mesh may lie, in the order in which they are tried."""
         if not name.startswith(_SCHEME):
             return [(self._home, name.removeprefix("file://"))]
         path = name.removeprefix(_SCHEME)
-        package, _, rest = path.partition("/")
-        return [one for root in self._packages for one in ((root, path), *([(root, rest)] * (root.name == package)))]
+        package, _, relative_path = path.partition("/")
+        return [
+            location
+            for root in self._packages
+            for location in ((root, path), *([(root, relative_path)] * (root.name == package)))
+        ]
 
-    def _bytes(self, where: Path) -> bytes:
-        check_file(where)
-        self._size += where.stat().st_size
-        if self._size > _MOST:
-            raise UnreadableFile(f"{where.name} makes the meshes larger than {_MOST // 2**20} MiB")
+    def _bytes(self, mesh_file: Path) -> bytes:
+        """Return the content of a mesh file; refuse it where all meshes together would be too large."""
+        check_file(mesh_file)
+        self._size += mesh_file.stat().st_size
+        if self._size > _MAX_TOTAL_SIZE:
+            raise UnreadableFile(f"{mesh_file.name} makes the meshes larger than {_MAX_TOTAL_SIZE // 2**20} MiB")
         try:
-            return where.read_bytes()
+            return mesh_file.read_bytes()
         except OSError as error:
-            raise UnreadableFile(f"{where.name} cannot be read: {error.strerror}") from error
+            raise UnreadableFile(f"{mesh_file.name} cannot be read: {error.strerror}") from error
 
 
 def inside(home: Path, name: str) -> Path | None:
     """Return the path of a file named in a robot's file; None where it would lie outside a folder."""
     try:
-        where = (home / name).resolve()
+        path = (home / name).resolve()
     except (OSError, ValueError, RuntimeError):
         return None
-    return where if name and where.is_relative_to(home) else None
+    return path if name and path.is_relative_to(home) else None
 
 
-def _stl(where: Path, data: bytes) -> tuple[bytes, bool]:
+def _stl(mesh_file: Path, data: bytes) -> tuple[bytes, bool]:
     """Return a mesh as STL, and whether its surface is closed; nothing that it names is opened."""
-    mesh = read_mesh(where, data)
+    mesh = read_mesh(mesh_file, data)
     try:
         return mesh.export(file_type="stl"), bool(mesh.is_watertight)
     except Exception as error:  # whatever trimesh raises for a mesh that is none
-        raise UnreadableFile(f"{where.name} is no mesh: {' '.join(str(error).split())[:120]}") from error
+        raise UnreadableFile(f"{mesh_file.name} is no mesh: {' '.join(str(error).split())[:120]}") from error

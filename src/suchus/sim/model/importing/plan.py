@@ -40,14 +40,14 @@ class Words:
 TOLERANCE = 0.02
 """Mirror images may miss each other by this share of the robot's size [-]."""
 _SHARE = 0.9  # of the hinges that a mirror plane maps onto others, at least
-_SLIM = (
+_MIN_ASPECT_RATIO = (
     0.25  # a body shorter than this share of its width is a slender one seen across: the halves of a snake mirror too
 )
 _STEP = 15  # degrees between the planes that are tried
 _LEVEL = 0.999  # cosine of two axes that are one
 _FLIP = np.array([1.0, -1.0, 1.0])
-_AHEAD = re.compile(r"head|snout|front|fore|neck|nose|jaw|face|shoulder|chest|thorax|^[LR]?F[LR]?(_|$)", re.I)
-_BACK = re.compile(r"tail|rear|hind|back|pelvis|fin_|^[LR]?[HR][LR]?(_|$)", re.I)
+_FRONT_NAMES = re.compile(r"head|snout|front|fore|neck|nose|jaw|face|shoulder|chest|thorax|^[LR]?F[LR]?(_|$)", re.I)
+_REAR_NAMES = re.compile(r"tail|rear|hind|back|pelvis|fin_|^[LR]?[HR][LR]?(_|$)", re.I)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -98,101 +98,115 @@ def find_plane(tree: Tree, *, front: str | None, heading: float | None) -> tuple
         UnreadableFile: no plane maps enough hinges onto each other.
         UnknownName: there is no such body.
     """
-    ahead = None if front is None else _named(tree, front)
-    tried = [(mapped_share(tree, plane), plane) for plane in _candidates(tree, ahead, heading)]
-    fit = [(plane, split_by(tree, plane)) for share, plane in tried if share >= _SHARE]
+    front_com = None if front is None else _body_com(tree, front)
+    scored_planes = [(mapped_share(tree, plane), plane) for plane in _candidates(tree, front_com, heading)]
+    fit = [(plane, split_by(tree, plane)) for mapped_fraction, plane in scored_planes if mapped_fraction >= _SHARE]
     if not fit:
-        most = max((share for share, _ in tried), default=0.0)
+        best_fraction = max((mapped_fraction for mapped_fraction, _ in scored_planes), default=0.0)
         raise UnreadableFile(
-            f"no vertical plane mirrors its hinges onto each other (the best one {most:.0%} of them, {_SHARE:.0%} are "
-            "needed): draw it upright and straight at zero posture, or say --heading."
+            f"no vertical plane mirrors its hinges onto each other (the best one {best_fraction:.0%} of them, "
+            f"{_SHARE:.0%} are needed): draw it upright and straight at zero posture, or say --heading."
         )
-    ranks = [_rank(tree, *one) for one in fit]
+    ranks = [_rank(tree, *candidate) for candidate in fit]
     best = ranks.index(max(ranks))
     plane, split = fit[best]
-    rivals = {one.heading for (one, _), rank in zip(fit, ranks, strict=True) if _close(rank, ranks[best])}
+    rivals = {candidate.heading for (candidate, _), rank in zip(fit, ranks, strict=True) if _close(rank, ranks[best])}
     plane = replace(plane, rivals=tuple(sorted(rivals - {plane.heading})))
     if heading is not None:
         return plane, split
-    sign, certain = _forward(tree, plane, ahead)
+    sign, certain = _forward(tree, plane, front_com)
     if sign > 0:
         return replace(plane, certain=certain), split
     flipped = tuple((b, a) for a, b in split.pairs)
     return replace(plane, heading=plane.heading - 180.0, certain=certain), replace(split, pairs=flipped)
 
 
-def _candidates(tree: Tree, ahead: np.ndarray | None, heading: float | None) -> Iterator[Plane]:
+def _candidates(tree: Tree, front_com: np.ndarray | None, heading: float | None) -> Iterator[Plane]:
     """Yield vertical planes through the root or the middle of the hinges; a body at the front lies along them."""
     root = tree.parts[0]
     points = [root.origin, root.com, np.mean([j.anchor for p in tree.parts for j in p.joints], axis=0)]
     for turn in [*range(0, 180, _STEP)] if heading is None else [heading]:
         for point in points:
             plane = Plane(point=point, heading=float(turn), certain=heading is not None)
-            away = None if ahead is None else plane.turn @ (ahead - tree.com)
-            if away is None or abs(away[1]) <= abs(away[0]):
+            front_offset = None if front_com is None else plane.turn @ (front_com - tree.com)
+            if front_offset is None or abs(front_offset[1]) <= abs(front_offset[0]):
                 yield plane
 
 
 def _rank(tree: Tree, plane: Plane, split: Split) -> tuple[bool, int, float]:
-    """Return what makes a plane the likelier one: not across a slender body, hinges in mirrored branches, length."""
-    paired = [i for pair in split.pairs for first in pair for i in tree.below(first)]
-    extent = np.ptp(np.concatenate([plane.into(part.corners) for part in tree.parts]), axis=0)
+    """Return the rank of a plane: not across a slender body, hinges in mirrored branches, length of the body."""
+    paired = [i for pair in split.pairs for branch in pair for i in tree.below(branch)]
+    extent = np.ptp(np.concatenate([plane.into(tree_part.corners) for tree_part in tree.parts]), axis=0)
     hinges = sum(len(tree.parts[i].joints) for i in paired)
-    return bool(extent[0] >= _SLIM * extent[1]), hinges, round(float(extent[0]) / tree.size, 3)
+    return bool(extent[0] >= _MIN_ASPECT_RATIO * extent[1]), hinges, round(float(extent[0]) / tree.size, 3)
 
 
-def _close(one: tuple[bool, int, float], two: tuple[bool, int, float]) -> bool:
-    """Return whether nothing but a tenth of the length speaks for one plane against another."""
-    return one[:2] == two[:2] and abs(one[2] - two[2]) <= 0.1 * max(one[2], two[2])
+def _close(first_rank: tuple[bool, int, float], second_rank: tuple[bool, int, float]) -> bool:
+    """Return whether two ranks of planes differ by at most a tenth of the length."""
+    return first_rank[:2] == second_rank[:2] and abs(first_rank[2] - second_rank[2]) <= 0.1 * max(
+        first_rank[2], second_rank[2]
+    )
 
 
 def mapped_share(tree: Tree, plane: Plane) -> float:
     """Return the share of the hinges whose mirror image is a hinge."""
-    places, lines = _hinge_lines([joint for part in tree.parts for joint in part.joints], plane)
-    return float(_meet(places * _FLIP, lines * _FLIP, places, lines, TOLERANCE * tree.size).any(axis=1).mean())
+    points, lines = _hinge_lines([joint for tree_part in tree.parts for joint in tree_part.joints], plane)
+    return float(_meet(points * _FLIP, lines * _FLIP, points, lines, TOLERANCE * tree.size).any(axis=1).mean())
 
 
 def split_by(tree: Tree, plane: Plane) -> Split:
     """Return which parts lie in a plane and which branches mirror each other."""
-    near = TOLERANCE * tree.size
+    tolerance = TOLERANCE * tree.size
     axis: list[int] = [0]
     branches: list[int] = []
-    for place, part in enumerate(tree.parts[1:], 1):
-        if part.parent in axis:
-            (axis if _within(part, plane, near) else branches).append(place)
-    hinges = {place: _branch(tree, place, plane) for place in branches}
-    pairs, single, left = [], [], list(branches)
-    while left:
-        one = left.pop(0)
-        twin = next((two for two in left if _twins(hinges[one], hinges[two], near)), None)
+    for index, tree_part in enumerate(tree.parts[1:], 1):
+        if tree_part.parent in axis:
+            (axis if _is_in_plane(tree_part, plane, tolerance) else branches).append(index)
+    hinges = {index: _branch(tree, index, plane) for index in branches}
+    pairs, single, open_branches = [], [], list(branches)
+    while open_branches:
+        branch = open_branches.pop(0)
+        twin = next((two for two in open_branches if _twins(hinges[branch], hinges[two], tolerance)), None)
         if twin is None:
-            single.append(one)
+            single.append(branch)
             continue
-        left.remove(twin)
-        aside = float(np.mean([plane.into(tree.parts[i].com)[1] for i in tree.below(one)]))
-        pairs.append((one, twin) if aside > 0 else (twin, one))
+        open_branches.remove(twin)
+        lateral = float(np.mean([plane.into(tree.parts[i].com)[1] for i in tree.below(branch)]))
+        pairs.append((branch, twin) if lateral > 0 else (twin, branch))
     return Split(axis=tuple(axis), pairs=tuple(pairs), single=tuple(single))
 
 
-def _within(part: TreePart, plane: Plane, near: float) -> bool:
+def _is_in_plane(tree_part: TreePart, plane: Plane, tolerance: float) -> bool:
     """Return whether a part lies in the plane: its centre of mass, and its hinges but those across the plane."""
-    if abs(plane.into(part.com)[1]) > near:
+    if abs(plane.into(tree_part.com)[1]) > tolerance:
         return False
-    return all(abs((plane.turn @ j.axis)[1]) > _LEVEL or abs(plane.into(j.anchor)[1]) <= near for j in part.joints)
+    return all(
+        abs((plane.turn @ j.axis)[1]) > _LEVEL or abs(plane.into(j.anchor)[1]) <= tolerance for j in tree_part.joints
+    )
 
 
-def _twins(one: tuple[int, np.ndarray, np.ndarray], two: tuple[int, np.ndarray, np.ndarray], near: float) -> bool:
-    """Return whether two branches, see ``_branch``, hang on one part and mirror each other hinge by hinge."""
-    (parent, places, lines), (other, others, along) = one, two
-    if parent != other or len(places) != len(others):
+def _twins(
+    first_branch: tuple[int, np.ndarray, np.ndarray],
+    second_branch: tuple[int, np.ndarray, np.ndarray],
+    tolerance: float,
+) -> bool:
+    """Return whether two branches, see ``_branch``, hang on one part and mirror each other hinge by hinge.
+
+    Args:
+        first_branch: part that carries it, points and directions of its hinges.
+        second_branch: likewise.
+        tolerance: greatest distance of mirrored hinges [m].
+    """
+    (parent, points, lines), (other_parent, other_points, other_lines) = first_branch, second_branch
+    if parent != other_parent or len(points) != len(other_points):
         return False
-    return bool(_meet(places * _FLIP, lines * _FLIP, others, along, near).any(axis=1).all())
+    return bool(_meet(points * _FLIP, lines * _FLIP, other_points, other_lines, tolerance).any(axis=1).all())
 
 
-def _branch(tree: Tree, place: int, plane: Plane) -> tuple[int, np.ndarray, np.ndarray]:
+def _branch(tree: Tree, index: int, plane: Plane) -> tuple[int, np.ndarray, np.ndarray]:
     """Return the part that a branch hangs on, and the lines of its hinges."""
-    joints = [joint for i in tree.below(place) for joint in tree.parts[i].joints]
-    return tree.parts[place].parent, *_hinge_lines(joints, plane)
+    joints = [joint for i in tree.below(index) for joint in tree.parts[i].joints]
+    return tree.parts[index].parent, *_hinge_lines(joints, plane)
 
 
 def _hinge_lines(joints: Sequence[Joint], plane: Plane) -> tuple[np.ndarray, np.ndarray]:
@@ -201,40 +215,45 @@ def _hinge_lines(joints: Sequence[Joint], plane: Plane) -> tuple[np.ndarray, np.
     return plane.into(anchors), axes @ plane.turn.T
 
 
-def _meet(places: np.ndarray, lines: np.ndarray, others: np.ndarray, along: np.ndarray, near: float) -> np.ndarray:
-    """Return which lines through places fall together with which others, shape (place, other)."""
-    gap = places[:, None] - others[None]
-    off = gap - np.einsum("ijk,jk->ij", gap, along)[..., None] * along[None]
-    return np.asarray((np.abs(lines @ along.T) > _LEVEL) & (np.linalg.norm(off, axis=-1) < near))
+def _meet(
+    points: np.ndarray, lines: np.ndarray, other_points: np.ndarray, other_lines: np.ndarray, tolerance: float
+) -> np.ndarray:
+    """Return whether each line coincides with each other line, shape (place, other)."""
+    gap = points[:, None] - other_points[None]
+    distances = gap - np.einsum("ijk,jk->ij", gap, other_lines)[..., None] * other_lines[None]
+    return np.asarray((np.abs(lines @ other_lines.T) > _LEVEL) & (np.linalg.norm(distances, axis=-1) < tolerance))
 
 
-def _forward(tree: Tree, plane: Plane, ahead: np.ndarray | None) -> tuple[float, bool]:
-    """Return 1 if the plane's x points forward and -1 if backward, and whether something says so."""
-    if ahead is not None:
-        return float(np.sign((plane.turn @ (ahead - tree.com))[0]) or 1.0), True
-    votes, middle = 0.0, plane.into(tree.com)[0]
-    for part in tree.parts:
-        for name, place in [*((n, part.com) for n in part.names), *((j.name, j.anchor) for j in part.joints)]:
-            says = bool(_AHEAD.search(name)) - bool(_BACK.search(name))
-            votes += says * np.sign(plane.into(place)[0] - middle)
+def _forward(tree: Tree, plane: Plane, front_com: np.ndarray | None) -> tuple[float, bool]:
+    """Return 1 if the plane's x points forward, else -1, and whether an option or names decide it."""
+    if front_com is not None:
+        return float(np.sign((plane.turn @ (front_com - tree.com))[0]) or 1.0), True
+    votes, centre = 0.0, plane.into(tree.com)[0]
+    for tree_part in tree.parts:
+        for name, position in [
+            *((n, tree_part.com) for n in tree_part.names),
+            *((j.name, j.anchor) for j in tree_part.joints),
+        ]:
+            says = bool(_FRONT_NAMES.search(name)) - bool(_REAR_NAMES.search(name))
+            votes += says * np.sign(plane.into(position)[0] - centre)
     if votes:
         return float(np.sign(votes)), True
     c, s = _level(plane.heading)
     return (1.0 if c > 1e-9 or (abs(c) <= 1e-9 and s > 0) else -1.0), False
 
 
-def _named(tree: Tree, name: str) -> np.ndarray:
-    for part in tree.parts:
-        if name in part.names:
-            return part.com
-    raise UnknownName("body", name, [one for part in tree.parts for one in part.names])
+def _body_com(tree: Tree, name: str) -> np.ndarray:
+    for tree_part in tree.parts:
+        if name in tree_part.names:
+            return tree_part.com
+    raise UnknownName("body", name, [body_name for tree_part in tree.parts for body_name in tree_part.names])
 
 
 def _level(degrees: float) -> tuple[float, float]:
     """Return cosine and sine, exact at right angles."""
     exact = {0: (1.0, 0.0), 90: (0.0, 1.0), 180: (-1.0, 0.0), 270: (0.0, -1.0)}
-    whole = int(degrees % 360) if degrees % 90 == 0 else -1
-    return exact.get(whole) or (float(np.cos(np.radians(degrees))), float(np.sin(np.radians(degrees))))
+    right_angle = int(degrees % 360) if degrees % 90 == 0 else -1
+    return exact.get(right_angle) or (float(np.cos(np.radians(degrees))), float(np.sin(np.radians(degrees))))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -262,9 +281,9 @@ class BodyPlan:
     remarks: tuple[str, ...]
     """What was guessed, and what was not taken."""
 
-    def part(self, place: int) -> TreePart:
+    def part(self, index: int) -> TreePart:
         """Return a part of the tree."""
-        return self.tree.parts[place]
+        return self.tree.parts[index]
 
 
 def plan_of(tree: Tree, words: Words) -> BodyPlan:
@@ -278,34 +297,38 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
     plane, split = find_plane(tree, front=words.front, heading=words.heading)
     axis = _chain(tree, plane, split.axis, words)
     remarks += _remarks_on_front(plane)
-    pairs, lost = [], [(i, "no mirror image") for i in split.single]
-    for left, right in split.pairs:
-        where = tree.parts[left].parent
-        if where not in axis:
-            lost += [(i, "hangs beside the axis") for i in (left, right)]
+    pairs, dropped_branches = [], [(i, "no mirror image") for i in split.single]
+    for left_root, right_root in split.pairs:
+        carrier = tree.parts[left_root].parent
+        if carrier not in axis:
+            dropped_branches += [(i, "hangs beside the axis") for i in (left_root, right_root)]
             continue
-        one, two = (_main(tree, plane, first) for first in (left, right))
-        pairs.append((LimbChain(on=axis.index(where), parts=one), LimbChain(on=axis.index(where), parts=two)))
+        left_path, right_path = (_main(tree, plane, limb_root) for limb_root in (left_root, right_root))
+        pairs.append(
+            (LimbChain(on=axis.index(carrier), parts=left_path), LimbChain(on=axis.index(carrier), parts=right_path))
+        )
     if not pairs and len(axis) == 1:
-        alone = ", ".join(tree.parts[i].name for i, _ in lost[:4])
-        image = f"; {alone} have no mirror image" if alone else ""
+        single_names = ", ".join(tree.parts[i].name for i, _ in dropped_branches[:4])
+        image = f"; {single_names} have no mirror image" if single_names else ""
         raise UnreadableFile(
             f"no mirrored limbs and no hinges along an axis were found{image}: draw it upright and straight at zero "
             "posture, or say --heading."
         )
-    used = {*axis, *(i for pair in pairs for chain in pair for i in chain.parts)}
-    first = [i for i in range(len(tree.parts)) if i not in used and (tree.parts[i].parent in used or i == 0)]
-    why = dict(lost)
-    for i in first:
-        names = [tree.parts[k].name for k in tree.below(i) if k not in used]
-        reason = why.get(i) or ("in the middle, but not between front and rear" if i in split.axis else "a fork")
+    plan_parts = {*axis, *(i for pair in pairs for chain in pair for i in chain.parts)}
+    omitted_roots = [
+        i for i in range(len(tree.parts)) if i not in plan_parts and (tree.parts[i].parent in plan_parts or i == 0)
+    ]
+    reasons = dict(dropped_branches)
+    for i in omitted_roots:
+        names = [tree.parts[k].name for k in tree.below(i) if k not in plan_parts]
+        reason = reasons.get(i) or ("in the middle, but not between front and rear" if i in split.axis else "a fork")
         remarks.append(
             f"{', '.join(names[:4])}{' ...' if len(names) > 4 else ''} was left out ({reason}); its mass went to the "
             f"part that carries it. {'See --neck and --tail.' if i in split.axis else ''}".rstrip()
         )
     hips = {pair: plane.into(tree.parts[pair[0].parts[0]].joints[0].anchor)[0] for pair in pairs}
     return BodyPlan(
-        tree=_lumped(tree, used),
+        tree=_lumped(tree, plan_parts),
         plane=plane,
         axis=axis,
         pairs=tuple(sorted(pairs, key=lambda pair: -hips[pair])),
@@ -315,110 +338,127 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
 
 def without(plan: BodyPlan, pair: tuple[LimbChain, LimbChain]) -> BodyPlan:
     """Return a plan without a pair of limbs, whose mass goes to the part that carries them."""
-    pairs = tuple(other for other in plan.pairs if other is not pair)
-    used = {*plan.axis, *(i for other in pairs for chain in other for i in chain.parts)}
-    return replace(plan, tree=_lumped(plan.tree, used), pairs=pairs)
+    pairs = tuple(limb_pair for limb_pair in plan.pairs if limb_pair is not pair)
+    plan_parts = {*plan.axis, *(i for limb_pair in pairs for chain in limb_pair for i in chain.parts)}
+    return replace(plan, tree=_lumped(plan.tree, plan_parts), pairs=pairs)
 
 
-def links_between(plan: BodyPlan, near: int, far: int) -> Iterator[tuple[Joint, bool]]:
+def links_between(plan: BodyPlan, inner: int, outer: int) -> Iterator[tuple[Joint, bool]]:
     """Yield the hinges between two neighbours of the axis from the one near our root on.
 
     Each comes with whether its positive turn moves the far part as in the file, and not the near one.
+
+    Args:
+        plan: the body plan.
+        inner: index of the part nearer to the robot's root.
+        outer: index of the other part.
     """
-    if plan.part(far).parent == near:
-        for joint in plan.part(far).joints:
+    if plan.part(outer).parent == inner:
+        for joint in plan.part(outer).joints:
             yield joint, True
     else:
-        for joint in reversed(plan.part(near).joints):
+        for joint in reversed(plan.part(inner).joints):
             yield joint, False
 
 
 def _remarks_on_front(plane: Plane) -> list[str]:
-    where = f"the file's x axis turned left by {plane.heading % 360:g} degrees"
-    other = (plane.heading + 180) % 360
+    """Return sentences on which end is the front and on other planes of symmetry."""
+    heading_text = f"the file's x axis turned left by {plane.heading % 360:g} degrees"
+    opposite_heading = (plane.heading + 180) % 360
     if plane.certain:
-        remarks = [f"Front: {where}, as names or options say (--front, --heading)."]
+        remarks = [f"Front: {heading_text}, as names or options say (--front, --heading)."]
     else:
-        remarks = [f"Guess: the front is {where}; if it is the rear, say --front BODY or --heading {other:g}."]
+        remarks = [
+            f"Guess: the front is {heading_text}; if it is the rear, say --front BODY or --heading "
+            f"{opposite_heading:g}."
+        ]
     if plane.rivals:
-        others = " or ".join(f"{(heading + turn) % 360:g}" for heading in plane.rivals for turn in (0, 180))
+        rival_text = " or ".join(f"{(heading + turn) % 360:g}" for heading in plane.rivals for turn in (0, 180))
         remarks.append(
-            f"Guess: its sides mirror as well about another plane; if that is the right one, --heading {others}."
+            f"Guess: its sides mirror as well about another plane; if that is the right one, --heading {rival_text}."
         )
     return remarks
 
 
 def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
-    """Return a tree without branches, whose masses go to what carries them."""
-    gone: set[int] = set()
+    """Return a tree without the branches of some bodies, whose masses go to the parts that carry them."""
+    removed_parts: set[int] = set()
     for name in names:
-        place = next((i for i, part in enumerate(tree.parts) if name in part.names), None)
-        if place is None:
-            raise UnknownName("body", name, [one for part in tree.parts for one in part.names])
-        if place == 0:
+        index = next((i for i, tree_part in enumerate(tree.parts) if name in tree_part.names), None)
+        if index is None:
+            raise UnknownName("body", name, [body_name for tree_part in tree.parts for body_name in tree_part.names])
+        if index == 0:
             raise UnreadableFile(f"--leave {name} is the root, which carries everything; name a branch.")
-        gone |= set(tree.below(place))
-    if not gone:
+        removed_parts |= set(tree.below(index))
+    if not removed_parts:
         return tree, []
-    rest = [i for i in range(len(tree.parts)) if i not in gone]
-    lighter = _lumped(tree, set(rest))
-    parts = tuple(replace(lighter.parts[i], parent=-1 if i == 0 else rest.index(tree.parts[i].parent)) for i in rest)
-    left = ", ".join(tree.parts[i].name for i in sorted(gone))
-    remark = f"Left out as asked, their masses lent to what carries them: {left}."
+    remaining_parts = [i for i in range(len(tree.parts)) if i not in removed_parts]
+    lighter = _lumped(tree, set(remaining_parts))
+    parts = tuple(
+        replace(lighter.parts[i], parent=-1 if i == 0 else remaining_parts.index(tree.parts[i].parent))
+        for i in remaining_parts
+    )
+    names_text = ", ".join(tree.parts[i].name for i in sorted(removed_parts))
+    remark = f"Left out as asked, their masses lent to what carries them: {names_text}."
     return Tree(parts=parts, remarks=tree.remarks), [remark]
 
 
-def _chain(tree: Tree, plane: Plane, inside: Sequence[int], words: Words) -> tuple[int, ...]:
+def _chain(tree: Tree, plane: Plane, plane_parts: Sequence[int], words: Words) -> tuple[int, ...]:
     """Return the path through the parts in the plane from the foremost to the hindmost one."""
-    ends = {i: plane.into(tree.parts[i].corners)[:, 0] for i in inside}
-    front = _place(tree, words.neck, inside) if words.neck else max(inside, key=lambda i: float(ends[i].max()))
-    rear = _place(tree, words.tail, inside) if words.tail else min(inside, key=lambda i: float(ends[i].min()))
-    up, down = _upward(tree, front), _upward(tree, rear)
-    meet = next(i for i in up if i in down)
-    return (*up[: up.index(meet)], *reversed(down[: down.index(meet) + 1]))
+    ends = {i: plane.into(tree.parts[i].corners)[:, 0] for i in plane_parts}
+    front = (
+        _place(tree, words.neck, plane_parts) if words.neck else max(plane_parts, key=lambda i: float(ends[i].max()))
+    )
+    rear = _place(tree, words.tail, plane_parts) if words.tail else min(plane_parts, key=lambda i: float(ends[i].min()))
+    front_path, rear_path = _upward(tree, front), _upward(tree, rear)
+    meet = next(i for i in front_path if i in rear_path)
+    return (*front_path[: front_path.index(meet)], *reversed(rear_path[: rear_path.index(meet) + 1]))
 
 
-def _place(tree: Tree, name: str, inside: Sequence[int]) -> int:
-    for i in inside:
+def _place(tree: Tree, name: str, plane_parts: Sequence[int]) -> int:
+    """Return the index of the part in the mirror plane that has a body of a name."""
+    for i in plane_parts:
         if name in tree.parts[i].names:
             return i
-    raise UnknownName("body in the mirror plane", name, [one for i in inside for one in tree.parts[i].names])
+    raise UnknownName(
+        "body in the mirror plane", name, [body_name for i in plane_parts for body_name in tree.parts[i].names]
+    )
 
 
-def _upward(tree: Tree, place: int) -> list[int]:
-    path = [place]
+def _upward(tree: Tree, index: int) -> list[int]:
+    path = [index]
     while tree.parts[path[-1]].parent >= 0:
         path.append(tree.parts[path[-1]].parent)
     return path
 
 
-def _main(tree: Tree, plane: Plane, first: int) -> tuple[int, ...]:
+def _main(tree: Tree, plane: Plane, limb_root: int) -> tuple[int, ...]:
     """Return the path from a hip to the end of the branch that has most hinges, the lowest of those alike."""
 
-    def rank(place: int) -> tuple[int, float]:
-        path = [i for i in _upward(tree, place) if i >= first]
+    def rank(index: int) -> tuple[int, float]:
+        path = [i for i in _upward(tree, index) if i >= limb_root]
         hinges = sum(len(tree.parts[i].joints) for i in path)
-        return hinges, -float(plane.into(tree.parts[place].corners)[:, 2].min())
+        return hinges, -float(plane.into(tree.parts[index].corners)[:, 2].min())
 
-    below = tree.below(first)
-    end = max((i for i in below if not any(tree.parts[k].parent == i for k in below)), key=rank)
-    return tuple(i for i in reversed(_upward(tree, end)) if i in below)
+    branch = tree.below(limb_root)
+    end = max((i for i in branch if not any(tree.parts[k].parent == i for k in branch)), key=rank)
+    return tuple(i for i in reversed(_upward(tree, end)) if i in branch)
 
 
-def _lumped(tree: Tree, used: set[int]) -> Tree:
+def _lumped(tree: Tree, plan_parts: set[int]) -> Tree:
     """Return a tree in which parts that are not used have no mass, and those that carry them have it all."""
-    held = [[(part.mass, part.com, part.tensor)] for part in tree.parts]
+    masses = [[(tree_part.mass, tree_part.com, tree_part.tensor)] for tree_part in tree.parts]
     for i in range(len(tree.parts) - 1, 0, -1):
-        if i not in used:
-            held[tree.parts[i].parent] += held[i]
-            held[i] = []
+        if i not in plan_parts:
+            masses[tree.parts[i].parent] += masses[i]
+            masses[i] = []
     for i in range(len(tree.parts)):  # what lies above the axis hands its mass down
-        onward = next((k for k in tree.children(i) if used & set(tree.below(k))), None)
-        if i not in used and onward is not None:
-            held[onward] += held[i]
-            held[i] = []
+        child = next((k for k in tree.children(i) if plan_parts & set(tree.below(k))), None)
+        if i not in plan_parts and child is not None:
+            masses[child] += masses[i]
+            masses[i] = []
     parts = []
-    for part, those in zip(tree.parts, held, strict=True):
-        mass, com, tensor = together(those or [(0.0, part.com, np.zeros((3, 3)))])
-        parts.append(replace(part, mass=mass, com=com, tensor=tensor))
+    for tree_part, part_masses in zip(tree.parts, masses, strict=True):
+        mass, com, tensor = together(part_masses or [(0.0, tree_part.com, np.zeros((3, 3)))])
+        parts.append(replace(tree_part, mass=mass, com=com, tensor=tensor))
     return replace(tree, parts=tuple(parts))

@@ -15,7 +15,9 @@ from suchus.sim.model.importing.making import SKEW
 from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, plan_of
 from suchus.sim.model.importing.tree import Joint, ShapePiece, TreePart, tree_of
 
-_NEAR = np.radians(10.0)  # two turns that differ by less are alike: the one that points the limb sideways is taken
+_ANGLE_TOLERANCE = np.radians(
+    10.0
+)  # two turns that differ by less are alike: the one that points the limb sideways is taken
 
 
 def straightened(plan: BodyPlan) -> BodyPlan:
@@ -32,71 +34,97 @@ def straightened(plan: BodyPlan) -> BodyPlan:
 
 
 def _straighten(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, remarks: list[str]) -> None:
+    """Turn the hinges of a limb, from the hip on, until each next hinge lies along an axis of the robot."""
     order = [(i, k) for i in chain.parts for k in range(len(parts[i].joints))]
     for number, (i, k) in enumerate(order[1:], 1):
         axis = plan.plane.turn @ parts[i].joints[k].axis
         if np.degrees(np.arccos(min(np.abs(axis).max(), 1.0))) <= SKEW:
             continue
-        before, which = order[number - 1]
-        pivot = parts[before].joints[which]
+        part_index, joint_index = order[number - 1]
+        pivot = parts[part_index].joints[joint_index]
         angle = _angle(plan, parts, chain, pivot, axis)
         if angle is None:
             return
-        _turn(parts, plan, before, which, angle)
+        _turn(parts, plan, part_index, joint_index, angle)
         remarks.append(
             f"The limb behind {pivot.name} is drawn askew: the draft's zero of this hinge is the file's "
-            f"{parts[before].joints[which].zero:.4g} rad, where the next hinge lies along the robot's axes."
+            f"{parts[part_index].joints[joint_index].zero:.4g} rad, where the next hinge lies along the robot's axes."
         )
 
 
 def _angle(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, pivot: Joint, axis: np.ndarray) -> float | None:
-    """Return how far to turn at a hinge so that the next one's axis lies along one of the robot's [rad]."""
-    about = plan.plane.turn @ pivot.axis
-    along = int(np.argmax(np.abs(about)))
-    if abs(axis @ about) > np.sin(np.radians(SKEW)) or np.abs(about)[along] < np.cos(np.radians(SKEW)):
+    """Return the angle at a hinge that aligns the next hinge's axis with an axis of the robot [rad].
+
+    It is None where no angle does. Of nearly equal angles the one that points the limb sideways is taken.
+
+    Args:
+        plan: axis and limbs.
+        parts: of the tree, as turned so far.
+        chain: the limb.
+        pivot: the hinge that is turned.
+        axis: of the next hinge, in the robot's frame.
+    """
+    rotation_axis = plan.plane.turn @ pivot.axis
+    axis_index = int(np.argmax(np.abs(rotation_axis)))
+    if abs(axis @ rotation_axis) > np.sin(np.radians(SKEW)) or np.abs(rotation_axis)[axis_index] < np.cos(
+        np.radians(SKEW)
+    ):
         return None
-    flat = axis - (axis @ about) * about
-    tried = []
+    flat = axis - (axis @ rotation_axis) * rotation_axis
+    candidates = []
     tip = parts[chain.parts[-1]].com - pivot.anchor
     for goal in (g * s for g in np.eye(3) for s in (1.0, -1.0)):
-        if abs(goal[along]) < 0.5:
-            angle = float(np.arctan2(np.cross(flat, goal) @ about, flat @ goal))
-            aside = abs((Rotation.from_rotvec(angle * about).apply(plan.plane.turn @ tip))[1])
-            tried.append((abs(angle), -aside, angle))
-    least = min(tried)[0]
-    return min((one for one in tried if one[0] < least + _NEAR), key=lambda one: one[1:])[2]
+        if abs(goal[axis_index]) < 0.5:
+            angle = float(np.arctan2(np.cross(flat, goal) @ rotation_axis, flat @ goal))
+            lateral = abs((Rotation.from_rotvec(angle * rotation_axis).apply(plan.plane.turn @ tip))[1])
+            candidates.append((abs(angle), -lateral, angle))
+    min_angle = min(candidates)[0]
+    return min(
+        (candidate for candidate in candidates if candidate[0] < min_angle + _ANGLE_TOLERANCE),
+        key=lambda candidate: candidate[1:],
+    )[2]
 
 
-def _turn(parts: list[TreePart], plan: BodyPlan, place: int, which: int, angle: float) -> None:
-    """Turn all that a hinge carries, its own part included, and give the hinge its new zero."""
-    pivot = parts[place].joints[which]
+def _turn(parts: list[TreePart], plan: BodyPlan, part_index: int, joint_index: int, angle: float) -> None:
+    """Rotate everything that a hinge carries by an angle [rad], and set the new zero of the hinge.
+
+    Args:
+        parts: of the tree; those that move are replaced.
+        plan: the body plan.
+        part_index: part that the hinge carries.
+        joint_index: of the hinge in that part.
+        angle: [rad].
+    """
+    pivot = parts[part_index].joints[joint_index]
     rotation = Rotation.from_rotvec(angle * pivot.axis)
 
-    def moved(points: np.ndarray) -> np.ndarray:
+    def rotate_points(points: np.ndarray) -> np.ndarray:
         return np.asarray(pivot.anchor + rotation.apply(points - pivot.anchor))
 
     limits = None if pivot.range is None else (pivot.range[0] - angle, pivot.range[1] - angle)
-    for i in plan.tree.below(place):
+    for i in plan.tree.below(part_index):
         joints = list(parts[i].joints)
         for k, joint in enumerate(joints):
-            if i != place or k > which:
-                joints[k] = replace(joint, axis=rotation.apply(joint.axis), anchor=moved(joint.anchor))
-        if i == place:
-            joints[which] = replace(pivot, zero=pivot.zero + angle, range=limits)
+            if i != part_index or k > joint_index:
+                joints[k] = replace(joint, axis=rotation.apply(joint.axis), anchor=rotate_points(joint.anchor))
+        if i == part_index:
+            joints[joint_index] = replace(pivot, zero=pivot.zero + angle, range=limits)
         parts[i] = replace(
             parts[i],
             joints=tuple(joints),
-            com=moved(parts[i].com),
+            com=rotate_points(parts[i].com),
             tensor=rotation.as_matrix() @ parts[i].tensor @ rotation.as_matrix().T,
-            origin=moved(parts[i].origin),
-            points=moved(parts[i].points),
-            pieces=tuple(_moved(piece, moved, rotation) for piece in parts[i].pieces),
+            origin=rotate_points(parts[i].origin),
+            points=rotate_points(parts[i].points),
+            pieces=tuple(_rotated_piece(piece, rotate_points, rotation) for piece in parts[i].pieces),
         )
 
 
-def _moved(piece: ShapePiece, moved: Callable[[np.ndarray], np.ndarray], rotation: Rotation) -> ShapePiece:
+def _rotated_piece(
+    piece: ShapePiece, rotate_points: Callable[[np.ndarray], np.ndarray], rotation: Rotation
+) -> ShapePiece:
     half = piece.half if np.ptp(piece.half) == 0 else np.abs(rotation.as_matrix()) @ piece.half
-    return ShapePiece(ends=moved(piece.ends), half=half)
+    return ShapePiece(ends=rotate_points(piece.ends), half=half)
 
 
 def import_robot(path: str | Path, *, name: str, words: Words | None = None) -> Draft:

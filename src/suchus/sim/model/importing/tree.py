@@ -17,7 +17,7 @@ from suchus.robot.design.segment import together
 from suchus.sim.model.importing.cleaning import Drive
 from suchus.sim.model.importing.loading import Loaded
 
-_NEAR = 1e-6  # of a rod's size; a ball so near to its end is its round end
+_CAP_TOLERANCE = 1e-6  # of a rod's size; a ball so near to its end is its round end
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -55,34 +55,35 @@ class ShapePiece:
 
 def of_body(model: Any, data: Any, body: int) -> tuple[ShapePiece, ...]:
     """Return the shapes of a body, those that touch others if there are any; a rod's round ends are its own."""
-    first, count = int(model.body_geomadr[body]), int(model.body_geomnum[body])
-    geoms = list(range(first, first + count))
+    first_geom, count = int(model.body_geomadr[body]), int(model.body_geomnum[body])
+    geoms = list(range(first_geom, first_geom + count))
     touching = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]]
     kinds = mujoco.mjtGeom
     plain = (int(kinds.mjGEOM_PLANE), int(kinds.mjGEOM_HFIELD))
-    used = [g for g in touching or geoms if model.geom_type[g] not in plain]
-    pieces = [_piece(model, data, g) for g in used]
+    solid_geoms = [g for g in touching or geoms if model.geom_type[g] not in plain]
+    pieces = [_piece(model, data, g) for g in solid_geoms]
     rods = [
         _shortened(piece, pieces) if model.geom_type[g] == int(kinds.mjGEOM_CYLINDER) else piece
-        for g, piece in zip(used, pieces, strict=True)
+        for g, piece in zip(solid_geoms, pieces, strict=True)
         if len(piece.ends) == 2
     ]
     return (*rods, *(piece for piece in pieces if len(piece.ends) == 1 and not _is_cap(piece, rods)))
 
 
 def _piece(model: Any, data: Any, geom: int) -> ShapePiece:
-    place, turn = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
+    """Return a geom as a rod or an ellipsoid; other kinds become the ellipsoid of their bounding box."""
+    position, turn = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
     size, kind = model.geom_size[geom], mujoco.mjtGeom(int(model.geom_type[geom]))
     kinds = mujoco.mjtGeom
     if kind in (kinds.mjGEOM_CAPSULE, kinds.mjGEOM_CYLINDER) and size[1] > size[0]:
-        along = size[1] * turn[:, 2]
-        return ShapePiece(ends=np.array([place - along, place + along]), half=np.full(3, size[0]))
+        half_axis = size[1] * turn[:, 2]
+        return ShapePiece(ends=np.array([position - half_axis, position + half_axis]), half=np.full(3, size[0]))
     if kind == kinds.mjGEOM_SPHERE:
-        return ShapePiece(ends=place[None].copy(), half=np.full(3, size[0]))
+        return ShapePiece(ends=position[None].copy(), half=np.full(3, size[0]))
     if kind == kinds.mjGEOM_ELLIPSOID:
-        return ShapePiece(ends=place[None].copy(), half=np.sqrt((turn * size) ** 2 @ np.ones(3)))
-    middle, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
-    return ShapePiece(ends=(place + turn @ middle)[None], half=np.maximum(np.abs(turn) @ half, 1e-5))
+        return ShapePiece(ends=position[None].copy(), half=np.sqrt((turn * size) ** 2 @ np.ones(3)))
+    box_centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    return ShapePiece(ends=(position + turn @ box_centre)[None], half=np.maximum(np.abs(turn) @ half, 1e-5))
 
 
 def _shortened(rod: ShapePiece, pieces: list[ShapePiece]) -> ShapePiece:
@@ -98,12 +99,12 @@ def _is_cap(ball: ShapePiece, rods: list[ShapePiece]) -> bool:
     """Return whether a ball is the round end of a rod."""
     return ball.ball and any(
         bool(ball.half[0] <= rod.half[0] * (1 + 1e-9))
-        and bool(np.linalg.norm(rod.ends - ball.centre, axis=1).min() <= _NEAR * max(rod.half[0], 1e-9))
+        and bool(np.linalg.norm(rod.ends - ball.centre, axis=1).min() <= _CAP_TOLERANCE * max(rod.half[0], 1e-9))
         for rod in rods
     )
 
 
-NOTHING = 1e-9
+MIN_MASS = 1e-9
 """Masses up to this are none: MuJoCo was asked to fill missing ones with a tenth of it [kg]."""
 JOINED = 1e-6
 """Hinges nearer than this share of a robot's size sit in one point [-]."""
@@ -166,7 +167,7 @@ class TreePart:
 @lru_cache(maxsize=4)
 def _extent(tree: "Tree") -> float:
     """Return the size of a tree, which is asked for at every plane and limb."""
-    corners = np.concatenate([part.corners for part in tree.parts])
+    corners = np.concatenate([tree_part.corners for tree_part in tree.parts])
     return float(np.ptp(corners, axis=0).max())
 
 
@@ -187,24 +188,24 @@ class Tree:
     @property
     def mass(self) -> float:
         """Mass of all parts [kg]."""
-        return sum(part.mass for part in self.parts)
+        return sum(tree_part.mass for tree_part in self.parts)
 
     @property
     def com(self) -> np.ndarray:
         """Centre of mass, shape (3,) [m]."""
-        return np.sum([part.mass * part.com for part in self.parts], axis=0) / self.mass
+        return np.sum([tree_part.mass * tree_part.com for tree_part in self.parts], axis=0) / self.mass
 
-    def children(self, place: int) -> list[int]:
+    def children(self, index: int) -> list[int]:
         """Return the places of the parts that a part carries."""
-        return [i for i, part in enumerate(self.parts) if part.parent == place]
+        return [i for i, tree_part in enumerate(self.parts) if tree_part.parent == index]
 
-    def below(self, place: int) -> list[int]:
+    def below(self, index: int) -> list[int]:
         """Return the places of a part and of all that hangs on it, parents first."""
-        below = [place]
-        for i in range(place + 1, len(self.parts)):
-            if self.parts[i].parent in below:
-                below.append(i)
-        return below
+        indices = [index]
+        for i in range(index + 1, len(self.parts)):
+            if self.parts[i].parent in indices:
+                indices.append(i)
+        return indices
 
 
 def tree_of(loaded: Loaded) -> Tree:
@@ -218,18 +219,18 @@ def tree_of(loaded: Loaded) -> Tree:
     mujoco.mj_kinematics(model, data)
     root, remarks = _root(model)
     parts: list[TreePart] = []
-    part_of: dict[int, int] = {}
+    part_index: dict[int, int] = {}
     for body in range(root, model.nbody):
-        above = int(model.body_parentid[body])
-        if body != root and above not in part_of:
+        parent_body = int(model.body_parentid[body])
+        if body != root and parent_body not in part_index:
             continue
-        here = _body(model, data, body, loaded, root=body == root)
-        if body == root or here.joints:
-            part_of[body] = len(parts)
-            parts.append(replace(here, parent=-1 if body == root else part_of[above]))
+        body_part = _body(model, data, body, loaded, root=body == root)
+        if body == root or body_part.joints:
+            part_index[body] = len(parts)
+            parts.append(replace(body_part, parent=-1 if body == root else part_index[parent_body]))
         else:
-            part_of[body] = part_of[above]
-            parts[part_of[above]] = _fused(parts[part_of[above]], here)
+            part_index[body] = part_index[parent_body]
+            parts[part_index[parent_body]] = _fused(parts[part_index[parent_body]], body_part)
     tree = Tree(parts=tuple(_joined(parts)), remarks=(*loaded.remarks, *remarks))
     return _weighed(tree)
 
@@ -242,28 +243,30 @@ def _root(model: Any) -> tuple[int, tuple[str, ...]]:
         count[model.body_rootid[model.jnt_bodyid[joint]]] += model.jnt_type[joint] == hinge
     count[0] = -1
     root = int(np.argmax(count))
-    others = [
+    other_names = [
         model.body(b).name or f"body {b}" for b in range(1, model.nbody) if model.body_parentid[b] == 0 and b != root
     ]
     remarks: list[str] = []
-    if others:
-        remarks.append(f"Beside the robot the file holds {', '.join(others[:4])}, which was not taken.")
-    held = [
+    if other_names:
+        remarks.append(f"Beside the robot the file holds {', '.join(other_names[:4])}, which was not taken.")
+    root_hinges = [
         model.joint(j).name for j in range(model.njnt) if model.jnt_bodyid[j] == root and model.jnt_type[j] == hinge
     ]
-    if held:
+    if root_hinges:
         remarks.append(
-            f"{', '.join(held)} hinges the root to the world and was not taken: in suchus the root is a free body."
+            f"{', '.join(root_hinges)} hinges the root to the world and was not taken: in suchus the root is a free "
+            "body."
         )
     return root, tuple(remarks)
 
 
 def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> TreePart:
-    first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
-    joints = () if root else tuple(_joint(model, data, j, loaded) for j in range(first, first + count))
+    """Return a body with its hinges, mass, shapes and sites as a part of the tree."""
+    first_joint, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+    joints = () if root else tuple(_joint(model, data, j, loaded) for j in range(first_joint, first_joint + count))
     sites = [data.site_xpos[s] for s in range(model.nsite) if model.site_bodyid[s] == body]
     name = model.body(body).name or f"body_{body}"
-    turn, weighs = data.ximat[body].reshape(3, 3), bool(model.body_mass[body] > NOTHING)
+    turn, weighs = data.ximat[body].reshape(3, 3), bool(model.body_mass[body] > MIN_MASS)
     return TreePart(
         name=name,
         parent=-1,
@@ -279,58 +282,59 @@ def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> Tr
 
 
 def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
+    """Return a hinge with its axis, anchor, range and drive in the frame of the file."""
     name = model.joint(joint).name or f"joint_{joint}"
     zero = float(model.qpos0[model.jnt_qposadr[joint]])
-    low, high = model.jnt_range[joint] - zero
+    lower_limit, upper_limit = model.jnt_range[joint] - zero
     dof = int(model.jnt_dofadr[joint])
     return Joint(
         name=name,
         axis=data.xaxis[joint].copy(),
         anchor=data.xanchor[joint].copy(),
         zero=zero,
-        range=(float(low), float(high)) if model.jnt_limited[joint] else None,
+        range=(float(lower_limit), float(upper_limit)) if model.jnt_limited[joint] else None,
         drive=loaded.drives.get(name),
         stiffness=float(np.ravel(model.jnt_stiffness[joint])[0]),
         damping=float(np.ravel(model.dof_damping[dof])[0]),
     )
 
 
-def _fused(one: TreePart, two: TreePart) -> TreePart:
+def _fused(carrier: TreePart, child: TreePart) -> TreePart:
     """Return two parts that move as one."""
-    mass, com, tensor = together([(part.mass, part.com, part.tensor) for part in (one, two)])
+    mass, com, tensor = together([(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in (carrier, child)])
     return replace(
-        one,
+        carrier,
         mass=mass,
         com=com,
         tensor=tensor,
-        pieces=one.pieces + two.pieces,
-        points=np.concatenate([one.points, two.points]),
-        names=one.names + two.names,
+        pieces=carrier.pieces + child.pieces,
+        points=np.concatenate([carrier.points, child.points]),
+        names=carrier.names + child.names,
     )
 
 
 def _joined(parts: list[TreePart]) -> list[TreePart]:
     """Put hinges in one point into one joint: of the parts between them nothing is left but those with mass."""
-    size = max(float(np.ptp(np.concatenate([part.corners for part in parts]), axis=0).max()), 1e-9)
-    kept: dict[int, int] = {}
-    found: list[TreePart] = []
+    size = max(float(np.ptp(np.concatenate([tree_part.corners for tree_part in parts]), axis=0).max()), 1e-9)
+    new_indices: dict[int, int] = {}
+    joined_parts: list[TreePart] = []
     waiting: dict[int, tuple[int, tuple[Joint, ...]]] = {}
-    for place, part in enumerate(parts):
-        above, before = waiting.get(part.parent, (part.parent, ()))
-        joints = before + part.joints
-        children = [other for other in parts if other.parent == place]
-        empty = part.mass == 0.0 and len(children) == 1 and place > 0
+    for index, tree_part in enumerate(parts):
+        parent_index, earlier_joints = waiting.get(tree_part.parent, (tree_part.parent, ()))
+        joints = earlier_joints + tree_part.joints
+        children = [candidate for candidate in parts if candidate.parent == index]
+        empty = tree_part.mass == 0.0 and len(children) == 1 and index > 0
         if empty and np.linalg.norm(children[0].joints[0].anchor - joints[-1].anchor) < JOINED * size:
-            waiting[place] = (above, joints)
+            waiting[index] = (parent_index, joints)
             continue
-        kept[place] = len(found)
-        found.append(replace(part, joints=joints, parent=kept.get(above, -1)))
-    return found
+        new_indices[index] = len(joined_parts)
+        joined_parts.append(replace(tree_part, joints=joints, parent=new_indices.get(parent_index, -1)))
+    return joined_parts
 
 
 def _weighed(tree: Tree) -> Tree:
     """Refuse masses that are missing or absurd; a few missing ones become a thousandth of the whole."""
-    names = [part.name for part in tree.parts if part.mass == 0.0]
+    names = [tree_part.name for tree_part in tree.parts if tree_part.mass == 0.0]
     if tree.mass == 0.0 or 2 * len(names) > len(tree.parts):
         raise UnreadableFile(
             f"{len(names)} of {len(tree.parts)} parts have no mass ({', '.join(names[:4])}): no <inertial> and no "
@@ -340,6 +344,6 @@ def _weighed(tree: Tree) -> Tree:
     require("the imported robot", "size", tree.size, 1e-3, 100.0, "m")
     if not names:
         return tree
-    mended = tuple(replace(part, mass=part.mass or 1e-3 * tree.mass) for part in tree.parts)
+    weighted_parts = tuple(replace(tree_part, mass=tree_part.mass or 1e-3 * tree.mass) for tree_part in tree.parts)
     remarks = f"{', '.join(names[:6])} had no mass; the draft gives each a thousandth of the robot's."
-    return Tree(parts=mended, remarks=(*tree.remarks, remarks))
+    return Tree(parts=weighted_parts, remarks=(*tree.remarks, remarks))
