@@ -40,8 +40,8 @@ _EXTRAS = {
     "cluster": "studies on many machines",
 }
 """What each extra is good for; those that only developers need are left out."""
-_PATIENCE = 300.0  # [s]; a cold disk and a slow machine
-_WIDE = 110  # columns
+_TRIAL_TIMEOUT = 300.0  # [s]; a cold disk and a slow machine
+_LINE_WIDTH = 110  # columns
 
 
 class UnfitMachine(SuchusError):
@@ -95,8 +95,8 @@ def doctor(words: Sequence[str]) -> int:
         extras(),
     ]
     print(page(findings))
-    if wrong := [finding.wrong for finding in findings if finding.wrong]:
-        raise UnfitMachine(f"suchus cannot run here: {'; '.join(wrong)}.")
+    if problems := [finding.wrong for finding in findings if finding.wrong]:
+        raise UnfitMachine(f"suchus cannot run here: {'; '.join(problems)}.")
     print("suchus can run here.")
     return 0
 
@@ -108,33 +108,33 @@ def page(findings: Iterable[Finding]) -> str:
     for finding in findings:
         for number, text in enumerate(finding.lines):
             label = finding.heading if number == 0 else ""
-            lines.append(fill(text, _WIDE, initial_indent=f"{label:<10} ", subsequent_indent=" " * 11))
+            lines.append(fill(text, _LINE_WIDTH, initial_indent=f"{label:<10} ", subsequent_indent=" " * 11))
     return "\n".join([*lines, ""])
 
 
-def packages(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
+def packages(requires: Iterable[str] | None = None, find_version: Callable[[str], str | None] | None = None) -> Finding:
     """Compare the packages that are there with those that suchus needs.
 
     Args:
         requires: what suchus needs, as its metadata say it; by default those of the installed package.
-        at: gives the version of a package, None where it is not there.
+        find_version: gives the version of a package, None where it is not there.
     """
-    listed, wrong = [], []
+    listed, mismatches = [], []
     for need in _needs(requires, ""):
-        present = (at or installed)(need.name)
+        present = (find_version or installed)(need.name)
         listed.append(f"{need.name} {present or 'missing'}")
         if present is None or not need.specifier.contains(present, prereleases=True):
-            wrong.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
-    remedy = f"{', '.join(wrong)}: pip install --upgrade suchus" if wrong else ""
+            mismatches.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
+    remedy = f"{', '.join(mismatches)}: pip install --upgrade suchus" if mismatches else ""
     return Finding(heading="packages", lines=(", ".join(listed) or "unknown: suchus is not installed",), wrong=remedy)
 
 
-def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
+def extras(requires: Iterable[str] | None = None, find_version: Callable[[str], str | None] | None = None) -> Finding:
     """Tell which extras are there, and how to get the others; the arguments are those of ``packages``."""
     lines = []
     for extra, use in _EXTRAS.items():
         needs = _needs(requires, extra)
-        present = [(at or installed)(need.name) for need in needs]
+        present = [(find_version or installed)(need.name) for need in needs]
         fits = all(p and n.specifier.contains(p, prereleases=True) for n, p in zip(needs, present, strict=True))
         have = ", ".join(f"{need.name} {p}" for need, p in zip(needs, present, strict=True) if p)
         state = f"yes, {have}" if needs and fits else f"no: pip install 'suchus[{extra}]'"
@@ -145,20 +145,22 @@ def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None
 def cores() -> Finding:
     """Tell how many threads are used."""
     setting = os.environ.get("SUCHUS_THREADS")
-    said = "SUCHUS_THREADS is not set" if setting is None else f"SUCHUS_THREADS={setting}"
+    setting_text = "SUCHUS_THREADS is not set" if setting is None else f"SUCHUS_THREADS={setting}"
     try:
-        return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({said})",))
+        return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({setting_text})",))
     except SuchusError as error:
-        return Finding(heading="threads", lines=(said,), wrong=str(error).rstrip("."))
+        return Finding(heading="threads", lines=(setting_text,), wrong=str(error).rstrip("."))
 
 
 def bits() -> Finding:
     """Tell what decides the last bits of numbers on this machine."""
-    told = machine.described()
+    machine_text = machine.described()
     names = ("processor", "vector instructions", "linear algebra", "C library")
-    digests = ", ".join(f"{part} {digest}" for part, digest in machine.arithmetic().items())
-    portable = f"portable ({machine.WANTED}): {told['portable']}"
-    return Finding(heading="last bits", lines=("; ".join(told[name] for name in names), f"{digests}; {portable}"))
+    digests = ", ".join(f"{component} {digest}" for component, digest in machine.arithmetic().items())
+    portable = f"portable ({machine.WANTED}): {machine_text['portable']}"
+    return Finding(
+        heading="last bits", lines=("; ".join(machine_text[name] for name in names), f"{digests}; {portable}")
+    )
 
 
 def walking(trial: Trial) -> Finding:
@@ -223,22 +225,24 @@ def tried(*names: str) -> list[Trial]:
     with ExitStack() as stack:
         running = []
         for name in names:
-            begun = subprocess.Popen([*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            running.append(stack.enter_context(begun))
-            stack.callback(begun.kill)  # before its end is waited for
+            trial_process = subprocess.Popen(
+                [*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            )
+            running.append(stack.enter_context(trial_process))
+            stack.callback(trial_process.kill)  # before its end is waited for
         return [_outcome(process) for process in running]
 
 
 def _outcome(process: "subprocess.Popen[str]") -> Trial:
     try:
-        out, err = process.communicate(timeout=_PATIENCE)
+        stdout, stderr = process.communicate(timeout=_TRIAL_TIMEOUT)
     except subprocess.TimeoutExpired:
-        return Trial(found=None, failure=f"no answer within {_PATIENCE:g} s")
+        return Trial(found=None, failure=f"no answer within {_TRIAL_TIMEOUT:g} s")
     if process.returncode < 0:
         return Trial(found=None, failure=f"the process died of signal {-process.returncode}")
     if process.returncode > 0:
-        return Trial(found=None, failure=(err.strip().splitlines() or ["no word"])[-1])
-    return Trial(found=json.loads(out.splitlines()[-1]))
+        return Trial(found=None, failure=(stderr.strip().splitlines() or ["no word"])[-1])
+    return Trial(found=json.loads(stdout.splitlines()[-1]))
 
 
 def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
@@ -256,11 +260,13 @@ def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
             requires = distribution("suchus").requires or ()
         except PackageNotFoundError:
             requires = ()
-    every = [parse(text) for text in requires]
-    plain = [need for need in every if need.marker is None or need.marker.evaluate({"extra": ""})]
+    requirements = [parse(text) for text in requires]
+    plain = [need for need in requirements if need.marker is None or need.marker.evaluate({"extra": ""})]
     if not extra:
         return plain
-    return [need for need in every if need not in plain and need.marker and need.marker.evaluate({"extra": extra})]
+    return [
+        need for need in requirements if need not in plain and need.marker and need.marker.evaluate({"extra": extra})
+    ]
 
 
 _TEXT = ("www-browser", "links", "elinks", "lynx", "w3m")
@@ -279,9 +285,9 @@ def browser() -> webbrowser.BaseBrowser | None:
     return None if called(system) in _TEXT else system
 
 
-def called(found: webbrowser.BaseBrowser) -> str:
+def called(opener: webbrowser.BaseBrowser) -> str:
     """Return the name of a browser, as it is called on the command line."""
-    return Path(str(getattr(found, "name", ""))).name or type(found).__name__
+    return Path(str(getattr(opener, "name", ""))).name or type(opener).__name__
 
 
 def trial_walk() -> dict[str, Any]:
@@ -303,10 +309,10 @@ def trial_swim() -> dict[str, Any]:
 
     @numba.njit(parallel=True)  # type: ignore[untyped-decorator]
     def doubled(values: Any) -> Any:
-        out = np.empty_like(values)
+        results = np.empty_like(values)
         for i in numba.prange(values.size):
-            out[i] = 2.0 * values[i]
-        return out
+            results[i] = 2.0 * values[i]
+        return results
 
     doubled(np.ones(8))
     folder = compiled.FOLDER

@@ -249,7 +249,7 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         if of_this_process and PORTABLE in os.environ:
             _begin_portable()
-        words, folder = _apart(words)
+        words, folder = _split_project(words)
         replace, mixed, any_size = (option in words for option in (REPLACE, MIXED, large.OPTION))
         words = [word for word in words if word not in (REPLACE, MIXED, large.OPTION)]
         with (
@@ -262,8 +262,8 @@ def main(words: Sequence[str] | None = None) -> int:
             large.allowing(any_size),
         ):
             _check_words(words)
-            _check_room()
-            return _flushed(words)
+            _check_memory()
+            return _dispatch_and_flush(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
     except BusFailure as error:
@@ -291,16 +291,16 @@ def _check_words(words: Sequence[str]) -> None:
             raise BadCommand(f"{word!r} is no text in UTF-8, as results, which hold their command, are: rename it.")
 
 
-def _check_room() -> None:
+def _check_memory() -> None:
     """Refuse to begin where libraries could not even be loaded, which would end in errors of theirs.
 
     Raises:
         BadCommand: this process may take too little memory.
     """
-    room = large.memory()
-    if room is not None and room < LEAST:
+    memory_limit = large.memory()
+    if memory_limit is not None and memory_limit < LEAST:
         raise BadCommand(
-            f"this process may take {room / 1e9:.2g} GB of memory, and suchus needs {LEAST / 1e9:.2g} GB: raise the "
+            f"this process may take {memory_limit / 1e9:.2g} GB of memory, and suchus needs {LEAST / 1e9:.2g} GB: raise the "
             "limit, as with ulimit -v unlimited."
         )
 
@@ -318,35 +318,35 @@ def _begin_portable() -> None:
         os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
 
 
-def _mixing(asked: bool) -> AbstractContextManager[None]:
-    if not asked:
+def _mixing(allow_mixed: bool) -> AbstractContextManager[None]:
+    if not allow_mixed:
         return nullcontext()
     from suchus.core.machine import mixing  # noqa: PLC0415  as above
 
     return mixing()
 
 
-def _apart(words: list[str]) -> tuple[list[str], str | None]:
+def _split_project(words: list[str]) -> tuple[list[str], str | None]:
     """Return the words of the command, and the project folder that ``--project`` names among them; None for none.
 
     Raises:
         BadCommand: no folder follows, or two do.
     """
-    rest, folders = list[str](), list[str]()
-    left = iter(words)
-    for word in left:
+    command_words, folders = list[str](), list[str]()
+    word_iterator = iter(words)
+    for word in word_iterator:
         if word == PROJECT:
-            folders.append(next(left, ""))
+            folders.append(next(word_iterator, ""))
         elif word.startswith(f"{PROJECT}="):
             folders.append(word.partition("=")[2])
         else:
-            rest.append(word)
+            command_words.append(word)
     if len(folders) > 1 or "" in folders:
         raise BadCommand(f"{PROJECT} needs one folder, as in suchus list {PROJECT} my_lab.")
-    return rest, folders[0] if folders else None
+    return command_words, folders[0] if folders else None
 
 
-def _flushed(words: list[str]) -> int:
+def _dispatch_and_flush(words: list[str]) -> int:
     """Carry out a command line; what it printed is out when this returns.
 
     Raises:
@@ -363,8 +363,8 @@ def _flushed(words: list[str]) -> int:
         if isinstance(error, SuchusError):
             raise
         _drop_output()
-        what = f"{error.filename} cannot be read or written" if error.filename else "what was to be printed is lost"
-        raise Unwritable(f"{what}: {(error.strerror or str(error)).lower()}.") from error
+        problem = f"{error.filename} cannot be read or written" if error.filename else "what was to be printed is lost"
+        raise Unwritable(f"{problem}: {(error.strerror or str(error)).lower()}.") from error
 
 
 def _dispatch(words: list[str]) -> int:
@@ -385,18 +385,18 @@ def _dispatch(words: list[str]) -> int:
 
 
 def _help() -> str:
-    left = max(len(f"{c.name} {c.usage}") for c in COMMANDS)
-    right = max(len(example) for example, _ in _EXAMPLES)
+    command_width = max(len(f"{c.name} {c.usage}") for c in COMMANDS)
+    example_width = max(len(example) for example, _ in _EXAMPLES)
     return "\n".join(
         (
             "suchus: the open laboratory for crocodile-like robots",
             "",
             "usage: suchus COMMAND ...",
             "",
-            *(f"  {f'{c.name} {c.usage}':<{left}}  {c.summary}" for c in COMMANDS),
+            *(f"  {f'{c.name} {c.usage}':<{command_width}}  {c.summary}" for c in COMMANDS),
             "",
             "examples:",
-            *(f"  {example:<{right}}  {text}" for example, text in _EXAMPLES),
+            *(f"  {example:<{example_width}}  {text}" for example, text in _EXAMPLES),
             "",
             "suchus COMMAND --help describes a command; --version prints the version.",
             f"suchus COMMAND ... {PROJECT} DIR takes along what stands in a project folder; without it, what stands in",

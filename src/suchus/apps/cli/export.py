@@ -40,9 +40,11 @@ def export_robot(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the place cannot be written to.
     """
-    about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
+    description = (
+        "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
+    )
     _check_format(words)
-    options = parse(ExportOptions, "suchus export", words, about)
+    options = parse(ExportOptions, "suchus export", words, description)
     if options.out is None:
         check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"

@@ -12,7 +12,7 @@ from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
 
 from suchus.core.progress import Progress
 
-_EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
+_LINE_INTERVAL = 10.0  # [s]; between lines where there is no terminal for a bar
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +37,13 @@ class Bars:
 
     def reporter(self, name: str) -> Progress:
         """Add a bar and return what moves it, or says a line now and then where there is no terminal."""
-        move, last = self.task(name), time.monotonic()
+        move, last_time = self.task(name), time.monotonic()
 
         def tell(stage: str, share: float) -> None:
-            nonlocal last
+            nonlocal last_time
             move(stage, share)
-            if not self.seen and time.monotonic() - last > _EVERY:
-                last = time.monotonic()
+            if not self.seen and time.monotonic() - last_time > _LINE_INTERVAL:
+                last_time = time.monotonic()
                 self.say(f"{name}: {stage}, {share:.0%}")
 
         return tell

@@ -37,15 +37,15 @@ def check_words(command: Subcommand, words: Sequence[str]) -> None:
     for kind in command.shelf_options:
         for name in given(words, f"--{kind}"):
             _check_name(kind, name)
-    for out in given(words, "--out"):
-        if command.output and out and not out.startswith("-"):
-            _check_out(command.output, Path(out))
+    for output in given(words, "--out"):
+        if command.output and output and not output.startswith("-"):
+            _check_out(command.output, Path(output))
 
 
 def given(words: Sequence[str], option: str) -> list[str]:
     """Return the values that words give an option, before all of them are read."""
     joined = [word.partition("=")[2] for word in words if word.startswith(f"{option}=")]
-    return joined + [after for word, after in pairwise(words) if word == option]
+    return joined + [following for word, following in pairwise(words) if word == option]
 
 
 def check_page(path: Path) -> None:

@@ -11,7 +11,7 @@ from suchus.apps.report.result import Moving, Picture, Result
 from suchus.core.errors import IncompatibleRecord
 from suchus.core.files import write
 
-_SHOWN = 80
+_MAX_SETTING_LENGTH = 80
 """Letters of a setting that the page shows [-]."""
 
 
@@ -87,8 +87,8 @@ class Comparison:
     @property
     def changed(self) -> tuple[Judged, ...]:
         """Claims that both judge, and differently."""
-        judged = (verdict for verdict in self.verdicts if verdict.first and verdict.second)
-        return tuple(verdict for verdict in judged if verdict.first != verdict.second)
+        common_verdicts = (verdict for verdict in self.verdicts if verdict.first and verdict.second)
+        return tuple(verdict for verdict in common_verdicts if verdict.first != verdict.second)
 
 
 def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison:
@@ -102,24 +102,24 @@ def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison
     Raises:
         IncompatibleRecord: they have no measure in common.
     """
-    given = first.outcome["measures"], second.outcome["measures"]
-    measures = [_compared(name, *given) for name in _union(first, second)]
-    if not any(one.first is not None and one.second is not None for one in measures):
+    measures_of_both = first.outcome["measures"], second.outcome["measures"]
+    measures = [_compare_measure(name, *measures_of_both) for name in _union(first, second)]
+    if not any(measure.first is not None and measure.second is not None for measure in measures):
         raise IncompatibleRecord(
             f"{first.folder} ({first.name}) and {second.folder} ({second.name}) have no measure in common; compare two "
             "outcomes of one experiment."
         )
-    measures.sort(key=lambda one: (one.difference is None, -_size(one)))  # equal ones stay in their order
-    judged = list(_judged(first.outcome["verdicts"], second.outcome["verdicts"]))
-    judged.sort(key=lambda one: (one.first == one.second, not (one.first and one.second)))
-    flat = [dict(_flat(one.outcome.get("settings", {}))) for one in (first, second)]
+    measures.sort(key=lambda measure: (measure.difference is None, -_size(measure)))  # equal ones stay in their order
+    verdicts = list(_pair_verdicts(first.outcome["verdicts"], second.outcome["verdicts"]))
+    verdicts.sort(key=lambda verdict: (verdict.first == verdict.second, not (verdict.first and verdict.second)))
+    flat = [dict(_flat(result.outcome.get("settings", {}))) for result in (first, second)]
     differ = [name for name in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(name) != flat[1].get(name)]
     return Comparison(
         names=names,
         results=(first, second),
         measures=tuple(measures),
-        verdicts=tuple(judged),
-        settings=tuple(Setting(name=n, first=_short(flat[0].get(n)), second=_short(flat[1].get(n))) for n in differ),
+        verdicts=tuple(verdicts),
+        settings=tuple(Setting(name=n, first=_shorten(flat[0].get(n)), second=_shorten(flat[1].get(n))) for n in differ),
     )
 
 
@@ -162,10 +162,10 @@ def _union(first: Result, second: Result) -> list[str]:
     return list(dict.fromkeys([*first.outcome["measures"], *second.outcome["measures"]]))
 
 
-def _compared(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> Compared:
+def _compare_measure(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> Compared:
     a, b = first.get(name), second.get(name)
-    units = list(dict.fromkeys(one["unit"] for one in (a, b) if one))
-    values = [one["value"] if one else None for one in (a, b)]
+    units = list(dict.fromkeys(entry["unit"] for entry in (a, b) if entry))
+    values = [entry["value"] if entry else None for entry in (a, b)]
     difference = share = None
     if len(units) == 1 and values[0] is not None and values[1] is not None:
         difference = values[1] - values[0]
@@ -175,33 +175,33 @@ def _compared(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) ->
     )
 
 
-def _size(one: Compared) -> float:
+def _size(measure: Compared) -> float:
     """How much a measure differs, relative to the first as it is shown: metres and newtons are sorted together."""
-    if one.share is None:
-        return inf if one.difference else 0.0
-    return abs(one.share)
+    if measure.share is None:
+        return inf if measure.difference else 0.0
+    return abs(measure.share)
 
 
-def _judged(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
-    before, after = ({verdict["claim"]: verdict for verdict in verdicts} for verdicts in (first, second))
-    for claim in dict.fromkeys([*before, *after]):
-        judged = before.get(claim) or after[claim]
-        words = [str(by_claim[claim]["verdict"]) if claim in by_claim else "" for by_claim in (before, after)]
-        yield Judged(quantity=judged["quantity"], where=judged["where"], first=words[0], second=words[1])
+def _pair_verdicts(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
+    first_verdicts, second_verdicts = ({verdict["claim"]: verdict for verdict in verdicts} for verdicts in (first, second))
+    for claim in dict.fromkeys([*first_verdicts, *second_verdicts]):
+        verdict_pair = first_verdicts.get(claim) or second_verdicts[claim]
+        words = [str(by_claim[claim]["verdict"]) if claim in by_claim else "" for by_claim in (first_verdicts, second_verdicts)]
+        yield Judged(quantity=verdict_pair["quantity"], where=verdict_pair["where"], first=words[0], second=words[1])
 
 
 def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """Yield every value of nested settings with its dotted path."""
     if isinstance(value, Mapping):
-        for name, below in value.items():
-            yield from _flat(below, f"{path}.{name}".lstrip("."))
+        for name, child in value.items():
+            yield from _flat(child, f"{path}.{name}".lstrip("."))
     elif isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
-        for i, below in enumerate(value):
-            yield from _flat(below, f"{path}[{i}]")
+        for i, child in enumerate(value):
+            yield from _flat(child, f"{path}[{i}]")
     else:
         yield path, value
 
 
-def _short(value: Any) -> str:
+def _shorten(value: Any) -> str:
     text = "" if value is None else str(value)
-    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+    return text if len(text) <= _MAX_SETTING_LENGTH else f"{text[: _MAX_SETTING_LENGTH - 1]}…"

@@ -19,8 +19,8 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
 from suchus.visual.replay.page import environment, rendered
 
-_TIMESTEP, _EVERY = 0.005, 2  # of the physics [s], and of the samples: a page is to be light, and replays are smoothed
-_DEEP = 1.0
+_TIMESTEP, _SAMPLE_INTERVAL = 0.005, 2  # of the physics [s], and of the samples: a page is to be light, and replays are smoothed
+_WATER_LEVEL = 1.0
 """Level of the water in which the swimmer swims [m]."""
 
 
@@ -70,8 +70,8 @@ def write_lessons(folder: Path, chosen: Sequence[Lesson] = (), progress: Progres
     listing = environment().get_template("lessons.html").render(lessons=chosen, version=versions()["suchus"])
     pages = {"index": listing}
     for i, (lesson, following) in enumerate(zip(chosen, [*chosen[1:], None], strict=True)):
-        part = staged(progress, lesson.name, i / len(chosen), (i + 1) / len(chosen))
-        pages[lesson.name] = page(lesson, following, part)
+        page_progress = staged(progress, lesson.name, i / len(chosen), (i + 1) / len(chosen))
+        pages[lesson.name] = page(lesson, following, page_progress)
     return [write(file, pages[file.stem]) for file in lesson_files(folder, chosen)]
 
 
@@ -82,32 +82,32 @@ def lesson_files(folder: Path, chosen: Sequence[Lesson] = ()) -> list[Path]:
 
 def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = silent) -> str:
     """Return a lesson as an HTML page; ``following`` is the lesson that it leads to."""
-    first = lesson.runs[0]
+    first_run = lesson.runs[0]
     duration = START + lesson.cycles * max(run.gait.period for run in lesson.runs)
-    record = simulate(lesson.runs, duration=duration, timestep=_TIMESTEP, every=_EVERY, progress=progress)
-    apart = [record.isel(run=i) for i in range(len(lesson.runs))]
-    far = [float(one.centre_of_mass[-1, 0] - one.centre_of_mass[0, 0]) for one in apart]
+    record = simulate(lesson.runs, duration=duration, timestep=_TIMESTEP, every=_SAMPLE_INTERVAL, progress=progress)
+    run_records = [record.isel(run=i) for i in range(len(lesson.runs))]
+    distances = [float(run_record.centre_of_mass[-1, 0] - run_record.centre_of_mass[0, 0]) for run_record in run_records]
     labels = [run.label for run in lesson.runs]
     return rendered(
-        "lesson.html", apart[0], first.robot, others=apart[1:], choice=lesson.choice, labels=labels, title=lesson.title,
-        caption=lesson.caption, question=lesson.question, options=labels, right=lesson.right(far),
-        because=lesson.because, numbers=[f"{value:.2f} m".replace("-", "−") for value in far],
+        "lesson.html", run_records[0], first_run.robot, others=run_records[1:], choice=lesson.choice, labels=labels, title=lesson.title,
+        caption=lesson.caption, question=lesson.question, options=labels, right=lesson.right(distances),
+        because=lesson.because, numbers=[f"{value:.2f} m".replace("-", "−") for value in distances],
         heading=f"forward in {duration:g} s", command=lesson.command, following=following,
     )  # fmt: skip
 
 
-def _farthest(far: Sequence[float]) -> int:
-    return int(np.argmax(far))
+def _farthest(distances: Sequence[float]) -> int:
+    return int(np.argmax(distances))
 
 
-def _least(far: Sequence[float]) -> int:
-    return int(np.argmin(far))
+def _least(distances: Sequence[float]) -> int:
+    return int(np.argmin(distances))
 
 
-def _backwards(far: Sequence[float]) -> int:
+def _backwards(distances: Sequence[float]) -> int:
     """Return the first run that goes backwards; the one that gets least far where none does."""
-    behind = np.flatnonzero(np.asarray(far) < 0.0)
-    return int(behind[0]) if behind.size else _least(far)
+    backward_runs = np.flatnonzero(np.asarray(distances) < 0.0)
+    return int(backward_runs[0]) if backward_runs.size else _least(distances)
 
 
 def _bending() -> Lesson:
@@ -216,7 +216,7 @@ def _waves() -> Lesson:
                 robot=robot,
                 gait=gait.with_numbers(waves=count),
                 label=label,
-                lake=Lake(level=_DEEP),
+                lake=Lake(level=_WATER_LEVEL),
                 control=Swimming(),
             )
             for label, count in waves.items()

@@ -26,9 +26,9 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics.energy import METRES
 from suchus.visual import figures
 
-_ENOUGH = 60
+_MIN_GIST_LENGTH = 60
 """Letters that say something [-]."""
-_PUT_IN = ("by construction", "fitted", "said twice")
+_INPUT_STANDINGS = ("by construction", "fitted", "said twice")
 """Standings of what is no evidence though it may agree."""
 
 
@@ -77,7 +77,7 @@ def _gist(text: str) -> str:
     gist = ""
     for sentence in re.split(r"(?<=[.:;]) ", text):
         gist = f"{gist} {sentence}".strip()
-        if len(gist) > _ENOUGH and gist.endswith("."):
+        if len(gist) > _MIN_GIST_LENGTH and gist.endswith("."):
             break
     return gist
 
@@ -85,13 +85,13 @@ def _gist(text: str) -> str:
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
     order = {key: place for place, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
-    robot, others = robot_of(results)
-    judged = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
-    verdicts = [verdict for result in results for verdict in told(result) if judged]
+    robot, robot_counts = robot_of(results)
+    is_article_robot = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
+    verdicts = [verdict for result in results for verdict in told(result) if is_article_robot]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     words = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
     worth = standings(words)
-    named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
+    own_choices = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
         "pages": {result.name: result.folder / PAGE for result in results},
@@ -99,27 +99,27 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "title": TITLE,
         "authors": AUTHORS,
         "failures": failures,
-        "judged": judged,
+        "judged": is_article_robot,
         "verdicts": verdicts,
         "headline": [verdict for verdict in verdicts if verdict["claim"] in HEADLINE],
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
         "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
         "marks": MARKS,
         "count": counted(words, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
-        "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _PUT_IN},
-        "tally": {result.name: _counts(result.outcome["verdicts"] if judged else ()) for result in results},
-        "untouched": [c for c in CLAIMS.values() if judged and not c.of and c.key not in words],
+        "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _INPUT_STANDINGS},
+        "tally": {result.name: _counts(result.outcome["verdicts"] if is_article_robot else ()) for result in results},
+        "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in words],
         "beside": beside(robot, {result.name: result for result in results}),
         "metres": metres({result.name: result for result in results}),
         "shown": next((result for result in results if result.replays), None),
         "robot": robot,
         "sized": robot.name if robot.name in ROBOTS else "FILE.toml",
-        "others": others,
+        "others": robot_counts,
         "drawing": _drawing(robot),
         "parts": parts(tables_of(robot) or robot),
-        "chosen": {robot.name: choices(robot, named)}
-        | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items() if judged},
-        "misprints": tuple(ERRATA.values()) if judged else (),
+        "chosen": {robot.name: choices(robot, own_choices)}
+        | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items() if is_article_robot},
+        "misprints": tuple(ERRATA.values()) if is_article_robot else (),
         "versions": versions(),
     }
 
@@ -163,12 +163,12 @@ class Metre:
 def metres(results: Mapping[str, Result]) -> list[Metre]:
     """Return the rows that the outcomes allow, in the order from land to depth."""
     rows = []
-    for ending, where in METRES.items():
+    for ending, terrain in METRES.items():
         for name, result in results.items():
             outcome = result.outcome["measures"]
-            speed, work, cost = (_with_unit(outcome.get(f"{what}_{ending}")) for what in _MEASURES)
+            speed, work, cost = (_with_unit(outcome.get(f"{measure_name}_{ending}")) for measure_name in _MEASURES)
             if speed and work:
-                rows.append(Metre(where=where, experiment=name, speed=speed, work=work, cost=cost))
+                rows.append(Metre(where=terrain, experiment=name, speed=speed, work=work, cost=cost))
     return rows
 
 
@@ -191,8 +191,8 @@ def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
     robots = [robot for result in results if (robot := _robot(result.outcome.get("settings", {}))) is not None]
     if not robots:
         return ROBOTS[ARTICLES], {}
-    (most, _), *others = Counter(robots).most_common()
-    return most, {robot.name: count for robot, count in others}
+    (main_robot, _), *other_counts = Counter(robots).most_common()
+    return main_robot, {robot.name: count for robot, count in other_counts}
 
 
 def _robot(settings: Any) -> Robot | None:
@@ -233,44 +233,44 @@ class ChosenNumber:
 
 def parts(design: Any) -> dict[str, tuple[Row, ...]]:
     """Return the rows of each part of a robot, by the part's name."""
-    about = meanings(type(design))
+    field_meanings = meanings(type(design))
     tables: dict[str, tuple[Row, ...]] = {}
     for f in fields(design):
-        part = getattr(design, f.name)
-        if is_dataclass(part):
-            meaning = about.get(f.name, "")
+        section = getattr(design, f.name)
+        if is_dataclass(section):
+            meaning = field_meanings.get(f.name, "")
             title = f"{f.name.replace('_', ' ')}: {meaning[:1].lower()}{meaning[1:]}"
-            tables[title] = tuple(rows(part, f.name))
+            tables[title] = tuple(rows(section, f.name))
     return tables
 
 
 def rows(design: Any, path: str = "") -> Iterator[Row]:
     """Yield a row for every number below a frozen value."""
-    about = meanings(type(design))
+    field_meanings = meanings(type(design))
     for f in fields(design):
-        value, meaning = getattr(design, f.name), about.get(f.name, "")
-        below = f"{path}.{f.name}".lstrip(".")
+        value, meaning = getattr(design, f.name), field_meanings.get(f.name, "")
+        field_path = f"{path}.{f.name}".lstrip(".")
         if is_dataclass(value):
-            yield from rows(value, below)
+            yield from rows(value, field_path)
         else:
-            yield Row(field=below, value=_shown(value, unit(meaning)), meaning=_plain(meaning))
+            yield Row(field=field_path, value=_format_value(value, unit(meaning)), meaning=_plain(meaning))
 
 
-def choices(design: Any, chosen: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
+def choices(design: Any, chosen_numbers: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
     """Return a row for every number that the article does not give."""
-    return tuple(_choice(design, free) for free in chosen)
+    return tuple(_choice(design, free) for free in chosen_numbers)
 
 
-def _choice(design: Any, one: Chosen) -> ChosenNumber:
-    value, unit = value_at(design, one.field), unit_at(design, one.field)
+def _choice(design: Any, chosen: Chosen) -> ChosenNumber:
+    value, unit = value_at(design, chosen.field), unit_at(design, chosen.field)
     return ChosenNumber(
-        field=one.field, value=_shown(value, unit), low=number(one.low), high=number(one.high), why=one.why
+        field=chosen.field, value=_format_value(value, unit), low=number(chosen.low), high=number(chosen.high), why=chosen.why
     )
 
 
-def _shown(value: Any, unit: str) -> str:
+def _format_value(value: Any, unit: str) -> str:
     if isinstance(value, tuple):
-        return " to ".join(_shown(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))
+        return " to ".join(_format_value(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))
     return quantity(value, unit) if isinstance(value, (int, float)) else str(value)
 
 

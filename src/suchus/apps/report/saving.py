@@ -55,8 +55,8 @@ def save_outcome(
             (draft / name).write_text(replay.html, encoding="utf-8")
         record.save(outcome.record, draft / RECORD)
         captions = {name: pictures.caption(figure) for name, figure in figures.items()}
-        described = describe(outcome, experiment, captions, command)
-        text = json.dumps(described, indent=2, ensure_ascii=False, allow_nan=False)
+        outcome_table = describe(outcome, experiment, captions, command)
+        text = json.dumps(outcome_table, indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
         write_outcome_page(draft)
     return folder
@@ -88,18 +88,18 @@ def differing(experiment: Experiment) -> list[dict[str, str]]:
     """Return the fields in which a question differs from the one on the shelf, with both values in words."""
     shelf, rows = type(experiment)(), []
     for name in experiment.settings():
-        here, there = getattr(experiment, name), getattr(shelf, name)
-        if here != there:
-            value, usual = _called(here), _called(there)
-            changed = f"another {value}" if value == usual else value
-            rows.append({"name": name, "value": changed, "shelf": usual})
+        setting, default = getattr(experiment, name), getattr(shelf, name)
+        if setting != default:
+            value, default_text = _setting_text(setting), _setting_text(default)
+            text = f"another {value}" if value == default_text else value
+            rows.append({"name": name, "value": text, "shelf": default_text})
     return rows
 
 
-def _called(value: Any) -> str:
+def _setting_text(value: Any) -> str:
     """Return a field's value in words: of a robot or a gait its name."""
     if isinstance(value, tuple):
-        return ", ".join(_called(one) for one in value) or "none"
+        return ", ".join(_setting_text(element) for element in value) or "none"
     if isinstance(value, float):
         return number(value, 4)
     return str(getattr(value, "name", value))

@@ -67,11 +67,11 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
 
 def uses(family: ServoFamily) -> list[Used]:
     """Return what each servo of a family uses, in the case that asks most of it."""
-    found = []
+    servo_uses = []
     for name, case, _ in family.binding():
         load, motor = family.loads[case][name], family.chosen[name]
-        found.append(Used(name, motor.name, load.line / FULL_WOUND, load.rms / motor.continuous_torque))
-    return found
+        servo_uses.append(Used(name, motor.name, load.line / FULL_WOUND, load.rms / motor.continuous_torque))
+    return servo_uses
 
 
 def servos_text(sizing: Sizing) -> str:
@@ -121,8 +121,8 @@ def families_text(sizing: Sizing, hours: float) -> str:
 
 def counted(family: ServoFamily) -> dict[str, int]:
     """Return how many of each servo are bought, the cheapest first."""
-    ones = sorted(family.chosen.values(), key=lambda motor: sum(motor.price))
-    return {motor.name: ones.count(motor) for motor in dict.fromkeys(ones)}
+    motors = sorted(family.chosen.values(), key=lambda motor: sum(motor.price))
+    return {motor.name: motors.count(motor) for motor in dict.fromkeys(motors)}
 
 
 def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
@@ -130,73 +130,73 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
     best = sizing.best
     if best is None:
         reasons = "; ".join(f"{family.name}: {family.lacking}" for family in sizing.families)
-        return [f"No family of servos does for {sizing.robot.name}. {reasons}.", *_own_too_warm(sizing)]
+        return [f"No family of servos does for {sizing.robot.name}. {reasons}.", *_overheating(sizing)]
     counts = " and ".join(f"{count} {name}" for name, count in counted(best).items())
-    low, high = best.price
-    name, case, most = best.binding()[0]
-    said = [
-        f"{best.name} does for {sizing.robot.name}{_slower(sizing, best)}: {counts}, {low:.0f} to "
-        f"{high:.0f} EUR, {1000 * best.mass:.0f} g.",
-        f"The binding servo is {name} in {case}, which uses {100 * most:.0f} % of what {best.chosen[name].name} has, "
+    min_price, max_price = best.price
+    name, case, use_fraction = best.binding()[0]
+    sentences = [
+        f"{best.name} does for {sizing.robot.name}{_slower(sizing, best)}: {counts}, {min_price:.0f} to "
+        f"{max_price:.0f} EUR, {1000 * best.mass:.0f} g.",
+        f"The binding servo is {name} in {case}, which uses {100 * use_fraction:.0f} % of what {best.chosen[name].name} has, "
         f"by {why(best.chosen[name], best.loads[case][name])}.",
         f"A battery for {hours:g} h needs at most {best.battery(hours):.1f} Ah at {best.volts:g} V, by the hungriest "
         f"movement.",
     ]
-    kept = [cable.name for cable in sizing.robot.cables if cable.linear is not None]
-    if kept:
-        said.append(f"The linear actuator of {' and '.join(kept)} stays as it is: no family has one.")
+    actuator_names = [cable.name for cable in sizing.robot.cables if cable.linear is not None]
+    if actuator_names:
+        sentences.append(f"The linear actuator of {' and '.join(actuator_names)} stays as it is: no family has one.")
     slower = sizing.slower
     if slower is not None:
-        low, high = slower.price
+        min_price, max_price = slower.price
         counts = " and ".join(f"{count} {name}" for name, count in counted(slower).items())
-        said.append(
-            f"{slower.name} would do{_slower(sizing, slower)}: {counts}, {low:.0f} to {high:.0f} EUR.",
+        sentences.append(
+            f"{slower.name} would do{_slower(sizing, slower)}: {counts}, {min_price:.0f} to {max_price:.0f} EUR.",
         )
     remembered = sorted({field.replace("_", " ") for motor in best.chosen.values() for field in motor.remembered})
     if remembered:
-        said.append(f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy.")
-    return said + _own_too_warm(sizing)
+        sentences.append(f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy.")
+    return sentences + _overheating(sizing)
 
 
-def _own_too_warm(sizing: Sizing) -> list[str]:
+def _overheating(sizing: Sizing) -> list[str]:
     """Return in a sentence which servo of the design would get too warm the soonest; nothing if none would."""
-    warm = [
+    overheated = [
         (load.warm_after, name, case, load)
         for case, loads in sizing.own.items()
         for name, load in loads.items()
         if isfinite(load.warm_after)
     ]
-    if not warm:
+    if not overheated:
         return []
-    after, name, case, load = min(warm, key=lambda one: one[:3])
+    time_to_limit, name, case, load = min(overheated, key=lambda entry: entry[:3])
     winding = sizing.robot.servo(name).winding
     assert winding is not None
     assert winding.heat is not None
-    count = len({name for _, name, _, _ in warm})
-    who = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
-    most = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would never stop warming"
+    count = len({name for _, name, _, _ in overheated})
+    servo_text = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
+    final_text = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would never stop warming"
     return [
-        f"As it is designed, {who}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
-        f"{after / 60:.2g} min and {most} if the movement went on for ever."
+        f"As it is designed, {servo_text}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
+        f"{time_to_limit / 60:.2g} min and {final_text} if the movement went on for ever."
     ]
 
 
 def _slower(sizing: Sizing, family: ServoFamily) -> str:
     """Return with which periods a family does, where they are not those that were asked for."""
-    slow = {gait: period for gait, period in _periods(sizing, family).items() if family.factors[gait] != 1.0}
-    own = {case.gait.name: case.gait.period for case in sizing.cases}
-    texts = [f"{gait} at a period of {period:.3g} s instead of {own[gait]:.3g} s" for gait, period in slow.items()]
+    longer_periods = {gait: period for gait, period in _periods(sizing, family).items() if family.factors[gait] != 1.0}
+    design_periods = {case.gait.name: case.gait.period for case in sizing.cases}
+    texts = [f"{gait} at a period of {period:.3g} s instead of {design_periods[gait]:.3g} s" for gait, period in longer_periods.items()]
     return f" with {' and '.join(texts)}" if texts else ""
 
 
 def _periods(sizing: Sizing, family: ServoFamily | None) -> dict[str, float]:
-    own = {case.gait.name: case.gait.period for case in sizing.cases}
-    return {gait: period * (1.0 if family is None else family.factors[gait]) for gait, period in own.items()}
+    design_periods = {case.gait.name: case.gait.period for case in sizing.cases}
+    return {gait: period * (1.0 if family is None else family.factors[gait]) for gait, period in design_periods.items()}
 
 
 def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float) -> dict[str, Any]:
     best = sizing.best
-    own = [
+    overloaded = [
         {"servo": name, "case": case, "load": load}
         for case, loads in sizing.own.items()
         for name, load in loads.items()
@@ -209,13 +209,13 @@ def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float
             "bought": best.chosen[name].name,
             "case": case,
             "load": best.loads[case][name],
-            "use": most,
+            "use": use_fraction,
             "why": why(best.chosen[name], best.loads[case][name]),
             "rated": best.chosen[name].continuous_torque,
             "tension": _tension(best.loads[case][name]),
-            "warm": _warm(best.loads[case][name]),
+            "warm": _temperature_text(best.loads[case][name]),
         }
-        for name, case, most in binding
+        for name, case, use_fraction in binding
         if best is not None
     ]
     return {
@@ -235,7 +235,7 @@ def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float
         "hours": hours,
         "pictures": pictures,
         "rows": rows,
-        "weak": own,
+        "weak": overloaded,
         "best": best,
         "allowed": AT_LIMIT,
     }
@@ -245,7 +245,7 @@ def _tension(load: ServoLoad) -> str:
     return f"{number(load.tension, 2)} N" if isfinite(load.tension) else ""
 
 
-def _warm(load: ServoLoad) -> str:
+def _temperature_text(load: ServoLoad) -> str:
     """Return how warm a servo gets, or when it is too warm."""
     if isfinite(load.warm_after):
         return f"too warm after {load.warm_after / 60:.0f} min"
@@ -254,10 +254,10 @@ def _warm(load: ServoLoad) -> str:
 
 def _csv(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(head)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
     for row in rows:
-        out.writerow([_cell(value) for value in row])
+        writer.writerow([_cell(value) for value in row])
     return text.getvalue()
 
 
