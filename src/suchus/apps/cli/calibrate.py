@@ -134,7 +134,6 @@ def _fit_log(options: CalibrateOptions, output: Path) -> int:
         play, offset = degrees
         table.add_row(name, str(fit.stiffness), play, str(fit.friction), offset)
     Console(highlight=False).print(table)
-    print(
-        f"written: {write(output, fits_text(fits))}; intervals hold 95 % of what scatters, not what the model leaves out"
-    )
+    written = write(output, fits_text(fits))
+    print(f"written: {written}; intervals hold 95 % of what scatters, not what the model leaves out")
     return 0

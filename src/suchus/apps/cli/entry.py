@@ -300,8 +300,8 @@ def _check_memory() -> None:
     memory_limit = large.memory()
     if memory_limit is not None and memory_limit < LEAST:
         raise BadCommand(
-            f"this process may take {memory_limit / 1e9:.2g} GB of memory, and suchus needs {LEAST / 1e9:.2g} GB: raise the "
-            "limit, as with ulimit -v unlimited."
+            f"this process may take {memory_limit / 1e9:.2g} GB of memory, and suchus needs {LEAST / 1e9:.2g} GB: "
+            "raise the limit, as with ulimit -v unlimited."
         )
 
 

@@ -138,6 +138,7 @@ def _renew_share_rows(varied_results: Mapping[str, xr.Dataset], folder: Path) ->
     rows = sum(results.sizes["claim"] for results in varied_results.values())
     row_sources = listed([f"{name} ({results.sizes['sample']} designs)" for name, results in varied_results.items()])
     print(
-        f"{rows} rows of {row_sources} are renewed in the table of shares, {result / SHARES}; other rows are as they ship"
+        f"{rows} rows of {row_sources} are renewed in the table of shares, {result / SHARES}; "
+        "other rows are as they ship"
     )
     return 0

@@ -129,8 +129,8 @@ def tables(sheet: Sheet) -> dict[str, str]:
         texts["plates.csv"] = _csv(columns, rows)
     for cord in sheet.cords:
         drive = "actuator_m" if cord.linear else "pulley_rad"
-        about = ("bend_rad", drive, "cord_towards_the_bend_m", "cord_away_from_it_m")
-        texts[f"{cord.name}.csv"] = _csv(about, cord.table)
+        cord_columns = ("bend_rad", drive, "cord_towards_the_bend_m", "cord_away_from_it_m")
+        texts[f"{cord.name}.csv"] = _csv(cord_columns, cord.table)
     return texts
 
 
@@ -155,7 +155,9 @@ def mass_said(sheet: Sheet) -> list[str]:
     heavy = [body for body in sheet.bodies if body.rest < 0.0]
     if heavy:
         names = ", ".join(f"{body.name} by {-1000 * body.rest:.0f} g" for body in heavy)
-        sentences.append(f"Heavier than in the simulation are {names}: give the robot these masses and walk it once more.")
+        sentences.append(
+            f"Heavier than in the simulation are {names}: give the robot these masses and walk it once more."
+        )
     return sentences
 
 

@@ -119,7 +119,9 @@ def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison
         results=(first, second),
         measures=tuple(measures),
         verdicts=tuple(verdicts),
-        settings=tuple(Setting(name=n, first=_shorten(flat[0].get(n)), second=_shorten(flat[1].get(n))) for n in differ),
+        settings=tuple(
+            Setting(name=n, first=_shorten(flat[0].get(n)), second=_shorten(flat[1].get(n))) for n in differ
+        ),
     )
 
 
@@ -142,24 +144,24 @@ def render_comparison(comparison: Comparison, place: str | Path) -> str:
         place: the folder of the page, from which it shows the replays.
     """
     place = Path(place)
-    first, second = comparison.results
+    a, b = comparison.results
     content: dict[str, Any] = {
         "it": comparison,
-        "titles": list(dict.fromkeys([first.outcome["title"], second.outcome["title"]])),
-        "pictures": _pairs({p.name: p for p in first.pictures}, {p.name: p for p in second.pictures}),
-        "replays": _pairs({r.file.name: r for r in first.replays}, {r.file.name: r for r in second.replays}),
+        "titles": list(dict.fromkeys([a.outcome["title"], b.outcome["title"]])),
+        "pictures": _pairs({p.name: p for p in a.pictures}, {p.name: p for p in b.pictures}),
+        "replays": _pairs({r.file.name: r for r in a.replays}, {r.file.name: r for r in b.replays}),
     }
     return render("compare.html", place, content)
 
 
 def _pairs(
-    first: Mapping[str, Picture] | Mapping[str, Moving], second: Mapping[str, Picture] | Mapping[str, Moving]
+    a: Mapping[str, Picture] | Mapping[str, Moving], b: Mapping[str, Picture] | Mapping[str, Moving]
 ) -> list[tuple[str, tuple[Any, Any]]]:
-    return [(name, (first.get(name), second.get(name))) for name in dict.fromkeys([*first, *second])]
+    return [(name, (a.get(name), b.get(name))) for name in dict.fromkeys([*a, *b])]
 
 
-def _union(first: Result, second: Result) -> list[str]:
-    return list(dict.fromkeys([*first.outcome["measures"], *second.outcome["measures"]]))
+def _union(a: Result, b: Result) -> list[str]:
+    return list(dict.fromkeys([*a.outcome["measures"], *b.outcome["measures"]]))
 
 
 def _compare_measure(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> Compared:
@@ -183,10 +185,15 @@ def _size(measure: Compared) -> float:
 
 
 def _pair_verdicts(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
-    first_verdicts, second_verdicts = ({verdict["claim"]: verdict for verdict in verdicts} for verdicts in (first, second))
+    first_verdicts, second_verdicts = (
+        {verdict["claim"]: verdict for verdict in verdicts} for verdicts in (first, second)
+    )
     for claim in dict.fromkeys([*first_verdicts, *second_verdicts]):
         verdict_pair = first_verdicts.get(claim) or second_verdicts[claim]
-        words = [str(by_claim[claim]["verdict"]) if claim in by_claim else "" for by_claim in (first_verdicts, second_verdicts)]
+        words = [
+            str(by_claim[claim]["verdict"]) if claim in by_claim else ""
+            for by_claim in (first_verdicts, second_verdicts)
+        ]
         yield Judged(quantity=verdict_pair["quantity"], where=verdict_pair["where"], first=words[0], second=words[1])
 
 

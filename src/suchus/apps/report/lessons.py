@@ -19,7 +19,10 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
 from suchus.visual.replay.page import environment, rendered
 
-_TIMESTEP, _SAMPLE_INTERVAL = 0.005, 2  # of the physics [s], and of the samples: a page is to be light, and replays are smoothed
+_TIMESTEP, _SAMPLE_INTERVAL = (
+    0.005,
+    2,
+)  # of the physics [s], and of the samples: a page is to be light, and replays are smoothed
 _WATER_LEVEL = 1.0
 """Level of the water in which the swimmer swims [m]."""
 
@@ -86,11 +89,13 @@ def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = s
     duration = START + lesson.cycles * max(run.gait.period for run in lesson.runs)
     record = simulate(lesson.runs, duration=duration, timestep=_TIMESTEP, every=_SAMPLE_INTERVAL, progress=progress)
     run_records = [record.isel(run=i) for i in range(len(lesson.runs))]
-    distances = [float(run_record.centre_of_mass[-1, 0] - run_record.centre_of_mass[0, 0]) for run_record in run_records]
+    distances = [
+        float(run_record.centre_of_mass[-1, 0] - run_record.centre_of_mass[0, 0]) for run_record in run_records
+    ]
     labels = [run.label for run in lesson.runs]
     return rendered(
-        "lesson.html", run_records[0], first_run.robot, others=run_records[1:], choice=lesson.choice, labels=labels, title=lesson.title,
-        caption=lesson.caption, question=lesson.question, options=labels, right=lesson.right(distances),
+        "lesson.html", run_records[0], first_run.robot, others=run_records[1:], choice=lesson.choice,
+        labels=labels, title=lesson.title, caption=lesson.caption, question=lesson.question, options=labels, right=lesson.right(distances),
         because=lesson.because, numbers=[f"{value:.2f} m".replace("-", "−") for value in distances],
         heading=f"forward in {duration:g} s", command=lesson.command, following=following,
     )  # fmt: skip

@@ -89,7 +89,12 @@ def told(result: Result) -> Iterator[dict[str, Any]]:
     """Yield the verdicts of a result as pages show them: with their spread, and how many designs agree."""
     for verdict in result.outcome["verdicts"]:
         full_verdict = {**_LACKING, **verdict}
-        yield {**full_verdict, "experiment": result.name, "of_designs": _share(full_verdict), "scatter": _scatter(full_verdict)}
+        yield {
+            **full_verdict,
+            "experiment": result.name,
+            "of_designs": _share(full_verdict),
+            "scatter": _scatter(full_verdict),
+        }
 
 
 def answer(decides: str) -> str:
@@ -109,12 +114,16 @@ def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tup
     finite = [name for name, measure in measures.items() if isfinite(measure.value)]
     ends = ("_low", "_high")
     rows = []
-    names = [measure_name for measure_name in answers if measure_name in finite] or [measure_name for measure_name in finite if not measure_name.endswith(ends)]
+    names = [measure_name for measure_name in answers if measure_name in finite] or [
+        measure_name for measure_name in finite if not measure_name.endswith(ends)
+    ]
     for name in names[:MOST]:
         lower_bound, upper_bound = (measures.get(name + end) for end in ends)
         unit = measures[name].unit
         spread = ""
-        if lower_bound is not None and upper_bound is not None and lower_bound.value < upper_bound.value:  # of a single repeat it is not known
+        if (
+            lower_bound is not None and upper_bound is not None and lower_bound.value < upper_bound.value
+        ):  # of a single repeat it is not known
             spread = f"{number(lower_bound.value, 3)} to {quantity(upper_bound.value, unit, 3)}"
         rows.append(
             (
@@ -149,7 +158,8 @@ def _scatter(verdict: Mapping[str, Any]) -> str:
     lower_bound, upper_bound = verdict.get("low"), verdict.get("high")
     if lower_bound is None or upper_bound is None:
         return ""
-    return f"{number(lower_bound, 3)} to {quantity(upper_bound, verdict['unit'], 3)} in {verdict.get('repeats', 'repeats')}"
+    interval = f"{number(lower_bound, 3)} to {quantity(upper_bound, verdict['unit'], 3)}"
+    return f"{interval} in {verdict.get('repeats', 'repeats')}"
 
 
 def _setting_name(outcome: Mapping[str, Any], field: str) -> str:
@@ -162,7 +172,10 @@ def _setting_name(outcome: Mapping[str, Any], field: str) -> str:
 def _numbers(measures: Mapping[str, Measure]) -> str:
     """Return all numbers as CSV, with nothing for one that is not finite."""
     text = io.StringIO()
-    rows = ((name, repr(measure.value) if isfinite(measure.value) else "", measure.unit) for name, measure in measures.items())
+    rows = (
+        (name, repr(measure.value) if isfinite(measure.value) else "", measure.unit)
+        for name, measure in measures.items()
+    )
     csv.writer(text).writerows([("measure", "value", "unit"), *rows])
     return text.getvalue()
 

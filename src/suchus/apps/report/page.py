@@ -86,7 +86,9 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     order = {key: place for place, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
     robot, robot_counts = robot_of(results)
-    is_article_robot = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
+    is_article_robot = (
+        robot.name == ARTICLES
+    )  # the article's claims are about its robot, and no other page is about them
     verdicts = [verdict for result in results for verdict in told(result) if is_article_robot]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     words = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
@@ -261,16 +263,22 @@ def choices(design: Any, chosen_numbers: Sequence[Chosen]) -> tuple[ChosenNumber
     return tuple(_choice(design, free) for free in chosen_numbers)
 
 
-def _choice(design: Any, chosen: Chosen) -> ChosenNumber:
-    value, unit = value_at(design, chosen.field), unit_at(design, chosen.field)
+def _choice(design: Any, free_number: Chosen) -> ChosenNumber:
+    value, unit = value_at(design, free_number.field), unit_at(design, free_number.field)
     return ChosenNumber(
-        field=chosen.field, value=_format_value(value, unit), low=number(chosen.low), high=number(chosen.high), why=chosen.why
+        field=free_number.field,
+        value=_format_value(value, unit),
+        low=number(free_number.low),
+        high=number(free_number.high),
+        why=free_number.why,
     )
 
 
 def _format_value(value: Any, unit: str) -> str:
     if isinstance(value, tuple):
-        return " to ".join(_format_value(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))
+        return (
+            " to ".join(_format_value(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))
+        )
     return quantity(value, unit) if isinstance(value, (int, float)) else str(value)
 
 

@@ -209,7 +209,10 @@ def load_result(folder: str | Path) -> Result:
 
 def whole(result: Result) -> bool:
     """Return whether every file that an outcome names is in its folder: record, films and replays too."""
-    names = [RECORD, *(file["name"] for file_list in ("films", "replays") for file in result.outcome.get(file_list, ()))]
+    names = [
+        RECORD,
+        *(file["name"] for file_list in ("films", "replays") for file in result.outcome.get(file_list, ())),
+    ]
     return all(_path_inside(result.folder, name).is_file() for name in names)
 
 

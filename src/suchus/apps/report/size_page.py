@@ -137,8 +137,8 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
     sentences = [
         f"{best.name} does for {sizing.robot.name}{_slower(sizing, best)}: {counts}, {min_price:.0f} to "
         f"{max_price:.0f} EUR, {1000 * best.mass:.0f} g.",
-        f"The binding servo is {name} in {case}, which uses {100 * use_fraction:.0f} % of what {best.chosen[name].name} has, "
-        f"by {why(best.chosen[name], best.loads[case][name])}.",
+        f"The binding servo is {name} in {case}, which uses {100 * use_fraction:.0f} % of what "
+        f"{best.chosen[name].name} has, by {why(best.chosen[name], best.loads[case][name])}.",
         f"A battery for {hours:g} h needs at most {best.battery(hours):.1f} Ah at {best.volts:g} V, by the hungriest "
         f"movement.",
     ]
@@ -154,7 +154,9 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
         )
     remembered = sorted({field.replace("_", " ") for motor in best.chosen.values() for field in motor.remembered})
     if remembered:
-        sentences.append(f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy.")
+        sentences.append(
+            f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy."
+        )
     return sentences + _overheating(sizing)
 
 
@@ -185,7 +187,10 @@ def _slower(sizing: Sizing, family: ServoFamily) -> str:
     """Return with which periods a family does, where they are not those that were asked for."""
     longer_periods = {gait: period for gait, period in _periods(sizing, family).items() if family.factors[gait] != 1.0}
     design_periods = {case.gait.name: case.gait.period for case in sizing.cases}
-    texts = [f"{gait} at a period of {period:.3g} s instead of {design_periods[gait]:.3g} s" for gait, period in longer_periods.items()]
+    texts = [
+        f"{gait} at a period of {period:.3g} s instead of {design_periods[gait]:.3g} s"
+        for gait, period in longer_periods.items()
+    ]
     return f" with {' and '.join(texts)}" if texts else ""
 
 

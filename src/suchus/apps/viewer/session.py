@@ -84,8 +84,8 @@ class Settings:
         """Return the gait of a robot with the switches of spine and tail."""
         if self.spine and self.tail:
             return self.gait
-        still = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
-        return divided(robot, self.gait).straightened(*still)
+        straight_chains = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
+        return divided(robot, self.gait).straightened(*straight_chains)
 
     def moved(self, robot: Robot) -> Gait:
         """Return the gait in which a robot moves now: that of its swim, or that of its walk."""
@@ -107,8 +107,8 @@ class Settings:
     @property
     def ground(self) -> Ground:
         """The ground that it walks on."""
-        length, start = (round(self.size * part, 9) for part in (_CORRELATION, BEFORE))
-        bumps = Bumps(height=self.bumps, correlation=length, start=start, seed=0) if self.bumps else None
+        correlation, start = (round(self.size * distance, 9) for distance in (_CORRELATION, BEFORE))
+        bumps = Bumps(height=self.bumps, correlation=correlation, start=start, seed=0) if self.bumps else None
         return Ground(uphill=self.uphill, sideways=self.sideways, relief=bumps)
 
 
@@ -195,14 +195,14 @@ class Session:
         with self._lock:
             return self._change(replace(self.settings, gait=gait))
 
-    def switch(self, name: Switch, on: bool) -> str:
+    def switch(self, name: Switch, is_on: bool) -> str:
         """Turn spine, tail, the feedback rules, the heading loop or the swim on or off.
 
         Returns:
             A sentence if that cannot be.
         """
         with self._lock:
-            changes: dict[str, Any] = {name: bool(on)}
+            changes: dict[str, Any] = {name: bool(is_on)}
             return self._change(replace(self.settings, **changes))
 
     def put(self, name: str, value: object) -> str:
@@ -216,13 +216,13 @@ class Session:
         with self._lock:
             number, notice = knob.within(value, getattr(self.settings, name) / knob.scale)
             changes: dict[str, Any] = {name: number * knob.scale}
-            before, self.settings = self.settings, replace(self.settings, **changes)
-            if name == "bumps" and self.settings.bumps != before.bumps:
+            last_settings, self.settings = self.settings, replace(self.settings, **changes)
+            if name == "bumps" and self.settings.bumps != last_settings.bumps:
                 self._begin()
             elif name in ("uphill", "sideways"):
                 self._live.tilt(self.settings.ground)
             elif name in ("level", "air_fraction") and self.settings.lake is not None:
-                return self._fill(before) or notice
+                return self._fill(last_settings) or notice
             return notice
 
     def lose(self, part: str, kind: str, **numbers: object) -> str:
@@ -239,8 +239,8 @@ class Session:
                 self._live.begin(fault)
             except SuchusError as error:
                 return str(error)
-            others = tuple(other for other in self.settings.broken if other.part != part)
-            self.settings = replace(self.settings, broken=(*others, fault))
+            other_faults = tuple(broken_fault for broken_fault in self.settings.broken if broken_fault.part != part)
+            self.settings = replace(self.settings, broken=(*other_faults, fault))
             return ""
 
     def mend(self, part: str | None = None) -> None:
@@ -271,14 +271,14 @@ class Session:
         with self._lock:
             return replace(self.state)
 
-    def _fill(self, before: Settings) -> str:
+    def _fill(self, last_settings: Settings) -> str:
         """Let the water be as it is set, or keep the old one and say why."""
         lake = self.settings.lake
         assert lake is not None
         try:
             self._live.fill(lake)
         except SuchusError as error:
-            self.settings = before
+            self.settings = last_settings
             return str(error)
         return ""
 
@@ -312,13 +312,20 @@ class Session:
         except Diverged as error:
             self.state.trouble = f"{str(error).rstrip('.')}. Press reset to begin anew."
             return
-        time, now = self._live.time, self._live.now
+        time, state = self._live.time, self._live.now
         if time <= START + 1e-9:
-            self._origin = now["centre_of_mass"]
-        forward, aside, _ = now["centre_of_mass"] - self._origin
+            self._origin = state["centre_of_mass"]
+        forward, lateral_displacement, _ = state["centre_of_mass"] - self._origin
         if self._push is not None and time >= self._push.at + self._push.duration:
             self._push = None
-        pushed = self._push.force if self._push else None
+        push_force = self._push.force if self._push else None
         level = self.settings.level if self.settings.lake else None
-        self.state = Instant(time=time, now=now, forward=float(forward), aside=float(aside), pushed=pushed, level=level)
-        self._history.note(time, now, (float(forward), float(aside)))
+        self.state = Instant(
+            time=time,
+            now=state,
+            forward=float(forward),
+            aside=float(lateral_displacement),
+            pushed=push_force,
+            level=level,
+        )
+        self._history.note(time, state, (float(forward), float(lateral_displacement)))

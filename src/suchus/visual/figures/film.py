@@ -50,6 +50,6 @@ def film(figure: Figure, show: Callable[[int], None], count: int, *, seconds: fl
 
 def film_caption(data: bytes) -> str:
     """Return what a film says of itself, empty if nothing."""
-    with Image.open(io.BytesIO(data)) as first:
-        said = first.info.get("comment", b"")
-    return said.decode(errors="replace") if isinstance(said, bytes) else str(said)
+    with Image.open(io.BytesIO(data)) as image:
+        comment = image.info.get("comment", b"")
+    return comment.decode(errors="replace") if isinstance(comment, bytes) else str(comment)
