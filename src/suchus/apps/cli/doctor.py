@@ -40,7 +40,7 @@ _EXTRAS = {
     "cluster": "studies on many machines",
 }
 """What each extra is good for; those that only developers need are left out."""
-_TRIAL_TIMEOUT = 300.0  # [s]; a cold disk and a slow machine
+_PATIENCE = 300.0  # [s]; a cold disk and a slow machine
 _LINE_WIDTH = 110  # columns
 
 
@@ -235,9 +235,9 @@ def tried(*names: str) -> list[Trial]:
 
 def _outcome(process: "subprocess.Popen[str]") -> Trial:
     try:
-        stdout, stderr = process.communicate(timeout=_TRIAL_TIMEOUT)
+        stdout, stderr = process.communicate(timeout=_PATIENCE)
     except subprocess.TimeoutExpired:
-        return Trial(found=None, failure=f"no answer within {_TRIAL_TIMEOUT:g} s")
+        return Trial(found=None, failure=f"no answer within {_PATIENCE:g} s")
     if process.returncode < 0:
         return Trial(found=None, failure=f"the process died of signal {-process.returncode}")
     if process.returncode > 0:

@@ -124,8 +124,8 @@ def _standing_beginning(robot: Robot, ground: Ground, timestep: float) -> Beginn
     height, min_height = float(loop.sensors["snout_position"][0, 2]), _MIN_STANDING_FRACTION * stretched(robot)
     if height < min_height:
         raise InvalidDesign(
-            f"robot {robot.name!r} falls over as it stands up: its snout is {height:.3g} m high, and {min_height:.3g} m "
-            "at least are those of one that stands; an upright start needs a robot that stays up."
+            f"robot {robot.name!r} falls over as it stands up: its snout is {height:.3g} m high, and "
+            f"{min_height:.3g} m at least are those of one that stands; an upright start needs a robot that stays up."
         )
     qpos, qvel, act = (np.array(state_array[0]) for state_array in (batch.qpos, batch.qvel, batch.activations))
     return Beginning(qpos, qvel, act, np.array(loop.command.targets[0]))

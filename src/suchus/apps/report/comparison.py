@@ -91,32 +91,32 @@ class Comparison:
         return tuple(verdict for verdict in common_verdicts if verdict.first != verdict.second)
 
 
-def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison:
+def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Comparison:
     """Set two outcomes side by side.
 
     Args:
-        first: an outcome.
-        second: another, to be compared with it.
+        result_a: an outcome.
+        result_b: another, to be compared with it.
         names: what they are called.
 
     Raises:
         IncompatibleRecord: they have no measure in common.
     """
-    measures_of_both = first.outcome["measures"], second.outcome["measures"]
-    measures = [_compare_measure(name, *measures_of_both) for name in _union(first, second)]
+    measures_of_both = result_a.outcome["measures"], result_b.outcome["measures"]
+    measures = [_compare_measure(name, *measures_of_both) for name in _union(result_a, result_b)]
     if not any(measure.first is not None and measure.second is not None for measure in measures):
         raise IncompatibleRecord(
-            f"{first.folder} ({first.name}) and {second.folder} ({second.name}) have no measure in common; compare two "
-            "outcomes of one experiment."
+            f"{result_a.folder} ({result_a.name}) and {result_b.folder} ({result_b.name}) have no measure in common; "
+            "compare two outcomes of one experiment."
         )
     measures.sort(key=lambda measure: (measure.difference is None, -_size(measure)))  # equal ones stay in their order
-    verdicts = list(_pair_verdicts(first.outcome["verdicts"], second.outcome["verdicts"]))
+    verdicts = list(_pair_verdicts(result_a.outcome["verdicts"], result_b.outcome["verdicts"]))
     verdicts.sort(key=lambda verdict: (verdict.first == verdict.second, not (verdict.first and verdict.second)))
-    flat = [dict(_flat(result.outcome.get("settings", {}))) for result in (first, second)]
+    flat = [dict(_flat(result.outcome.get("settings", {}))) for result in (result_a, result_b)]
     differ = [name for name in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(name) != flat[1].get(name)]
     return Comparison(
         names=names,
-        results=(first, second),
+        results=(result_a, result_b),
         measures=tuple(measures),
         verdicts=tuple(verdicts),
         settings=tuple(
@@ -164,8 +164,8 @@ def _union(a: Result, b: Result) -> list[str]:
     return list(dict.fromkeys([*a.outcome["measures"], *b.outcome["measures"]]))
 
 
-def _compare_measure(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> Compared:
-    a, b = first.get(name), second.get(name)
+def _compare_measure(name: str, first_measures: Mapping[str, Any], second_measures: Mapping[str, Any]) -> Compared:
+    a, b = first_measures.get(name), second_measures.get(name)
     units = list(dict.fromkeys(entry["unit"] for entry in (a, b) if entry))
     values = [entry["value"] if entry else None for entry in (a, b)]
     difference = share = None
@@ -184,10 +184,9 @@ def _size(measure: Compared) -> float:
     return abs(measure.share)
 
 
-def _pair_verdicts(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
-    first_verdicts, second_verdicts = (
-        {verdict["claim"]: verdict for verdict in verdicts} for verdicts in (first, second)
-    )
+def _pair_verdicts(*outcomes: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
+    """Yield each claim with its verdicts in the first and in the second outcome, by the order of the first."""
+    first_verdicts, second_verdicts = ({verdict["claim"]: verdict for verdict in verdicts} for verdicts in outcomes)
     for claim in dict.fromkeys([*first_verdicts, *second_verdicts]):
         verdict_pair = first_verdicts.get(claim) or second_verdicts[claim]
         words = [

@@ -58,29 +58,29 @@ def lessons() -> tuple[Lesson, ...]:
     return _bending(), _timing(), _joints(), _friction(), _waves()
 
 
-def write_lessons(folder: Path, chosen: Sequence[Lesson] = (), progress: Progress = silent) -> list[Path]:
+def write_lessons(folder: Path, selection: Sequence[Lesson] = (), progress: Progress = silent) -> list[Path]:
     """Write lessons and a page that lists them, and return the paths, the list first.
 
     Args:
         folder: for the pages; made where it is not there.
-        chosen: the lessons; all if empty.
+        selection: the lessons; all if empty.
         progress: called with the share that is done, 0 to 1.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
-    chosen = chosen or lessons()
-    listing = environment().get_template("lessons.html").render(lessons=chosen, version=versions()["suchus"])
+    selection = selection or lessons()
+    listing = environment().get_template("lessons.html").render(lessons=selection, version=versions()["suchus"])
     pages = {"index": listing}
-    for i, (lesson, following) in enumerate(zip(chosen, [*chosen[1:], None], strict=True)):
-        page_progress = staged(progress, lesson.name, i / len(chosen), (i + 1) / len(chosen))
+    for i, (lesson, following) in enumerate(zip(selection, [*selection[1:], None], strict=True)):
+        page_progress = staged(progress, lesson.name, i / len(selection), (i + 1) / len(selection))
         pages[lesson.name] = page(lesson, following, page_progress)
-    return [write(file, pages[file.stem]) for file in lesson_files(folder, chosen)]
+    return [write(file, pages[file.stem]) for file in lesson_files(folder, selection)]
 
 
-def lesson_files(folder: Path, chosen: Sequence[Lesson] = ()) -> list[Path]:
+def lesson_files(folder: Path, selection: Sequence[Lesson] = ()) -> list[Path]:
     """Return where ``write_lessons`` writes, in the order in which it does."""
-    return [folder / f"{name}.html" for name in ("index", *(lesson.name for lesson in chosen or lessons()))]
+    return [folder / f"{name}.html" for name in ("index", *(lesson.name for lesson in selection or lessons()))]
 
 
 def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = silent) -> str:
@@ -94,9 +94,10 @@ def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = s
     ]
     labels = [run.label for run in lesson.runs]
     return rendered(
-        "lesson.html", run_records[0], first_run.robot, others=run_records[1:], choice=lesson.choice,
-        labels=labels, title=lesson.title, caption=lesson.caption, question=lesson.question, options=labels, right=lesson.right(distances),
-        because=lesson.because, numbers=[f"{value:.2f} m".replace("-", "−") for value in distances],
+        "lesson.html", run_records[0], first_run.robot, others=run_records[1:], choice=lesson.choice, labels=labels,
+        title=lesson.title, caption=lesson.caption, question=lesson.question, options=labels,
+        right=lesson.right(distances), because=lesson.because,
+        numbers=[f"{value:.2f} m".replace("-", "−") for value in distances],
         heading=f"forward in {duration:g} s", command=lesson.command, following=following,
     )  # fmt: skip
 

@@ -246,7 +246,7 @@ class Viewer:
         _check_free(host, port)
         warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")  # a browser left in mid-frame
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser that leaves early is no error
-        self._open, self._most = open_page, most
+        self._open, self._max_browsers = open_page, most
         self._pages: dict[int, BrowserPage | None] = {}
         self._lock = Lock()
         self._stop_event = Event()
@@ -291,12 +291,12 @@ class Viewer:
 
     def _come(self, client: Any) -> None:
         with self._lock:
-            is_full = len(self._pages) >= self._most or self._stop_event.is_set()
+            is_full = len(self._pages) >= self._max_browsers or self._stop_event.is_set()
             if not is_full:
                 self._pages[client.client_id] = None
         if is_full:
             client.gui.add_markdown(
-                f"**All {self._most} places are taken.** As many browsers are watching as this server lets in. "
+                f"**All {self._max_browsers} places are taken.** As many browsers are watching as this server lets in. "
                 "Close one of them and reload this page, or start the server with a greater `--most`."
             )
             return

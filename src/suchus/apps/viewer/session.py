@@ -225,32 +225,35 @@ class Session:
                 return self._fill(last_settings) or notice
             return notice
 
-    def lose(self, part: str, kind: str, **numbers: object) -> str:
+    def lose(self, part_name: str, kind: str, **numbers: object) -> str:
         """Let a part break as it is now; return a sentence if that cannot be.
 
         Args:
-            part: a joint, a leg or a group of sensors.
+            part_name: a joint, a leg or a group of sensors.
             kind: name of a fault on the shelf.
             **numbers: of that fault; those left out are as on the shelf.
         """
         with self._lock:
             try:
-                fault = from_table({"kind": kind, "joint": part, **numbers})
+                fault = from_table({"kind": kind, "joint": part_name, **numbers})
                 self._live.begin(fault)
             except SuchusError as error:
                 return str(error)
-            other_faults = tuple(broken_fault for broken_fault in self.settings.broken if broken_fault.part != part)
+            other_faults = self._faults_except(part_name)
             self.settings = replace(self.settings, broken=(*other_faults, fault))
             return ""
 
-    def mend(self, part: str | None = None) -> None:
+    def mend(self, part_name: str | None = None) -> None:
         """Repair a part, or all of them."""
         with self._lock:
             for fault in self.settings.broken:
-                if part in (None, fault.part):
+                if part_name in (None, fault.part):
                     self._live.mend(fault.part)
-            left_broken = () if part is None else tuple(fault for fault in self.settings.broken if fault.part != part)
-            self.settings = replace(self.settings, broken=left_broken)
+            other_faults = () if part_name is None else self._faults_except(part_name)
+            self.settings = replace(self.settings, broken=other_faults)
+
+    def _faults_except(self, part_name: str) -> tuple[Fault, ...]:
+        return tuple(fault for fault in self.settings.broken if fault.part != part_name)
 
     def push(self) -> None:
         """Push the trunk as the settings say, now."""
