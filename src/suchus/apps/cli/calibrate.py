@@ -121,6 +121,7 @@ def _ask_joint(robot: Robot, bus: int, number: int) -> tuple[str, int]:
 
 
 def _fit_log(options: CalibrateOptions, output: Path) -> int:
+    """Fit stiffness, play, friction and zero of every servo to a log, print them, write them, and return 0."""
     if options.record is None:
         raise BadCommand("suchus calibrate log needs the record.nc of a drive, as out/drive_belly_crawl/record.nc.")
     record = load(options.record)

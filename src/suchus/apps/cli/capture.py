@@ -283,6 +283,7 @@ def _write_played_gait(options: CaptureOptions, output: Path | None, robot_word:
 
 
 def _reading_options(options: CaptureOptions) -> ReadingOptions:
+    """Return the settings with which tracks are read; ``--names`` becomes a mapping from names in the file to ours."""
     names = {}
     for pair in options.names:
         file_name, equals, keypoint = pair.partition("=")

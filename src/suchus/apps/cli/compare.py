@@ -70,6 +70,7 @@ def _folder(path: Path) -> Path:
 
 
 def _show(comparison: Comparison) -> None:
+    """Print the settings, verdicts and measures in which two outcomes differ as tables."""
     console = Console(highlight=False)
     for letter, name in zip("AB", comparison.names, strict=True):
         console.print(escape(printable(f"{letter}: {name}")), soft_wrap=True)
@@ -108,6 +109,7 @@ def _rounded(text: str) -> str:
 
 
 def _print(console: Console, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print a table whose first column is on the left; nothing without rows."""
     if not rows:
         return
     table = Table(box=None, padding=(0, 1, 0, 0))

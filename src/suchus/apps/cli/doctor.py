@@ -234,6 +234,7 @@ def tried(*names: str) -> list[Trial]:
 
 
 def _outcome(process: "subprocess.Popen[str]") -> Trial:
+    """Wait for a trial's process and return its result, or why it failed."""
     try:
         stdout, stderr = process.communicate(timeout=_PATIENCE)
     except subprocess.TimeoutExpired:

@@ -269,6 +269,7 @@ def _watch_keys() -> Iterator[Callable[[], str]]:
             tty.setcbreak(sys.stdin)
 
     def stop_reason() -> str:
+        """Return why the robot must stop: a key or a closed terminal; empty while neither happened."""
         if terminal_settings is None:
             return ""
         try:
@@ -316,6 +317,7 @@ class Telling:
         self._port.close()
 
     def _tell(self, packet: Packet, data: bytes) -> None:
+        """Print a packet that reads or writes all servos at once, with the servos' names and the bytes on the wire."""
         if packet.code not in (Instruction.SYNC_READ, Instruction.SYNC_WRITE):
             return
         word, payload = self._word, packet.data

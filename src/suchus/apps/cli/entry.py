@@ -319,6 +319,7 @@ def _begin_portable() -> None:
 
 
 def _mixing(allow_mixed: bool) -> AbstractContextManager[None]:
+    """Return a context in which results of another arithmetic may be continued, if that is allowed."""
     if not allow_mixed:
         return nullcontext()
     from suchus.core.machine import mixing  # noqa: PLC0415  as above
@@ -368,6 +369,7 @@ def _dispatch_and_flush(words: list[str]) -> int:
 
 
 def _dispatch(words: list[str]) -> int:
+    """Carry out the command that the first word names, or print version or help, and return the exit code."""
     if words and words[0] in ("--version", "-V"):
         if words[1:]:
             raise BadCommand(f"{words[0]} stands alone; leave out {' '.join(words[1:])!r}.")
@@ -385,6 +387,7 @@ def _dispatch(words: list[str]) -> int:
 
 
 def _help() -> str:
+    """Return the help: every command with its usage and summary, then examples."""
     command_width = max(len(f"{c.name} {c.usage}") for c in COMMANDS)
     example_width = max(len(example) for example, _ in _EXAMPLES)
     return "\n".join(

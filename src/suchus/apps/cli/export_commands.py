@@ -127,6 +127,7 @@ def _write_loads(options: ExportCommandsOptions, loads: Mapping[str, ServoLoad],
 
 
 def _loads_text(loads: Mapping[str, ServoLoad], at_limit: float) -> str:
+    """Return the loads as CSV, one row for each servo; torques in N m, times in s, angles in rad."""
     lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s,off_rad,needed_Nm,would_do"]
     for name, load in loads.items():
         first_time = "" if load.first != load.first else f"{load.first:.2f}"

@@ -105,6 +105,7 @@ def _plan(draft: Draft) -> list[str]:
 
 
 def _gait(draft: Draft, name: str) -> Gait | None:
+    """Return a first gait for the draft; None, with a printed note, where its joints allow none."""
     try:
         return draft_gait(draft.robot, name)
     except OutsideLimits as error:

@@ -185,6 +185,14 @@ def _registry(default_robot: Callable[[], Robot]) -> ConstructorRegistry:
 def _shelf_rule(
     kind: Any, metavar: str, default_label: str, resolve: Callable[[str], Any]
 ) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
+    """Return the rule by which tyro reads a robot or a gait from one word.
+
+    Args:
+        kind: type of the option that the rule reads.
+        metavar: word that stands for the value in the help.
+        default_label: how the help names the default None.
+        resolve: returns what a word names.
+    """
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
         metavar=f"{metavar}|FILE.toml",

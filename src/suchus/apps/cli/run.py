@@ -200,6 +200,7 @@ def _repeat_command(words: Sequence[str]) -> str:
 
 
 def _help() -> str:
+    """Return the help of ``suchus run``: its options and every experiment with its title."""
     shelf = EXPERIMENTS.sources()
     width = max((len(name) for name in shelf), default=0)
     return "\n".join(

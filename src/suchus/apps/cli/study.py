@@ -130,6 +130,7 @@ def _write_answers(record: xr.Dataset | None, varied_results: Mapping[str, xr.Da
 
 
 def _renew_share_rows(varied_results: Mapping[str, xr.Dataset], folder: Path) -> int:
+    """Write the rows of single experiments into the table of shares, print which they are, and return 0."""
     if not varied_results:
         raise UnreadableFile(
             f"{folder} holds too few points of what was asked; leave out --finished, and they are made."

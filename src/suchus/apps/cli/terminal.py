@@ -40,6 +40,7 @@ class Bars:
         move, last_time = self.task(name), time.monotonic()
 
         def tell(stage: str, share: float) -> None:
+            """Move the bar; without a terminal print a line every ten seconds."""
             nonlocal last_time
             move(stage, share)
             if not self.seen and time.monotonic() - last_time > _LINE_INTERVAL:

@@ -100,6 +100,7 @@ def _is_record(word: str) -> bool:
 
 
 def _walk(words: Sequence[str]) -> int:
+    """Read the options of a live walk, serve it until interrupted, and return 0."""
     description = "A robot walks live in the browser: change its gait, make joints fail, push it."
     positional = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
     option_words = [
@@ -138,6 +139,7 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
 
 
 def _replay(words: Sequence[str]) -> int:
+    """Read the options of a replay, serve the record until interrupted, and return 0."""
     description = "A record played back in the browser."
     options = parse(Replaying, "suchus view", words, description)
     runs = takes(options.record, options.robot)
@@ -156,6 +158,7 @@ def _animals(options: Replaying, runs: Sequence[Take]) -> tuple[FilmedAnimal, ..
 
 
 def _swim(words: Sequence[str]) -> int:
+    """Read the options of a swim's replay, serve it in the plane or in space until interrupted, and return 0."""
     description = "Play a swim back in the browser, with vorticity and pressure of the flow, or the vortices around it."
     options = parse(ViewSwimOptions, "suchus view swim", words, description)
     space = vortex_film(options.record)
@@ -191,6 +194,15 @@ def _serve(
     opened: Callable[[str], object] | None = None,
     **settings: Any,
 ) -> int:
+    """Serve pages until interrupted, and return 0.
+
+    Args:
+        page: makes the page of one browser from viser's handle of it.
+        address: host, port and number of browsers.
+        title: title of the pages, also printed.
+        opened: called with the address once it can be opened.
+        **settings: further settings of ``Viewer``.
+    """
     pages = pages_of_viewer()
     viewer = pages.Viewer(page, host=address.host, port=address.port, most=address.most, title=title, **settings)
     try:

@@ -69,6 +69,7 @@ def check_toml(path: Path, content: str) -> None:
 
 
 def _check_first(command: Subcommand, words: Sequence[str]) -> None:
+    """Refuse a first word that is no name on the shelf or no input file of the command."""
     word = words[0] if words else ""
     if not word or word.startswith("-"):
         if command.first_word == "experiment":
@@ -101,6 +102,7 @@ def _shelf(kind: str) -> Mapping[str, Source]:
 
 
 def _check_out(content: str, path: Path) -> None:
+    """Refuse an output path of the wrong kind, or one that cannot be written or must not be replaced."""
     if content == "folder":
         check_writable(path)
         return

@@ -314,6 +314,15 @@ class Pack:
         work: np.ndarray,
         action_rate: np.ndarray,
     ) -> Terms:
+        """Return the terms of the reward of one step, and note why episodes ended.
+
+        Args:
+            active_mask: which robots acted, (run,).
+            last_position: centres of mass before the step, (run, 3) [m].
+            last_goal_distance: distances to the goals before the step, (run,) [m].
+            work: work of the servos in the step, (run,) [J].
+            action_rate: squared change of the commanded angles, summed over the servos, (run,) [rad2].
+        """
         position, diverged = self.loop.sensors["centre_of_mass"], active_mask & ~self.loop.batch.alive
         displacement = np.where(diverged[:, None], 0.0, position - last_position)
         drift = np.where(diverged, 0.0, np.abs(position[:, 1]) - np.abs(last_position[:, 1]))
@@ -341,6 +350,14 @@ class Pack:
         )
 
     def _end_cause(self, robot: int, diverged: bool, height: float, level: float) -> str:
+        """Return the sentence that says why a robot's episode ended: divergence, a low snout or a tilt.
+
+        Args:
+            robot: index of the robot.
+            diverged: whether its simulation diverged.
+            height: height of its snout [m].
+            level: cosine of the tilt of its root [-].
+        """
         time_text = f"at {self.time[robot]:.2f} s"
         if diverged:
             return f"the simulation diverged {time_text}: {self.loop.batch.cause[robot]}"

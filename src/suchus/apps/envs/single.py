@@ -245,6 +245,7 @@ def draw_water(top_axes: Axes, side_axes: Axes, level: float, upward: Float[np.n
 
 
 def _draw_goal(top_axes: Axes, side_axes: Axes, goal: AnyGoal, place: Float[np.ndarray, "2"]) -> None:
+    """Draw the goal in both views, and an arrow towards it where it lies outside of the view from above."""
     (x_min, x_max), (y_min, y_max) = top_axes.get_xlim(), top_axes.get_ylim()
     colour = COLOURS["limbs_only"]
     if isinstance(goal, Landing):

@@ -146,6 +146,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
             infos[f"_{name}"] = infos.get(f"_{name}", np.zeros(self.num_envs, dtype=bool)) | mask
 
     def _add_final_infos(self, infos: dict[str, Any], values_by_name: dict[str, np.ndarray], mask: np.ndarray) -> None:
+        """Add last observations and values of the robots whose episodes end now, as gymnasium names them."""
         observations, final_observations = self.pack.feel(), np.full(self.num_envs, None)
         for i in np.flatnonzero(mask):
             final_observations[i] = observations[i].copy()
@@ -157,6 +158,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
 
 
 def _mode(mode: AutoresetMode | str) -> Any:
+    """Return the mode of automatic resets that a word names; refuse an unknown one."""
     try:
         return AutoresetMode(mode)
     except ValueError as error:
@@ -165,6 +167,7 @@ def _mode(mode: AutoresetMode | str) -> Any:
 
 
 def _seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
+    """Return one seed for each robot, None where a robot keeps its random generator."""
     if seed is None:
         return [None] * count
     if isinstance(seed, (int, np.integer)):
@@ -175,6 +178,7 @@ def _seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | No
 
 
 def _mask(options: dict[str, Any] | None, count: int) -> np.ndarray:
+    """Return which robots are reset, (num_envs,); refuse a mask of another shape or type."""
     if not options or "reset_mask" not in options:
         return np.ones(count, dtype=bool)
     mask = np.asarray(options["reset_mask"])

@@ -45,6 +45,7 @@ def beside(robot: Robot, results: Results) -> tuple[ComparisonRow, ...]:
 
 
 def _row(animal: Animal, robot: Robot, results: Results) -> ComparisonRow | None:
+    """Return the row of one animal's number; None if the robot or the results give no value for it."""
     experiment, measure, article_value = _COMPARISONS[animal.key]
     value = measure(robot, results)
     if value is None:

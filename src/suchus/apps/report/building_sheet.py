@@ -175,6 +175,7 @@ def floats_said(sheet: Sheet) -> str:
 
 
 def _content(sheet: Sheet, gait: Gait, picture: dict[str, str], outlines: bool) -> dict[str, object]:
+    """Return what the template of the page names."""
     counts: dict[str, int] = {}
     for motor in sheet.bought.values():
         counts[motor.name] = counts.get(motor.name, 0) + 1
@@ -196,6 +197,7 @@ def _content(sheet: Sheet, gait: Gait, picture: dict[str, str], outlines: bool) 
 
 
 def _csv(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return a table as CSV with six digits; empty cells for values that are not known."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(head)

@@ -165,6 +165,7 @@ def _union(a: Result, b: Result) -> list[str]:
 
 
 def _compare_measure(name: str, first_measures: Mapping[str, Any], second_measures: Mapping[str, Any]) -> Compared:
+    """Return one measure of two outcomes with its difference, absolute and relative."""
     a, b = first_measures.get(name), second_measures.get(name)
     units = list(dict.fromkeys(entry["unit"] for entry in (a, b) if entry))
     values = [entry["value"] if entry else None for entry in (a, b)]
@@ -184,9 +185,9 @@ def _size(measure: Compared) -> float:
     return abs(measure.share)
 
 
-def _pair_verdicts(*outcomes: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
-    """Yield each claim with its verdicts in the first and in the second outcome, by the order of the first."""
-    first_verdicts, second_verdicts = ({verdict["claim"]: verdict for verdict in verdicts} for verdicts in outcomes)
+def _pair_verdicts(rows_a: Sequence[Mapping[str, Any]], rows_b: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
+    """Yield each claim with its verdict in two outcomes, in the order of the first outcome."""
+    first_verdicts, second_verdicts = ({row["claim"]: row for row in rows} for rows in (rows_a, rows_b))
     for claim in dict.fromkeys([*first_verdicts, *second_verdicts]):
         verdict_pair = first_verdicts.get(claim) or second_verdicts[claim]
         words = [

@@ -117,6 +117,7 @@ def _backwards(distances: Sequence[float]) -> int:
 
 
 def _bending() -> Lesson:
+    """Return the lesson in which the slider scales the lateral bend of spine and tail."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     return Lesson(
         name="bending",
@@ -139,6 +140,7 @@ def _bending() -> Lesson:
 
 
 def _timing() -> Lesson:
+    """Return the lesson in which the slider delays the bend of the spine against the limbs."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     lags = {"in time with the legs": 0.0, "1/8 cycle late": 0.125, "1/4 cycle late": 0.25, "3/8 cycle late": 0.375,
             "1/2 cycle late": 0.5}  # fmt: skip
@@ -159,6 +161,7 @@ def _timing() -> Lesson:
 
 
 def _joints() -> Lesson:
+    """Return the lesson in which the slider chooses the joint that gives no torque."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     return Lesson(
         name="joints",
@@ -181,6 +184,7 @@ def _joints() -> Lesson:
 
 
 def _friction() -> Lesson:
+    """Return the lesson in which the slider scales the friction of the ground."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     factors = {
         "a tenth of usual": 0.1,
@@ -209,6 +213,7 @@ def _friction() -> Lesson:
 
 
 def _waves() -> Lesson:
+    """Return the lesson in which the slider sets the number of waves on a swimming body."""
     robot, gait = ROBOTS["swimmer"], GAITS["undulation"]
     waves = {"one, from tail to head": -1.0, "none: all joints at once": 0.0, "a half, from head to tail": 0.5,
              "one, from head to tail": 1.0, "one and a half, from head to tail": 1.5}  # fmt: skip

@@ -83,6 +83,7 @@ def _gist(text: str) -> str:
 
 
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
+    """Return what the template of the page names."""
     order = {key: place for place, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
     robot, robot_counts = robot_of(results)
@@ -198,6 +199,7 @@ def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
 
 
 def _robot(settings: Any) -> Robot | None:
+    """Return the robot that the settings of an outcome describe; None if this version cannot build it."""
     values = settings.get("robot") if isinstance(settings, Mapping) else None
     try:
         return described_robot(values) if isinstance(values, Mapping) else None
@@ -264,6 +266,7 @@ def choices(design: Any, chosen_numbers: Sequence[Chosen]) -> tuple[ChosenNumber
 
 
 def _choice(design: Any, free_number: Chosen) -> ChosenNumber:
+    """Return the row of one number that the article does not give."""
     value, unit = value_at(design, free_number.field), unit_at(design, free_number.field)
     return ChosenNumber(
         field=free_number.field,
@@ -275,6 +278,7 @@ def _choice(design: Any, free_number: Chosen) -> ChosenNumber:
 
 
 def _format_value(value: Any, unit: str) -> str:
+    """Return a value with its unit; a range as "a to b", a longer tuple as its elements."""
     if isinstance(value, tuple):
         return (
             " to ".join(_format_value(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))

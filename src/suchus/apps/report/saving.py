@@ -110,6 +110,7 @@ def _measure(measure: Measure) -> dict[str, Any]:
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
+    """Return a verdict for ``outcome.json``: claim, rule, measured value and interval, and share of designs."""
     claim, rule, share = verdict.claim, verdict.rule, verdict.share
     return {
         "claim": claim.key,

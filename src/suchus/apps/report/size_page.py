@@ -91,6 +91,16 @@ def servos_text(sizing: Sizing) -> str:
 
 
 def _row(family: str, motor: Motor | None, servo: str, case: str, load: ServoLoad, period: float) -> list[object]:
+    """Return one row of the table of servos in the order of ``_COLUMNS``.
+
+    Args:
+        family: name of the family of servos.
+        motor: the servo that is bought; None for the servo of the design.
+        servo: name of the servo in the robot.
+        case: name of the movement.
+        load: what the servo bears in it.
+        period: period of the gait [s].
+    """
     heat = None if motor is None else load.rms / motor.continuous_torque
     limit = load.line if motor is None else load.line / FULL_WOUND
     return [
@@ -200,6 +210,7 @@ def _periods(sizing: Sizing, family: ServoFamily | None) -> dict[str, float]:
 
 
 def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float) -> dict[str, Any]:
+    """Return what the template of the page names."""
     best = sizing.best
     overloaded = [
         {"servo": name, "case": case, "load": load}
@@ -258,6 +269,7 @@ def _temperature_text(load: ServoLoad) -> str:
 
 
 def _csv(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return a table as CSV with five digits; empty cells for values that are not known."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(head)
@@ -267,6 +279,7 @@ def _csv(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
 
 
 def _cell(value: object) -> object:
+    """Return a cell as CSV shows it: yes or no, five digits, or nothing."""
     if value is None or (isinstance(value, float) and value != value):
         return ""
     if isinstance(value, bool):

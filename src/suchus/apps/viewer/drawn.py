@@ -47,6 +47,7 @@ class DrawnRobot:
         self._skin = [(piece, self._piece(i, piece)) for i, piece in enumerate(skin_pieces)]
 
     def _geom(self, number: int) -> Any:
+        """Add a collision geom of the robot to the scene and return its handle."""
         mesh = create_primitive_mesh(self.posture.model, number)
         colour = tuple(int(255 * component) for component in self.posture.model.geom_rgba[number][:3])
         return self._scene.add_mesh_simple(
@@ -59,6 +60,7 @@ class DrawnRobot:
         )
 
     def _piece(self, number: int, piece: Any) -> Any:
+        """Add a piece of the skin to the scene and return its handle."""
         identity = np.tile([1.0, 0.0, 0.0, 0.0], (len(piece.bones), 1))
         return self._scene.add_mesh_skinned(
             f"{self._root}/skin_{number}",
@@ -108,6 +110,7 @@ class DrawnRobot:
         self._marks = {fault.part: self._mark(fault) for fault in faults if fault.acts_on != "sensor"}
 
     def _mark(self, fault: Fault) -> tuple[Any, Any]:
+        """Add a ball and a label at the joint or foot that a fault breaks, and return both handles."""
         joint, kind = fault.part, fault.kind()
         place = self.posture.part(joint)
         ball = self._scene.add_icosphere(

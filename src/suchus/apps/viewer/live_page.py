@@ -119,6 +119,7 @@ class Controls:
         """Let a control act, when a person moves it; what ``act`` returns is shown where it is a sentence."""
 
         def on_event(event: Any) -> None:
+            """Count a touch, act, and show the sentence that the action returns."""
             if event.client is None:  # set by ourselves
                 return
             self.touched += 1
@@ -129,6 +130,7 @@ class Controls:
         (handle.on_click if hasattr(handle, "on_click") else handle.on_update)(on_event)
 
     def _playback(self) -> None:
+        """Add pause, reset and playback speed."""
         gui = self._gui
         with gui.add_folder("Walk"):
             self._pause = gui.add_checkbox("pause", initial_value=False)
@@ -141,6 +143,7 @@ class Controls:
         self._pause.value = False
 
     def _add_switch(self, name: Switch, label: str, hint: str) -> None:
+        """Add a checkbox for a switch of ``Settings``; it shows the state that the session accepted."""
         box = self._gui.add_checkbox(label, initial_value=getattr(self._session.settings, name), hint=hint)
 
         def act(is_on: object) -> str:
@@ -152,6 +155,7 @@ class Controls:
         self._switches[name] = box
 
     def _gaits(self) -> None:
+        """Add a menu of the gaits on the shelf that have the same sliders as the present gait."""
         current_gait = self._session.settings.gait
         shelf: dict[str, Gait] = {name: gait for name, gait in GAITS.items() if self._fits(gait)}
         if shelf.get(current_gait.name) != current_gait:
@@ -217,6 +221,7 @@ class Controls:
             )
 
     def _faults(self) -> None:
+        """Add a menu of joints with buttons that break and repair them, and the other faults in a folder."""
         gui, session = self._gui, self._session
         joint = gui.add_dropdown("joint", Limp.parts(session.robot), initial_value=Limp.parts(session.robot)[0])
         self._connect(gui.add_button("make it limp", color="red"), lambda _: session.lose(joint.value, "limp"))
@@ -319,6 +324,7 @@ class LivePage(BrowserPage):
             self._say(f"Paused after {self._idle / 60:.0f} minutes without a touch. Untick pause to go on.")
 
     def _show(self, instant: Instant, *, everything: bool) -> None:
+        """Move the scene to an instant; ``everything`` renews the track and the numbers too."""
         settings = self._session.settings
         self._stage.shown = {name: bool(box.value) for name, box in self._switches.items()}
         with self._client.atomic():
@@ -381,6 +387,7 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
 
 
 def _box(text: str, back: str, ink: str) -> str:
+    """Return a sentence as a coloured HTML box; empty without a sentence."""
     if not text:
         return ""
     return (

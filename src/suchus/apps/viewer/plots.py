@@ -122,6 +122,7 @@ class Chart:
         self._handle.data = tuple(np.asarray(column, dtype=float) for column in (time, *ghost_lines, *lines))
 
     def _values(self, table: Mapping[str, np.ndarray], line: Line) -> np.ndarray:
+        """Return the values of a line in the unit of the title, averaged over the layout's interval."""
         values = self._plan.scale * table.get(
             line.column, np.full(len(table["time"]), np.nan)
         )  # a ghost of other limbs

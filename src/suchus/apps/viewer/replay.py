@@ -106,6 +106,14 @@ def _tells_level(record: xr.Dataset) -> bool:
 
 
 def _take(path: Path, run: xr.Dataset, number: int, robot: Robot | None) -> Take:
+    """Return one run of a record with its robot, ground and valid samples.
+
+    Args:
+        path: file of the record, for messages.
+        run: the run, without the dimension ``run``.
+        number: index of the run in the record.
+        robot: the robot that walks; by default the robot that the record names.
+    """
     walker = robot or _robot(path, str(run.coords["robot"].item()) if "robot" in run.coords else "caiman")
     if tuple(run.joint.values) != joint_names(walker):
         raise IncompatibleRecord(
@@ -122,6 +130,7 @@ def _take(path: Path, run: xr.Dataset, number: int, robot: Robot | None) -> Take
 
 
 def _robot(path: Path, name: str) -> Robot:
+    """Return the robot of the shelf that a record names."""
     try:
         robot: Robot = ROBOTS[name]
     except UnknownName as error:

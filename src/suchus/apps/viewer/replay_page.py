@@ -59,6 +59,7 @@ class ReplayPage(BrowserPage):
         self._pictures, self._plotted = 0, 0.0
 
     def _play(self, gui: Any, end: float) -> None:
+        """Add the time slider, the pause and the playback speed, and connect them to the player."""
         player = self._player
         self._slider = gui.add_slider("time [s]", min=player.time, max=end, step=0.01, initial_value=player.time)
         paused = gui.add_checkbox("pause", initial_value=False)
@@ -102,6 +103,7 @@ class ReplayPage(BrowserPage):
             self._drawn_animal = DrawnAnimal(self._client.scene, f"{WORLD}/animal", self._animals[take.label])
 
     def _show(self, take: Take, ghost: Take | None, *, everything: bool) -> None:
+        """Move robot, water, ghost and animal to the player's time; ``everything`` renews slider and text too."""
         time = self._player.time
         with self._client.atomic():
             state = take.at(time)

@@ -77,6 +77,7 @@ class Gate:
         """Return what answers requests as ``answer`` does, if they are admitted, with the headers of a closed page."""
 
         def guard(connection: Any, request: Request) -> Response | None:
+            """Answer an admitted request with protective headers; refuse any other request with status 403."""
             if not self.admits(request):
                 headers = Headers({"Content-Type": "text/plain", "Content-Length": str(len(_REFUSAL))})
                 return Response(HTTPStatus.FORBIDDEN.value, "Forbidden", headers, _REFUSAL)
@@ -125,6 +126,7 @@ def _closed(host: str) -> dict[str, str]:
 
 
 def _is_address(name: str) -> bool:
+    """Return whether a name is an IP address."""
     try:
         ipaddress.ip_address(name)
     except ValueError:
@@ -290,6 +292,7 @@ class Viewer:
             self._server.stop()
 
     def _come(self, client: Any) -> None:
+        """Open a page for a new browser and draw it until it closes; refuse the browser if the server is full."""
         with self._lock:
             is_full = len(self._pages) >= self._max_browsers or self._stop_event.is_set()
             if not is_full:

@@ -286,6 +286,7 @@ class Session:
         return ""
 
     def _begin(self) -> None:
+        """Start a new simulation from the present settings, with empty history and the robot at its start."""
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
         run = Run(
@@ -310,6 +311,7 @@ class Session:
         return ""
 
     def _step(self) -> None:
+        """Simulate one control period and update the instant that pages show; note why the walk ended."""
         try:
             self._live.step()
         except Diverged as error:

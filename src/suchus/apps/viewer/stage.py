@@ -294,6 +294,13 @@ class WalkScene:
         self._water.position = np.array([0.0, 0.0, level + float(np.asarray(self._world.position)[2])])
 
     def _draw_support(self, feet: np.ndarray, loaded: np.ndarray, com: np.ndarray) -> None:
+        """Draw the support polygon, the projected centre of mass and the plumb line between.
+
+        Args:
+            feet: points of the feet on the ground, (limb, 3) [m].
+            loaded: which feet carry load, (limb,).
+            com: centre of mass, (3,) [m].
+        """
         paint_height = self._size * _PAINT_HEIGHT
         corners = support(feet, loaded) + np.array([0.0, 0.0, paint_height])
         floor = float(feet[loaded, 2].mean()) if loaded.any() else 0.0

@@ -95,6 +95,7 @@ def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:
 
 
 def _film(record: xr.Dataset, prefix: str) -> Film | None:
+    """Return the swim whose variables begin with a prefix; None if the record has no field of it."""
     names = [name for name in _FIELDS if f"{prefix}{name}" in record and record[f"{prefix}{name}"].ndim in (2, 3)]
     if not names:
         return None
@@ -150,6 +151,7 @@ def _lines(values: np.ndarray) -> np.ndarray:
 
 
 def _curves(record: xr.Dataset) -> tuple[PlottedCurve, ...]:
+    """Return the forces over the phase, the speed of each cycle and the joint angles that a record holds."""
     curves = []
     for prefix, title in _TITLES.items():
         parts = {"forward": f"{prefix}_thrust", "to the side": f"{prefix}_aside"}
@@ -282,6 +284,7 @@ class VortexFilm:
 
 
 def _space_curves(record: xr.Dataset) -> Iterator[PlottedCurve]:
+    """Yield speed and power of each cycle by grid, the servos' torques, and the joint angles."""
     for name, unit in (("speed", "m/s"), ("power", "W")):
         if name in record and record[name].dims == ("grid", "cycle") and "cells" in record.coords:
             grids = {f"{int(n)} cells a length": record[name].values[i] for i, n in enumerate(record.cells.values)}

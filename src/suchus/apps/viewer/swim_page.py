@@ -162,6 +162,7 @@ class SwimPage(CyclePage):
             self.place(float(self._phase.value))
 
     def _show(self, film: Film, field: str, frame: int, *, anew: bool) -> None:
+        """Draw a field and the body of one frame; ``anew`` replaces the picture since its size may differ."""
         field = field if field in film.fields else "none"
         with self._client.atomic():
             if anew and self._image is not None:
@@ -182,6 +183,7 @@ class SwimPage(CyclePage):
             self._status.content = swim_text(film, field, frame)
 
     def _body_at(self, sides: np.ndarray) -> None:
+        """Move the body's surface and edge to its two sides, (2, station, 2) [m]."""
         left_side, right_side = (np.column_stack([side, np.zeros(len(side))]) for side in sides)
         count = np.arange(len(left_side) - 1)
         side_count = len(left_side)
@@ -297,6 +299,7 @@ class VortexPage(CyclePage):
         self._place = (frame % self._count + 0.5) / self._count
 
     def _forget(self, level: float, halves: str) -> None:
+        """Remove all surfaces and take over another level and another choice of halves."""
         for surface in self._made.values():
             surface.remove()
         self._made.clear()
@@ -305,6 +308,7 @@ class VortexPage(CyclePage):
         self._surface_settings = level, halves
 
     def _draw_surface(self, frame: int) -> Any:
+        """Add the surfaces of one frame to the scene and return their handle."""
         level, halves = self._surface_settings
         mesh = self._film.surfaces(frame, level, blocks=self._blocks, lower=halves == _LOWER_HALF)
         return self._client.scene.add_mesh_trimesh(

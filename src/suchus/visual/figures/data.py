@@ -99,6 +99,7 @@ def table(figure: Figure) -> str:
 
 
 def _rows(figure: Figure) -> Iterator[Cells]:
+    """Yield one row for every point of every series, panel by panel."""
     panels = [panel for ax in figure.axes for panel in (ax, *ax.child_axes) if isinstance(panel, Axes)]
     axes = [ax for ax in panels if ax.get_label() != "<colorbar>"]
     labels = _labels_by_style(axes)
@@ -142,6 +143,7 @@ def _series(ax: Axes, labels: Mapping[tuple[str, ...], str]) -> Iterator[tuple[s
 
 
 def _of_line(ax: Axes, line: Line2D, names: _Quantities) -> Iterator[Cells]:
+    """Yield the points of a line; of a line across the panel its one coordinate."""
     if line.get_transform() == ax.get_xaxis_transform(which="grid"):  # a vertical line over the whole height
         yield _cells(names, (float(np.asarray(line.get_xdata(orig=False))[0]), None))
     elif line.get_transform() == ax.get_yaxis_transform(which="grid"):
@@ -152,6 +154,7 @@ def _of_line(ax: Axes, line: Line2D, names: _Quantities) -> Iterator[Cells]:
 
 
 def _of_bars(bars: BarContainer, names: _Quantities) -> Iterator[Cells]:
+    """Yield the position and length of each bar."""
     for bar in bars.patches:
         if bars.orientation == "horizontal":
             yield _cells(names, (bar.get_width(), bar.get_y() + bar.get_height() / 2))
@@ -160,6 +163,7 @@ def _of_bars(bars: BarContainer, names: _Quantities) -> Iterator[Cells]:
 
 
 def _of_collection(ax: Axes, collection: Collection, names: _Quantities) -> Iterator[Cells]:
+    """Yield the points of a collection: cells of a field, coloured points, or corners of lines and areas."""
     field = getattr(collection, _FIELD_ATTRIBUTE, None)
     if field is not None:
         yield from _of_field(field.x, field.y, field.values, names, _colour(collection))
@@ -180,6 +184,7 @@ def _of_collection(ax: Axes, collection: Collection, names: _Quantities) -> Iter
 
 
 def _of_image(image: AxesImage, names: _Quantities) -> Iterator[Cells]:
+    """Yield the cells of a picture that shows a field."""
     values = field_of(image)
     if values.ndim > 2:  # colours, which are no numbers of anything
         return
@@ -190,6 +195,7 @@ def _of_image(image: AxesImage, names: _Quantities) -> Iterator[Cells]:
 
 
 def _of_patch(patch: Patch, names: _Quantities) -> Iterator[Cells]:
+    """Yield the corners of a patch; of a circle its centre, of a histogram its edges."""
     if isinstance(patch, Circle):
         yield _cells(names, patch.center)
     elif isinstance(patch, StepPatch):

@@ -82,6 +82,7 @@ def _plan(ax: Axes, robot: Robot, *, from_the_side: bool) -> None:
 
 
 def _chain(ax: Axes, place: Layout, limb: LimbPlace, origins: np.ndarray, *, hanging: bool) -> None:
+    """Draw the links, joints and foot of a limb, seen from above or hanging down."""
     links = limb.girdle.limb.links
     first_body = limb.tip - len(links) + 1
     origin = origins[first_body]
@@ -99,6 +100,7 @@ def _chain(ax: Axes, place: Layout, limb: LimbPlace, origins: np.ndarray, *, han
 
 
 def _draw_top_view(ax: Axes, robot: Robot) -> None:
+    """Draw the article's robot from above with its length and the distance of its girdles."""
     front = robot.spine.length + robot.thorax.shoulder
     for x, leg in ((0.0, robot.hind_leg), (front, robot.front_leg)):
         for side in (1, -1):
@@ -120,6 +122,7 @@ def _draw_top_view(ax: Axes, robot: Robot) -> None:
 
 
 def _draw_side_view(ax: Axes, robot: Robot) -> None:
+    """Draw the article's robot from the side, standing, with the lengths of tail, trunk and head."""
     height = _stance(robot.hind_leg)
     front = robot.spine.length + robot.thorax.shoulder
     nose = robot.spine.length + robot.head.snout
@@ -144,6 +147,7 @@ def _stance(leg: LegMeasures) -> float:
 
 
 def _leg(ax: Axes, x: float, leg: LegMeasures, side: int) -> None:
+    """Draw a leg from above, to the left (side 1) or to the right (side -1)."""
     knee = leg.hip_offset + leg.femur
     foot = knee + leg.tibia * sin(_TILT)
     ax.plot([x, x], [0.0, side * foot], color=_LIMB, linewidth=5, solid_capstyle="round", zorder=0.5)
@@ -178,6 +182,7 @@ def _box(ax: Axes, start: float, end: float, half: float, height: float = 0.0) -
 
 
 def _head(ax: Axes, robot: Robot, half: float, height: float) -> None:
+    """Draw the head as a polygon that narrows to the snout."""
     start = robot.spine.length + robot.thorax.shoulder
     end = robot.spine.length + robot.head.snout
     jaw = start + 0.35 * (end - start)
@@ -199,6 +204,7 @@ def _joint(ax: Axes, x: float, y: float) -> None:
 
 
 def _measure(ax: Axes, start: float, end: float, y: float) -> None:
+    """Draw a dimension arrow at height y with its length in millimetres."""
     arrow = {"arrowstyle": "<->", "color": "#555555", "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", (start, y), (end, y), arrowprops=arrow, annotation_clip=False)
     ax.update_datalim([(start, y), (end, y)])

@@ -217,6 +217,7 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
 
 
 def _along_the_outline(surface: Surface) -> Figure:
+    """Draw pressure and friction over the arc length of a plane body's outline."""
     m = surface.markers
     place = np.cumsum(m.share) - m.share / 2
     friction = surface.shear[1] * m.normals[0] - surface.shear[0] * m.normals[1]

@@ -56,6 +56,7 @@ def ground_forces_figure(data: xr.Dataset) -> Figure:
 
 
 def _mark(ax: Axes, animal_data: xr.Dataset) -> None:
+    """Shade the animals' greatest net force, two standard deviations to either side."""
     animal, spread = float(animal_data.animals), float(animal_data.animals_spread)
     ax.axhspan(
         animal - 2 * spread, animal + 2 * spread, color=COLOURS["neutral"], alpha=0.15, linewidth=0.0,

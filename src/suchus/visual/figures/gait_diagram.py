@@ -239,6 +239,17 @@ def stretches(time: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
 def _bars(
     ax: Axes, time: np.ndarray, holds: np.ndarray, place: tuple[float, float], fill: str, edge: str, sign: str = ""
 ) -> None:
+    """Draw a bar over every interval in which a condition holds.
+
+    Args:
+        ax: to draw on.
+        time: shape (time,).
+        holds: the condition, shape (time,).
+        place: top and height of the bar.
+        fill: colour of the bar.
+        edge: colour of its edge.
+        sign: text on bars that are long enough for it.
+    """
     top, height = place
     span = float(time[-1] - time[0])
     for start, end in stretches(time, holds):
@@ -252,6 +263,7 @@ def _bars(
 
 
 def _bar_legend(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
+    """Add the legend of the bars: standing feet and the two signs of a bend."""
     handles = [Patch(facecolor=shade, edgecolor=shade) for _, shade in zip(tracks, _SHADES, strict=False)]
     labels = [track.label for track in tracks]
     ax.legend(

@@ -213,6 +213,7 @@ def _paler(colour: str, strength: float) -> str:
 
 
 def _support(ax: Axes, record: xr.Dataset, time: float, load_threshold: float) -> None:
+    """Draw the support polygon, or the line between two standing feet."""
     corners = support_polygon(record, time, load_threshold)
     if len(corners) >= 3:
         ax.add_patch(Polygon(corners, facecolor="#F2C46D", alpha=0.45, edgecolor="#B8860B", linewidth=1.4, zorder=0.5))
@@ -221,6 +222,7 @@ def _support(ax: Axes, record: xr.Dataset, time: float, load_threshold: float) -
 
 
 def _mark_mass(ax: Axes, com: np.ndarray, view: View) -> None:
+    """Mark the projected centre of mass; from the side with a line down to the ground."""
     style: dict[str, Any] = {"color": COLOURS["alarm"], "zorder": 5}
     ax.plot(com[0], com[1], "o", markersize=7, markerfacecolor="white", markeredgewidth=1.8, **style)
     ax.plot(com[0], com[1], "+", markersize=7, markeredgewidth=1.4, **style)

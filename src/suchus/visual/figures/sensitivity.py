@@ -90,6 +90,7 @@ def draw_claim(record: xr.Dataset, claim: str) -> Figure:
 
 
 def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> None:
+    """Draw the histogram of a claim's number, split by whether the claim holds, with the article's number."""
     article_value, unit = CLAIMS[claim].value, CLAIMS[claim].unit
     if number.size:
         lower_bound, upper_bound = np.quantile(number, (0.01, 0.99))
@@ -126,6 +127,7 @@ def _axis_label(claim: str) -> str:
 
 
 def _correlations(ax: Axes, claimed: xr.Dataset, samples: int) -> None:
+    """Draw the rank correlations of a claim's number with the parameters it follows most."""
     order = np.argsort(-abs(claimed.correlation.values))[:_MAX_PARAMETERS][::-1]
     values = claimed.correlation.values[order]
     ax.barh(range(len(order)), values, color=[_TRUE if v > 0 else _FALSE for v in values], height=0.65)
@@ -155,6 +157,7 @@ def spoken(parameter: str) -> str:
 
 
 def _plane(ax: Axes, claimed: xr.Dataset, is_finite: np.ndarray, holds: np.ndarray) -> None:
+    """Draw the samples over the two parameters that separate best, with the decision boundary."""
     first_index = int(claimed.border_of)
     order = [int(i) for i in np.argsort(-abs(claimed.correlation.values))]
     if first_index < 0:

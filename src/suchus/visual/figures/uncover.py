@@ -91,6 +91,7 @@ def _meets(artist: Artist, ax: Axes, box: Bbox) -> bool:
 
 
 def _collection_meets(collection: Collection, ax: Axes, visible_box: Bbox) -> bool:
+    """Return whether a field, points, lines or areas show something within a box of the picture [pixel]."""
     if isinstance(collection, QuadMesh):
         corners = np.asarray(collection.get_coordinates(), dtype=float)
         grid = ax.transData.transform(corners.reshape(-1, 2)).reshape(corners.shape)

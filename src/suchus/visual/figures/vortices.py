@@ -288,6 +288,7 @@ def film_vortices(record: xr.Dataset, progress: Progress = silent) -> bytes:
 
 
 def _caption(record: xr.Dataset) -> str:
+    """Return the caption of a picture or film of a record's vortices."""
     return (
         f"The robot's body swims to the left, on {int(record.cells[-1])} cells a length at f L² / ν = "
         f"{float(record.reynolds):.0f}. The surfaces lie where the second invariant of the velocity's gradient is Q = "

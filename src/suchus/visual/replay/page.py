@@ -242,6 +242,13 @@ def _swim_scene(record: xr.Dataset) -> tuple[dict[str, Any], str]:
 
 
 def _packed_swim(record: xr.Dataset, pack: PackedArrays, coarse: int) -> dict[str, Any]:
+    """Pack the surfaces and the body of every frame and return the metadata that the player reads.
+
+    Args:
+        record: of a swim in space with frames.
+        pack: takes the arrays.
+        coarse: cells along each side of a block of which surfaces are taken [-].
+    """
     limit = vortices.colour_limit(record)
     surfaces = [vortices.surface(record, i, coarse=coarse) for i in range(record.sizes["frame"])]
     center = np.array([0.5 * float(record[axis].min() + record[axis].max()) for axis in "xy"] + [0.0])

@@ -101,6 +101,7 @@ def scene(
 
 
 def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
+    """Pack the skin: vertices, normals, colours, faces, and two bones with weights for each vertex."""
     vertices, scale = quantised(surface.vertices, np.int16)
     assert (surface.weights[:, 2:] == 0).all()  # joints are so far apart that no vertex hangs on three bones
     return {
@@ -116,6 +117,7 @@ def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
 
 
 def _packed(robot: Robot, run: Frames, label: str, relief: Relief | None, pack: PackedArrays) -> dict[str, Any]:
+    """Pack one run: poses of the bones, centre of mass, feet, forces and tail in every frame."""
     bones = ankles(robot, run.bones, run.feet, relief)
     places = bones.positions
     origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2
@@ -146,6 +148,7 @@ def _packed_water(run: Frames, ground: Ground, pack: PackedArrays) -> dict[str, 
 
 
 def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:
+    """Pack the heights of bumps, or return the block that a step or a beam is."""
     if isinstance(relief, Bumps):
         heights = field(relief)
         height_values, max_height = quantised(heights, np.int16)

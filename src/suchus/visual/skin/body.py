@@ -65,6 +65,7 @@ def _tail_knots(robot: Robot, proportions: Look) -> list[Knot]:
 
 
 def _trunk_knots(robot: Robot, proportions: Look) -> list[Knot]:
+    """Return (x, half width, top, bottom) of the trunk from the pelvis to the shoulders [m]."""
     pelvis, thorax, spine, tail = robot.pelvis, robot.thorax, robot.spine, robot.tail
     m = proportions.margin
     radius = m * spine.radius

@@ -27,6 +27,14 @@ def left_leg(robot: Robot, girdle: str) -> list[Mesh]:
 
 
 def _limb(robot: Robot, leg: LegMeasures, front: bool, x_offset: float) -> Mesh:
+    """Return upper and lower leg as one surface.
+
+    Args:
+        robot: the robot.
+        leg: lengths and radii of the leg.
+        front: whether it is a front leg.
+        x_offset: where the leg is attached, ahead of the root [m].
+    """
     r, hip, knee = leg.radius, leg.hip_offset, leg.hip_offset + leg.femur
     end = knee + leg.tibia
     girdle = robot.thorax if front else robot.pelvis
@@ -77,6 +85,14 @@ def _foot(leg: LegMeasures, front: bool, x_offset: float) -> list[Mesh]:
 
 
 def _toe(root: np.ndarray, angle: float, reach: float, radius: float) -> list[Mesh]:
+    """Return a toe and its claw.
+
+    Args:
+        root: where the toe begins, (3,) [m].
+        angle: angle from forward, positive to the outside of a standing foot [rad].
+        reach: length of the toe [m].
+        radius: radius at its root [m].
+    """
     forward = np.array([np.cos(angle), 0.0, np.sin(angle)])
     lateral = np.array([-np.sin(angle), 0.0, np.cos(angle)])
     outward = np.array([0.0, 1.0, 0.0])

@@ -43,6 +43,7 @@ def curve(knots: Sequence[tuple[float, float]]) -> Callable[[np.ndarray], np.nda
     tangents = np.concatenate([[0.0], inner, [0.0]])
 
     def value(positions: np.ndarray) -> np.ndarray:
+        """Return the curve at positions along x."""
         positions = np.clip(positions, x[0], x[-1])
         i = np.clip(np.searchsorted(x, positions, side="right") - 1, 0, len(x) - 2)
         h = x[i + 1] - x[i]
