@@ -105,7 +105,13 @@ def _initial_wiring(options: CalibrateOptions) -> Wiring:
 
 
 def _ask_joint(robot: Robot, bus: int, number: int) -> tuple[str, int]:
-    """Ask a person what moved, until the answer makes sense."""
+    """Ask a person which joint moved, until the answer names one, and return the joint and the sign of its motion.
+
+    Args:
+        robot: whose servos are calibrated.
+        bus: index of the servo's bus.
+        number: id of the servo on its bus.
+    """
     names = layout(robot).servos
     print(f"Number {number} on bus {bus} has turned by 5 degrees to more steps. Which joint moved, and in its positive")
     print(f"sense (+) or the other (-)? One of {', '.join(names)}, as {names[0]} +")

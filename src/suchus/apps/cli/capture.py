@@ -198,7 +198,15 @@ def _unknown(options: CaptureOptions) -> Unknown:
 
 
 def _forces(walk: Walk, body: Robot, options: CaptureOptions, unknown: Unknown, progress: Progress) -> list[str]:
-    """Compute the forces of a walk or a swim, write them, and return what is said of them."""
+    """Compute the forces of a walk or a swim, write them, and return the lines that describe them.
+
+    Args:
+        walk: the measured walk or swim.
+        body: robot whose body stands for the animal's.
+        options: of the command.
+        unknown: ranges of mass and friction that the film does not show.
+        progress: called with the fraction that is done, 0 to 1.
+    """
     assert options.forces is not None
     medium = options.medium
     if medium == "auto":
@@ -228,7 +236,14 @@ def _write_forces(data: xr.Dataset, folder: Path) -> list[str]:
 
 
 def _write_measurements(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> list[str]:
-    """Write the tables of a walk and their figures, and return the lines that say where they are."""
+    """Write the tables and the figures of a walk, and return the lines that say where they are.
+
+    Args:
+        walk: the measured walk.
+        tracks: its keypoints.
+        folder: for the files.
+        video: the film, on which skeleton and contacts are drawn; None: no overlay.
+    """
     data = tables(walk)
     overlay_image = overlay(tracks, walk.strides, walk.wrong, video) if video else None
     write_tables(data, folder)
@@ -255,7 +270,14 @@ def _robot_word(words: Sequence[str]) -> str:
 
 
 def _write_played_gait(options: CaptureOptions, output: Path | None, robot_word: str, unknown: Unknown) -> int:
-    """Write the gait that plays a table of joint angles, its tables, say what they are, and return 0."""
+    """Write the gait that plays a table of joint angles, and its tables, print what they are, and return 0.
+
+    Args:
+        options: of the command.
+        output: the gait file; None: no gait is written.
+        robot_word: the robot as the user named it; empty if not named.
+        unknown: ranges of mass and friction that the film does not show.
+    """
     cycle = read_angles(options.tracks)
     gait = to_curves(cycle, options.robot, name=output.stem, period=options.period) if output else None
     if gait:
@@ -303,7 +325,13 @@ def _reading_options(options: CaptureOptions) -> ReadingOptions:
 
 
 def _draw(walk: Walk, folder: Path, stem: str) -> Path:
-    """Draw two mean cycles one after the other."""
+    """Draw the mean cycle twice in a row as a gait diagram and return the path of its PNG.
+
+    Args:
+        walk: the measured walk.
+        folder: for the figure.
+        stem: name of the file without its ending.
+    """
     cycle = walk.cycle
 
     def repeat_cycle(quantity: str) -> np.ndarray | None:

@@ -65,7 +65,13 @@ def demo(words: Sequence[str]) -> int:
 
 
 def _write_page(output: Path, opener: BaseBrowser | None, live: bool) -> int:
-    """Write the page, name it, and print the results."""
+    """Write the page, print its path and the results, and return 0.
+
+    Args:
+        output: path of the page.
+        opener: browser that opens the page; None: none.
+        live: whether the packages of a live walk are installed.
+    """
     check_page(output)
     check_replaceable(output)
     check_writable(output.parent)

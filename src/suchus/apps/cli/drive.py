@@ -124,7 +124,16 @@ def _drive(
     words: Sequence[str],
     open_rig: Callable[[], AbstractContextManager[tuple[Rig | BlindRig, Any]]],
 ) -> int:
-    """Drive an opened robot, keep its log, and return 0."""
+    """Drive a robot, save its log, and return 0.
+
+    Args:
+        options: of the command.
+        gait: the gait.
+        control: the controller.
+        folder: of the log.
+        words: words of the command line, for the log.
+        open_rig: opens the robot and returns it with its clock.
+    """
     settings = DriveSettings(duration=options.seconds, stop=options.stop)
     start = time.perf_counter()
     experiment = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
@@ -211,7 +220,14 @@ def _movement(options: DriveOptions) -> tuple[Gait, Control]:
 
 @contextmanager
 def _open_rig(options: DriveOptions, wiring: Wiring, gait: Gait, control: Control) -> Iterator[tuple[Rig, Any]]:
-    """Yield the open robot and its clock; an emulated one in this process where nothing is to be opened."""
+    """Yield the opened robot and its clock; a dry run emulates the robot in this process.
+
+    Args:
+        options: of the command.
+        wiring: buses and servos of the robot.
+        gait: gait in whose first posture an emulated robot starts.
+        control: the controller, which says which readings it needs.
+    """
     ports: list[Port] = []
     is_clocked = options.clock == "bus" or options.dry_run
     if options.dry_run:
@@ -233,7 +249,15 @@ def _open_rig(options: DriveOptions, wiring: Wiring, gait: Gait, control: Contro
 def _save_log(
     experiment: Driven, record: xr.Dataset | None, folder: Path, words: Sequence[str], seconds: float
 ) -> None:
-    """Write the folder of a log, and say what it says."""
+    """Write the folder of a log, and print the result and its cause.
+
+    Args:
+        experiment: the question that the log answers.
+        record: the log; None or empty: nothing is written.
+        folder: of the log.
+        words: words of the command line.
+        seconds: duration of the drive [s].
+    """
     if record is None or record.sizes["time"] < 1:
         return
     outcome = experiment.tell(record, seconds)

@@ -62,7 +62,13 @@ def make_replay(words: Sequence[str]) -> int:
 
 
 def _select_run(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:
-    """Return one run of a record."""
+    """Return one run of a record, by its label or its number.
+
+    Args:
+        stored: the record.
+        name: label or number of the run; None: the only run.
+        option: option that names the run, for messages.
+    """
     if "run" not in stored.dims:
         if name is not None and name not in ("0", _label(stored)):
             raise BadCommand(f"{option} asks for {name!r}, but the record holds one run only: leave it out.")

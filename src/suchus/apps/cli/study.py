@@ -112,7 +112,12 @@ def _study_claims(options: StudyOptions) -> int:
 
 
 def _write_answers(record: xr.Dataset | None, varied_results: Mapping[str, xr.Dataset], folder: Path) -> int:
-    """Write what became of the claims, say where, and return 0.
+    """Write the verdicts on the claims, print where they are, and return 0.
+
+    Args:
+        record: of the study of walks; None: only rows of single experiments are renewed.
+        varied_results: results of the varied experiments, by name.
+        folder: of the study.
 
     Raises:
         UnreadableFile: there is nothing to answer from.

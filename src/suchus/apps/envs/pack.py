@@ -66,10 +66,15 @@ def begin(task: Task) -> Beginning:
 
 
 def off_by(task: Task, beginning: Beginning, jitter: np.ndarray) -> Beginning:
-    """Return a beginning with its joints displaced by ``jitter``, shape (servo,) [rad]; the commanded angles stay.
+    """Return a beginning with its joints displaced; the commanded angles stay.
 
     A lying robot is put on the ground again. One that stands keeps what cables bend, which is
     no joint's alone.
+
+    Args:
+        task: the task.
+        beginning: state and commanded angles without displacement.
+        jitter: displacement of each servo's joint, shape (servo,) [rad].
     """
     model = compile_model(task.body, task.timestep)
     if task.start == "lying":

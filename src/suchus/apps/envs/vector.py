@@ -134,7 +134,13 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         return dict(zip(_AT_RESET, (self.pack.time, self.pack.faults.copy()), strict=True))
 
     def _add_infos(self, infos: dict[str, Any], values_by_name: dict[str, np.ndarray], mask: np.ndarray) -> None:
-        """Put the values of some robots into ``infos``, and beside each name the mask of these robots."""
+        """Add values of some robots to ``infos``, and under ``_NAME`` the mask of these robots.
+
+        Args:
+            infos: to add to; earlier values of other robots stay.
+            values_by_name: one value for each robot, (num_envs,).
+            mask: the robots whose values are added, (num_envs,).
+        """
         if not mask.any():
             return
         if mask.all():

@@ -23,7 +23,13 @@ _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def quantity(value: float | None, unit: str, digits: int = 4) -> str:
-    """Return a number with its unit; angles in degrees too. Nothing where there is no number."""
+    """Return a number with its unit; angles in degrees too. Nothing where there is no number.
+
+    Args:
+        value: in ``unit``; None where it is not known.
+        unit: as measures name it; ``-`` for none.
+        digits: significant digits.
+    """
     if value is None:
         return ""
     text = number(value, digits)

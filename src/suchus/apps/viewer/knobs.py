@@ -229,7 +229,14 @@ def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str
 
 
 def _gait_with(robot: Robot, gait: Gait, name: str, value: float) -> tuple[Gait, str]:
-    """Return a gait with one field changed, and why the robot cannot follow it; empty if it can."""
+    """Return a gait with one field changed, and why the robot cannot follow it; empty if it can.
+
+    Args:
+        robot: who walks.
+        gait: the gait before the change.
+        name: of the field.
+        value: of the field, in SI units.
+    """
     try:
         gait_variant = gait.with_numbers(**{name: value})
         check_limits(robot, gait_variant)

@@ -217,7 +217,13 @@ class Plots:
         ghost: Mapping[str, np.ndarray] | None = None,
         now: float | None = None,
     ) -> None:
-        """Draw the columns of ``history.columns``."""
+        """Draw the columns of ``history.columns``.
+
+        Args:
+            table: columns of the run, each (row,).
+            ghost: columns of a second run; None: none.
+            now: time at which the gait diagram has a cursor [s]; None: no cursor.
+        """
         if len(table["time"]) < 2:
             return
         for chart in self._charts:

@@ -247,9 +247,14 @@ class WalkScene:
                 drawn_robot.look(geometry)
 
     def place(self, state: Mapping[str, np.ndarray], tilt: tuple[float, float], *, follow: bool) -> None:
-        """Turn the world as its slope says, and move it so that a camera that follows keeps the robot in view.
+        """Turn the world by its slope, and move it so that a camera that follows keeps the robot in view.
 
         In water it follows up and down too, from the height of the centre of mass of a robot that stands.
+
+        Args:
+            state: the instant, by the names of ``record.VARIABLES``.
+            tilt: slopes of the ground, uphill and left side up [rad].
+            follow: whether the camera follows.
         """
         orientation = slope(*tilt)
         self._world.wxyz = orientation

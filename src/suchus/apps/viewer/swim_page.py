@@ -77,7 +77,15 @@ def status(title: str, lines: Sequence[tuple[str, str]], bar: str = "") -> str:
 
 
 def colour_bar(quantity: str, inks: np.ndarray, limit: float, low_label: str, high_label: str) -> str:
-    """Return colours from ``-limit`` to ``limit`` as HTML, with what its ends mean in words."""
+    """Return a colour bar as HTML.
+
+    Args:
+        quantity: what the colours show, with its unit.
+        inks: colours from the lower to the upper end, (n, 3), 0 to 255.
+        limit: value at the upper end; the lower end is its negative.
+        low_label: what the lower end means.
+        high_label: what the upper end means.
+    """
     stops = ",".join("rgb({},{},{})".format(*ink) for ink in inks)
     return (
         f'<div style="margin-top:8px;font-weight:600">{quantity}</div>'

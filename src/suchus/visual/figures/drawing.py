@@ -157,7 +157,14 @@ def _leg(ax: Axes, x: float, leg: LegMeasures, side: int) -> None:
 
 
 def _tail(ax: Axes, robot: Robot, height: float, tip_height: float) -> None:
-    """The cable section, a line for each joint, and the passive end in a paler tint."""
+    """Draw the tail: its driven part, a line for each joint, and the passive end in a paler tint.
+
+    Args:
+        ax: to draw on.
+        robot: whose tail.
+        height: of the tail's root [m].
+        tip_height: of its tip [m].
+    """
     tail = robot.tail
     total = tail.length - tail.offset
 

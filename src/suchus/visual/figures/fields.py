@@ -65,7 +65,13 @@ def smooth(values: np.ndarray, pixels: int = _PIXELS) -> np.ndarray:
 
 
 def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the outline and the midline of a body at one instant, each of shape (point, 2) [m]."""
+    """Return the outline and the midline of a body at one instant, each of shape (point, 2) [m].
+
+    Args:
+        record: of the experiment ``swimming``.
+        name: prefix of the swim in the record.
+        index: which instant.
+    """
     x, y, heading, half = (
         record[f"{name}_midline_{quantity}"].values[index] for quantity in ("x", "y", "heading", "half_width")
     )

@@ -78,7 +78,18 @@ def _axis_label(data: xr.Dataset, name: str) -> str:
 def _marks(
     ax: Axes, data: xr.Dataset, name: str, value: np.ndarray, label: str, colour: str, marker: str, offset: float
 ) -> None:
-    """Draw the values of strides with their intervals."""
+    """Draw the values of strides with their intervals.
+
+    Args:
+        ax: to draw on.
+        data: holds the ends of the intervals, ``NAME_low`` and ``NAME_high``.
+        name: of the quantity.
+        value: one for each stride, (stride,).
+        label: in the legend; empty: none.
+        colour: of marks and bars.
+        marker: shape of the marks.
+        offset: of the marks along the axis of strides [stride].
+    """
     lower_bound, upper_bound = data[f"{name}_low"].values, data[f"{name}_high"].values
     style: dict[str, Any] = {"color": colour, "marker": marker, "linestyle": "none", "markersize": 4, "elinewidth": 1.1}
     ax.errorbar(

@@ -175,7 +175,15 @@ def _lateral_shift(record: xr.Dataset, lateral_offset: float) -> xr.DataArray:
 
 
 def _draw_skin(ax: Axes, place: Layout, outline: Silhouette, view: View, strength: float) -> None:
-    """Draw the skin: from the side the far legs lie behind the body and the near ones, the right, before it."""
+    """Draw the skin; from the side the left legs lie behind the body and the right legs in front of it.
+
+    Args:
+        ax: to draw on.
+        place: layout of the robot.
+        outline: silhouette in the view.
+        view: from above or from the side.
+        strength: of the colours; below one they fade to white.
+    """
     edge, body, far_leg, pale_face, plate = (
         _paler(c, strength) for c in (_EDGE, _BODY, _FAR_COLOUR, _PALE_COLOUR, _PLATE)
     )

@@ -90,7 +90,14 @@ def draw_claim(record: xr.Dataset, claim: str) -> Figure:
 
 
 def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> None:
-    """Draw the histogram of a claim's number, split by whether the claim holds, with the article's number."""
+    """Draw the histogram of a claim's number, split by whether the claim holds, with the article's number.
+
+    Args:
+        ax: to draw on.
+        number: the measured number of each sample, (sample,).
+        holds: whether the claim holds in each sample, (sample,).
+        claim: key of the claim.
+    """
     article_value, unit = CLAIMS[claim].value, CLAIMS[claim].unit
     if number.size:
         lower_bound, upper_bound = np.quantile(number, (0.01, 0.99))

@@ -68,7 +68,13 @@ def _visible_artists(ax: Axes) -> Iterator[Artist]:
 
 
 def _meets(artist: Artist, ax: Axes, box: Bbox) -> bool:
-    """Return whether something that is drawn in some axes lies within a box of the picture [pixel]."""
+    """Return whether an artist shows something within a box of the picture.
+
+    Args:
+        artist: drawn in the axes.
+        ax: the axes, which may clip the artist.
+        box: of a legend [pixel].
+    """
     visible_box = Bbox.intersection(box, ax.bbox) if artist.get_clip_on() and artist is not ax.patch else box
     if visible_box is None:
         return False

@@ -74,7 +74,13 @@ def picture(solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], 
 
 
 def _render(meshes: Sequence[Mesh], camera: Viewpoint, size: tuple[int, int]) -> np.ndarray:
-    """Return the picture of surfaces that hide what is behind them, (row, column, 3) [0 to 255]."""
+    """Return the picture of surfaces that hide what is behind them, (row, column, 3) [0 to 255].
+
+    Args:
+        meshes: the surfaces.
+        camera: where the picture is taken from.
+        size: columns and rows [pixel].
+    """
     mesh = joined(meshes)
     fine = (_SUPERSAMPLING * size[0], _SUPERSAMPLING * size[1])
     positions, depth = camera.seen(mesh.vertices, fine)

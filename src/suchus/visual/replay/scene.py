@@ -117,7 +117,15 @@ def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
 
 
 def _packed(robot: Robot, run: Frames, label: str, relief: Relief | None, pack: PackedArrays) -> dict[str, Any]:
-    """Pack one run: poses of the bones, centre of mass, feet, forces and tail in every frame."""
+    """Pack one run: poses of the bones, centre of mass, feet, forces and tail in every frame.
+
+    Args:
+        robot: who moves.
+        run: frames of the run.
+        label: name of the run.
+        relief: what stands up from the ground; None where it is even.
+        pack: takes the arrays.
+    """
     bones = ankles(robot, run.bones, run.feet, relief)
     places = bones.positions
     origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2
@@ -148,7 +156,7 @@ def _packed_water(run: Frames, ground: Ground, pack: PackedArrays) -> dict[str, 
 
 
 def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:
-    """Pack the heights of bumps, or return the block that a step or a beam is."""
+    """Pack the heights of bumps, or return the block that a step or a stone is."""
     if isinstance(relief, Bumps):
         heights = field(relief)
         height_values, max_height = quantised(heights, np.int16)

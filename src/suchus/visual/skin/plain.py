@@ -74,7 +74,13 @@ def limb_meshes(place: Layout, limb: LimbPlace) -> list[tuple[Mesh, int]]:
 
 
 def rod(start: np.ndarray, end: np.ndarray, radius: float) -> Mesh:
-    """Return a rod with round ends."""
+    """Return a rod with round ends.
+
+    Args:
+        start: of its axis, (3,) [m].
+        end: of its axis, (3,) [m].
+        radius: [m].
+    """
     length = float(np.linalg.norm(end - start))
     axis = (end - start) / length
     lateral = np.cross(axis, [0.0, 0.0, 1.0] if abs(axis[2]) < 0.9 else [1.0, 0.0, 0.0])
@@ -107,7 +113,13 @@ def _section(shape: Rod | Shell) -> tuple[float, float]:
 
 
 def _outline(knots: list[tuple[float, float]], back: float, front: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Return half widths along the axis, closed at both ends."""
+    """Return half widths along the axis, closed at both ends.
+
+    Args:
+        knots: pairs of place x and half width, x increasing [m].
+        back: x of the tail's tip [m].
+        front: x of the snout's tip [m].
+    """
     tail_width, snout_width = knots[0][1], knots[-1][1]
     closed = [
         (back, 0.15 * tail_width),

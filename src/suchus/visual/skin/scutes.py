@@ -71,7 +71,17 @@ def _seated(
     half_width: float,
     height: float,
 ) -> Mesh:
-    """Return a scute on the body's surface at a share of its half width."""
+    """Return a scute that sits on the body's surface.
+
+    Args:
+        outline: of the body.
+        proportions: of the animal; the exponent of the body's section is used.
+        x: place along the body [m].
+        lateral_fraction: distance from the midline over the body's half width [-].
+        half_length: of the scute [m].
+        half_width: of the scute [m].
+        height: of its keel above the surface [m].
+    """
     position = np.array(x)
     w, h, n = float(outline.width(position)), float(outline.top(position)), proportions.roundness
     z = h * (1 - lateral_fraction**n) ** (1 / n)
@@ -83,7 +93,17 @@ def _seated(
 def _crest(
     x: float, y: float, z: float, half_length: float, half_width: float, height: float, *, lean: float = 0.0
 ) -> Mesh:
-    """Return a keeled plate that rises to the rear."""
+    """Return a keeled plate that rises to the rear.
+
+    Args:
+        x: middle of the plate, forward [m].
+        y: middle of the plate, to the left [m].
+        z: height of its base [m].
+        half_length: of the base [m].
+        half_width: of the base [m].
+        height: of the keel above the base [m].
+        lean: lateral offset of the keel's top over its height [-].
+    """
     c, s = ring(8)
     base = np.stack(
         [x + half_length * c, y + half_width * s, z - 0.25 * height * np.abs(s) - 0.05 * height + 0.0 * c], axis=-1

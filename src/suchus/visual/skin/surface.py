@@ -120,7 +120,13 @@ def _plain(place: Layout) -> list[tuple[Mesh, str | int]]:
 
 
 def _attach(robot: Robot, vertices: np.ndarray, attachment: str | int) -> tuple[np.ndarray, np.ndarray]:
-    """Hang vertices on a bone, on the axis or on a leg of that name: return bones and weights."""
+    """Return the bones on which vertices hang, (n, 4), and their weights, (n, 4).
+
+    Args:
+        robot: the robot.
+        vertices: at zero posture, (n, 3) [m].
+        attachment: number of a bone, name of a leg, or empty for the axis.
+    """
     if isinstance(attachment, int):
         indices, weights = (
             np.full((len(vertices), _HANGS), attachment, dtype=np.int32),
@@ -164,7 +170,16 @@ def _on_leg(robot: Robot, vertices: np.ndarray, leg: str) -> tuple[np.ndarray, n
 def _blended(
     distances: np.ndarray, joints: list[float], lengths: np.ndarray, order: list[int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return bones and weights: half and half at a joint, whole half a segment away from it."""
+    """Return bones and weights of vertices along a chain of bones.
+
+    A vertex at a joint hangs half on either bone; half a segment away from the joint it hangs on one bone alone.
+
+    Args:
+        distances: of the vertices along the chain, (n,) [m].
+        joints: places of the joints along the chain, increasing [m].
+        lengths: of the segments, one more than joints [m].
+        order: numbers of the bones along the chain.
+    """
     shares = np.ones((len(distances), len(order)))
     for i, (joint, (previous_length, next_length)) in enumerate(zip(joints, pairwise(lengths), strict=True)):
         half = 0.5 * min(previous_length, next_length)
