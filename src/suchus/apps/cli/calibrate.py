@@ -100,8 +100,8 @@ def _initial_wiring(options: CalibrateOptions) -> Wiring:
         raise BadCommand(f"there is no {options.hardware}: say --port PORT and --model MODEL of the servos instead.")
     if options.model not in TABLES:
         raise UnknownName("model", options.model, TABLES)
-    place = BusPlace(port=options.port, baud=options.baud, protocol=TABLES[options.model].protocol)
-    return straight(options.robot, [place], options.model)
+    bus = BusPlace(port=options.port, baud=options.baud, protocol=TABLES[options.model].protocol)
+    return straight(options.robot, [bus], options.model)
 
 
 def _ask_joint(robot: Robot, bus: int, number: int) -> tuple[str, int]:

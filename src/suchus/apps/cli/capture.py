@@ -144,8 +144,8 @@ def capture(words: Sequence[str]) -> int:
         return _write_played_gait(options, output, _robot_word(words), unknown)
     robot = options.robot
     if output:
-        for place in places(output.parent, output.stem):
-            check_replaceable(place)
+        for path in places(output.parent, output.stem):
+            check_replaceable(path)
         check_needs(robot, NEEDED, "a gait from tracked keypoints")
     with working() as bars:
         move = bars.task(options.tracks.name)

@@ -276,7 +276,9 @@ def _hurry(record: xr.Dataset | None, folder: Path) -> None:
     """Keep a log and nothing else: whoever told this process to stop does not wait for figures."""
     if record is not None and record.sizes["time"] > 0:
         alternatives = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
-        folder = next(place for place in chain([folder], alternatives) if not there(place))  # an earlier log stays
+        folder = next(
+            candidate for candidate in chain([folder], alternatives) if not there(candidate)
+        )  # an earlier log stays
         folder.mkdir(parents=True)
         log_path = save(record, folder / RECORD)
         with suppress(OSError):  # a terminal that is gone

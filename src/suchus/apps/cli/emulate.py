@@ -133,8 +133,8 @@ def _wiring_and_links(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
         return wiring, ports if len(ports) == len(wiring.bus) and not options.socket else []
     check_writable(options.hardware.parent)
     link = options.hardware.parent / f"{options.hardware.stem}.port"
-    place = BusPlace(port=link.name, protocol=options.protocol, baud=_BAUD[options.protocol])
-    return straight(options.robot, [place], USUAL[options.protocol], boards=True), [] if options.socket else [link]
+    bus_place = BusPlace(port=link.name, protocol=options.protocol, baud=_BAUD[options.protocol])
+    return straight(options.robot, [bus_place], USUAL[options.protocol], boards=True), [] if options.socket else [link]
 
 
 def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:

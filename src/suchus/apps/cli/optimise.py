@@ -46,8 +46,8 @@ def optimise(words: Sequence[str]) -> int:
     spec = _read_search(options)
     folder = options.out or Path("out") / "optimise" / spec.name
     check_writable(folder)
-    for place in (RESULT, *(file for arm in spec.arms for file in run_files(spec, arm.name))):
-        check_replaceable(folder / place)
+    for file_name in (RESULT, *(file for arm in spec.arms for file in run_files(spec, arm.name))):
+        check_replaceable(folder / file_name)
     cpu = time.process_time()
     with at_scheduler(options.scheduler) as client, working() as bars:
         results = conduct(spec, folder, progress=bars.reporter(spec.name), client=client)

@@ -103,8 +103,9 @@ def _is_shipped(experiment: Experiment) -> bool:
 
 
 def _summary(result: Result) -> str:
-    words = [verdict["verdict"] for verdict in result.outcome["verdicts"]]
-    return f"{result.name}: {', '.join(f'{words.count(word)} {word}' for word in dict.fromkeys(words)) or 'no verdict'}"
+    verdicts = [verdict["verdict"] for verdict in result.outcome["verdicts"]]
+    counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts)]
+    return f"{result.name}: {', '.join(counts) or 'no verdict'}"
 
 
 def failed(name: str, sentence: str, trace: str = "") -> Reproduced:

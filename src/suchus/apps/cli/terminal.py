@@ -25,8 +25,8 @@ class Bars:
         """Add a bar and return what moves it."""
         task: TaskID = self._progress.add_task(name, total=1.0, stage="")
 
-        def move(stage: str, share: float) -> None:
-            self._progress.update(task, completed=share, stage=stage)
+        def move(stage: str, fraction: float) -> None:
+            self._progress.update(task, completed=fraction, stage=stage)
 
         return move
 
@@ -39,13 +39,13 @@ class Bars:
         """Add a bar and return what moves it, or says a line now and then where there is no terminal."""
         move, last_time = self.task(name), time.monotonic()
 
-        def tell(stage: str, share: float) -> None:
+        def tell(stage: str, fraction: float) -> None:
             """Move the bar; without a terminal print a line every ten seconds."""
             nonlocal last_time
-            move(stage, share)
+            move(stage, fraction)
             if not self.seen and time.monotonic() - last_time > _LINE_INTERVAL:
                 last_time = time.monotonic()
-                self.say(f"{name}: {stage}, {share:.0%}")
+                self.say(f"{name}: {stage}, {fraction:.0%}")
 
         return tell
 

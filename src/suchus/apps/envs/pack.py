@@ -252,9 +252,9 @@ class Pack:
             actions: -1 to 1, values beyond are clipped [-].
             active_mask: whether each robot acts [-].
         """
-        shares = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
-        angles = np.clip(self.centre + self.task.span * shares, self._low, self._high)
-        target = np.where(self._cranks, self._commanded + self._max_crank_turn * shares, angles)
+        clipped = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
+        angles = np.clip(self.centre + self.task.span * clipped, self._low, self._high)
+        target = np.where(self._cranks, self._commanded + self._max_crank_turn * clipped, angles)
         target = np.where(
             active_mask[:, None] & (True if self._tanks is None else self._tanks.moved), target, self._commanded
         )

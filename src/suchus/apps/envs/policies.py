@@ -90,8 +90,8 @@ class SwimToGoal:
         sine, cosine = part(observations, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
         direction = part(observations, "goal_direction", robot).astype(float)
-        share = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
-        steer = Steer(bend=self.hold.trunk_turn * share, tail=self.hold.turn * share)
+        bend_fraction = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
+        steer = Steer(bend=self.hold.trunk_turn * bend_fraction, tail=self.hold.turn * bend_fraction)
         phases = clock[:, None] + np.array(swim.gaits[0].limb_phases)
         targets = swim.targets(phases, swim.axis_of_clock(clock), steer)
         return np.clip((targets - np.array(self.centre)) / task.span, -1.0, 1.0)

@@ -42,12 +42,14 @@ def checked(actions: Any, shape: tuple[int, ...]) -> Float[np.ndarray, "*b servo
     Raises:
         OutsideLimits: they have another shape, or are not finite.
     """
-    numbers = np.asarray(actions, dtype=float)
-    if numbers.shape != shape:
-        raise OutsideLimits(f"actions have the shape {numbers.shape}; {shape} is needed: one number for each servo.")
-    if not np.isfinite(numbers).all():
+    action_values = np.asarray(actions, dtype=float)
+    if action_values.shape != shape:
+        raise OutsideLimits(
+            f"actions have the shape {action_values.shape}; {shape} is needed: one number for each servo."
+        )
+    if not np.isfinite(action_values).all():
         raise OutsideLimits("an action is not a finite number; -1 to 1 is allowed.")
-    return numbers
+    return action_values
 
 
 def check_render_mode(mode: str | None) -> None:
@@ -191,7 +193,7 @@ def picture(
         figure = new(width=WIDTH / _DPI, height=HEIGHT / _DPI)
         figure.set_dpi(_DPI)
         figure.set_layout_engine("none")  # finding a layout would take three quarters of the time
-        top_axes, side_axes = (figure.add_axes(place) for place in _PLACES)
+        top_axes, side_axes = (figure.add_axes(rectangle) for rectangle in _PLACES)
         top_axes.tick_params(labelbottom=False)
         draw_posture(top_axes, robot, record, 0.0)
         draw_posture(side_axes, robot, record, 0.0, view="side")
@@ -244,20 +246,22 @@ def draw_water(top_axes: Axes, side_axes: Axes, level: float, upward: Float[np.n
             side_axes.plot(pair, heights, color=COLOURS["water"], linewidth=1.2, zorder=0.2)
 
 
-def _draw_goal(top_axes: Axes, side_axes: Axes, goal: AnyGoal, place: Float[np.ndarray, "2"]) -> None:
+def _draw_goal(top_axes: Axes, side_axes: Axes, goal: AnyGoal, position: Float[np.ndarray, "2"]) -> None:
     """Draw the goal in both views, and an arrow towards it where it lies outside of the view from above."""
     (x_min, x_max), (y_min, y_max) = top_axes.get_xlim(), top_axes.get_ylim()
     colour = COLOURS["limbs_only"]
     if isinstance(goal, Landing):
         for ax in (top_axes, side_axes):
-            ax.axvline(float(place[0]), color=colour, linestyle=(0, (4, 2)))
+            ax.axvline(float(position[0]), color=colour, linestyle=(0, (4, 2)))
     else:
-        top_axes.add_patch(Circle((float(place[0]), float(place[1])), goal.within, facecolor="none", edgecolor=colour))
+        top_axes.add_patch(
+            Circle((float(position[0]), float(position[1])), goal.within, facecolor="none", edgecolor=colour)
+        )
         side_axes.axvspan(
-            float(place[0]) - goal.within, float(place[0]) + goal.within, color=colour, alpha=_TINT, linewidth=0
+            float(position[0]) - goal.within, float(position[0]) + goal.within, color=colour, alpha=_TINT, linewidth=0
         )
     centre = np.array([x_min + x_max, y_min + y_max]) / 2
-    direction = place - centre if not isinstance(goal, Landing) else np.array([place[0] - centre[0], 0.0])
+    direction = position - centre if not isinstance(goal, Landing) else np.array([position[0] - centre[0], 0.0])
     overshoot = float((np.abs(direction) / (_EDGE * np.array([x_max - x_min, y_max - y_min]))).max())
     if overshoot > 1.0:
         head = centre + direction / overshoot

@@ -77,9 +77,11 @@ class Goal:
         del ground, lake
         return begin + self.distance * np.array([np.cos(bearing), np.sin(bearing)])
 
-    def offset(self, place: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]) -> Float[np.ndarray, "run 2"]:
+    def offset(
+        self, position: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]
+    ) -> Float[np.ndarray, "run 2"]:
         """Return the vectors from centres of mass to their goals [m]."""
-        return goal - place
+        return goal - position
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,9 +132,11 @@ class Landing:
         assert lake is not None  # see ``check``
         return np.array([lake.shore(ground.uphill) + self.beyond, begin[1]])
 
-    def offset(self, place: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]) -> Float[np.ndarray, "run 2"]:
+    def offset(
+        self, position: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]
+    ) -> Float[np.ndarray, "run 2"]:
         """Return the vectors from centres of mass straight up the shore to the line, zero beyond it [m]."""
-        distance = np.maximum(goal[:, 0] - place[:, 0], 0.0)
+        distance = np.maximum(goal[:, 0] - position[:, 0], 0.0)
         return np.stack([distance, np.zeros_like(distance)], axis=1)
 
 
@@ -264,12 +268,15 @@ class Breaks:
         Raises:
             UnknownName: the robot has no such servo.
         """
-        place = layout(robot)
+        robot_layout = layout(robot)
         if self.joints is None:
-            return tuple(name for limb in place.limbs for name in place.servos[limb.servos]) or place.servos
+            return (
+                tuple(name for limb in robot_layout.limbs for name in robot_layout.servos[limb.servos])
+                or robot_layout.servos
+            )
         for name in self.joints:
-            if name not in place.servos:
-                raise UnknownName("servo", name, place.servos)
+            if name not in robot_layout.servos:
+                raise UnknownName("servo", name, robot_layout.servos)
         return self.joints
 
     def possible(self, robot: Robot) -> tuple[Fault, ...]:

@@ -96,11 +96,11 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
             OutsideLimits: actions of another shape, or not finite.
             gymnasium.error.ResetNeeded: an episode is over and ``autoreset_mode`` is ``Disabled``.
         """
-        numbers = checked(actions, self.action_space.shape)
+        action_values = checked(actions, self.action_space.shape)
         was_over = self._is_over.copy()
         if self.autoreset_mode is not AutoresetMode.NEXT_STEP and was_over.any():
             raise gymnasium.error.ResetNeeded(f"the episodes of robots {np.flatnonzero(was_over).tolist()} are over.")
-        terms = self.pack.act(numbers, ~was_over)
+        terms = self.pack.act(action_values, ~was_over)
         self._steps[~was_over] += 1
         rewards = np.where(was_over, 0.0, terms.reward(self.task.rewards))
         terminated = ~was_over & terms.over

@@ -114,7 +114,10 @@ def tables(sheet: Sheet) -> dict[str, str]:
             ("body", "foam_m3", "raised_m"),
             [
                 *sheet.floating.foam,
-                *((f"air of {body}", sheet.floating.air * share, None) for body, share in sheet.floating.chambers),
+                *(
+                    (f"air of {body}", sheet.floating.air * volume_fraction, None)
+                    for body, volume_fraction in sheet.floating.chambers
+                ),
             ],
         ),
     }

@@ -136,14 +136,14 @@ def write_comparison(comparison: Comparison, path: str | Path) -> Path:
     return write(path, text)
 
 
-def render_comparison(comparison: Comparison, place: str | Path) -> str:
+def render_comparison(comparison: Comparison, page_folder: str | Path) -> str:
     """Return the page as text.
 
     Args:
         comparison: what to show.
-        place: the folder of the page, from which it shows the replays.
+        page_folder: the folder of the page, from which it shows the replays.
     """
-    place = Path(place)
+    page_folder = Path(page_folder)
     a, b = comparison.results
     content: dict[str, Any] = {
         "it": comparison,
@@ -151,7 +151,7 @@ def render_comparison(comparison: Comparison, place: str | Path) -> str:
         "pictures": _pairs({p.name: p for p in a.pictures}, {p.name: p for p in b.pictures}),
         "replays": _pairs({r.file.name: r for r in a.replays}, {r.file.name: r for r in b.replays}),
     }
-    return render("compare.html", place, content)
+    return render("compare.html", page_folder, content)
 
 
 def _pairs(
@@ -169,12 +169,17 @@ def _compare_measure(name: str, first_measures: Mapping[str, Any], second_measur
     a, b = first_measures.get(name), second_measures.get(name)
     units = list(dict.fromkeys(entry["unit"] for entry in (a, b) if entry))
     values = [entry["value"] if entry else None for entry in (a, b)]
-    difference = share = None
+    difference = relative_difference = None
     if len(units) == 1 and values[0] is not None and values[1] is not None:
         difference = values[1] - values[0]
-        share = difference / abs(values[0]) if values[0] else None
+        relative_difference = difference / abs(values[0]) if values[0] else None
     return Compared(
-        name=name, unit=" / ".join(units), first=values[0], second=values[1], difference=difference, share=share
+        name=name,
+        unit=" / ".join(units),
+        first=values[0],
+        second=values[1],
+        difference=difference,
+        share=relative_difference,
     )
 
 
@@ -190,11 +195,16 @@ def _pair_verdicts(rows_a: Sequence[Mapping[str, Any]], rows_b: Sequence[Mapping
     first_verdicts, second_verdicts = ({row["claim"]: row for row in rows} for rows in (rows_a, rows_b))
     for claim in dict.fromkeys([*first_verdicts, *second_verdicts]):
         verdict_pair = first_verdicts.get(claim) or second_verdicts[claim]
-        words = [
+        verdict_words = [
             str(by_claim[claim]["verdict"]) if claim in by_claim else ""
             for by_claim in (first_verdicts, second_verdicts)
         ]
-        yield Judged(quantity=verdict_pair["quantity"], where=verdict_pair["where"], first=words[0], second=words[1])
+        yield Judged(
+            quantity=verdict_pair["quantity"],
+            where=verdict_pair["where"],
+            first=verdict_words[0],
+            second=verdict_words[1],
+        )
 
 
 def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:

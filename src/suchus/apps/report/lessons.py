@@ -125,8 +125,8 @@ def _bending() -> Lesson:
         caption="The legs do exactly the same in every run. Only how far spine and tail bend is different.",
         choice="Bend of spine and tail",
         runs=tuple(
-            Run(robot=robot, gait=gait.bent(share), label=f"{share:.0%} of its crawl")
-            for share in (0.0, 0.25, 0.5, 0.75, 1.0)
+            Run(robot=robot, gait=gait.bent(bend_factor), label=f"{bend_factor:.0%} of its crawl")
+            for bend_factor in (0.0, 0.25, 0.5, 0.75, 1.0)
         ),
         cycles=2,
         question="With which bend does it get farthest?",

@@ -60,16 +60,16 @@ def write_page(results: Sequence[Result], failures: Sequence[Failure], path: str
     return write(path, text)
 
 
-def render_page(results: Sequence[Result], failures: Sequence[Failure], place: str | Path | None = None) -> str:
+def render_page(results: Sequence[Result], failures: Sequence[Failure], page_folder: str | Path | None = None) -> str:
     """Return the page as text.
 
     Args:
         results: in the order of the page.
         failures: what did not.
-        place: the folder of the page, from which it links films and replays; None: the one that holds the results.
+        page_folder: the folder of the page, from which it links films and replays; None: the folder of the results.
     """
-    place = None if place is None else Path(place)
-    return render("page.html", place, _content(results, failures), tied=tied, gist=_gist)
+    page_folder = None if page_folder is None else Path(page_folder)
+    return render("page.html", page_folder, _content(results, failures), tied=tied, gist=_gist)
 
 
 def _gist(text: str) -> str:
@@ -84,7 +84,7 @@ def _gist(text: str) -> str:
 
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
     """Return what the template of the page names."""
-    order = {key: place for place, key in enumerate(CLAIMS)}
+    order = {key: rank for rank, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
     robot, robot_counts = robot_of(results)
     is_article_robot = (
@@ -92,8 +92,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     )  # the article's claims are about its robot, and no other page is about them
     verdicts = [verdict for result in results for verdict in told(result) if is_article_robot]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
-    words = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
-    worth = standings(words)
+    verdict_by_claim = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
+    worth = standings(verdict_by_claim)
     own_choices = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
@@ -108,10 +108,10 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
         "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
         "marks": MARKS,
-        "count": counted(words, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
+        "count": counted(verdict_by_claim, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
         "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _INPUT_STANDINGS},
         "tally": {result.name: _counts(result.outcome["verdicts"] if is_article_robot else ()) for result in results},
-        "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in words],
+        "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in verdict_by_claim],
         "beside": beside(robot, {result.name: result for result in results}),
         "metres": metres({result.name: result for result in results}),
         "shown": next((result for result in results if result.replays), None),

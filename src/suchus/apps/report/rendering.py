@@ -102,18 +102,18 @@ def _rounded(attribute: re.Match[str]) -> str:
     return f'{name}="{_NUMBER.sub(lambda n: f"{float(n[0]):.2f}".rstrip("0").rstrip("."), value)}"'
 
 
-def render(template: str, place: Path | None, content: dict[str, Any], **filters: Any) -> str:
+def render(template: str, page_folder: Path | None, content: dict[str, Any], **filters: Any) -> str:
     """Return a page as text.
 
     Args:
         template: name of its file.
-        place: the folder of the page, from which it links files; None: the one that holds their folders.
+        page_folder: the folder of the page, from which it links files; None: the one that holds their folders.
         content: what the template names.
         filters: of the template, beside ``quantity``, ``number`` and ``link``.
     """
     environment = _environment(tuple(filters.items()))
     style = Markup(environment.get_template("style.css").render())
-    return environment.get_template(template).render(style=style, page_folder=place, **content) + "\n"
+    return environment.get_template(template).render(style=style, page_folder=page_folder, **content) + "\n"
 
 
 @cache
@@ -133,5 +133,5 @@ def _environment(filters: tuple[tuple[str, Callable[..., Any]], ...]) -> Environ
 @pass_context
 def _link(context: Context, file: Path) -> str:
     """Return how the page that is rendered names a file."""
-    place = context["page_folder"]
-    return quote(Path(os.path.relpath(file, file.parent.parent if place is None else place)).as_posix())
+    page_folder = context["page_folder"]
+    return quote(Path(os.path.relpath(file, file.parent.parent if page_folder is None else page_folder)).as_posix())

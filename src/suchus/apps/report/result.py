@@ -100,11 +100,11 @@ def check_described(outcome: Any, file: Path) -> None:
         _Outcome.model_validate(outcome)
     except ValidationError as error:
         first_error = error.errors(include_url=False, include_input=False)[0]
-        place = ".".join(map(str, first_error["loc"]))
+        location = ".".join(map(str, first_error["loc"]))
         if first_error["type"] == "missing":
-            raise IncompatibleRecord(f"{file} lacks {place}.") from error
+            raise IncompatibleRecord(f"{file} lacks {location}.") from error
         raise IncompatibleRecord(
-            f"{file} is no outcome of suchus: {place or 'it'} is of another kind ({first_error['msg'].lower()})."
+            f"{file} is no outcome of suchus: {location or 'it'} is of another kind ({first_error['msg'].lower()})."
         ) from error
 
 

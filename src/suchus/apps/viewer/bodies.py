@@ -46,8 +46,8 @@ class BodyPoses:
         Args:
             relief: what stands up from the ground; None where it is even.
         """
-        places, turns = zip(*map(self.body, bone_names(self.robot)), strict=True)
-        feet_flat = ankles(self.robot, Poses(np.array([places]), np.array([turns])), self._feet[None], relief)
+        positions, quaternions = zip(*map(self.body, bone_names(self.robot)), strict=True)
+        feet_flat = ankles(self.robot, Poses(np.array([positions]), np.array([quaternions])), self._feet[None], relief)
         poses = zip(feet_flat.positions[0], feet_flat.quaternions[0], strict=True)
         return dict(zip(footed(self.robot).bones, poses, strict=True))
 
@@ -107,7 +107,7 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
     centres, group = kmeans2(face_colours, count, minit="++", seed=0)
     dense = np.zeros((len(surface.vertices), len(surface.bones)))
     np.add.at(dense, (np.arange(len(dense))[:, None], surface.indices), surface.weights)
-    parts = []
+    skin_pieces = []
     for number, centre in enumerate(centres):
         faces_of_colour = surface.faces[group == number]
         if len(faces_of_colour) == 0:
@@ -115,7 +115,7 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
         vertices, faces = np.unique(faces_of_colour, return_inverse=True)
         used_bones = np.flatnonzero(dense[vertices].any(axis=0))
         red, green, blue = (round(float(value)) for value in centre)
-        parts.append(
+        skin_pieces.append(
             SkinPiece(
                 vertices=surface.vertices[vertices],
                 faces=faces.reshape(-1, 3),
@@ -125,7 +125,7 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
                 colour=(red, green, blue),
             )
         )
-    return tuple(parts)
+    return tuple(skin_pieces)
 
 
 def support(feet: np.ndarray, loaded: np.ndarray) -> np.ndarray:

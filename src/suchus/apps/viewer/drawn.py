@@ -112,16 +112,16 @@ class DrawnRobot:
     def _mark(self, fault: Fault) -> tuple[Any, Any]:
         """Add a ball and a label at the joint or foot that a fault breaks, and return both handles."""
         joint, kind = fault.part, fault.kind()
-        place = self.posture.part(joint)
+        position = self.posture.part(joint)
         ball = self._scene.add_icosphere(
             f"{self._root}/failed_{joint}",
             self._size * _MARK_RADIUS,
             color=LIMP if kind == "limp" else LOCKED,
-            position=place,
+            position=position,
             opacity=0.85,
         )
         text = f"{joint} {kind}".replace("_", " ")
-        label = self._scene.add_label(f"{self._root}/word_{joint}", text, position=place, anchor="bottom-center")
+        label = self._scene.add_label(f"{self._root}/word_{joint}", text, position=position, anchor="bottom-center")
         return ball, label
 
 
@@ -150,7 +150,7 @@ class DrawnAnimal:
 
     def show(self, time: float) -> None:
         """Move to a time of the record [s]."""
-        place = self._animal.at(time)
-        self._lines.points = place[np.array(self._animal.bones)].astype(np.float32)
+        positions = self._animal.at(time)
+        self._lines.points = positions[np.array(self._animal.bones)].astype(np.float32)
         for ball, foot in zip(self._feet, self._animal.feet, strict=True):
-            ball.position = place[foot]
+            ball.position = positions[foot]

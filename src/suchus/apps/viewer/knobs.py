@@ -174,21 +174,21 @@ def bumps_under(robot: Robot) -> Knob:
 
 def knobs_of(robot: Robot, gait: Gait) -> Mapping[str, Knob]:
     """Return what can be turned of a gait, by name: the numbers that it has and that move something of the robot."""
-    place = layout(robot)
+    robot_layout = layout(robot)
     lacking = {
-        *(() if place.limbs else ("duty_factor", "height")),
+        *(() if robot_layout.limbs else ("duty_factor", "height")),
         *(() if gait.has("foot paths") else ("height",)),
-        *(() if place.trunk_yaw else ("trunk_bend", "trunk_offset")),
-        *(() if place.tail_yaw or place.cables else ("tail_bend", "tail_lag")),
-        *(() if place.tail_pitch else ("tail_pitch",)),
+        *(() if robot_layout.trunk_yaw else ("trunk_bend", "trunk_offset")),
+        *(() if robot_layout.tail_yaw or robot_layout.cables else ("tail_bend", "tail_lag")),
+        *(() if robot_layout.tail_pitch else ("tail_pitch",)),
     }
-    numbers = gait.numbers() if gait.has("steering") else {}
-    return {name: knob for name, knob in GAIT_KNOBS.items() if name in numbers and name not in lacking}
+    parameters = gait.numbers() if gait.has("steering") else {}
+    return {name: knob for name, knob in GAIT_KNOBS.items() if name in parameters and name not in lacking}
 
 
-def _resized(knob: Knob, share: float) -> Knob:
-    lower_bound, upper_bound = (float(f"{share * end:.2g}") for end in (knob.low, knob.high))
-    return replace(knob, low=lower_bound, high=upper_bound, step=_rounded(share * knob.step))
+def _resized(knob: Knob, factor: float) -> Knob:
+    lower_bound, upper_bound = (float(f"{factor * end:.2g}") for end in (knob.low, knob.high))
+    return replace(knob, low=lower_bound, high=upper_bound, step=_rounded(factor * knob.step))
 
 
 def _rounded(value: float) -> float:

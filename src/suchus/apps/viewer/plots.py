@@ -132,13 +132,13 @@ class Chart:
 
 def legend(lines: Sequence[Line]) -> str:
     """Return the legend of a chart as HTML."""
-    words = (
+    entries = (
         f'<span style="white-space:nowrap;margin-right:12px"><span style="display:inline-block;width:18px;'
         f'border-top:3px {"dashed" if line.dash else "solid"} {line.colour};margin:0 5px 3px 0"></span>'
         f"{line.label}</span>"
         for line in lines
     )
-    return f'<div style="font:11px sans-serif;color:#444;padding:0 12px 4px">{"".join(words)}</div>'
+    return f'<div style="font:11px sans-serif;color:#444;padding:0 12px 4px">{"".join(entries)}</div>'
 
 
 def series(uplot: Any, line: Line) -> Any:
@@ -162,26 +162,30 @@ def gait_bars(robot: Robot, table: Mapping[str, np.ndarray], *, cursor: float | 
     x_start, x_end, row, top = 30, width - 12, 19, 20
     start, end = float(time[0]), max(float(time[-1]), float(time[0]) + 1.0)
     pixels = (x_end - x_start) / (end - start)
-    parts = [f'<text x="{x_start}" y="12" class="t">feet that stand (more than {load_threshold:.1g} N)</text>']
+    elements = [f'<text x="{x_start}" y="12" class="t">feet that stand (more than {load_threshold:.1g} N)</text>']
     for i, (leg, colour) in enumerate(limbs):
         y = top + i * row
-        parts.append(f'<text x="2" y="{y + 12}">{leg}</text>')
-        parts.append(f'<rect x="{x_start}" y="{y}" width="{x_end - x_start}" height="15" fill="#f0efec"/>')
+        elements.append(f'<text x="2" y="{y + 12}">{leg}</text>')
+        elements.append(f'<rect x="{x_start}" y="{y}" width="{x_end - x_start}" height="15" fill="#f0efec"/>')
         for a, b in _stances(time, table[leg] > load_threshold):
             bar = f'x="{x_start + (a - start) * pixels:.1f}" width="{max((b - a) * pixels, 0.8):.1f}"'
-            parts.append(f'<rect {bar} y="{y}" height="15" fill="{colour}"/>')
+            elements.append(f'<rect {bar} y="{y}" height="15" fill="{colour}"/>')
     bottom = top + len(limbs) * row
     for tick in np.arange(np.ceil(start), end + 1e-9, max(1.0, np.ceil((end - start) / 6))):
         x = x_start + (tick - start) * pixels
-        parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top}" y2="{bottom}" stroke="#ffffff" stroke-opacity=".6"/>')
-        parts.append(f'<text x="{x:.1f}" y="{bottom + 11}" text-anchor="middle">{tick:g} s</text>')
+        elements.append(
+            f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top}" y2="{bottom}" stroke="#ffffff" stroke-opacity=".6"/>'
+        )
+        elements.append(f'<text x="{x:.1f}" y="{bottom + 11}" text-anchor="middle">{tick:g} s</text>')
     if cursor is not None:
         x = x_start + (cursor - start) * pixels
-        parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top - 4}" y2="{bottom}" stroke="#111" stroke-width="1.5"/>')
+        elements.append(
+            f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top - 4}" y2="{bottom}" stroke="#111" stroke-width="1.5"/>'
+        )
     style = "text{font:11px sans-serif;fill:#444}.t{font-weight:600;fill:#222}"
     return (
         f'<svg viewBox="0 0 {width} {bottom + 16}" width="100%" role="img" '
-        f'aria-label="When each foot stands"><style>{style}</style>{"".join(parts)}</svg>'
+        f'aria-label="When each foot stands"><style>{style}</style>{"".join(elements)}</svg>'
     )
 
 

@@ -230,17 +230,20 @@ def beside(tracks: Tracks, take: Take) -> FilmedAnimal:
     names = names if names[0] == "snout" or "snout" not in tracks.points else ("snout", *names)
     chain = list(dict.fromkeys(names))
     points = [*chain, *LEGS]
-    place = np.stack([_track_without_gaps(tracks, name) for name in points], axis=1)
-    links = np.linalg.norm(np.diff(place[:, : len(chain), :2], axis=1), axis=-1)
+    positions = np.stack([_track_without_gaps(tracks, name) for name in points], axis=1)
+    links = np.linalg.norm(np.diff(positions[:, : len(chain), :2], axis=1), axis=-1)
     scale = take.robot.length / float(np.median(links.sum(axis=1)))
-    place = scale * place
+    positions = scale * positions
     if not tracks.upright:
         heights = np.where(np.arange(len(points)) < len(chain), _MIDLINE_HEIGHT * take.robot.length, 0.0)
-        place = np.concatenate([place, np.broadcast_to(heights, place.shape[:2])[..., None]], axis=-1)
-    hip, ground = chain.index("hip"), float(np.percentile(place[:, len(chain) :, 2], 5))
-    start = np.array([*place[0, hip, :2], ground])
-    place = (
-        place - start + np.array([*take.origin[:2], 0.0]) + np.array([0.0, _LATERAL_OFFSET * take.robot.length, 0.0])
+        positions = np.concatenate([positions, np.broadcast_to(heights, positions.shape[:2])[..., None]], axis=-1)
+    hip, ground = chain.index("hip"), float(np.percentile(positions[:, len(chain) :, 2], 5))
+    start = np.array([*positions[0, hip, :2], ground])
+    positions = (
+        positions
+        - start
+        + np.array([*take.origin[:2], 0.0])
+        + np.array([0.0, _LATERAL_OFFSET * take.robot.length, 0.0])
     )
     robot_period = float(take.record["period"]) if "period" in take.record else float("nan")
     pace = robot_period / animal_period if np.isfinite(robot_period) and robot_period > 0 else 1.0
@@ -248,7 +251,7 @@ def beside(tracks: Tracks, take: Take) -> FilmedAnimal:
     return FilmedAnimal(
         label=tracks.source,
         time=START + pace * (tracks.time - tracks.time[0]),
-        position=place,
+        position=positions,
         bones=(
             *((i, i + 1) for i in range(len(chain) - 1)),
             *((chain.index(girdle), len(chain) + i) for i, girdle in enumerate(girdles)),

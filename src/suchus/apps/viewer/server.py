@@ -324,12 +324,12 @@ class Viewer:
             page.close()
 
 
-def _stand_back(camera: Any, place: Sequence[float], looks_at: Sequence[float]) -> None:
+def _stand_back(camera: Any, position: Sequence[float], looks_at: Sequence[float]) -> None:
     """Move a camera so far back that what it looks at fits between the panels, or above the sheet of a phone."""
     width, height = float(camera.image_width), float(camera.image_height)
     is_phone = width <= _MAX_PHONE_WIDTH
     aspect = (width if is_phone else max(width - PANEL - PLOTS, 1.0)) / max(height, 1.0)
-    target, offset = np.array(looks_at), np.array(place) - np.array(looks_at)
+    target, offset = np.array(looks_at), np.array(position) - np.array(looks_at)
     offset *= max(1.0, _MIN_ASPECT / aspect)
     if is_phone:  # what stood in the middle of the window stands in the middle above the sheet
         target = target - np.array([0.0, 0.0, _SHEET_FRACTION * float(np.linalg.norm(offset)) * tan(0.5 * _FOV)])

@@ -160,8 +160,8 @@ class Session:
     def __init__(self, robot: Robot, gait: Gait, *, timestep: float | None = None, swim: Gait | None = None) -> None:
         check_limits(robot, gait)
         self.robot = robot
-        share = beside_article(robot).length
-        self.settings = Settings(gait=gait, force=push_on(robot), size=share, swim=swim)
+        length_ratio = beside_article(robot).length
+        self.settings = Settings(gait=gait, force=push_on(robot), size=length_ratio, swim=swim)
         self.begun = 0
         self._timestep = coarse_step(robot) if timestep is None else timestep
         self._period = control_period(robot)
@@ -225,17 +225,17 @@ class Session:
                 return self._fill(last_settings) or notice
             return notice
 
-    def lose(self, part_name: str, kind: str, **numbers: object) -> str:
+    def lose(self, part_name: str, kind: str, **parameters: object) -> str:
         """Let a part break as it is now; return a sentence if that cannot be.
 
         Args:
             part_name: a joint, a leg or a group of sensors.
             kind: name of a fault on the shelf.
-            **numbers: of that fault; those left out are as on the shelf.
+            **parameters: of that fault; those left out are as on the shelf.
         """
         with self._lock:
             try:
-                fault = from_table({"kind": kind, "joint": part_name, **numbers})
+                fault = from_table({"kind": kind, "joint": part_name, **parameters})
                 self._live.begin(fault)
             except SuchusError as error:
                 return str(error)

@@ -114,8 +114,8 @@ class DrawnRod:
             return
         orientation = upright(axis / length)
         self._handle.visible = True
-        for bone, place in zip(self._handle.bones, (start, end), strict=True):
-            bone.position, bone.wxyz = place, orientation
+        for bone, position in zip(self._handle.bones, (start, end), strict=True):
+            bone.position, bone.wxyz = position, orientation
 
     def hide(self) -> None:
         """Show it no longer."""
@@ -173,8 +173,8 @@ class WalkScene:
         self._scene, self._size = scene, beside_article(robot).length
         weight = robot.mass * GRAVITY
         self._per_newton, self._load_threshold = self._size * _WEIGHT_LENGTH / weight, LOADED_SHARE * weight
-        place = layout(robot)
-        self._radii = np.array([limb.girdle.limb.foot.radius for limb in place.limbs])
+        robot_layout = layout(robot)
+        self._radii = np.array([limb.girdle.limb.foot.radius for limb in robot_layout.limbs])
         self._front = front_segment(robot)
         light(scene)
         self._world = scene.add_frame(WORLD, show_axes=False)
@@ -185,7 +185,7 @@ class WalkScene:
         self.lay(None)
         self._forces = [self._rod(f"force_{limb}", _ARROW, colour) for limb, colour in limb_colours(robot)]
         self._push = self._rod("push", _PUSH, COLOURS["printed"])
-        self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(len(place.limbs))]
+        self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(len(robot_layout.limbs))]
         self._com = scene.add_icosphere(f"{WORLD}/centre_of_mass", self._size * _COM, color=rgb(COLOURS["tail"]))
         self._plumb = self._rod("plumb", _PLUMB, COLOURS["tail"])
         self._track = scene.add_line_segments(

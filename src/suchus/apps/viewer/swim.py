@@ -27,9 +27,9 @@ _TITLES = {
 }  # fmt: skip
 
 
-def colours(name: str, shares: np.ndarray) -> np.ndarray:
+def colours(name: str, relative_values: np.ndarray) -> np.ndarray:
     """Return the colours of a field, (..., 3) uint8, for its values as shares of the limit, -1 to 1."""
-    return np.asarray(mpl.colormaps[_MAPS[name]](np.clip(0.5 + 0.5 * shares, 0.0, 1.0), bytes=True)[..., :3])
+    return np.asarray(mpl.colormaps[_MAPS[name]](np.clip(0.5 + 0.5 * relative_values, 0.0, 1.0), bytes=True)[..., :3])
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,12 +154,12 @@ def _curves(record: xr.Dataset) -> tuple[PlottedCurve, ...]:
     """Return the forces over the phase, the speed of each cycle and the joint angles that a record holds."""
     curves = []
     for prefix, title in _TITLES.items():
-        parts = {"forward": f"{prefix}_thrust", "to the side": f"{prefix}_aside"}
-        if all(name in record for name in (*parts.values(), f"{prefix}_phase")):
+        components = {"forward": f"{prefix}_thrust", "to the side": f"{prefix}_aside"}
+        if all(name in record for name in (*components.values(), f"{prefix}_phase")):
             phase = record[f"{prefix}_phase"].values
             curves.append(
                 PlottedCurve(
-                    f"force [N/m] over the phase, {title}", phase, {k: record[v].values for k, v in parts.items()}
+                    f"force [N/m] over the phase, {title}", phase, {k: record[v].values for k, v in components.items()}
                 )
             )
     if "arm_speed" in record and set(record.arm_speed.dims) == {"arm", "cycle"} and "arm" in record.coords:
@@ -266,8 +266,8 @@ class VortexFilm:
     def camera(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Return where the camera is at first and where it looks, as in the experiment's pictures [m]."""
         view = vortices.camera(self.record)
-        place = np.array(view.target) + 1.1 * view.width * view.axes[2]
-        return (float(place[0]), float(place[1]), float(place[2])), view.target
+        position = np.array(view.target) + 1.1 * view.width * view.axes[2]
+        return (float(position[0]), float(position[1]), float(position[2])), view.target
 
     def about(self) -> str:
         """Return in words on which grid and in what water it swims, as far as the record says."""
@@ -290,8 +290,8 @@ def _space_curves(record: xr.Dataset) -> Iterator[PlottedCurve]:
             grids = {f"{int(n)} cells a length": record[name].values[i] for i, n in enumerate(record.cells.values)}
             yield PlottedCurve(f"{name} [{unit}] of each cycle", record.cycle.values, dict(list(grids.items())[-3:]))
     if "servo_torque" in record and set(record.servo_torque.dims) == {"moment", "servo"}:
-        share = (record.servo_torque / record.servo_limit).transpose("servo", "moment")
-        lines = {str(name): share.values[i] for i, name in enumerate(record.servo.values)}
+        torque_fraction = (record.servo_torque / record.servo_limit).transpose("servo", "moment")
+        lines = {str(name): torque_fraction.values[i] for i, name in enumerate(record.servo.values)}
         quantity = "torque" if record.attrs.get("joints") else "torque of the water"
         yield PlottedCurve(f"{quantity} over the servo's limit [-]", record.moment.values, lines)
     yield from _joint_curves(record)

@@ -257,20 +257,20 @@ def _scale(artist: Any) -> tuple[str, float | None, float | None]:
 def _ticks(axis: Axis) -> tuple[np.ndarray, list[str]]:
     """Return the places and the words at the ticks of an axis; no words where the places themselves stand there."""
     locator = axis.get_major_locator()
-    places: np.ndarray = np.array(locator() if isinstance(locator, FixedLocator) else [], dtype=float)
-    if not places.size:
-        return places, []
-    words = [_plain(word) for word in axis.get_major_formatter().format_ticks(places.tolist())]
-    has_words = any(word and not _says(word, place) for word, place in zip(words, places, strict=True))
-    return places, words if has_words else []
+    positions: np.ndarray = np.array(locator() if isinstance(locator, FixedLocator) else [], dtype=float)
+    if not positions.size:
+        return positions, []
+    words = [_plain(word) for word in axis.get_major_formatter().format_ticks(positions.tolist())]
+    has_words = any(word and not _says(word, position) for word, position in zip(words, positions, strict=True))
+    return positions, words if has_words else []
 
 
-def _says(word: str, place: float) -> bool:
+def _says(word: str, position: float) -> bool:
     """Return whether a word beside an axis is the number of its place, as it was rounded."""
     number = word.replace("\N{MINUS SIGN}", "-")
     digits = number.lower().partition("e")[0].partition(".")[2]
     try:
-        return abs(float(number) - place) <= 0.5000001 * 10.0 ** -len(digits)
+        return abs(float(number) - position) <= 0.5000001 * 10.0 ** -len(digits)
     except ValueError:
         return False
 

@@ -57,12 +57,12 @@ def _to_one_scale(figure: Figure, views: np.ndarray) -> None:
 
 def _plan(ax: Axes, robot: Robot, *, from_the_side: bool) -> None:
     """Draw the shapes of any body with all joints at zero, from above, or from the side with its limbs hanging down."""
-    place, origins = layout(robot), bone_rest(robot)
-    for limb in place.limbs:
+    robot_layout, origins = layout(robot), bone_rest(robot)
+    for limb in robot_layout.limbs:
         if not from_the_side or limb.side < 0:
-            _chain(ax, place, limb, origins, hanging=from_the_side)
-    segments = {segment.name: segment for segment in place.robot.axis}
-    for body, origin in zip(place.bodies, origins, strict=True):
+            _chain(ax, robot_layout, limb, origins, hanging=from_the_side)
+    segments = {segment.name: segment for segment in robot_layout.robot.axis}
+    for body, origin in zip(robot_layout.bodies, origins, strict=True):
         for shape in segments[body.name].shapes if body.name in segments else ():
             x = origin[0] + body.shift
             if isinstance(shape, Rod):
@@ -77,11 +77,11 @@ def _plan(ax: Axes, robot: Robot, *, from_the_side: bool) -> None:
                 ax.add_patch(Ellipse((shape.at[0] + x, 0.0), 2 * shape.half[0], 2 * half, facecolor=_BODY, **_EDGE))
         if body.hinges and body.name in segments:
             _joint(ax, origin[0], 0.0)
-    front, back = ends(place)
+    front, back = ends(robot_layout)
     _measure(ax, back, front, ax.dataLim.y0 - 0.05 * robot.length)
 
 
-def _chain(ax: Axes, place: Layout, limb: LimbPlace, origins: np.ndarray, *, hanging: bool) -> None:
+def _chain(ax: Axes, robot_layout: Layout, limb: LimbPlace, origins: np.ndarray, *, hanging: bool) -> None:
     """Draw the links, joints and foot of a limb, seen from above or hanging down."""
     links = limb.girdle.limb.links
     first_body = limb.tip - len(links) + 1
@@ -94,7 +94,7 @@ def _chain(ax: Axes, place: Layout, limb: LimbPlace, origins: np.ndarray, *, han
     ax.plot(*line.T, color=_LIMB, linewidth=4, solid_capstyle="round", zorder=0.5)
     radius = limb.girdle.limb.foot.radius
     ax.add_patch(Circle(tuple(line[-1]), radius, facecolor=COLOURS["neutral"], zorder=2, **_EDGE))
-    for (x, y), body in zip(points, place.bodies[first_body : limb.tip + 1], strict=False):
+    for (x, y), body in zip(points, robot_layout.bodies[first_body : limb.tip + 1], strict=False):
         if body.hinges:
             _joint(ax, x, y)
 
@@ -169,9 +169,9 @@ def _tail(ax: Axes, robot: Robot, height: float, tip_height: float) -> None:
     total = tail.length - tail.offset
 
     def section(distance: float) -> tuple[float, float, float]:
-        share = distance / total
-        radius = tail.radius_root + (tail.radius_tip - tail.radius_root) * share
-        return -tail.offset - distance, height + (tip_height - height) * share, radius
+        fraction = distance / total
+        radius = tail.radius_root + (tail.radius_tip - tail.radius_root) * fraction
+        return -tail.offset - distance, height + (tip_height - height) * fraction, radius
 
     driven_length = tail.root + tail.joints * tail.pitch
     for start, end, colour in ((0.0, driven_length, _BODY), (driven_length, total, _FIN)):
@@ -183,23 +183,28 @@ def _tail(ax: Axes, robot: Robot, height: float, tip_height: float) -> None:
     _joint(ax, -tail.offset, height)
 
 
-def _box(ax: Axes, start: float, end: float, half: float, height: float = 0.0) -> None:
-    corners = [(start, height - half), (end, height - half), (end, height + half), (start, height + half)]
+def _box(ax: Axes, start: float, end: float, half_height: float, height: float = 0.0) -> None:
+    corners = [
+        (start, height - half_height),
+        (end, height - half_height),
+        (end, height + half_height),
+        (start, height + half_height),
+    ]
     ax.add_patch(Polygon(corners, facecolor=_BODY, joinstyle="round", **_EDGE))
 
 
-def _head(ax: Axes, robot: Robot, half: float, height: float) -> None:
+def _head(ax: Axes, robot: Robot, half_height: float, height: float) -> None:
     """Draw the head as a polygon that narrows to the snout."""
     start = robot.spine.length + robot.thorax.shoulder
     end = robot.spine.length + robot.head.snout
     jaw = start + 0.35 * (end - start)
     outline = [
-        (start, half * 0.8),
-        (jaw, half),
-        (end, half * 0.35),
-        (end, -half * 0.35),
-        (jaw, -half),
-        (start, -half * 0.8),
+        (start, half_height * 0.8),
+        (jaw, half_height),
+        (end, half_height * 0.35),
+        (end, -half_height * 0.35),
+        (jaw, -half_height),
+        (start, -half_height * 0.8),
     ]
     ax.add_patch(Polygon([(x, y + height) for x, y in outline], facecolor=_BODY, joinstyle="round", **_EDGE))
 

@@ -42,13 +42,13 @@ def draw_field(
         cmap: colour map.
     """
     x, y = record[f"{name}_x"].values, record[f"{name}_y"].values
-    half = 0.5 * (x[1] - x[0])
+    half_cell = 0.5 * (x[1] - x[0])
     values = record[f"{name}_{field_name}"].values[index]
     ax.grid(visible=False)
     image = ax.imshow(
         smooth(values),
         origin="lower",
-        extent=(x[0] - half, x[-1] + half, y[0] - half, y[-1] + half),
+        extent=(x[0] - half_cell, x[-1] + half_cell, y[0] - half_cell, y[-1] + half_cell),
         cmap=colormaps[cmap].resampled(_STEPS),
         vmin=-limit,
         vmax=limit,
@@ -72,10 +72,10 @@ def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.n
         name: prefix of the swim in the record.
         index: which instant.
     """
-    x, y, heading, half = (
+    x, y, heading, half_width = (
         record[f"{name}_midline_{quantity}"].values[index] for quantity in ("x", "y", "heading", "half_width")
     )
-    half_width_vector = np.column_stack([-np.sin(heading), np.cos(heading)]) * half[:, None]
+    half_width_vector = np.column_stack([-np.sin(heading), np.cos(heading)]) * half_width[:, None]
     line = np.column_stack([x, y])
     return np.vstack([line + half_width_vector, (line - half_width_vector)[::-1]]), line
 
@@ -85,8 +85,8 @@ def draw_body(ax: Axes, record: xr.Dataset, name: str, index: int) -> tuple[Poly
     edge, line = outline(record, name, index)
     body = Polygon(edge, facecolor=SKIN, edgecolor=EDGE, linewidth=1.0, zorder=3)
     ax.add_patch(body)
-    (middle,) = ax.plot(*line.T, color=EDGE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
-    return body, middle
+    (midline,) = ax.plot(*line.T, color=EDGE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
+    return body, midline
 
 
 def move_body(artists: tuple[Polygon, Line2D], record: xr.Dataset, name: str, index: int) -> None:

@@ -219,13 +219,13 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
 def _along_the_outline(surface: Surface) -> Figure:
     """Draw pressure and friction over the arc length of a plane body's outline."""
     m = surface.markers
-    place = np.cumsum(m.share) - m.share / 2
+    arc_length = np.cumsum(m.share) - m.share / 2
     friction = surface.shear[1] * m.normals[0] - surface.shear[0] * m.normals[1]
     figure, grid = panels(1, 2, width=WIDTH, height=3.8)
     for axes, values, label in zip(
         grid[0], (surface.pressure, friction), ("pressure [Pa]", "friction, counter-clockwise [Pa]"), strict=True
     ):
-        axes.plot(place, values, color=COLOURS["coordinated"], linewidth=1.4)
+        axes.plot(arc_length, values, color=COLOURS["coordinated"], linewidth=1.4)
         axes.set(xlabel="along the outline, counter-clockwise [m]", ylabel=label)
     return figure
 

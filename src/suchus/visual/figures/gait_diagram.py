@@ -150,12 +150,12 @@ def draw_bars(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
             _bars(ax, track.time, stands, (row + top, 0.92 * height), shade, shade)
         for row, region in enumerate(track.bends, start=len(legs)):
             signs = bend_sign(getattr(track, region))
-            place = (row + top + 0.25, 0.92 * height)  # a gap sets the two signs apart from the four legs
-            _bars(ax, track.time, signs > 0, place, shade, shade, "+" if len(tracks) == 1 else "")
-            _bars(ax, track.time, signs < 0, place, "white", shade, "\N{MINUS SIGN}" if len(tracks) == 1 else "")
-    places = [*range(len(legs)), *(len(legs) + 0.25 + i for i in range(len(regions)))]
-    ax.set_yticks(places, [*legs, *regions])
-    ax.set_ylim(places[-1] + 0.5, -0.5)
+            row_span = (row + top + 0.25, 0.92 * height)  # a gap sets the two signs apart from the four legs
+            _bars(ax, track.time, signs > 0, row_span, shade, shade, "+" if len(tracks) == 1 else "")
+            _bars(ax, track.time, signs < 0, row_span, "white", shade, "\N{MINUS SIGN}" if len(tracks) == 1 else "")
+    tick_positions = [*range(len(legs)), *(len(legs) + 0.25 + i for i in range(len(regions)))]
+    ax.set_yticks(tick_positions, [*legs, *regions])
+    ax.set_ylim(tick_positions[-1] + 0.5, -0.5)
     ax.set_xlim(min(t.time[0] for t in tracks), max(t.time[-1] for t in tracks))
     ax.tick_params(axis="y", length=0)
     ax.grid(False)
@@ -237,7 +237,7 @@ def stretches(time: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
 
 
 def _bars(
-    ax: Axes, time: np.ndarray, holds: np.ndarray, place: tuple[float, float], fill: str, edge: str, sign: str = ""
+    ax: Axes, time: np.ndarray, holds: np.ndarray, row_span: tuple[float, float], fill: str, edge: str, sign: str = ""
 ) -> None:
     """Draw a bar over every interval in which a condition holds.
 
@@ -245,12 +245,12 @@ def _bars(
         ax: to draw on.
         time: shape (time,).
         holds: the condition, shape (time,).
-        place: top and height of the bar.
+        row_span: top and height of the bar.
         fill: colour of the bar.
         edge: colour of its edge.
         sign: text on bars that are long enough for it.
     """
-    top, height = place
+    top, height = row_span
     span = float(time[-1] - time[0])
     for start, end in stretches(time, holds):
         ax.add_patch(
@@ -258,8 +258,8 @@ def _bars(
         )
         if sign and end - start > 0.03 * span:
             colour = "white" if fill == _BLACK else edge
-            middle = ((start + end) / 2, top + height / 2)
-            ax.text(*middle, sign, color=colour, ha="center", va="center_baseline", fontsize=13, zorder=4)
+            center = ((start + end) / 2, top + height / 2)
+            ax.text(*center, sign, color=colour, ha="center", va="center_baseline", fontsize=13, zorder=4)
 
 
 def _bar_legend(ax: Axes, tracks: Sequence[GaitTrack]) -> None:

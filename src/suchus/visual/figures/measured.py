@@ -55,8 +55,10 @@ def curvature_figure(data: xr.Dataset) -> Figure:
         ax = axes[0, 0]
         cells = (data.phase.values, data.place.values, data.curvature.values)
         mesh = ax.pcolormesh(*cells, cmap=DIVERGING, vmin=-size, vmax=size, shading="nearest")
-        places = zip(data.keypoint.values, data.place.values, strict=True)
-        ax.set_yticks(data.place.values, [f"{name}  {position:.2f}" for name, position in places], fontsize=9)
+        keypoint_positions = zip(data.keypoint.values, data.place.values, strict=True)
+        ax.set_yticks(
+            data.place.values, [f"{name}  {position:.2f}" for name, position in keypoint_positions], fontsize=9
+        )
         ax.set_ylabel("place along the midline, 0 in front")
         ax.set_xlabel("phase [cycle]")
         ax.invert_yaxis()

@@ -65,11 +65,11 @@ def skeleton(robot: Robot, record: xr.Dataset, time: float) -> Skeleton:
     )
 
 
-def _leg(place: Layout, limb: LimbPlace, body_frames: BodyFrames, foot: np.ndarray) -> np.ndarray:
+def _leg(robot_layout: Layout, limb: LimbPlace, body_frames: BodyFrames, foot: np.ndarray) -> np.ndarray:
     """Return midline, hip, joints and foot of a limb in the frame of the root, (point, 3) [m]."""
     first_body = limb.tip - len(limb.girdle.limb.links) + 1
-    parent = place.bodies[first_body].parent
-    x, _, z = place.bodies[first_body].offset
+    parent = robot_layout.bodies[first_body].parent
+    x, _, z = robot_layout.bodies[first_body].offset
     midline = body_frames.places[parent] + body_frames.turns[parent] @ np.array([x, 0.0, z])
     return np.array([midline, *body_frames.places[first_body : limb.tip + 1], foot])
 
@@ -174,12 +174,12 @@ def _lateral_shift(record: xr.Dataset, lateral_offset: float) -> xr.DataArray:
     return xr.DataArray([0.0, lateral_offset, 0.0], dims="xyz", coords={"xyz": record.xyz})
 
 
-def _draw_skin(ax: Axes, place: Layout, outline: Silhouette, view: View, strength: float) -> None:
+def _draw_skin(ax: Axes, robot_layout: Layout, outline: Silhouette, view: View, strength: float) -> None:
     """Draw the skin; from the side the left legs lie behind the body and the right legs in front of it.
 
     Args:
         ax: to draw on.
-        place: layout of the robot.
+        robot_layout: layout of the robot.
         outline: silhouette in the view.
         view: from above or from the side.
         strength: of the colours; below one they fade to white.
@@ -187,7 +187,7 @@ def _draw_skin(ax: Axes, place: Layout, outline: Silhouette, view: View, strengt
     edge, body, far_leg, pale_face, plate = (
         _paler(c, strength) for c in (_EDGE, _BODY, _FAR_COLOUR, _PALE_COLOUR, _PLATE)
     )
-    for limb, pieces in zip(place.limbs, outline.legs, strict=True):
+    for limb, pieces in zip(robot_layout.limbs, outline.legs, strict=True):
         is_near = view == "side" and limb.side < 0
         is_far = view == "side" and not is_near
         face, order = (far_leg, 0.8) if is_far else (body, 2.6) if is_near else (body, 1.0)

@@ -41,10 +41,10 @@ def draw_shares(
             if shipped and row["claim"] in shipped:
                 intervals.append((i - spacing, shipped[row["claim"]], "printed", "D", "shipped table"))
             for y, interval, colour, mark, label in intervals:
-                share, lower_bound, upper_bound = (100 * x for x in interval)
+                percentage, lower_bound, upper_bound = (100 * x for x in interval)
                 style = {"color": COLOURS[colour], "label": label if i == len(rows) - 1 and shipped else None}
                 ax.plot([lower_bound, upper_bound], [y, y], color=COLOURS[colour], linewidth=2.2, alpha=0.5)
-                ax.plot(share, y, mark, markersize=6, **style)
+                ax.plot(percentage, y, mark, markersize=6, **style)
             if row["claim"] in annotations:
                 ax.text(102, i, annotations[row["claim"]], va="center", fontsize=10)
         ax.set_yticks(range(len(rows)), [row["claim"].replace("_", " ") for row in reversed(rows)], fontsize=11)
@@ -79,13 +79,13 @@ def draw_claim(record: xr.Dataset, claim: str) -> Figure:
         _numbers(left_axes, number, holds, claim)
         _correlations(middle_axes, claimed, len(number))
         _plane(right_axes, claimed, is_finite, holds)
-    share = f"{100 * holds.mean():.0f} %" if holds.size else "none"
+    percentage = f"{100 * holds.mean():.0f} %" if holds.size else "none"
     return captioned(
         figure,
-        f"{CLAIMS[claim].sense} True in {share} of {len(number)} samples. Left: {CLAIMS[claim].quantity}; the line is "
-        "the article's number. Middle: rank correlation with the parameters it follows most; within the grey band it "
-        "could be chance. Right: the two that separate best; blue is the side of the decision boundary where "
-        "it is true more often.",
+        f"{CLAIMS[claim].sense} True in {percentage} of {len(number)} samples. Left: {CLAIMS[claim].quantity}; "
+        "the line is the article's number. Middle: rank correlation with the parameters it follows most; within the "
+        "grey band it could be chance. Right: the two that separate best; blue is the side of the decision boundary "
+        "where it is true more often.",
     )
 
 

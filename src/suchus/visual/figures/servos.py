@@ -32,7 +32,7 @@ def draw_use(servo_uses: Sequence[Used], title: str) -> Figure:
     with styled():
         figure, axes = panels(height=1.4 + 0.32 * len(rows))
         ax = axes[0, 0]
-        places = range(len(rows))
+        positions = range(len(rows))
         for shift, label, values, style in (
             (0.2, "torque at its speed", [servo_use.torque for servo_use in rows], {"color": COLOURS["ours"]}),
             (
@@ -44,11 +44,17 @@ def draw_use(servo_uses: Sequence[Used], title: str) -> Figure:
         ):
             widths = [100 * value for value in values]
             ax.barh(
-                [y + shift for y in places], widths, height=0.38, label=label, edgecolor="white", linewidth=0, **style
+                [y + shift for y in positions],
+                widths,
+                height=0.38,
+                label=label,
+                edgecolor="white",
+                linewidth=0,
+                **style,
             )
         ax.axvline(100, color=COLOURS["alarm"], linestyle="--", linewidth=1.4, label="all there is")
         ax.set_yticks(
-            list(places), [f"{servo_use.servo}  {servo_use.bought}".strip() for servo_use in rows], fontsize=10
+            list(positions), [f"{servo_use.servo}  {servo_use.bought}".strip() for servo_use in rows], fontsize=10
         )
         ax.set_xlabel("used of what the servo has [%]")
         ax.set_title(title)

@@ -39,16 +39,16 @@ def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Sil
     """
     surface, flat = skin(robot), vertices[:, list(axes)]
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
-    parts = np.split(flat, starts[1:])
-    sizes = np.array([len(points) for points in parts])
+    part_points = np.split(flat, starts[1:])
+    sizes = np.array([len(points) for points in part_points])
     if surface.plain:
-        return _plain(layout(robot), surface, starts, parts)
+        return _plain(layout(robot), surface, starts, part_points)
     legs: list[list[np.ndarray]] = [[], [], [], []]
     names = _owners(surface, starts)
-    for points, owner in zip(parts, names, strict=True):
+    for points, owner in zip(part_points, names, strict=True):
         if owner >= 0:
             legs[owner] += [_hull(points)] if legs[owner] else _bands(points, LEG_AROUND, skip_root=axes == (0, 2))
-    axial = [points for points, owner in zip(parts, names, strict=True) if owner < 0]
+    axial = [points for points, owner in zip(part_points, names, strict=True) if owner < 0]
     spikes = [points for points in axial[2:] if len(points) == _SCUTE]
     eyes = [axial[i] for i in np.flatnonzero(sizes[: len(axial)] == _EYE)[:2]]
     return Silhouette(
@@ -60,18 +60,18 @@ def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Sil
     )
 
 
-def _plain(place: Layout, surface: Skin, starts: np.ndarray, parts: list[np.ndarray]) -> Silhouette:
+def _plain(robot_layout: Layout, surface: Skin, starts: np.ndarray, part_points: list[np.ndarray]) -> Silhouette:
     """Return the silhouette of a plain body: its hide, its eyes, and the hulls of its limbs' links and feet."""
-    legs: list[list[np.ndarray]] = [[] for _ in place.limbs]
-    for start, points in zip(starts[3:], parts[3:], strict=True):
+    legs: list[list[np.ndarray]] = [[] for _ in robot_layout.limbs]
+    for start, points in zip(starts[3:], part_points[3:], strict=True):
         bone = int(surface.indices[start, 0])
-        owner = next(i for i, limb in enumerate(place.limbs) if limb.tip >= bone)
+        owner = next(i for i, limb in enumerate(robot_layout.limbs) if limb.tip >= bone)
         legs[owner].append(_hull(points))
     return Silhouette(
-        body=_sides(parts[0], AROUND),
+        body=_sides(part_points[0], AROUND),
         jaw=np.empty((0, 2)),
         scutes=[],
-        eyes=[_hull(points) for points in parts[1:3]],
+        eyes=[_hull(points) for points in part_points[1:3]],
         legs=legs,
     )
 

@@ -194,6 +194,6 @@ def save(figure: Figure, folder: str | Path, stem: str) -> tuple[Path, Path]:
             figure.set_layout_engine(None)  # the axes stand where the first file has them, and are not placed again
             write(path, buffer.getvalue())
     figure.set_layout_engine(layout)
-    if numbers := table(figure):
-        write(data, numbers)
+    if csv_text := table(figure):
+        write(data, csv_text)
     return svg, png

@@ -80,12 +80,12 @@ def _meets(artist: Artist, ax: Axes, box: Bbox) -> bool:
         return False
     if isinstance(artist, Line2D):
         path = artist.get_transform().transform_path(artist.get_path())
-        half = (
+        radius = (
             0.5 * artist.get_markersize() * ax.figure.dpi / 72
             if artist.get_marker() not in ("None", "", " ", None)
             else 0
         )
-        return (half > 0 and _holds(visible_box.padded(half), path.vertices)) or (
+        return (radius > 0 and _holds(visible_box.padded(radius), path.vertices)) or (
             artist.get_linestyle() not in ("None", "", " ") and path.intersects_bbox(visible_box, filled=False)
         )
     if isinstance(artist, Collection):
@@ -107,9 +107,9 @@ def _collection_meets(collection: Collection, ax: Axes, visible_box: Bbox) -> bo
         return bool((has_value & ((cell_min < visible_box.max) & (cell_max > visible_box.min)).all(axis=-1)).any())
     offsets: Any = collection.get_offsets()
     if isinstance(collection, PathCollection):
-        half = 0.5 * float(np.sqrt(np.max(collection.get_sizes(), initial=0.0))) * ax.figure.dpi / 72
+        radius = 0.5 * float(np.sqrt(np.max(collection.get_sizes(), initial=0.0))) * ax.figure.dpi / 72
         return _holds(
-            visible_box.padded(half), collection.get_offset_transform().transform(np.ma.filled(offsets, np.nan))
+            visible_box.padded(radius), collection.get_offset_transform().transform(np.ma.filled(offsets, np.nan))
         )
     is_filled = bool(np.size(collection.get_facecolor()))
     return any(
@@ -120,15 +120,15 @@ def _collection_meets(collection: Collection, ax: Axes, visible_box: Bbox) -> bo
 
 
 def _holds(box: Bbox, points: Any) -> bool:
-    places = np.asarray(points, dtype=float).reshape(-1, 2)
-    return bool(((places > box.min) & (places < box.max)).all(axis=1).any())
+    positions = np.asarray(points, dtype=float).reshape(-1, 2)
+    return bool(((positions > box.min) & (positions < box.max)).all(axis=1).any())
 
 
 def _move_inside(figure: Figure, ax: Axes, legend: Legend) -> bool:
     """Move a legend to the first place inside its axes where it covers nothing; False where there is none."""
     legend.set_bbox_to_anchor(None)
-    for place in _INNER_LOCATIONS:
-        legend.set_loc(place)
+    for location in _INNER_LOCATIONS:
+        legend.set_loc(location)
         box = legend.get_window_extent()
         is_inside = ax.bbox.contains(*box.min) and ax.bbox.contains(*box.max)
         if is_inside and not _lies_on_data(figure, legend):
@@ -138,8 +138,8 @@ def _move_inside(figure: Figure, ax: Axes, legend: Legend) -> bool:
 
 def _move_below(figure: Figure, ax: Axes, legend: Legend) -> None:
     """Make a legend anew below its axes, their numbers and their label, in as many columns as they are wide."""
-    words = legend.get_texts()
-    boxes = [text.get_window_extent() for text in words]
+    texts = legend.get_texts()
+    boxes = [text.get_window_extent() for text in texts]
     entry_width = boxes[0].x0 - legend.get_window_extent().x0 + max(box.width for box in boxes)
     legend.set_in_layout(False)
     tight_box = ax.get_tightbbox()
@@ -147,12 +147,12 @@ def _move_below(figure: Figure, ax: Axes, legend: Legend) -> None:
     offset = (ax.bbox.y0 - tight_box.y0) / figure.dpi + _GAP
     ax.legend(
         [handle for handle in legend.legend_handles if handle is not None],
-        [text.get_text() for text in words],
+        [text.get_text() for text in texts],
         loc="upper left",
         bbox_to_anchor=(0.0, 0.0),
         bbox_transform=ax.transAxes + ScaledTranslation(0.0, -offset, figure.dpi_scale_trans),
         borderaxespad=0.0,
-        ncols=min(max(1, int(ax.bbox.width / entry_width)), len(words)),
-        fontsize=words[0].get_fontsize(),
+        ncols=min(max(1, int(ax.bbox.width / entry_width)), len(texts)),
+        fontsize=texts[0].get_fontsize(),
         title=legend.get_title().get_text() or None,
     )

@@ -59,7 +59,9 @@ class Viewpoint(NamedTuple):
         ), self.distance - toward_camera
 
 
-def picture(solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], *, share: float = 0.8) -> np.ndarray:
+def picture(
+    solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], *, clear_fraction: float = 0.8
+) -> np.ndarray:
     """Return a picture on white of a solid and of surfaces that it is seen through, (row, column, 3) uint8.
 
     Args:
@@ -67,10 +69,10 @@ def picture(solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], 
         clear: surfaces of which the nearest lets through what is solid behind it.
         camera: where it is taken from.
         size: columns and rows [pixel].
-        share: of the light that comes from the clear surfaces [-].
+        clear_fraction: of the light that comes from the clear surfaces [-].
     """
     solid_only, combined = (_render(meshes, camera, size) for meshes in ([solid], [solid, clear]))
-    return np.round(share * combined + (1.0 - share) * solid_only).astype(np.uint8)
+    return np.round(clear_fraction * combined + (1.0 - clear_fraction) * solid_only).astype(np.uint8)
 
 
 def _render(meshes: Sequence[Mesh], camera: Viewpoint, size: tuple[int, int]) -> np.ndarray:
@@ -224,8 +226,8 @@ def around(
 
 def colours(spin: np.ndarray, limit: float) -> np.ndarray:
     """Return the colours of a vorticity about z, (n, 3) [0 to 1]: red counter-clockwise as seen from above."""
-    share = 0.5 + 0.5 * _DARKEST * np.clip(spin / limit, -1.0, 1.0)
-    return np.asarray(colormaps[VORTICITY](share)[:, :3])
+    fraction = 0.5 + 0.5 * _DARKEST * np.clip(spin / limit, -1.0, 1.0)
+    return np.asarray(colormaps[VORTICITY](fraction)[:, :3])
 
 
 def colour_limit(record: xr.Dataset) -> float:
@@ -236,14 +238,14 @@ def colour_limit(record: xr.Dataset) -> float:
 def camera(record: xr.Dataset) -> Viewpoint:
     """Return where pictures of a record are taken from: obliquely from above, beside the body."""
     x, y = record.film_x.values, record.y.values
-    length, middle = float(np.ptp(x[0])), 0.5 * float(x.min() + x.max())
-    target, width = (middle + 0.26 * length, -0.14 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
+    length, center = float(np.ptp(x[0])), 0.5 * float(x.min() + x.max())
+    target, width = (center + 0.26 * length, -0.14 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
     return Viewpoint(azimuth=-1.05, elevation=0.62, distance=3.2 * length, target=target, width=width)
 
 
-def hexed(share: float) -> str:
+def hexed(relative_value: float) -> str:
     """Return the colour of a vorticity as #rrggbb, from its share of the one at which the colours end [-1 to 1]."""
-    return to_hex(colours(np.array([share]), 1.0)[0])
+    return to_hex(colours(np.array([relative_value]), 1.0)[0])
 
 
 def still(record: xr.Dataset, frame: int, size: tuple[int, int] = (720, 400)) -> np.ndarray:

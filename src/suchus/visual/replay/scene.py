@@ -30,11 +30,11 @@ class PackedArrays:
         """Append an array and return where it lies: its ``kind``, its ``start`` [byte], its ``count`` of numbers."""
         assert array.dtype.name in _KINDS
         raw = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).tobytes()
-        place = {"kind": array.dtype.name, "start": self.size, "count": int(array.size)}
+        location = {"kind": array.dtype.name, "start": self.size, "count": int(array.size)}
         raw += bytes(-len(raw) % 4)
         self._parts.append(raw)
         self.size += len(raw)
-        return place
+        return location
 
     def text(self) -> str:
         """Return everything as base64."""
@@ -127,9 +127,9 @@ def _packed(robot: Robot, run: Frames, label: str, relief: Relief | None, pack: 
         pack: takes the arrays.
     """
     bones = ankles(robot, run.bones, run.feet, relief)
-    places = bones.positions
-    origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2
-    positions, reach = quantised(places - origin, np.int16)
+    bone_positions = bones.positions
+    origin = (bone_positions.max(axis=(0, 1)) + bone_positions.min(axis=(0, 1))) / 2
+    positions, reach = quantised(bone_positions - origin, np.int16)
     return {
         "label": label,
         "frames": len(run.mass),

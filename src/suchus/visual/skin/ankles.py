@@ -69,10 +69,10 @@ def _side(leg: str) -> float:
     return 1.0 if leg.startswith("L") else -1.0
 
 
-def _downward(direction: np.ndarray, share: np.ndarray) -> np.ndarray:
+def _downward(direction: np.ndarray, fraction: np.ndarray) -> np.ndarray:
     """Return the smallest turns that bring directions to -z, by a share and no farther than ``REACH``: (frame, 4)."""
     axis = np.cross(direction, [0.0, 0.0, -1.0])
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
-    angle = np.minimum(np.arctan2(sine[:, 0], -direction[:, 2]), REACH) * share
+    angle = np.minimum(np.arctan2(sine[:, 0], -direction[:, 2]), REACH) * fraction
     axis = np.divide(axis, sine, out=np.zeros_like(axis), where=sine > 1e-9)
     return about(axis, angle)

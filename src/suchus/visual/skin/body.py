@@ -49,15 +49,15 @@ def _tail_knots(robot: Robot, proportions: Look) -> list[Knot]:
     )
     width_factor = curve([(0.0, 1.0), (0.5, proportions.margin), (0.85, 1.15), (1.0, 1.3)])
     knots = []
-    for share in (0.0, 0.004, 0.015, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.9, 0.96):
-        x = tip + share * (-tail.offset - tip)
+    for fraction in (0.0, 0.004, 0.015, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.9, 0.96):
+        x = tip + fraction * (-tail.offset - tip)
         r = float(tail_radius(np.array(x))) * proportions.margin
-        point = min(1.0, float(np.sqrt(share / 0.12)) + 0.02)
+        point = min(1.0, float(np.sqrt(fraction / 0.12)) + 0.02)
         knots.append(
             (
                 x,
-                r * point * float(width_factor(np.array(share))),
-                r * point * float(height_factor(np.array(share))),
+                r * point * float(width_factor(np.array(fraction))),
+                r * point * float(height_factor(np.array(fraction))),
                 r * point,
             )
         )

@@ -97,12 +97,12 @@ def _toe(root: np.ndarray, angle: float, reach: float, radius: float) -> list[Me
     lateral = np.array([-np.sin(angle), 0.0, np.cos(angle)])
     outward = np.array([0.0, 1.0, 0.0])
     c, s = ring(8)
-    share = np.array([0.0, 0.35, 0.7, 0.9, 0.99])
+    fractions = np.array([0.0, 0.35, 0.7, 0.9, 0.99])
     radii = radius * np.array([1.0, 0.95, 0.8, 0.68, 0.35])
     drop = np.array([0.0, 0.0, 0.15, 0.25, 0.3]) * radius  # toes slope down to their tips
     rings = (
         root
-        + (reach * share)[:, None, None] * forward
+        + (reach * fractions)[:, None, None] * forward
         + radii[:, None, None] * (c[:, None] * lateral + s[:, None] * -outward)[None]
         + drop[:, None, None] * outward
     )

@@ -23,9 +23,9 @@ def smooth(value: np.ndarray, lower_bound: float, upper_bound: float) -> np.ndar
     return t * t * (3 - 2 * t)
 
 
-def mixed(a: np.ndarray, b: np.ndarray, share: np.ndarray) -> np.ndarray:
+def mixed(a: np.ndarray, b: np.ndarray, fraction: np.ndarray) -> np.ndarray:
     """Return colours between two, (n, 3)."""
-    return a + share[:, None] * (b - a)
+    return a + fraction[:, None] * (b - a)
 
 
 def shaded(level: np.ndarray, axial_position: np.ndarray, lateral_distance: np.ndarray) -> np.ndarray:

@@ -18,10 +18,10 @@ _RINGS, _MARGIN = 120, 1.04
 _CAP = np.array([0.0, 0.3, 0.6, 0.85, 0.97])  # places of the rings of a rod's round end
 
 
-def axis_mesh(place: Layout) -> Mesh:
+def axis_mesh(robot_layout: Layout) -> Mesh:
     """Return the hide from the snout to the tip of the tail."""
     knots: list[tuple[float, float, float]] = []
-    for segment, start in zip(place.robot.axis, segment_places(place), strict=True):
+    for segment, start in zip(robot_layout.robot.axis, segment_places(robot_layout), strict=True):
         for shape in segment.shapes:
             x, (half_width, half_height) = start + shape.centre[0], _section(shape)
             index = next((i for i, knot in enumerate(knots) if abs(knot[0] - x) < 1e-9), None)
@@ -29,12 +29,12 @@ def axis_mesh(place: Layout) -> Mesh:
                 knots.append((x, half_width, half_height))
             else:
                 knots[index] = x, max(half_width, knots[index][1]), max(half_height, knots[index][2])
-    front, back = ends(place)
+    front, back = ends(robot_layout)
     knots.sort()
     distinct_knots = [knots[0]] + [b for a, b in pairwise(knots) if b[0] - a[0] > 1e-4 * (front - back)]
     width, height = (_outline([(k[0], k[i]) for k in distinct_knots], back, front) for i in (1, 2))
-    share = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.002, 0.998, _RINGS))  # finer at both ends, where it closes
-    axial_positions = back + (front - back) * share
+    fractions = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.002, 0.998, _RINGS))  # finer at both ends, where it closes
+    axial_positions = back + (front - back) * fractions
     c, s = ring(AROUND, 2.2)
     points = [
         np.broadcast_to(axial_positions[:, None], (_RINGS, AROUND)),
@@ -43,25 +43,25 @@ def axis_mesh(place: Layout) -> Mesh:
     ]
     mesh = loft(np.stack(points, axis=-1))
     level = np.concatenate([np.broadcast_to(s, (_RINGS, AROUND)).ravel(), [0.0, 0.0]])
-    return mesh.painted(hide(level, place.robot.length))
+    return mesh.painted(hide(level, robot_layout.robot.length))
 
 
-def eyes(place: Layout) -> list[Mesh]:
+def eyes(robot_layout: Layout) -> list[Mesh]:
     """Return both eyes, for whom it is easier to see where the front is."""
-    front, _ = ends(place)
-    shape = place.robot.axis[0].shapes[-1]
+    front, _ = ends(robot_layout)
+    shape = robot_layout.robot.axis[0].shapes[-1]
     half_width, half_height = _section(shape)
     size = 0.22 * min(half_width, half_height)
-    x = front - 0.75 * max(half_width, 0.4 * (place.robot.axis[0].front + place.robot.axis[0].rear))
+    x = front - 0.75 * max(half_width, 0.4 * (robot_layout.robot.axis[0].front + robot_layout.robot.axis[0].rear))
     return [
         ellipsoid((x, side * 0.75 * half_width, 0.62 * half_height), (size, size, size)).painted(EYE)
         for side in (1.0, -1.0)
     ]
 
 
-def limb_meshes(place: Layout, limb: LimbPlace) -> list[tuple[Mesh, int]]:
+def limb_meshes(robot_layout: Layout, limb: LimbPlace) -> list[tuple[Mesh, int]]:
     """Return the links and the foot of a limb, each with the bone that it hangs on."""
-    origins, design = bone_rest(place.robot), limb.girdle.limb
+    origins, design = bone_rest(robot_layout.robot), limb.girdle.limb
     first_bone = limb.tip - len(design.links) + 1
     meshes = []
     for number, link in enumerate(design.links):
@@ -93,17 +93,18 @@ def rod(start: np.ndarray, end: np.ndarray, radius: float) -> Mesh:
     return loft(start + axial_positions[:, None, None] * axis + ring_radii[:, None, None] * directions)
 
 
-def segment_places(place: Layout) -> list[float]:
+def segment_places(robot_layout: Layout) -> list[float]:
     """Return where the origin of each segment of the axis lies ahead of the root's at zero posture [m]."""
     placements = {
-        body.name: (origin, body.shift) for body, origin in zip(place.bodies, bone_rest(place.robot), strict=True)
+        body.name: (origin, body.shift)
+        for body, origin in zip(robot_layout.bodies, bone_rest(robot_layout.robot), strict=True)
     }
-    return [float(placements[s.name][0][0] + placements[s.name][1]) for s in place.robot.axis]
+    return [float(placements[s.name][0][0] + placements[s.name][1]) for s in robot_layout.robot.axis]
 
 
-def ends(place: Layout) -> tuple[float, float]:
+def ends(robot_layout: Layout) -> tuple[float, float]:
     """Return where the snout and the tip of the tail lie ahead of the root at zero posture [m]."""
-    positions, axis = segment_places(place), place.robot.axis
+    positions, axis = segment_places(robot_layout), robot_layout.robot.axis
     return positions[0] + axis[0].front, positions[-1] - axis[-1].rear
 
 

@@ -30,9 +30,9 @@ def left_scutes(robot: Robot, outline: BodyShape, proportions: Look) -> list[Mes
     )
     scutes = []
     for x in np.arange(fork, -0.5 * robot.tail.offset, 0.62 * spacing):
-        share = (x - fork) / max(-fork, 1e-9)
-        height = (0.75 - 0.45 * share) * robot.tail.radius_root
-        scutes.append(_seated(outline, proportions, x, 0.16 + 0.10 * share, 0.52 * spacing, 0.13 * spacing, height))
+        fraction = (x - fork) / max(-fork, 1e-9)
+        height = (0.75 - 0.45 * fraction) * robot.tail.radius_root
+        scutes.append(_seated(outline, proportions, x, 0.16 + 0.10 * fraction, 0.52 * spacing, 0.13 * spacing, height))
     for row, (lateral_fraction, height) in enumerate(((0.11, 0.20), (0.33, 0.20), (0.56, 0.17))):
         start = -0.3 * robot.tail.offset + 0.31 * spacing * (row % 2)
         stop = nape if row < 2 else robot.spine.length

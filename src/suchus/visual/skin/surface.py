@@ -112,11 +112,11 @@ def _crocodile(robot: Robot, proportions: Look) -> list[tuple[Mesh, str | int]]:
     return parts + [(m.mirrored() if side == "R" else m, side + girdle) for m, girdle in limbs for side in "LR"]
 
 
-def _plain(place: Layout) -> list[tuple[Mesh, str | int]]:
+def _plain(robot_layout: Layout) -> list[tuple[Mesh, str | int]]:
     """Return the parts of any body, each with the bone that it hangs on, or nothing for the axis."""
-    parts: list[tuple[Mesh, str | int]] = [(axis_mesh(place), "")]
-    parts += [(mesh, "") for mesh in plain_eyes(place)]
-    return parts + [limb_mesh for limb in place.limbs for limb_mesh in limb_meshes(place, limb)]
+    parts: list[tuple[Mesh, str | int]] = [(axis_mesh(robot_layout), "")]
+    parts += [(mesh, "") for mesh in plain_eyes(robot_layout)]
+    return parts + [limb_mesh for limb in robot_layout.limbs for limb_mesh in limb_meshes(robot_layout, limb)]
 
 
 def _attach(robot: Robot, vertices: np.ndarray, attachment: str | int) -> tuple[np.ndarray, np.ndarray]:
@@ -147,13 +147,13 @@ def _axial(robot: Robot, proportions: Look) -> list[Mesh]:
 
 def _on_axis(robot: Robot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Hang vertices on the bodies of the axis by their place along the straight body."""
-    place, origins = layout(robot), bone_rest(robot)
-    names = [body.name for body in place.bodies]
-    order = [names.index(name) for name in (*reversed(place.tail), *place.trunk)]
+    robot_layout, origins = layout(robot), bone_rest(robot)
+    names = [body.name for body in robot_layout.bodies]
+    order = [names.index(name) for name in (*reversed(robot_layout.tail), *robot_layout.trunk)]
     # a segment behind the root ends at its own joint, one ahead of it begins there
-    tail_count = len(place.tail)
+    tail_count = len(robot_layout.tail)
     joints = [float(origins[bone, 0]) for i, bone in enumerate(order) if i != tail_count]
-    front, back = ends(place)
+    front, back = ends(robot_layout)
     return _blended(vertices[:, 0], joints, np.diff([back, *joints, front]), order)
 
 
@@ -180,15 +180,15 @@ def _blended(
         lengths: of the segments, one more than joints [m].
         order: numbers of the bones along the chain.
     """
-    shares = np.ones((len(distances), len(order)))
+    fractions = np.ones((len(distances), len(order)))
     for i, (joint, (previous_length, next_length)) in enumerate(zip(joints, pairwise(lengths), strict=True)):
         half = 0.5 * min(previous_length, next_length)
         next_fraction = smooth(distances, joint - half, joint + half)
-        shares[:, : i + 1] *= 1 - next_fraction[:, None]
-        shares[:, i + 1 :] *= next_fraction[:, None]
-    bone_order = np.argsort(-shares, axis=1, kind="stable")[:, :_HANGS]
+        fractions[:, : i + 1] *= 1 - next_fraction[:, None]
+        fractions[:, i + 1 :] *= next_fraction[:, None]
+    bone_order = np.argsort(-fractions, axis=1, kind="stable")[:, :_HANGS]
     if bone_order.shape[1] < _HANGS:
         bone_order = np.pad(bone_order, ((0, 0), (0, _HANGS - bone_order.shape[1])))
-    weights = np.take_along_axis(shares, bone_order, axis=1)
+    weights = np.take_along_axis(fractions, bone_order, axis=1)
     weights[:, len(order) :] = 0.0
     return np.array(order, dtype=np.int32)[bone_order], weights / weights.sum(axis=1, keepdims=True)
