@@ -188,7 +188,7 @@ def capture(words: Sequence[str]) -> int:
 
 
 def _unknown(options: CaptureOptions) -> Unknown:
-    """Return what the film does not show of the animal, as far as it was said."""
+    """Return the ranges of mass and friction, which the film does not show."""
     mass = options.mass
     if len(mass) > 2 or (mass and not 0.0 < mass[0] <= mass[-1]):
         raise BadCommand(
@@ -227,7 +227,7 @@ def _forces(walk: Walk, body: Robot, options: CaptureOptions, unknown: Unknown, 
 
 
 def _write_forces(data: xr.Dataset, folder: Path) -> list[str]:
-    """Write forces as tables, NetCDF and a figure, and return what is said of them."""
+    """Write forces as tables, NetCDF and a figure, and return the lines that describe them."""
     write_tables(data, folder)
     write(folder / "forces.nc", packed(data))
     save(ground_forces_figure(data) if data.attrs["medium"] == "land" else water_forces_figure(data), folder, "forces")
@@ -260,7 +260,7 @@ def _write_measurements(walk: Walk, tracks: Tracks, folder: Path, video: Path | 
 
 
 def _robot_word(words: Sequence[str]) -> str:
-    """Return the robot as the user asked for it, a name or a file; empty where nothing was asked for."""
+    """Return the robot's name or file as the user typed it; empty where the user named no robot."""
     for word, following in zip(words, [*words[1:], ""], strict=True):
         if word == "--robot":
             return following

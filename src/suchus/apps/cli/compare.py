@@ -92,7 +92,7 @@ def _show(comparison: Comparison) -> None:
 
 
 def _settings(comparison: Comparison) -> list[tuple[str, str, str]]:
-    """Return a row for each setting that differs, and one for all within one list, such as a robot's axis."""
+    """Return a row for each setting that differs; settings of one list, such as a robot's axis, share a row."""
     groups: dict[str, list[tuple[str, str, str]]] = {}
     for setting in comparison.settings:
         row = setting.name, _rounded(setting.first), _rounded(setting.second)

@@ -102,7 +102,7 @@ def doctor(words: Sequence[str]) -> int:
 
 
 def page(findings: Iterable[Finding]) -> str:
-    """Return what was found as text."""
+    """Return the findings as one page of text."""
     head = f"suchus {installed('suchus') or '(not installed)'}, Python {platform.python_version()}, "
     lines = [head + f"{platform.system()} {platform.machine()}", ""]
     for finding in findings:
@@ -113,7 +113,7 @@ def page(findings: Iterable[Finding]) -> str:
 
 
 def packages(requires: Iterable[str] | None = None, find_version: Callable[[str], str | None] | None = None) -> Finding:
-    """Compare the packages that are there with those that suchus needs.
+    """Compare the installed packages with the required packages.
 
     Args:
         requires: what suchus needs, as its metadata say it; by default those of the installed package.
@@ -130,7 +130,7 @@ def packages(requires: Iterable[str] | None = None, find_version: Callable[[str]
 
 
 def extras(requires: Iterable[str] | None = None, find_version: Callable[[str], str | None] | None = None) -> Finding:
-    """Tell which extras are there, and how to get the others; the arguments are those of ``packages``."""
+    """Return which extras are installed and how to install the others; arguments as for ``packages``."""
     lines = []
     for extra, use in _EXTRAS.items():
         needs = _needs(requires, extra)
@@ -143,7 +143,7 @@ def extras(requires: Iterable[str] | None = None, find_version: Callable[[str], 
 
 
 def cores() -> Finding:
-    """Tell how many threads are used."""
+    """Return how many threads suchus uses."""
     setting = os.environ.get("SUCHUS_THREADS")
     setting_text = "SUCHUS_THREADS is not set" if setting is None else f"SUCHUS_THREADS={setting}"
     try:
@@ -153,7 +153,7 @@ def cores() -> Finding:
 
 
 def bits() -> Finding:
-    """Tell what decides the last bits of numbers on this machine."""
+    """Return what decides the last bits of results on this machine: processor and libraries."""
     machine_text = machine.described()
     names = ("processor", "vector instructions", "linear algebra", "C library")
     digests = ", ".join(f"{component} {digest}" for component, digest in machine.arithmetic().items())
@@ -190,7 +190,7 @@ def compiled(trial: Trial) -> Finding:
 
 
 def places() -> Finding:
-    """Return whether results can be written here."""
+    """Return whether results can be written into the working folder."""
     try:
         with tempfile.TemporaryDirectory(dir=Path.cwd(), prefix=".suchus-"):
             return Finding(heading="results", lines=("this folder can be written to",))
@@ -199,20 +199,20 @@ def places() -> Finding:
 
 
 def opengl(trial: Trial) -> Finding:
-    """Tell of OpenGL, which suchus does without."""
+    """Return whether OpenGL draws off-screen; suchus does not need it."""
     offscreen = f"off-screen by {trial.found['by']}" if trial.found else "none off-screen"
     return Finding(heading="OpenGL", lines=(f"{offscreen}; suchus needs none, browsers draw with WebGL 2",))
 
 
 def browsing() -> Finding:
-    """Tell which browser opens."""
+    """Return which browser opens pages."""
     opener = browser()
     line = "none with a window: suchus demo writes a page" if opener is None else called(opener)
     return Finding(heading="browser", lines=(line,))
 
 
 def installed(name: str) -> str | None:
-    """Return the version of a package, None where it is not there."""
+    """Return the version of a package; None where it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -220,7 +220,7 @@ def installed(name: str) -> str | None:
 
 
 def tried(*names: str) -> list[Trial]:
-    """Return the results of trials, side by side, each in a process of its own."""
+    """Run trials side by side, each in its own process, and return their results."""
     command = [sys.executable, "-P", "-m", "suchus.apps.cli.doctor"]
     with ExitStack() as stack:
         running = []
@@ -247,7 +247,7 @@ def _outcome(process: "subprocess.Popen[str]") -> Trial:
 
 
 def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
-    """Return what suchus, or one of its extras, needs here.
+    """Return the requirements of suchus or of one extra that apply to this machine.
 
     Raises:
         UnfitMachine: what reads requirements is missing.
@@ -275,7 +275,7 @@ _TEXT = ("www-browser", "links", "elinks", "lynx", "w3m")
 
 
 def browser() -> webbrowser.BaseBrowser | None:
-    """Return the browser that an address is opened with, or None where there is none that draws.
+    """Return the browser that opens addresses; None where no graphical browser is found.
 
     It is the one that ``BROWSER`` names, or the system's; on Linux without a display there is none.
     """

@@ -178,7 +178,7 @@ def _open_blind_rig(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
 
 
 class Shown:
-    """An I2C bus that is none: it prints the first things that are written to it."""
+    """A stand-in for an I2C bus; it prints the first writes."""
 
     def __init__(self) -> None:
         self._remaining_writes = 24
@@ -194,7 +194,7 @@ class Shown:
 
 
 def _movement(options: DriveOptions) -> tuple[Gait, Control]:
-    """Return the gait and what decides."""
+    """Return the gait and the controller that the options name."""
     robot = options.robot
     if options.gait == SWIM or (options.control == "swim" and not options.gait):
         gait, kind = swim_of(robot), "swim"
@@ -273,7 +273,7 @@ def _save_log(
 
 
 def _hurry(record: xr.Dataset | None, folder: Path) -> None:
-    """Keep a log and nothing else: whoever told this process to stop does not wait for figures."""
+    """Save the log without figures, since a stopped process has little time left."""
     if record is not None and record.sizes["time"] > 0:
         alternatives = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
         folder = next(
@@ -287,7 +287,7 @@ def _hurry(record: xr.Dataset | None, folder: Path) -> None:
 
 @contextmanager
 def _watch_keys() -> Iterator[Callable[[], str]]:
-    """Yield what says whether a key was pressed; the terminal is as before in the end."""
+    """Yield a function that returns why to stop, such as a pressed key; restore the terminal at the end."""
     terminal_settings = None
     with suppress(termios.error, OSError, ValueError, AttributeError):  # no terminal, or one that cannot be set
         if sys.stdin.isatty():
@@ -313,12 +313,12 @@ def _watch_keys() -> Iterator[Callable[[], str]]:
 
 
 class Telling:
-    """A port that prints what is sent over it: the handshake in short, then the packets of some ticks.
+    """A port that prints the packets sent over it during the first ticks.
 
     Args:
-        port: that it is.
-        framing: what is spoken.
-        wiring: names of those that are spoken to.
+        port: carries the packets.
+        framing: packet format of the protocol.
+        wiring: gives the names of the servos.
     """
 
     def __init__(self, port: Port, framing: Framing, wiring: Wiring) -> None:
@@ -329,7 +329,7 @@ class Telling:
         self._tables = {servo.id: servo.table for servo in wiring.servo}
 
     def send(self, data: bytes, wait: float) -> None:
-        """Send, and print what."""
+        """Send bytes, and print the packets in them."""
         for packet in self._decoder.feed(data):
             self._tell(packet, data)
         self._port.send(data, wait)
@@ -339,7 +339,7 @@ class Telling:
         return self._port.receive(wait)
 
     def close(self) -> None:
-        """Let go of it."""
+        """Close the port."""
         self._port.close()
 
     def _tell(self, packet: Packet, data: bytes) -> None:

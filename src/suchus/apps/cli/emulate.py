@@ -126,7 +126,7 @@ def _do_nothing() -> None:
 
 
 def _wiring_and_links(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
-    """Return what hangs where, and under which names the pseudo-terminals are found."""
+    """Return the wiring, and the links under which the pseudo-terminals are found."""
     if options.hardware.exists():
         wiring = read_wiring(options.hardware, options.robot)
         ports = [Path(bus.port) for bus in wiring.bus if "://" not in bus.port]
@@ -138,7 +138,7 @@ def _wiring_and_links(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
 
 
 def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:
-    """Return a wiring whose buses are found where they are."""
+    """Return the wiring with the buses' present ports."""
     port_names = [port if "://" in port else Path(port).name for port in ports]
     return replace(wiring, bus=tuple(replace(bus, port=port) for bus, port in zip(wiring.bus, port_names, strict=True)))
 
@@ -162,7 +162,7 @@ def _watching_page(options: EmulateOptions, server: Server, body: EmulatedBody) 
 
 
 def _robot_first(words: Sequence[str]) -> list[str]:
-    """Let the robot be named as an option too, as everywhere else."""
+    """Move the value of ``--robot`` to the first place, where the parser expects the robot."""
     words = list(words)
     for i, word in enumerate(words):
         if word == "--robot" and i + 1 < len(words):

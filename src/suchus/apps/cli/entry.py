@@ -64,7 +64,7 @@ class Subcommand:
     """What ``--out`` names: a folder, a page, or a file for a gait or a robot; empty where it is not checked early."""
 
     def __call__(self, words: Sequence[str]) -> int:
-        """Carry the command out and return the exit code; what is plainly wrong is refused before it is loaded."""
+        """Check the words, carry out the command, and return the exit code."""
         check: Callable[[Subcommand, Sequence[str]], None] = resolve_name("suchus.apps.cli.word_checks:check_words")
         check(self, words)
         function: Callable[[Sequence[str]], int] = resolve_name(self.function)
@@ -281,7 +281,7 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def _check_words(words: Sequence[str]) -> None:
-    """Refuse what no result could hold, since results say by which command they were made.
+    """Refuse words that are not UTF-8, since every result stores its command as text.
 
     Raises:
         BadCommand: a word has bytes that are no UTF-8.
@@ -292,7 +292,7 @@ def _check_words(words: Sequence[str]) -> None:
 
 
 def _check_memory() -> None:
-    """Refuse to begin where libraries could not even be loaded, which would end in errors of theirs.
+    """Refuse to start with too little memory for the libraries, whose own errors would be obscure.
 
     Raises:
         BadCommand: this process may take too little memory.
@@ -306,7 +306,7 @@ def _check_memory() -> None:
 
 
 def _begin_portable() -> None:
-    """Begin this process anew where it asks for portable arithmetic and its libraries do not know of it.
+    """Restart this process where its libraries do not yet use the portable arithmetic that it requests.
 
     Raises:
         OutsideLimits: this machine has no such arithmetic.
@@ -348,7 +348,7 @@ def _split_project(words: list[str]) -> tuple[list[str], str | None]:
 
 
 def _dispatch_and_flush(words: list[str]) -> int:
-    """Carry out a command line; what it printed is out when this returns.
+    """Carry out a command line and flush standard output.
 
     Raises:
         Unwritable: standard output takes nothing, or the system refused a file in a way that nobody foresaw.
@@ -452,11 +452,11 @@ def _hold(number: int) -> None:
 
 
 def _drop_output() -> None:
-    """Let what is still to be printed go nowhere, so that the end of the process does not complain of it again."""
+    """Redirect standard output to nowhere, so that the exit of the process reports no second error."""
     with suppress(OSError, ValueError):  # not every stream is a file
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def printable(text: str) -> str:
-    """Return a text whose letters a terminal shows and does not obey; spaces of every kind stay."""
+    """Return a text with control characters escaped; spaces of every kind stay."""
     return "".join(c if c.isprintable() or category(c) == "Zs" else c.encode("unicode_escape").decode() for c in text)

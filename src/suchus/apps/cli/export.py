@@ -55,7 +55,7 @@ def export_robot(words: Sequence[str]) -> int:
 
 
 def _check_format(words: Sequence[str]) -> None:
-    """Refuse a format that is not there with those near it; the parser only lists all."""
+    """Refuse an unknown format with a suggestion of similar ones; the parser only lists all formats."""
     for word in given(words, "--format"):
         if word not in get_args(Format):
             raise UnknownName("format", word, get_args(Format))

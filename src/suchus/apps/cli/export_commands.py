@@ -120,7 +120,7 @@ def export_commands(words: Sequence[str]) -> int:
 
 
 def _write_loads(options: ExportCommandsOptions, loads: Mapping[str, ServoLoad], draft: Path) -> None:
-    """Write what the servos bear, and of which robot and gait."""
+    """Write the loads of the servos, and the digests of robot and gait."""
     origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
     (draft / "loads.csv").write_text(_loads_text(loads, options.at_limit), encoding="utf-8")
     (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")

@@ -122,7 +122,7 @@ def parse(
     names: Sequence[str] = (),
     robot: Robot | None = None,
 ) -> Options:
-    """Let tyro read the words; what it refuses becomes one sentence.
+    """Parse the words with tyro; a refusal becomes one sentence.
 
     Args:
         options: dataclass of what can be said.
@@ -217,7 +217,7 @@ def _first_word(words: Any) -> str:
 
 
 def _resolve_word(word: str, resolve: Callable[[str], Any]) -> Any:
-    """What a word stands for: a name on the shelf, or a file."""
+    """Return the object that a word names, by a name on the shelf or a file."""
     try:
         return resolve(word)
     except UnknownName as error:

@@ -48,7 +48,7 @@ class Reproduction:
 
     @property
     def command(self) -> str:
-        """What makes the same result again."""
+        """Command that makes the same result again."""
         return f"suchus run {self.name}{' --quick' * self.quick}"
 
 
@@ -81,7 +81,7 @@ def attempt(task: Reproduction, progress: Progress) -> Reproduced:
 
 
 def kept(task: Reproduction) -> Reproduced | None:
-    """Return the result that an earlier run left, if it is whole and a run would give the same again.
+    """Return the stored result of an earlier run, if it is complete and a new run would give the same.
 
     That is so if the settings, the files of suchus and the versions of libraries are the same. An experiment that is no
     part of suchus itself is always run again, since its own code is in no digest.
@@ -109,7 +109,7 @@ def _summary(result: Result) -> str:
 
 
 def failed(name: str, sentence: str, trace: str = "") -> Reproduced:
-    """Return what is reported of an experiment that failed.
+    """Return the result of an experiment that failed.
 
     Args:
         name: of the experiment.
@@ -244,7 +244,7 @@ class _Results:
         return self._results[number]
 
     def put(self, number: int, result: Reproduced) -> None:
-        """Take up a result, whose folder is written."""
+        """Store a result whose folder is written."""
         self._results[number] = result
 
 

@@ -82,7 +82,7 @@ def perform(experiment: Experiment, name: str, results_folder: Path, progress: P
 
 
 def _plain_sums() -> AbstractContextManager[object]:
-    """Let xarray take NumPy's sums and medians, whatever else is installed beside it.
+    """Make xarray use NumPy's sums and medians, whatever other libraries are installed.
 
     Those of ``numbagg``, which comes with the extra ``capture``, round otherwise, so that equal runs would not give
     equal bytes everywhere; and they compile for up to half a minute in every process.
@@ -134,7 +134,7 @@ def _unit(verdict: Verdict, outcome: Outcome) -> str:
 
 
 def moves(question: Experiment) -> list[str]:
-    """Return in a sentence in which gaits the robot moves, where it is another one than the question's own."""
+    """Return a sentence that names the gaits, if the robot is not the experiment's own robot."""
     robot = getattr(question, "robot", None)
     single_gait = getattr(question, "gait", None)
     gaits = getattr(question, "gaits", ()) if single_gait is None else (single_gait,)
@@ -178,7 +178,7 @@ def run(words: Sequence[str]) -> int:
 
 
 def run_it(robot: Robot, robot_word: str, gait: Path, experiment_name: str = "displacement") -> list[str]:
-    """Return the line that says how to see a gait on a robot; nothing where no question suits it.
+    """Return the command that runs a gait on a robot; empty where no experiment suits the robot.
 
     Args:
         robot: the robot.

@@ -71,7 +71,7 @@ def title(source: Source) -> str:
 
 
 def _needs(source: Source) -> str:
-    """Return what an experiment needs of a robot, and for whom a gait was made."""
+    """Return the capabilities that an experiment needs, or the robots for which a gait was made."""
     if source.attribute:
         return ""
     needs, robots = _assigned_texts(source, "needs"), _assigned_texts(source, "made_for")
@@ -80,7 +80,7 @@ def _needs(source: Source) -> str:
 
 
 def _origin(source: Source, shelf: str) -> str:
-    """Return where a thing of the user's comes from, and what is wrong with it."""
+    """Return the source of a user's entry, and the error if it cannot be loaded."""
     if source.shipped:
         return ""
     try:

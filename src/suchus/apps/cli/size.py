@@ -53,7 +53,7 @@ class SizeOptions:
 
 
 def size_servos(words: Sequence[str]) -> int:
-    """Write what was found, say it, and return 0.
+    """Size the servos, write page and tables, print the answer, and return 0.
 
     Raises:
         SuchusError: the words make no sense, a simulation fails, or the place cannot be written to.

@@ -22,7 +22,7 @@ class Bars:
     _progress: rich_progress.Progress
 
     def task(self, name: str) -> Progress:
-        """Add a bar and return what moves it."""
+        """Add a bar and return the function that moves it."""
         task: TaskID = self._progress.add_task(name, total=1.0, stage="")
 
         def move(stage: str, fraction: float) -> None:
@@ -32,11 +32,11 @@ class Bars:
 
     @property
     def seen(self) -> bool:
-        """Whether there is a terminal to show them on."""
+        """Whether standard error is a terminal, which shows the bars."""
         return self._progress.console.is_terminal
 
     def reporter(self, name: str) -> Progress:
-        """Add a bar and return what moves it, or says a line now and then where there is no terminal."""
+        """Add a bar and return the function that moves it; without a terminal the function prints lines."""
         move, last_time = self.task(name), time.monotonic()
 
         def tell(stage: str, fraction: float) -> None:

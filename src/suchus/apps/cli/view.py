@@ -175,7 +175,7 @@ def _swim(words: Sequence[str]) -> int:
 
 
 def pages_of_viewer() -> Any:
-    """Return what needs viser, or say that it is missing."""
+    """Return the module of the pages, which needs viser; refuse where viser is not installed."""
     try:
         from suchus.apps.viewer import pages  # noqa: PLC0415  an optional extra, needed here only
     except ModuleNotFoundError as error:

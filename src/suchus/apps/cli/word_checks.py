@@ -18,7 +18,7 @@ _HELP = ("-h", "--help")
 
 
 def check_words(command: Subcommand, words: Sequence[str]) -> None:
-    """Refuse what names nothing, and an output file that cannot be.
+    """Refuse unknown names, missing input files and unusable output paths.
 
     Args:
         command: the command, which says what its words name.
@@ -43,13 +43,13 @@ def check_words(command: Subcommand, words: Sequence[str]) -> None:
 
 
 def given(words: Sequence[str], option: str) -> list[str]:
-    """Return the values that words give an option, before all of them are read."""
+    """Return the values of an option among the words, before the parser reads them."""
     joined = [word.partition("=")[2] for word in words if word.startswith(f"{option}=")]
     return joined + [following for word, following in pairwise(words) if word == option]
 
 
 def check_page(path: Path) -> None:
-    """Refuse a page that a browser would not open as one.
+    """Refuse a page whose file name does not end in .html.
 
     Raises:
         BadCommand: the name of its file does not end in .html.
@@ -59,7 +59,7 @@ def check_page(path: Path) -> None:
 
 
 def check_toml(path: Path, content: str) -> None:
-    """Refuse a file for a gait or a robot that would not be read as one.
+    """Refuse a file for a gait or a robot whose name does not end in .toml.
 
     Raises:
         BadCommand: the name of the file does not end in .toml.

@@ -25,7 +25,7 @@ class Actor:
         return self.target
 
     def aim(self, target: Float[np.ndarray, "run servo"]) -> None:
-        """Begin the way to other angles [rad]."""
+        """Set the angles that the next action commands [rad]."""
         self._begin[:], self.target[:], self._elapsed_periods = self.target, target, 0
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:

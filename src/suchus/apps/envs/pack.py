@@ -109,7 +109,7 @@ def _floating_beginning(task: Task, model: Any) -> Beginning:
 
 @lru_cache(maxsize=16)
 def _standing_beginning(robot: Robot, ground: Ground, timestep: float) -> Beginning:
-    """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
+    """Simulate how a robot stands up, and return the state in which it stands still."""
     straight, period = GAITS[_STRAIGHT_GAIT], control_period(robot)
     gait = straight if suits(robot, straight) else own_gait(robot).without("axis")
     balance = scaled(BALANCE, length_factor=size_of(robot))

@@ -98,7 +98,7 @@ class SwimToGoal:
 
 
 class Controlled:
-    """A controller of the shelf, which feels what the observation holds; for one ``play``, since it remembers.
+    """A controller of the shelf that reads the observations; it has state, so use one for each ``play``.
 
     It is called in every control period with the observation of the present step; its commands for air are ignored.
 

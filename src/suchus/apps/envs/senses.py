@@ -207,7 +207,7 @@ class Observer:
 
 
 def felt(observations: Float[np.ndarray, "run n"], robot: Robot, time: float) -> Sensed:
-    """Return the readings that observations were made of; readings beyond their scales stay clipped.
+    """Return the sensor readings from which observations were made; clipped readings stay clipped.
 
     Args:
         observations: one row for each robot.

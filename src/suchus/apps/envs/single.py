@@ -53,7 +53,7 @@ def checked(actions: Any, shape: tuple[int, ...]) -> Float[np.ndarray, "*b servo
 
 
 def check_render_mode(mode: str | None) -> None:
-    """Refuse a way of rendering that is not there.
+    """Refuse an unknown render mode.
 
     Raises:
         UnknownName: the message lists those that are.
@@ -139,7 +139,7 @@ def portrait(pack: Pack, robot: int) -> np.ndarray:
 
 
 def metadata(task: Task) -> dict[str, Any]:
-    """Return what gymnasium wants to know about rendering."""
+    """Return render modes and frame rate, as gymnasium's ``metadata``."""
     return {"render_modes": list(RENDER_MODES), "render_fps": round(1.0 / task.decision)}
 
 

@@ -286,7 +286,7 @@ class Breaks:
         return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.among(robot))
 
     def draw(self, random: np.random.Generator, robot: Robot) -> Fault:
-        """Draw one for a robot."""
+        """Draw the fault of one episode."""
         if self.faults:
             return self.faults[int(random.integers(len(self.faults)))]
         joints = self.among(robot)
@@ -329,7 +329,7 @@ class Pushes:
 
 
 def _check_times(check: Checks, owner: str, first_time: float, last_time: float) -> None:
-    """Refuse times between which nothing can happen."""
+    """Refuse an interval of time that is negative or ends before it begins."""
     check.number("earliest", 0.0, 3600.0, "s")
     check.number("latest", 0.0, 3600.0, "s")
     check.that(
@@ -340,7 +340,7 @@ def _check_times(check: Checks, owner: str, first_time: float, last_time: float)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """What is to be learned.
+    """Definition of a reinforcement learning task.
 
     An action is one number from -1 to 1 for each servo: its commanded angle is ``centre + span * action``, within its
     range. The actions are servo angles rather than changes to a gait, because with changes the shelf's gait would be

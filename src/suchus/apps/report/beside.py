@@ -66,7 +66,7 @@ def _range(animal: Animal) -> str:
 
 
 def _measured(results: Results, experiment: str, *names: str) -> list[float] | None:
-    """Measures of an experiment, or None if it was not run or did not come to all of them."""
+    """Return values of measures of an experiment; None if the experiment or one of the values is missing."""
     if experiment not in results:
         return None
     outcome = results[experiment].outcome["measures"]

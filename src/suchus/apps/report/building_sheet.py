@@ -138,7 +138,7 @@ def tables(sheet: Sheet) -> dict[str, str]:
 
 
 def mass_said(sheet: Sheet) -> list[str]:
-    """Return what the masses say, in sentences."""
+    """Return sentences on total mass, its parts, and the shift of the centre of mass."""
     total = sum(body.simulated for body in sheet.bodies)
     servos, walls = sum(body.servos for body in sheet.bodies), sum(body.printed for body in sheet.bodies)
     if not isfinite(servos):
@@ -165,7 +165,7 @@ def mass_said(sheet: Sheet) -> list[str]:
 
 
 def floats_said(sheet: Sheet) -> str:
-    """Return whether it floats, in a sentence."""
+    """Return a sentence that says whether the robot floats, with the volumes of foam and air."""
     floating = sheet.floating
     foam = sum(volume for _, volume, _ in floating.foam)
     if floating.lacking > 0.0:
@@ -178,7 +178,7 @@ def floats_said(sheet: Sheet) -> str:
 
 
 def _content(sheet: Sheet, gait: Gait, picture: dict[str, str], outlines: bool) -> dict[str, object]:
-    """Return what the template of the page names."""
+    """Return the variables of the page's template."""
     counts: dict[str, int] = {}
     for motor in sheet.bought.values():
         counts[motor.name] = counts.get(motor.name, 0) + 1

@@ -184,7 +184,7 @@ def _compare_measure(name: str, first_measures: Mapping[str, Any], second_measur
 
 
 def _size(measure: Compared) -> float:
-    """How much a measure differs, relative to the first as it is shown: metres and newtons are sorted together."""
+    """Return the relative difference of a measure, by which measures of all units are sorted."""
     if measure.share is None:
         return inf if measure.difference else 0.0
     return abs(measure.share)

@@ -98,7 +98,7 @@ def told(result: Result) -> Iterator[dict[str, Any]]:
 
 
 def answer(decides: str) -> str:
-    """Return the first two sentences of what decided."""
+    """Return the first two sentences of an outcome's explanation."""
     return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
 
 

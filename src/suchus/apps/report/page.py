@@ -73,7 +73,7 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure], page_fol
 
 
 def _gist(text: str) -> str:
-    """Return the first sentences of a text, as many as it takes to say something."""
+    """Return the first sentences of a text, at least ``_MIN_GIST_LENGTH`` characters."""
     gist = ""
     for sentence in re.split(r"(?<=[.:;]) ", text):
         gist = f"{gist} {sentence}".strip()
@@ -83,7 +83,7 @@ def _gist(text: str) -> str:
 
 
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
-    """Return what the template of the page names."""
+    """Return the variables of the page's template."""
     order = {key: rank for rank, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
     robot, robot_counts = robot_of(results)
@@ -133,7 +133,7 @@ def _counts(verdicts: Sequence[Mapping[str, Any]]) -> dict[str, int]:
 
 
 def _place(result: Result, order: Mapping[str, int]) -> int:
-    """Where the article comes to the last claim of a result, its main one; what claims nothing comes last."""
+    """Return the rank of a result's last claim in the article; results without claims rank last."""
     return max((order.get(v["claim"], len(order)) for v in result.outcome["verdicts"]), default=len(order))
 
 

@@ -87,7 +87,7 @@ class _Outcome(_OutcomePart):
 
 
 def check_described(outcome: Any, file: Path) -> None:
-    """Refuse what no outcome says.
+    """Refuse the contents of a file that is no outcome.
 
     Args:
         outcome: what a file says, as JSON is read.
@@ -133,7 +133,7 @@ class Picture:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Moving:
-    """A film or a replay that stands beside the page: it is linked, since it is too heavy to travel inside."""
+    """A film or a replay in a file of its own, which the page links."""
 
     file: Path
     """Path of the file."""

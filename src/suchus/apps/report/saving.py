@@ -63,7 +63,7 @@ def save_outcome(
 
 
 def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, str], command: str) -> dict[str, Any]:
-    """Return what ``outcome.json`` says; numbers that are not finite become null."""
+    """Return the contents of ``outcome.json``; numbers that are not finite become null."""
     return {
         "experiment": outcome.experiment,
         "title": experiment.title,

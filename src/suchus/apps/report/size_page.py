@@ -44,7 +44,7 @@ _COLUMNS = (
 
 
 def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
-    """Write what was found into a folder that is there.
+    """Write page, tables and robot file into an existing folder.
 
     Args:
         sizing: what was found.
@@ -66,7 +66,7 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
 
 
 def uses(family: ServoFamily) -> list[Used]:
-    """Return what each servo of a family uses, in the case that asks most of it."""
+    """Return the use of torque and heat of each servo of a family, in its hardest case."""
     servo_uses = []
     for name, case, _ in family.binding():
         load, motor = family.loads[case][name], family.chosen[name]
@@ -194,7 +194,7 @@ def _overheating(sizing: Sizing) -> list[str]:
 
 
 def _slower(sizing: Sizing, family: ServoFamily) -> str:
-    """Return with which periods a family does, where they are not those that were asked for."""
+    """Return the gaits' longer periods at which a family is strong enough; empty if none is longer."""
     longer_periods = {gait: period for gait, period in _periods(sizing, family).items() if family.factors[gait] != 1.0}
     design_periods = {case.gait.name: case.gait.period for case in sizing.cases}
     texts = [
@@ -210,7 +210,7 @@ def _periods(sizing: Sizing, family: ServoFamily | None) -> dict[str, float]:
 
 
 def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float) -> dict[str, Any]:
-    """Return what the template of the page names."""
+    """Return the variables of the page's template."""
     best = sizing.best
     overloaded = [
         {"servo": name, "case": case, "load": load}

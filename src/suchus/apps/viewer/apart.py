@@ -54,7 +54,7 @@ class WatchedApart:
         self.url = answer
 
     def look(self) -> None:
-        """Hand a picture over, where one is due and the page asked for it; never wait for the page."""
+        """Send the robot's state if it is due and the page requested it; never wait for the page."""
         time_now = time.monotonic()
         if time_now - self._picture_time < _PICTURE_INTERVAL:
             return

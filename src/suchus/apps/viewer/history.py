@@ -32,7 +32,7 @@ class History:
         self._rows: deque[list[float]] = deque(maxlen=round(WINDOW / interval) + 1)
 
     def note(self, time: float, state: Mapping[str, np.ndarray], displacement: tuple[float, float]) -> None:
-        """Keep an instant, if it is time for one.
+        """Store a row, if the interval since the last row has passed.
 
         Args:
             time: [s].

@@ -40,7 +40,7 @@ class Knob:
         return f"{value:.4g} {self.unit}".rstrip()
 
     def within(self, value: object, current: float) -> tuple[float, str]:
-        """Return a value that is allowed and, where it is not the one asked for, a sentence that says so.
+        """Return the nearest allowed value, and a sentence if it differs from the requested value.
 
         Args:
             value: asked for, in the knob's unit; anything.
@@ -153,7 +153,7 @@ AIR_FRACTION = Knob(
 
 
 def force_on(robot: Robot) -> Knob:
-    """Return the knob of a push's force, which follows the weight of whom it pushes, in newtons or millinewtons."""
+    """Return the knob of a push's force, scaled by the robot's weight, in newtons or millinewtons."""
     weight = robot.mass * GRAVITY
     unit, scale = ("N", 1.0) if weight >= _MIN_NEWTON_WEIGHT else ("mN", 1e-3)
     weight_text = f"{weight / scale:.0f}" if weight / scale >= 10.0 else f"{weight / scale:.2g}"
@@ -168,12 +168,12 @@ def push_on(robot: Robot) -> float:
 
 
 def bumps_under(robot: Robot) -> Knob:
-    """Return the knob of the bumps' height, which follows the length of whom they are under."""
+    """Return the knob of the bumps' height, scaled by the robot's length."""
     return _resized(BUMPS, beside_article(robot).length)
 
 
 def knobs_of(robot: Robot, gait: Gait) -> Mapping[str, Knob]:
-    """Return what can be turned of a gait, by name: the numbers that it has and that move something of the robot."""
+    """Return the knobs of a gait by name: the parameters of the gait that move a joint of the robot."""
     robot_layout = layout(robot)
     lacking = {
         *(() if robot_layout.limbs else ("duty_factor", "height")),
@@ -201,7 +201,7 @@ def shown(gait: Gait, name: str) -> float:
 
 
 def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
-    """Return a gait with one field turned as far as the robot's joints follow, and a sentence if that is not as asked.
+    """Return a gait with one parameter changed as far as the joints allow, and a sentence if that is less than asked for.
 
     Args:
         robot: who walks.

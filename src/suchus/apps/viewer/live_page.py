@@ -116,7 +116,7 @@ class Controls:
         self._pause.value = is_paused
 
     def _connect(self, handle: Any, act: Callable[[Any], object]) -> None:
-        """Let a control act, when a person moves it; what ``act`` returns is shown where it is a sentence."""
+        """Call ``act`` when a person moves a control, and show the sentence that ``act`` may return."""
 
         def on_event(event: Any) -> None:
             """Count a touch, act, and show the sentence that the action returns."""
@@ -190,7 +190,7 @@ class Controls:
     def _add_slider(
         self, name: str, knob: Knob, value: Callable[[str], float], turn: Callable[[str, object], str]
     ) -> None:
-        """Add a slider that shows what became of what was asked for.
+        """Add a slider that shows the value that the session accepted.
 
         Args:
             name: of the number.
@@ -315,7 +315,7 @@ class LivePage(BrowserPage):
         self._pause_if_idle(clock)
 
     def _pause_if_idle(self, clock: float) -> None:
-        """Pause a walk that nobody has touched for long."""
+        """Pause the walk after a long time without a touch."""
         touch = self._controls.touched, self._client.camera.update_timestamp
         if touch != self._last_touch:
             self._last_touch, self._touch_time = touch, clock

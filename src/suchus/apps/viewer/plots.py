@@ -36,7 +36,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class PlotLayout:
-    """A chart as it is meant to be."""
+    """Title, lines and unit of a chart."""
 
     title: str
     """Above it, with the unit."""
@@ -142,7 +142,7 @@ def legend(lines: Sequence[Line]) -> str:
 
 
 def series(uplot: Any, line: Line) -> Any:
-    """Return a line as viser's chart wants it."""
+    """Return the series of viser's chart for a line."""
     dashes = {"dash": line.dash} if line.dash else {}
     return uplot.Series(label=line.label, stroke=line.colour, width=1.6, **dashes)
 

@@ -164,7 +164,7 @@ class Player:
                     self.time = self._start
 
     def seek(self, time: object) -> None:
-        """Jump to a time, as near as there is one; what is no number changes nothing [s]."""
+        """Jump to a time, clipped to the record; ignore a value that is no number [s]."""
         try:
             seconds = float(time)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):
@@ -213,7 +213,7 @@ class FilmedAnimal:
 
 
 def beside(tracks: Tracks, take: Take) -> FilmedAnimal:
-    """Return an animal as it walks to the left of a robot, as long as the robot and with its cycle time.
+    """Return an animal to the left of a robot, scaled to the robot's length and period.
 
     Its film begins when the robot's first cycle does. Between frames in which a point was lost, it moves straight on.
 

@@ -63,7 +63,7 @@ class Gate:
         return secrets.compare_digest(path_token.encode(), self.token.encode())
 
     def _is_own_name(self, host: str) -> bool:
-        """Return whether a name in a request is one of this server; a name that others rebind is not."""
+        """Return whether a host name in a request is a name of this server."""
         name = host.rpartition(":")[0] if host.rpartition(":")[2].isdecimal() else host
         name = name.strip("[]").lower()
         if name == self._host.lower():
@@ -74,7 +74,7 @@ class Gate:
         return name in LOOPBACK or _is_address(name) or (self._host in _ANY_ADDRESS and name in host_names)
 
     def guarded(self, answer: Answer) -> Answer:
-        """Return what answers requests as ``answer`` does, if they are admitted, with the headers of a closed page."""
+        """Return a handler that passes admitted requests to ``answer`` and adds protective headers."""
 
         def guard(connection: Any, request: Request) -> Response | None:
             """Answer an admitted request with protective headers; refuse any other request with status 403."""
@@ -109,7 +109,7 @@ class Gate:
 
 
 def _closed(host: str) -> dict[str, str]:
-    """Return headers that keep a page to itself: it loads nothing from elsewhere, and stands in no other page."""
+    """Return headers that forbid loading from other origins and embedding in other pages."""
     return {
         "Content-Security-Policy": (
             "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; "
@@ -338,7 +338,7 @@ def _stand_back(camera: Any, position: Sequence[float], looks_at: Sequence[float
 
 
 def _check_free(host: str, port: int) -> None:
-    """Refuse a place that cannot be listened on; viser would search for another one, or for ever."""
+    """Refuse a port that cannot be listened on; viser would search for another one, or for ever."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         with socket.socket(family, kind, protocol) as probe:
@@ -352,7 +352,7 @@ def _check_free(host: str, port: int) -> None:
 
 
 def _check_refuses(host: str, port: int) -> None:
-    """Refuse to serve where somebody without the whole address is let in."""
+    """Refuse to serve if a request without the token is answered."""
     address = {"0.0.0.0": "127.0.0.1", "::": "::1", "": "127.0.0.1"}.get(host, host)
     connection = HTTPConnection(address, port, timeout=10.0)
     try:

@@ -170,7 +170,7 @@ class Session:
         self._begin()
 
     def reset(self) -> None:
-        """Begin the walk anew with everything as it is set, what is broken included."""
+        """Restart the walk with the present settings, faults included."""
         with self._lock:
             self._begin()
 
@@ -226,7 +226,7 @@ class Session:
             return notice
 
     def lose(self, part_name: str, kind: str, **parameters: object) -> str:
-        """Let a part break as it is now; return a sentence if that cannot be.
+        """Break a part in its present state; return a sentence if that is impossible.
 
         Args:
             part_name: a joint, a leg or a group of sensors.
@@ -270,12 +270,12 @@ class Session:
             return self._history.table()
 
     def look(self) -> Instant:
-        """Return what is seen now."""
+        """Return a copy of the present instant."""
         with self._lock:
             return replace(self.state)
 
     def _fill(self, last_settings: Settings) -> str:
-        """Let the water be as it is set, or keep the old one and say why."""
+        """Apply the settings of the water; restore the last settings and return a sentence if that fails."""
         lake = self.settings.lake
         assert lake is not None
         try:
@@ -302,7 +302,7 @@ class Session:
         self._history.note(0.0, self._live.now, (0.0, 0.0))
 
     def _change(self, settings: Settings) -> str:
-        """Walk on by other settings, or keep the old ones and say why."""
+        """Continue the walk with other settings; keep the old ones and return a sentence if that fails."""
         try:
             self._live.walk(settings.moved(self.robot), settings.control)
         except SuchusError as error:

@@ -106,7 +106,7 @@ class DrawnRod:
         )
 
     def put(self, start: np.ndarray, end: np.ndarray) -> None:
-        """Show it from one point to another [m]."""
+        """Show the rod from one point to another [m]."""
         axis = np.asarray(end, dtype=float) - start
         length = float(np.linalg.norm(axis))
         if length < 1e-6:
@@ -118,7 +118,7 @@ class DrawnRod:
             bone.position, bone.wxyz = position, orientation
 
     def hide(self) -> None:
-        """Show it no longer."""
+        """Hide the rod."""
         self._handle.visible = False
 
 

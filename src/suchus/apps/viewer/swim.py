@@ -74,7 +74,7 @@ class PlottedCurve:
 
 
 def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:
-    """Return what a record of swimming shows.
+    """Return the swims and the measured curves of a record of swimming.
 
     Args:
         path: of the file.
@@ -169,7 +169,7 @@ def _curves(record: xr.Dataset) -> tuple[PlottedCurve, ...]:
 
 
 def _joint_curves(record: xr.Dataset) -> Iterator[PlottedCurve]:
-    """Yield what the joints did in a swim that was solved with its flow, and what was left over between the two."""
+    """Yield joint angles and coupling residual of a swim that was solved together with its flow."""
     if "flow_joint_angle" not in record or not {"flow_run", "flow_time", "joint"} <= {*record.coords}:
         return
     angles = record.flow_joint_angle.isel(flow_run=0)
@@ -270,7 +270,7 @@ class VortexFilm:
         return (float(position[0]), float(position[1]), float(position[2])), view.target
 
     def about(self) -> str:
-        """Return in words on which grid and in what water it swims, as far as the record says."""
+        """Return grid resolution and f L² / ν of the swim as text, as far as the record holds them."""
         sentences = []
         if "cells" in self.record.coords and self.record.cells.ndim == 1:
             sentences.append(f"{int(self.record.cells[-1])} cells a length")
@@ -279,7 +279,7 @@ class VortexFilm:
         return ", ".join(sentences)
 
     def curves(self) -> tuple[PlottedCurve, ...]:
-        """Return the courses that were measured beside it, which a record of a single swim lacks."""
+        """Return the measured curves; a record of a single swim has none."""
         return tuple(_space_curves(self.record))
 
 

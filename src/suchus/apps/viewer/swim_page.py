@@ -35,7 +35,7 @@ class CyclePage(BrowserPage):
 
     @abstractmethod
     def show(self) -> None:
-        """Draw what is due, unless it is what the browser shows."""
+        """Draw the frame that is due, unless the browser shows it already."""
 
     @property
     def frames(self) -> int:
@@ -43,23 +43,23 @@ class CyclePage(BrowserPage):
         return 1
 
     def place(self, phase: float) -> None:
-        """Go to a share of the cycle; what is no number is its start [-]."""
+        """Go to a phase of the cycle, 0 to 1; a value that is no number becomes 0 [-]."""
         self._place = min(max(phase, 0.0), 1.0) if np.isfinite(phase) else 0.0
 
     def draw(self, clock: float, elapsed: float) -> None:
-        """Play on, and draw what is due."""
+        """Advance the phase unless paused, and draw the frame that is due."""
         del clock
         if not self._pause.value:
             self._place = (self._place + self._speed.value * min(elapsed / _CYCLE_DURATION, 1.0 / self.frames)) % 1.0
         self.show()
 
     def _add_player(self) -> None:
-        """Add what stops the cycle and sets its pace, to the folder that is open."""
+        """Add pause and playback speed to the open folder."""
         self._pause = self._client.gui.add_checkbox("pause", initial_value=False)
         self._speed = self._client.gui.add_slider("playback speed [x]", 0.05, 4.0, 0.05, 1.0)
 
     def _measured(self, curves: Sequence[PlottedCurve]) -> None:
-        """Put what was measured, if anything, to the left of the scene."""
+        """Plot the measured curves to the left of the scene."""
         if curves:
             gui = self._client.gui
             panel = gui.add_panel()
@@ -155,7 +155,7 @@ class SwimPage(CyclePage):
         self._shown_frame: tuple[str, str, int] = ("", "", -1)
 
     def show(self) -> None:
-        """Draw the frame that is due, unless it is what the browser shows."""
+        """Draw the frame that is due, unless the browser shows it already."""
         if not self._pause.value:
             self._phase.value = round(self._place, 2)
         film = self._films[self._film.value]
@@ -281,7 +281,7 @@ class VortexPage(CyclePage):
         return min(int(self._place * self._count), self._count - 1)
 
     def show(self) -> None:
-        """Draw the frame that is due, unless it is what the browser shows."""
+        """Draw the frame that is due, unless the browser shows it already."""
         due = (self._film.within(float(self._level.value)), str(self._halves.value), self.frame)
         if due == self._shown_frame:
             return

@@ -18,7 +18,7 @@ _PLOT_INTERVAL = 0.3  # [s]; between two redraws of the plots
 
 
 class WatchedRobot(NamedTuple):
-    """What is seen of a robot now."""
+    """State of a watched robot."""
 
     time: float
     """Since it began [s]."""

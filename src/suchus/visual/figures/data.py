@@ -44,7 +44,7 @@ class _Quantity(NamedTuple):
     """Beside the ticks; none on an axis of numbers."""
 
     def word(self, value: float) -> str:
-        """Return the word beside the axis that a place on it has; empty on an axis of numbers."""
+        """Return the tick label at a position on the axis; empty on an axis of numbers."""
         return self.words[int(np.argmin(np.abs(self.places - float(value))))] if self.words else ""
 
 
@@ -54,7 +54,7 @@ _Quantities = tuple[_Quantity, _Quantity]
 
 @dataclass(frozen=True, slots=True)
 class CarriedField:
-    """A field as it was computed, where what is drawn of it is smoothed or turned into lines."""
+    """A field as it was computed; the drawing may smooth it or turn it into lines."""
 
     values: np.ndarray
     """Shape (y, x), in the unit of the colour bar."""
@@ -67,7 +67,7 @@ class CarriedField:
 def carry(
     artist: Artist | ScalarMappable, values: np.ndarray, x: np.ndarray | None = None, y: np.ndarray | None = None
 ) -> None:
-    """Attach a field to the picture of it, to be written into the figure's table in its place.
+    """Attach the computed field to the artist that draws it, for the figure's table.
 
     Args:
         artist: what ``imshow`` or ``contourf`` returned.
@@ -79,7 +79,7 @@ def carry(
 
 
 def field_of(artist: Artist | ScalarMappable) -> np.ndarray:
-    """Return the field that a picture shows, NaN where it has no value: what it carries, else its colours'."""
+    """Return the field that an artist shows, NaN where it has no value."""
     field = getattr(artist, _FIELD_ATTRIBUTE, None)
     values: Any = field.values if field is not None else artist.get_array()  # type: ignore[union-attr]
     return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
@@ -266,7 +266,7 @@ def _ticks(axis: Axis) -> tuple[np.ndarray, list[str]]:
 
 
 def _says(word: str, position: float) -> bool:
-    """Return whether a word beside an axis is the number of its place, as it was rounded."""
+    """Return whether a tick label is the rounded number of its position."""
     number = word.replace("\N{MINUS SIGN}", "-")
     digits = number.lower().partition("e")[0].partition(".")[2]
     try:
@@ -284,7 +284,7 @@ def _series_name(label: object, default: str) -> str:
 
 
 def hidden(label: object) -> bool:
-    """Return whether a label is none that a legend shows."""
+    """Return whether a legend leaves out a label."""
     return label is None or not str(label) or str(label).startswith("_")
 
 

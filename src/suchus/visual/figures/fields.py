@@ -81,7 +81,7 @@ def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.n
 
 
 def draw_body(ax: Axes, record: xr.Dataset, name: str, index: int) -> tuple[Polygon, Line2D]:
-    """Draw a body and its midline; return both, to be moved in a film."""
+    """Draw a body and its midline; return both artists, which a film moves."""
     edge, line = outline(record, name, index)
     body = Polygon(edge, facecolor=SKIN, edgecolor=EDGE, linewidth=1.0, zorder=3)
     ax.add_patch(body)
@@ -90,14 +90,14 @@ def draw_body(ax: Axes, record: xr.Dataset, name: str, index: int) -> tuple[Poly
 
 
 def move_body(artists: tuple[Polygon, Line2D], record: xr.Dataset, name: str, index: int) -> None:
-    """Move what ``draw_body`` drew to another instant."""
+    """Move the artists of ``draw_body`` to another instant."""
     edge, line = outline(record, name, index)
     artists[0].set_xy(edge)
     artists[1].set_data(line[:, 0], line[:, 1])
 
 
 def draw_streamlines(ax: Axes, record: xr.Dataset, name: str, index: int) -> None:
-    """Draw where the water goes at one instant."""
+    """Draw the streamlines of the water at one instant."""
     x, y = record[f"{name}_x"].values, record[f"{name}_y"].values
     even_axes = (
         np.linspace(x[0], x[-1], x.size),

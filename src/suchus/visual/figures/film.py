@@ -49,7 +49,7 @@ def film(figure: Figure, show: Callable[[int], None], count: int, *, seconds: fl
 
 
 def film_caption(data: bytes) -> str:
-    """Return what a film says of itself, empty if nothing."""
+    """Return the caption that a film's file holds; empty without one."""
     with Image.open(io.BytesIO(data)) as image:
         comment = image.info.get("comment", b"")
     return comment.decode(errors="replace") if isinstance(comment, bytes) else str(comment)

@@ -39,7 +39,7 @@ def _panel(width: float, height: float) -> tuple[Figure, Axes]:
 
 
 class _Picture:
-    """A field of a plane flow and the bodies in it, which can be moved on in time; a patch lies on what is around."""
+    """Picture of a plane flow's field and bodies, which can show other instants; a fine patch lies on the domain."""
 
     def __init__(
         self, sim: Simulation, fields: list[np.ndarray], limit: float, label: str, cmap: str, shift: float
@@ -77,7 +77,7 @@ class _Picture:
             self.figure.colorbar(self._images[-1], ax=self._axes, label=label, shrink=0.85, extend="both")
 
     def move_on(self, time: float, fields: list[np.ndarray], edges: list[np.ndarray]) -> None:
-        """Show another instant."""
+        """Show another instant: its time [s], fields and outlines of the bodies."""
         for image, values in zip(self._images, fields, strict=True):
             image.set_data(smooth(values, _PIXELS))
         self._axes.set_title(f"t = {time:.3g} s", loc="left")
@@ -97,7 +97,7 @@ _FIELDS: Mapping[FieldName, tuple[str, str, float]] = MappingProxyType(
 
 
 def _views(sim: Simulation) -> list[Fields]:
-    """Return what is drawn one upon the other: the whole domain, and on it a patch if there is one."""
+    """Return the fields in drawing order: the whole domain, then the fine patch if there is one."""
     return [sim] if sim.domain is sim else [sim.domain, sim]
 
 
@@ -147,7 +147,7 @@ class FieldFilm:
             raise UnknownName("field", str(self.what), tuple(_FIELDS))
 
     def __call__(self, sim: Simulation) -> None:
-        """Keep the field and the outlines, if it is time.
+        """Store the field and the outlines, if a frame is due.
 
         Raises:
             InvalidDesign: in space.
@@ -231,7 +231,7 @@ def _along_the_outline(surface: Surface) -> Figure:
 
 
 def _over_the_skin(surface: Surface) -> Figure:
-    """Draw both as one looks along y, and from above, each point where it faces who looks."""
+    """Draw pressure and friction seen along y and from above, on the points that face the viewer."""
     m, friction = surface.markers, speeds(surface.shear)
     max_pressure = max(float(np.abs(surface.pressure).max()), 1e-12)
     views = (("seen along y", 2, 1, -1.0), ("from above", 1, 2, 1.0))

@@ -122,7 +122,7 @@ def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> Non
 
 
 def _axis_label(claim: str) -> str:
-    """What stands on the axis: the quantity as far as it fits."""
+    """Return the axis label of a claim's quantity, short enough for the axis."""
     if claim.startswith("fault_") and CLAIMS[claim].value is not None:
         return "change of displacement"
     labels = {

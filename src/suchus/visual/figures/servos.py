@@ -1,4 +1,4 @@
-"""How much of what each servo has a movement uses."""
+"""Bars of the fraction of each servo's torque and heat limit that a movement uses."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 
 class Used(NamedTuple):
-    """What a servo uses in the movement that asks most of it."""
+    """Use of a servo in its hardest movement."""
 
     servo: str
     """Its place in the robot."""

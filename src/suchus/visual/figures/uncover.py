@@ -56,7 +56,7 @@ def _lies_on_data(figure: Figure, legend: Legend) -> bool:
 
 
 def _visible_artists(ax: Axes) -> Iterator[Artist]:
-    """Yield what shows data or words in some axes, and axes that are colour bars as a whole."""
+    """Yield the artists that show data or text in axes; of a colour bar its whole area."""
     if ax.get_label() == "<colorbar>":
         yield ax.patch
         return

@@ -42,7 +42,7 @@ class Frames(NamedTuple):
 
 
 def checked(record: xr.Dataset, robot: Robot) -> xr.Dataset:
-    """Return one run of a robot, with what a replay needs of it.
+    """Check a record and return its one run with the variables that a replay needs.
 
     Raises:
         IncompatibleRecord: it is no run on land, several runs, of another robot, or without a frame.

@@ -147,12 +147,12 @@ def environment() -> Environment:
 
 
 def _script(meta: Mapping[str, Any]) -> Markup:
-    """Return values as JSON that stands in a page: it begins no tag and no comment."""
+    """Return values as JSON that is safe inside a page's script."""
     return Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c"))
 
 
 def _ground_text(grounds: Sequence[Ground]) -> str:
-    """Return in words how the ground slopes, and whether the second run's is another one."""
+    """Return a sentence on the slope of the ground, and on a second run's other ground."""
     slopes = [
         f"{'rises' if angle > 0 else 'falls'} by {abs(degrees(angle)):.3g}° {direction}"
         for angle, direction in ((grounds[0].uphill, "ahead"), (grounds[0].sideways, "to the left"))
@@ -165,7 +165,7 @@ def _ground_text(grounds: Sequence[Ground]) -> str:
 
 
 def _in_words(robot: Robot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
-    """Return the replay in words, for those who cannot see it."""
+    """Return a text alternative to the replay."""
     paths = [
         f"{label}: {run.mass[-1, 0] - run.mass[0, 0]:.2f} m forward in {(len(run.mass) - 1) / run.rate:.1f} s"
         for run, label in zip(moving, labels, strict=False)
@@ -232,7 +232,7 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
 
 
 def _swim_scene(record: xr.Dataset) -> tuple[dict[str, Any], str]:
-    """Return what the player gets, on the finest blocks whose surfaces are small enough."""
+    """Return the player's metadata and arrays, on the finest blocks whose surfaces are small enough."""
     for coarse in range(1, _MAX_BLOCK + 1):
         pack = PackedArrays()
         meta = _packed_swim(record, pack, coarse)

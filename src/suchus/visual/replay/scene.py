@@ -64,7 +64,7 @@ _LATERAL_DISTANCE = 0.62  # how far a second robot walks beside the first, over 
 def scene(
     robot: Robot, moving: Sequence[Frames], labels: Sequence[str], ground: Ground, *, overlaid: bool
 ) -> tuple[dict[str, Any], str]:
-    """Return what there is to be shown, and its arrays as base64.
+    """Return the metadata of the scene, and its arrays as base64.
 
     Args:
         robot: who moves.

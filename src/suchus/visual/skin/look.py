@@ -1,4 +1,4 @@
-"""Proportions that make it look like the animal."""
+"""Proportions of the skin that make a robot look like a crocodile."""
 
 from dataclasses import dataclass
 

@@ -47,7 +47,7 @@ def axis_mesh(robot_layout: Layout) -> Mesh:
 
 
 def eyes(robot_layout: Layout) -> list[Mesh]:
-    """Return both eyes, for whom it is easier to see where the front is."""
+    """Return both eyes, which show where the front is."""
     front, _ = ends(robot_layout)
     shape = robot_layout.robot.axis[0].shapes[-1]
     half_width, half_height = _section(shape)

@@ -146,7 +146,7 @@ def _axial(robot: Robot, proportions: Look) -> list[Mesh]:
 
 
 def _on_axis(robot: Robot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Hang vertices on the bodies of the axis by their place along the straight body."""
+    """Return bones and weights of vertices on the axis, by their place along the straight body."""
     robot_layout, origins = layout(robot), bone_rest(robot)
     names = [body.name for body in robot_layout.bodies]
     order = [names.index(name) for name in (*reversed(robot_layout.tail), *robot_layout.trunk)]
@@ -158,7 +158,7 @@ def _on_axis(robot: Robot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _on_leg(robot: Robot, vertices: np.ndarray, leg: str) -> tuple[np.ndarray, np.ndarray]:
-    """Hang vertices on girdle, femur and tibia by their distance from the midline."""
+    """Return bones and weights of vertices on a leg, by their distance from the midline."""
     names, links = bone_names(robot), robot.leg(leg)
     order = [names.index("thorax" if leg.endswith("F") else "pelvis"), names.index(f"{leg}_femur")]
     order.append(names.index(f"{leg}_tibia"))
