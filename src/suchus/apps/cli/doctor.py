@@ -39,7 +39,7 @@ _EXTRAS = {
     "meshes": "suchus import of a robot with meshes",
     "cluster": "studies on many machines",
 }
-"""What each extra is good for; those that only developers need are left out."""
+"""Purpose of each extra; extras for developers only are left out."""
 _PATIENCE = 300.0  # [s]; a cold disk and a slow machine
 _LINE_WIDTH = 110  # columns
 
@@ -67,7 +67,7 @@ class Trial:
     found: Mapping[str, Any] | None
     """Output of the trial; None if it failed."""
     failure: str = ""
-    """Why it failed, in a line."""
+    """Reason of the failure, in one line."""
 
 
 def doctor(words: Sequence[str]) -> int:
@@ -229,7 +229,7 @@ def tried(*names: str) -> list[Trial]:
                 [*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
             )
             running.append(stack.enter_context(trial_process))
-            stack.callback(trial_process.kill)  # before its end is waited for
+            stack.callback(trial_process.kill)  # runs before the wait for the end of the process
         return [_outcome(process) for process in running]
 
 
@@ -337,7 +337,7 @@ def trial_draw() -> dict[str, Any]:
 
 
 TRIALS: dict[str, Callable[[], dict[str, Any]]] = {"walk": trial_walk, "swim": trial_swim, "draw": trial_draw}
-"""By name."""
+"""Trials by name."""
 
 
 if __name__ == "__main__":

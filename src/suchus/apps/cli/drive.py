@@ -278,10 +278,10 @@ def _hurry(record: xr.Dataset | None, folder: Path) -> None:
         alternatives = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
         folder = next(
             candidate for candidate in chain([folder], alternatives) if not there(candidate)
-        )  # an earlier log stays
+        )  # an earlier log is not overwritten
         folder.mkdir(parents=True)
         log_path = save(record, folder / RECORD)
-        with suppress(OSError):  # a terminal that is gone
+        with suppress(OSError):  # the terminal may be closed
             print(f"the log: {log_path}", flush=True)
 
 

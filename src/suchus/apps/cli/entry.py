@@ -448,7 +448,7 @@ def _hold(number: int) -> None:
     try:
         os.fstat(number)
     except OSError:
-        os.open(os.devnull, os.O_RDWR)  # takes the least number that is free
+        os.open(os.devnull, os.O_RDWR)  # the system assigns the lowest free number
 
 
 def _drop_output() -> None:

@@ -259,7 +259,7 @@ _PLAIN = (
     ),
     (r"no type matching .* could be instantiated from \[(.*)\]", r"\1 is not what is needed"),
 )
-"""What Python says of its own functions, in words of those who type."""
+"""Messages of Python as patterns, and the plain words that replace them."""
 
 
 def gait_first(words: Sequence[str]) -> list[str]:

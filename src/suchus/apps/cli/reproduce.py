@@ -32,7 +32,7 @@ class Reproduction:
     """An experiment that is to be run again."""
 
     name: str
-    """On the shelf."""
+    """Name of the experiment on the shelf."""
     out: Path
     """The folder for results."""
     quick: bool
@@ -57,9 +57,9 @@ class Reproduced:
     """Result of an experiment, or the reason why it failed."""
 
     result: Result | Failure
-    """For the page."""
+    """Result or failure, for the page."""
     summary: str
-    """The same in a line."""
+    """Summary of the result in one line."""
 
 
 def attempt(task: Reproduction, progress: Progress) -> Reproduced:
@@ -137,7 +137,7 @@ _SLOW_EXPERIMENTS = (
     "swim_free",
     "crawl_stability",
 )
-"""What takes longest is begun first, so that no process idles in the end."""
+"""Slowest experiments, which are started first so that no process idles at the end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,7 +167,7 @@ def reproduce(words: Sequence[str]) -> int:
     """
     description = "Run every experiment and write one page with all results, DIR/report.html."
     options = parse(ReproduceOptions, "suchus reproduce", words, description)
-    sound = dict(EXPERIMENTS.items())  # what is broken is attempted too, and reported with what is wrong
+    sound = dict(EXPERIMENTS.items())  # broken experiments are attempted too, and their errors are reported
     tasks = [
         Reproduction(name=name, out=options.out, quick=options.quick, replace=asked_to_replace())
         for name in EXPERIMENTS
@@ -209,7 +209,7 @@ def _run_tasks(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: bo
         unit="experiments",
         work=partial(_attempt_with_shelf, shelf=list(suchus.experiments.catalog.__path__)),
         items=order,
-        tries=1,  # an experiment that takes too much memory takes it again
+        tries=1,  # a second try would need the same memory again
         died=_report_crash,
     )
     side_by_side = min(jobs, sum(not results.has(n) for n in range(len(order))) or 1)

@@ -45,7 +45,7 @@ class Performed:
     """An experiment that was run and saved."""
 
     outcome: Outcome
-    """Its outcome."""
+    """Outcome of the experiment."""
     folder: Path
     """Folder of its files."""
     seconds: float
@@ -76,7 +76,7 @@ def perform(experiment: Experiment, name: str, results_folder: Path, progress: P
         progress("saving", 1.0)
         folder = save_outcome(outcome, figures, experiment, results_folder / name, command=command)
     for path in outcome.kept:
-        with suppress(OSError):  # what cannot be removed costs no result
+        with suppress(OSError):  # a file that cannot be removed does not spoil the result
             path.unlink()
     return Performed(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
 

@@ -21,7 +21,7 @@ _LISTED = {
     "measures": "suchus.experiments.study:MEASURES",
     "contestants": "suchus.contestants:CONTESTANTS",
 }
-"""Where each shelf is, by its name."""
+"""Module and object of each shelf, by the shelf's name."""
 _SCATTERED = ("controllers", "measures")
 """Shelves whose modules declare things with names of their own."""
 _USAGE = f"""usage: suchus list [{PROJECT} DIR]
@@ -98,7 +98,7 @@ def _assigned_texts(source: Source, name: str) -> tuple[str, ...]:
         for node in ast.walk(ast.parse(_text(source.file))):
             if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == name for t in node.targets):
                 return tuple(str(text) for text in ast.literal_eval(node.value))
-    except (SyntaxError, ValueError, TypeError):  # a text that is not written out
+    except (SyntaxError, ValueError, TypeError):  # a text that is no literal
         return ()
     return ()
 

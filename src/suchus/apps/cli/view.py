@@ -129,7 +129,7 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
     def session() -> Session:
         return Session(robot, gait, timestep=options.timestep, swim=swim)
 
-    session()  # refuses what cannot be walked, before a browser
+    session()  # refuses an impossible walk before a browser opens
     pages = pages_of_viewer()
     setting = "in a lake" if options.lake else gait.name
     return _serve(

@@ -37,7 +37,7 @@ from suchus.sim.model import activations, compile_model, standing
 from suchus.sim.model.export import home
 
 STILL = 3.0
-"""How long a robot has stood before an episode of standing begins [s]; it has settled after two."""
+"""Time that a robot stands before an episode of standing begins [s]; it settles within 2 s."""
 _START_DELAY = 0.2  # [s]; when standing up begins, where no crawl is needed
 _MIN_STANDING_FRACTION = 0.6
 """Height of the snout of a robot that stands, over that of hind leg, trunk and head in one line [-].
@@ -92,7 +92,7 @@ def _floating_beginning(task: Task, model: Any) -> Beginning:
     swim = task.swum
     check_limits(task.robot, swim)
     check_speeds(task.robot, swim)
-    servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # its limbs held, its axis straight
+    servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # limbs folded back, axis straight
     stands = standing(model, task.robot, hip_height(task.robot, task.gait), servos)
     if task.solved is not None:
         return Beginning(stands, np.zeros(model.nv), activations(model, servos), servos)
@@ -272,7 +272,9 @@ class Pack:
         else:
             for period in range(1, self._actor.periods + 1):
                 self.loop.decide()
-                self.loop.advance(felt=period == self._actor.periods)  # nothing feels the ground in between
+                self.loop.advance(
+                    felt=period == self._actor.periods
+                )  # contact loads are read at the end of the action only
                 work += self._servo_power() * self.loop.period
         self._command_change = np.where(active_mask[:, None], command_change, self._command_change)
         return self._terms(active_mask, last_position, last_goal_distance, work, (command_change**2).sum(axis=1))

@@ -16,7 +16,7 @@ from suchus.robot.design.scale import control_period
 from suchus.robot.motion import Gait, Steer, cycle_targets, movement
 
 Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
-"""From observations to actions."""
+"""Function from observations to actions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class SwimToGoal:
     centre: tuple[float, ...]
     """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
     hold: HeadingHold = field(default_factory=HeadingHold)
-    """Its gain and its bends steer, by the bearing of the goal in the present step; its state is not used."""
+    """Gain and bends of the steering, driven by the present bearing of the goal; the state is not used."""
 
     def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the steered swim's angles at the end of the step."""

@@ -35,11 +35,11 @@ class Sense(NamedTuple):
     name: str
     """Name of the reading."""
     columns: slice
-    """Its columns in an observation."""
+    """Columns of the reading in an observation."""
     scale: str
     """Scale by which it is divided, with its unit."""
     what: str
-    """What it measures, in words."""
+    """Description of the measured quantity."""
 
 
 @lru_cache(maxsize=64)

@@ -144,17 +144,17 @@ def metadata(task: Task) -> dict[str, Any]:
 
 
 WIDTH, HEIGHT = 640, 480
-"""Of a picture [pixel]."""
+"""Width and height of a picture [pixel]."""
 _DPI = 100
 _PLACES = ((0.12, 0.622, 0.8, 0.333), (0.12, 0.09, 0.8, 0.52))
-"""Of the two views, as shares of the picture: left, bottom, width, height."""
+"""Rectangles of the two views as fractions of the picture: left, bottom, width, height."""
 _VIEW_LENGTH, _VIEW_WIDTH, _VIEW_HEIGHT = (
     1.6,
     0.5,
     0.75,
 )  # [m]; what is seen of the article's robot: along the walk, across it, and up
 _VIEW_DEPTH = 0.03  # [m]; what is seen below the ground
-_TINT = 0.22  # of the water's colour and the goal's
+_TINT = 0.22  # opacity of the water and of the goal
 _EDGE = 0.45  # [-]; of the picture's sides from its middle, where an arrow points to a goal beyond it
 _ARROW = 0.06  # [-]; its length, of the picture's width
 
@@ -170,9 +170,9 @@ class Surroundings:
     up: Float[np.ndarray, "3"]
     """Unit vector against gravity."""
     goal: AnyGoal | None = None
-    """What the goal is; None where there is none."""
+    """The goal; None without a goal."""
     place: Float[np.ndarray, "2"] | None = None
-    """Where it is, forward and left in the world [m]."""
+    """Position of the goal, forward and left in the world [m]."""
 
 
 def picture(

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from suchus.swimming.coupling import Swim
 
 _END_ERRORS = (Diverged, InvalidDesign, NotConverged, OutsideLimits)
-"""What ends an episode: robot and flow diverge, the body leaves its plane or its box, or moves too fast for it."""
+"""Errors that end an episode: divergence, a body that leaves its plane or box, or one that moves too fast."""
 
 
 class Tanks:

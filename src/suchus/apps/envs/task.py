@@ -231,7 +231,7 @@ NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "swimming": ("axis",),
     }
 )
-"""What a beginning needs of a robot: names of ``design.NEEDS``."""
+"""Capabilities that each start needs of a robot: names of ``design.NEEDS``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -455,7 +455,7 @@ class Task:
             if self.lake is not None:
                 changes["lake"] = replace(
                     self.lake, level=length_factor * self.lake.at(0.0)[0]
-                )  # its water stays water
+                )  # the lake keeps its depth relative to the robot
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
 
     def __post_init__(self) -> None:

@@ -24,7 +24,7 @@ from suchus.apps.envs.task import Task
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
 
-_AT_RESET = ("time", "fault")  # what is said when an episode begins
+_AT_RESET = ("time", "fault")  # entries of ``info`` when an episode begins
 
 
 class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # gymnasium is not read by mypy

@@ -16,19 +16,19 @@ class ComparisonRow:
     """One row of the comparison."""
 
     animal: Animal
-    """The animal's number."""
+    """The animal's quantity, with its range."""
     article: str
-    """The article's, empty if it gives none."""
+    """Value in the article, as text; empty if it gives none."""
     ours: str
-    """Ours."""
+    """Value of the robot, as text."""
     seen: str
-    """The animal's number, as text."""
+    """Value or range of the animal, as text."""
     experiment: str
-    """Where ours comes from; empty if it is a measure of the robot itself."""
+    """Experiment that measured the robot's value; empty if it follows from the design."""
 
 
 Results = Mapping[str, Result]
-_TAIL = ("limbs", "tail_yaw")  # a tail begins at the hips, and is no tail where it is stiff
+_TAIL = ("limbs", "tail_yaw")  # needed of a robot whose tail is compared: a tail behind the hips that bends
 _DURATION = CRAWL_END - CRAWL_START
 _COORDINATED, _LIMBS_ONLY = CLAIMS["displacement_coordinated"].value, CLAIMS["displacement_limbs_only"].value
 

@@ -20,9 +20,9 @@ class Compared:
     """One measure of both outcomes."""
 
     name: str
-    """Its name."""
+    """Name of the measure."""
     unit: str
-    """Its unit; both units where they differ."""
+    """Unit of the measure; both units where they differ."""
     first: float | None
     """Value in the first outcome; None where it has none."""
     second: float | None
@@ -109,7 +109,9 @@ def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Compa
             f"{result_a.folder} ({result_a.name}) and {result_b.folder} ({result_b.name}) have no measure in common; "
             "compare two outcomes of one experiment."
         )
-    measures.sort(key=lambda measure: (measure.difference is None, -_size(measure)))  # equal ones stay in their order
+    measures.sort(
+        key=lambda measure: (measure.difference is None, -_size(measure))
+    )  # a stable sort: equal measures keep their order
     verdicts = list(_pair_verdicts(result_a.outcome["verdicts"], result_b.outcome["verdicts"]))
     verdicts.sort(key=lambda verdict: (verdict.first == verdict.second, not (verdict.first and verdict.second)))
     flat = [dict(_flat(result.outcome.get("settings", {}))) for result in (result_a, result_b)]

@@ -22,7 +22,7 @@ from suchus.visual.replay.page import environment, rendered
 _TIMESTEP, _SAMPLE_INTERVAL = (
     0.005,
     2,
-)  # of the physics [s], and of the samples: a page is to be light, and replays are smoothed
+)  # [s] of physics, and steps between samples; few samples keep the page small
 _WATER_LEVEL = 1.0
 """Level of the water in which the swimmer swims [m]."""
 
@@ -36,7 +36,7 @@ class Lesson:
     title: str
     """Heading."""
     caption: str
-    """What there is to see, in a sentence or two."""
+    """Description of the scene, in one or two sentences."""
     choice: str
     """Name of the slider."""
     runs: tuple[Run, ...]
@@ -50,7 +50,7 @@ class Lesson:
     because: str
     """Explanation, which holds whichever run is the answer."""
     command: str
-    """Where to go on, on the command line."""
+    """Command to continue with."""
 
 
 def lessons() -> tuple[Lesson, ...]:

@@ -35,9 +35,9 @@ MARKS = {
 MOST = 6
 """Numbers that stand below an answer [-]."""
 _LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "of": "", "rule": (), "models": ()}
-"""What older outcomes do not say of a verdict."""
+"""Defaults of entries that older outcomes lack."""
 _WORDS = {"com": "centre of mass", "pp": "peak to peak", "p99": "99th percentile"}
-"""What parts of the names of measures are short for."""
+"""Abbreviations in the names of measures, and their long forms."""
 _HEAVY = 2 * 2**20
 """Size of a replay or a table [byte] beyond which it is linked and does not travel inside the page."""
 
@@ -123,7 +123,7 @@ def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tup
         spread = ""
         if (
             lower_bound is not None and upper_bound is not None and lower_bound.value < upper_bound.value
-        ):  # of a single repeat it is not known
+        ):  # a single repeat has no interval
             spread = f"{number(lower_bound.value, 3)} to {quantity(upper_bound.value, unit, 3)}"
         rows.append(
             (

@@ -87,9 +87,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     order = {key: rank for rank, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
     robot, robot_counts = robot_of(results)
-    is_article_robot = (
-        robot.name == ARTICLES
-    )  # the article's claims are about its robot, and no other page is about them
+    is_article_robot = robot.name == ARTICLES  # the article's claims hold for the article's robot only
     verdicts = [verdict for result in results for verdict in told(result) if is_article_robot]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     verdict_by_claim = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
@@ -214,7 +212,7 @@ class Row:
     field: str
     """Dotted path."""
     value: str
-    """Its value with its unit."""
+    """Value of the field, with its unit."""
     meaning: str
     """Meaning of the number, from the docstring of its field."""
 

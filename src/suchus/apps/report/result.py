@@ -117,13 +117,13 @@ class Picture:
     """A figure ready for a page."""
 
     name: str
-    """Its file's name without the ending."""
+    """Name of the file without its ending."""
     caption: str
     """Caption: what the picture or replay shows."""
     file: Path
     """The picture as a drawing; as pixels it stands beside it."""
     wide: bool = False
-    """Whether it is so wide that half a page would make it too small to read."""
+    """Whether the figure needs the full width of the page to be readable."""
 
     @property
     def source(self) -> Markup:
@@ -173,7 +173,7 @@ class Failure:
     sentence: str
     """One sentence that says why it failed."""
     trace: str = ""
-    """Where in the code, if it was none of our own errors."""
+    """Traceback, if the error is not one of suchus' own."""
 
 
 def load_result(folder: str | Path) -> Result:

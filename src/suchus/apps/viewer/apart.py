@@ -16,9 +16,9 @@ from suchus.core.stopping import end_with_parent
 from suchus.robot.design import Robot
 
 _PICTURE_INTERVAL = 1 / 25  # [s]; between two pictures that are handed over
-_PIPE_CLOSED = (EOFError, OSError)  # what a pipe says when the other end has ended
+_PIPE_CLOSED = (EOFError, OSError)  # errors of a pipe whose other end is closed
 _STOP_TIMEOUT = 5.0  # [s]; for a process that was told to stop
-_NICE_INCREMENT = 5  # by so much its priority is lower than that of the bus
+_NICE_INCREMENT = 5  # lowers the priority below that of the bus
 
 
 class WatchedApart:

@@ -15,7 +15,7 @@ from suchus.sim.model import compile_model, joint_addresses
 from suchus.visual.skin import Poses, ankles, bone_names, footed
 
 COLOURS = 7
-"""Into how many colours the skin is cut; more look smoother and move slower [-]."""
+"""Number of colours into which the skin is cut; more look smoother and move slower [-]."""
 
 
 class BodyPoses:

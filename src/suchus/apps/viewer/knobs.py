@@ -10,7 +10,7 @@ from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.motion import Gait, check_limits
 from suchus.robot.robots import beside_article
 
-_MAX_HALVINGS = 14  # of the distance to a value that the robot cannot reach: a ten-thousandth of it
+_MAX_HALVINGS = 14  # of the distance to a value that the robot cannot reach; 14 leave a ten-thousandth
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,7 +18,7 @@ class Knob:
     """A number that people may turn, in the unit in which they see it."""
 
     label: str
-    """Beside the slider."""
+    """Label of the slider."""
     unit: str
     """Unit in which it is shown."""
     low: float
@@ -61,7 +61,7 @@ class Knob:
 
 _DEGREE = radians(1.0)
 
-_SHARE = 0.01  # a per cent
+_SHARE = 0.01  # one per cent
 
 GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
     {
@@ -130,10 +130,10 @@ BUMPS = Knob(
     label="bumps", unit="mm", low=0.0, high=60.0, step=5.0, scale=1e-3,
     hint="Height of a field of random bumps ahead; the walk begins anew on them.",
 )  # fmt: skip
-"""For a robot as long as the article's; see ``bumps_under``."""
+"""Knob of the bumps for a robot as long as the article's; see ``bumps_under``."""
 SPEED = Knob(label="playback speed", unit="x", low=0.05, high=4.0, step=0.05, hint="1 is real time.")
 FORCE = Knob(label="force", unit="N", low=0.0, high=60.0, step=1.0)
-"""For a robot as heavy as the article's; see ``force_on``."""
+"""Knob of the force for a robot as heavy as the article's; see ``force_on``."""
 PUSH_DURATION = Knob(label="duration", unit="s", low=0.02, high=2.0, step=0.02, hint="Duration of the push.")
 DIRECTION = Knob(
     label="direction", unit="deg", low=-180.0, high=180.0, step=15.0, scale=_DEGREE,
@@ -201,7 +201,7 @@ def shown(gait: Gait, name: str) -> float:
 
 
 def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
-    """Return a gait with one parameter changed as far as the joints allow, and a sentence if that is less than asked for.
+    """Return a gait with one parameter changed as far as the joints allow, and a sentence if that is not as asked for.
 
     Args:
         robot: who walks.

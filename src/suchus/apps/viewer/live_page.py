@@ -26,7 +26,7 @@ class SavedFile(NamedTuple):
     name: str
     """Name of the file."""
     content: bytes
-    """Its text, in UTF-8."""
+    """Text of the file, in UTF-8."""
 
 
 def gait_file(robot: Robot, settings: Settings) -> SavedFile:
@@ -120,7 +120,7 @@ class Controls:
 
         def on_event(event: Any) -> None:
             """Count a touch, act, and show the sentence that the action returns."""
-            if event.client is None:  # set by ourselves
+            if event.client is None:  # the program set the value
                 return
             self.touched += 1
             answer = act(handle.value)
@@ -258,7 +258,7 @@ DRAWN = 3
 PLOT = 0.3
 """Time between two redraws of the plots [s]."""
 IDLE = 900.0
-"""After so long without a touch the walk pauses, so that a forgotten window costs nothing [s]."""
+"""Time without a touch after which the walk pauses, so that a forgotten window costs nothing [s]."""
 _MAX_STEP = 0.25  # [s]; a slow machine simulates at most so much at once, and so goes slower than real time
 
 

@@ -12,7 +12,7 @@ from suchus.sim.metrics.gait import LOADED_SHARE
 from suchus.visual.figures import COLOURS
 from suchus.visual.figures.style import limb_colours
 
-_MAX_POINTS = 400  # of a line; more are not seen
+_MAX_POINTS = 400  # points of a line; more cannot be distinguished
 _MIN_NEWTON_MASS = 0.1  # [kg]; the loads of lighter bodies are shown in millinewtons
 PLOTS = 370
 """Width of the plots to the left of the scene [pixel]."""
@@ -29,7 +29,7 @@ class Line:
     column: str
     """Name of the column."""
     colour: str
-    """As #rrggbb."""
+    """Colour as #rrggbb."""
     dash: tuple[float, ...] = ()
     """Lengths of dashes and gaps [pixel]; empty for an unbroken line."""
 
@@ -39,13 +39,13 @@ class PlotLayout:
     """Title, lines and unit of a chart."""
 
     title: str
-    """Above it, with the unit."""
+    """Title above the chart, with the unit."""
     lines: tuple[Line, ...]
     """The lines that it draws."""
     scale: float = 1.0
-    """From SI to the unit of the title."""
+    """Factor from SI to the unit of the title."""
     mean: float = 0.0
-    """Over how long values are averaged [s]; feet that touch down make spikes that hide the rest."""
+    """Averaging time [s]; without it, spikes at touchdown hide the rest."""
 
 
 def plans(robot: Robot) -> tuple[PlotLayout, ...]:
@@ -125,7 +125,7 @@ class Chart:
         """Return the values of a line in the unit of the title, averaged over the layout's interval."""
         values = self._plan.scale * table.get(
             line.column, np.full(len(table["time"]), np.nan)
-        )  # a ghost of other limbs
+        )  # a ghost with other limbs lacks the column
         count = round(self._plan.mean / float(np.diff(table["time"][:2])[0])) if self._plan.mean else 0
         return values if count < 2 or len(values) < count else uniform_filter1d(values, count, mode="nearest")
 

@@ -246,14 +246,16 @@ class Viewer:
         camera: tuple[tuple[float, float, float], tuple[float, float, float]] = (CAMERA, LOOKS_AT),
     ) -> None:
         _check_free(host, port)
-        warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")  # a browser left in mid-frame
+        warnings.filterwarnings(
+            "ignore", message="Queued a .* on a closed connection"
+        )  # a browser that left during a frame
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser that leaves early is no error
         self._open, self._max_browsers = open_page, most
         self._pages: dict[int, BrowserPage | None] = {}
         self._lock = Lock()
         self._stop_event = Event()
         gate = Gate(host)
-        with redirect_stdout(io.StringIO()), gate.before():  # viser has a banner of its own
+        with redirect_stdout(io.StringIO()), gate.before():  # suppresses viser's banner
             self._server = _Server(host=host, port=port, label=title, verbose=False)
         self._server.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=(0, 114, 178))
         self._server.initial_camera.position, self._server.initial_camera.look_at = camera
@@ -331,7 +333,7 @@ def _stand_back(camera: Any, position: Sequence[float], looks_at: Sequence[float
     aspect = (width if is_phone else max(width - PANEL - PLOTS, 1.0)) / max(height, 1.0)
     target, offset = np.array(looks_at), np.array(position) - np.array(looks_at)
     offset *= max(1.0, _MIN_ASPECT / aspect)
-    if is_phone:  # what stood in the middle of the window stands in the middle above the sheet
+    if is_phone:  # centres the target above the sheet
         target = target - np.array([0.0, 0.0, _SHEET_FRACTION * float(np.linalg.norm(offset)) * tan(0.5 * _FOV)])
     camera.position = target + offset
     camera.look_at = target

@@ -134,13 +134,13 @@ class Instant:
     forward: float = 0.0
     """Displacement of the centre of mass since the first cycle began [m]."""
     aside: float = 0.0
-    """The same to the left [m]."""
+    """Displacement of the centre of mass to the left [m]."""
     pushed: tuple[float, float, float] | None = None
     """The force of a push that lasts [N]."""
     level: float | None = None
     """Level of the water above the ground where the walk began, against gravity [m]; None on dry land."""
     trouble: str = ""
-    """Why the walk has ended; empty while it has not."""
+    """Reason why the walk ended; empty while it goes on."""
 
 
 class Session:

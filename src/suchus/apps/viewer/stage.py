@@ -24,7 +24,7 @@ from suchus.sim.model import compile_model
 from suchus.visual.figures import COLOURS
 from suchus.visual.figures.style import limb_colours
 
-_ROD_SIDES = 12  # of a rod's section
+_ROD_SIDES = 12  # sides of a rod's cross-section
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,9 +123,9 @@ class DrawnRod:
 
 
 CAMERA = (0.8, -1.4, 0.8)
-"""Where the camera is at first, for a robot as long as the article's [m]."""
+"""First position of the camera, for a robot as long as the article's [m]."""
 LOOKS_AT = (-0.02, 0.0, 0.0)
-"""Where it looks at first, for a robot as long as the article's [m]."""
+"""First target of the camera, for a robot as long as the article's [m]."""
 _WEIGHT_LENGTH = 0.276  # [m]; how long the weight of a robot as long as the article's is, as long as its trunk
 _TIP, _COM, _STEP = 0.06, 0.014, 0.005  # [m]; of a push above its body, radius of a ball, between points of the track
 _PAINT_HEIGHT = 0.003  # [m]; what is painted on the ground lies so far above it
@@ -137,7 +137,7 @@ _EDGE = RodShape(radius=0.0035)
 _PLUMB = RodShape(radius=0.0018)
 _STANDS = 0.12  # [m]; height of the centre of mass of the article's robot as it walks
 _LAKE = 12.0  # [m]; how far the water reaches that is drawn
-_STEPS = 400  # pieces of the track that are kept
+_STEPS = 400  # maximum number of stored points of the track
 
 
 def rgb(colour: str) -> tuple[int, int, int]:

@@ -20,7 +20,7 @@ from suchus.visual.skin.mesh import Mesh
 
 _FIELDS = ("vorticity", "pressure")
 _MAPS = {"vorticity": "RdBu_r", "pressure": "PuOr"}
-_COLOUR_QUANTILE = 0.985  # share of the values that the colours resolve; a few at the tail's tip are far beyond
+_COLOUR_QUANTILE = 0.985  # fraction of the values within the colour range; a few at the tail's tip lie far outside
 _TITLES = {
     "held": "held at the snout", "free": "free, from rest", "printed": "the wave as printed",
     "field": "on its own joints, from rest",
@@ -45,7 +45,7 @@ class Film:
     y: np.ndarray
     """Across it, (y,) [m]."""
     fields: Mapping[str, np.ndarray]
-    """By name, (frame, y, x)."""
+    """Fields by name, (frame, y, x)."""
     units: Mapping[str, str]
     """Units of the fields."""
     sides: np.ndarray
@@ -66,11 +66,11 @@ class PlottedCurve:
     """A measured course for a plot."""
 
     title: str
-    """With the unit."""
+    """Title of the plot, with the unit."""
     x: np.ndarray
     """(n,)."""
     lines: Mapping[str, np.ndarray]
-    """By name, each (n,)."""
+    """Lines by name, each (n,)."""
 
 
 def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:

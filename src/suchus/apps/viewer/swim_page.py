@@ -118,7 +118,7 @@ def _draw_curve(gui: Any, curve: PlottedCurve) -> None:
 
 
 CAMERA = ((0.75, -0.05, 3.3), (0.75, 0.0, 0.0))
-"""Where the camera is at first and where it looks [m]."""
+"""First position and target of the camera [m]."""
 _SKIN, _EDGE = "#C9DCCB", "#2F4737"
 _WORDS = {"vorticity": ("turns clockwise", "counter-clockwise"), "pressure": ("suction", "pressure")}
 

@@ -21,13 +21,13 @@ class WatchedRobot(NamedTuple):
     """State of a watched robot."""
 
     time: float
-    """Since it began [s]."""
+    """Time since the robot began to move [s]."""
     now: Mapping[str, np.ndarray]
-    """By the names of ``record.VARIABLES``, without run and time."""
+    """Values by the names of ``record.VARIABLES``, without run and time."""
     level: float | None
-    """Of the water above the ground where it began [m]; None on dry land."""
+    """Level of the water above the ground at the start [m]; None on dry land."""
     state: str
-    """What it does, in words."""
+    """Description of what the robot does."""
 
 
 class WatchPage(BrowserPage):

@@ -39,9 +39,9 @@ class _Quantity(NamedTuple):
     name: str
     """Quantity and unit."""
     places: np.ndarray
-    """Of the ticks on the axis."""
+    """Positions of the ticks on the axis."""
     words: list[str]
-    """Beside the ticks; none on an axis of numbers."""
+    """Labels of the ticks; empty on an axis of numbers."""
 
     def word(self, value: float) -> str:
         """Return the tick label at a position on the axis; empty on an axis of numbers."""
@@ -49,7 +49,7 @@ class _Quantity(NamedTuple):
 
 
 _Quantities = tuple[_Quantity, _Quantity]
-"""Of a panel, along x and along y."""
+"""Quantities of a panel along x and along y."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class CarriedField:
     x: np.ndarray | None
     """Places along x, in the unit of the axis; None: evenly over the picture."""
     y: np.ndarray | None
-    """The same along y."""
+    """Places along y, likewise."""
 
 
 def carry(
@@ -186,7 +186,7 @@ def _of_collection(ax: Axes, collection: Collection, names: _Quantities) -> Iter
 def _of_image(image: AxesImage, names: _Quantities) -> Iterator[Cells]:
     """Yield the cells of a picture that shows a field."""
     values = field_of(image)
-    if values.ndim > 2:  # colours, which are no numbers of anything
+    if values.ndim > 2:  # RGB colours are no field
         return
     x0, x1, y0, y1 = image.get_extent()
     ny, nx = values.shape[:2]

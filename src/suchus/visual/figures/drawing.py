@@ -14,7 +14,7 @@ from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 from suchus.visual.skin import bone_rest
 from suchus.visual.skin.plain import ends
 
-_TILT = radians(20)  # of the shank outward, for the drawing only
+_TILT = radians(20)  # outward tilt of the shank, in the drawing only
 _BODY, _FIN, _LIMB = "#C9DCCB", "#E4EEE5", "#4D6B57"
 _EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
 _TITLE = 0.45  # height of a view's title with the space around it [inch]

@@ -27,7 +27,7 @@ def film(figure: Figure, show: Callable[[int], None], count: int, *, seconds: fl
     for i in range(count):
         show(i)
         canvas.draw()  # type: ignore[no-untyped-call]
-        figure.set_layout_engine("none")  # the layout of the first frame is that of all
+        figure.set_layout_engine("none")  # all frames keep the layout of the first
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[no-untyped-call]
         palette = frames[0] if frames else None
         if palette is None:

@@ -130,7 +130,7 @@ class FieldFilm:
     every: float
     """Interval of the frames [s]."""
     what: FieldName = "vorticity"
-    """Which field."""
+    """Name of the field."""
     limit: float | None = None
     """End of the scale [1/s, Pa]; None takes what 99 % of the values stay below."""
     speed: float = 1.0
@@ -236,7 +236,7 @@ def _over_the_skin(surface: Surface) -> Figure:
     max_pressure = max(float(np.abs(surface.pressure).max()), 1e-12)
     views = (("seen along y", 2, 1, -1.0), ("from above", 1, 2, 1.0))
     length, *extents = np.ptp(m.points, axis=1)
-    side = _COVERING * np.sqrt(m.share.max()) / length * 0.4 * WIDTH * 72.0  # of a dot, in points of the page
+    side = _COVERING * np.sqrt(m.share.max()) / length * 0.4 * WIDTH * 72.0  # side of a dot, in points of the page
     figure, grid = panels(2, 2, width=WIDTH, height=2.4 + min(2 * 0.4 * WIDTH * max(extents) / length, 6.0))
     for row, (values, label, cmap, lower_bound, upper_bound) in zip(
         grid,

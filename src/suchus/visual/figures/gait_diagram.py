@@ -56,7 +56,7 @@ _BLACK, _GREY, _EDGE = "#111111", "#9A9A9A", "#333333"
 _SHADES = (_BLACK, _GREY)
 _DASHES: tuple[Any, ...] = ("-", (0, (4, 2)))
 _BENDS = ("spine", "tail")
-_STRAIGHT = 0.05  # share of the largest bend that counts as straight
+_STRAIGHT = 0.05  # fraction of the largest bend below which a body counts as straight
 _MAX_STILL_BEND = np.radians(1.0)  # a bend that never exceeds this has no sign
 
 

@@ -191,13 +191,13 @@ def _draw_skin(ax: Axes, robot_layout: Layout, outline: Silhouette, view: View, 
         is_near = view == "side" and limb.side < 0
         is_far = view == "side" and not is_near
         face, order = (far_leg, 0.8) if is_far else (body, 2.6) if is_near else (body, 1.0)
-        # strokes of all pieces first, then their fillings: what is left is the outline of them all
+        # strokes first, then fillings: only the common outline of all pieces remains
         leg_path = united(pieces)
         ax.add_artist(
             PathPatch(leg_path, facecolor=edge, edgecolor=edge, linewidth=1.8, joinstyle="round", zorder=order)
         )
         ax.add_artist(PathPatch(leg_path, facecolor=face, edgecolor=face, linewidth=0.2, zorder=order + 0.01))
-        ax.update_datalim(leg_path.vertices)  # add_patch would look for the extremes of every edge, which takes long
+        ax.update_datalim(leg_path.vertices)  # faster than add_patch, which searches the extremes of every edge
     for piece, face, order in ((outline.jaw, pale_face, 1.9), (outline.body, body, 2.0)):
         if not len(piece):
             continue

@@ -12,7 +12,7 @@ class Used(NamedTuple):
     """Use of a servo in its hardest movement."""
 
     servo: str
-    """Its place in the robot."""
+    """Name of the servo in the robot."""
     bought: str
     """Name of the servo that is bought; empty for one of the design."""
     torque: float

@@ -26,7 +26,7 @@ class Silhouette(NamedTuple):
     eyes: list[np.ndarray]
     """Left and right."""
     legs: list[list[np.ndarray]]
-    """In the order of the robot's limbs: convex pieces from haunch to claws that overlap; together they are the leg."""
+    """Legs in the order of the robot's limbs, each as overlapping convex pieces from haunch to claws."""
 
 
 def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Silhouette:

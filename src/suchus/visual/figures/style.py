@@ -118,7 +118,7 @@ STYLE: Final[Mapping[Any, Any]] = MappingProxyType(
 
 
 DATA: Final = ".data.csv"
-"""How the name of the table that stands beside a figure ends, in the place of ``.svg``."""
+"""Ending of the file name of a figure's table, in place of ``.svg``."""
 
 
 def styled(**settings: Any) -> AbstractContextManager[None]:
@@ -191,7 +191,7 @@ def save(figure: Figure, folder: str | Path, stem: str) -> tuple[Path, Path]:
         for path, kind, metadata in ((svg, "svg", svg_metadata), (png, "png", {"Software": None})):
             buffer = BytesIO()
             figure.savefig(buffer, format=kind, metadata=metadata)
-            figure.set_layout_engine(None)  # the axes stand where the first file has them, and are not placed again
+            figure.set_layout_engine(None)  # the second file keeps the layout of the first
             write(path, buffer.getvalue())
     figure.set_layout_engine(layout)
     if csv_text := table(figure):

@@ -21,7 +21,7 @@ _INNER_LOCATIONS: Final = (
 )  # fmt: skip
 """Places inside the axes, in the order in which they are tried."""
 _GAP: Final = 0.06
-"""Between the axis and a legend below it [inch]."""
+"""Gap between the axis and a legend below it [inch]."""
 
 
 class Uncovering(ConstrainedLayoutEngine):
@@ -30,7 +30,7 @@ class Uncovering(ConstrainedLayoutEngine):
     def execute(self, fig: Figure) -> None:
         """Place axes and legends of a figure."""
         super().execute(fig)
-        for try_inside in (True, False):  # what fits inside before others moved may not fit afterwards
+        for try_inside in (True, False):  # a legend that fitted inside may not fit after others moved
             if not (lying := list(covering(fig))):
                 return
             for ax, legend in lying:
@@ -93,7 +93,7 @@ def _meets(artist: Artist, ax: Axes, box: Bbox) -> bool:
     if hasattr(artist, "get_path") and hasattr(artist, "get_facecolor"):  # a patch
         path = artist.get_transform().transform_path(artist.get_path())
         return bool(path.intersects_bbox(visible_box, filled=artist.get_facecolor()[3] > 0))
-    return bool(artist.get_window_extent().overlaps(visible_box))  # a picture, words
+    return bool(artist.get_window_extent().overlaps(visible_box))  # a picture or a text
 
 
 def _collection_meets(collection: Collection, ax: Axes, visible_box: Bbox) -> bool:

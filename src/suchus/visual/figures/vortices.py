@@ -22,7 +22,7 @@ from suchus.visual.figures.style import captioned, panels, styled
 from suchus.visual.skin.mesh import Mesh, joined, loft, normals
 
 _LIGHT = np.array([-0.35, 0.75, 0.56])  # to the right, up, towards the camera; of length 1
-_SUPERSAMPLING = 2  # pixels along each side of one that is shown
+_SUPERSAMPLING = 2  # computed pixels along each side of a shown pixel
 
 
 class Viewpoint(NamedTuple):
@@ -107,7 +107,7 @@ def _lit_colours(mesh: Mesh, camera: Viewpoint) -> np.ndarray:
     """Return the colours of a mesh under a high light from behind the camera's left shoulder, (n, 3) [0 to 1]."""
     axes = camera.axes
     normal, light = normals(mesh), axes.T @ _LIGHT
-    normal *= np.where(normal @ axes[2] < 0, -1.0, 1.0)[:, None]  # where a surface is open its other side is seen
+    normal *= np.where(normal @ axes[2] < 0, -1.0, 1.0)[:, None]  # an open surface may show its inner side
     half = light + axes[2]
     half /= np.linalg.norm(half)
     straight = np.clip(normal @ light, 0.0, 1.0)[:, None]
@@ -122,10 +122,10 @@ SKIN = (0.42, 0.44, 0.36)
 AROUND = 32
 """Points around a section of the body [-]."""
 LINES = tuple(f"film_{name}" for name in ("x", "y", "heading", "half_width"))
-"""What a record holds of the body in each frame, as (frame, station)."""
+"""Variables of the body in a record, each (frame, station)."""
 _FIELDS, _UNITS = ("vortices", "spin"), ("vortex_level", "vortex_unit", "spin_unit")
 _DARKEST = 0.92  # share of the colour map that is used; its ends are nearly black
-_SECONDS = 4.0  # in which the film shows a cycle
+_SECONDS = 4.0  # [s]; duration of the cycle in the film
 
 
 def check_filmed(record: xr.Dataset, subject: str = "the record") -> None:

@@ -34,7 +34,7 @@ class Frames(NamedTuple):
     feet: np.ndarray
     """Centres of the feet, (frame, limb, 3) [m]."""
     forces: np.ndarray
-    """Of the ground on the feet, (frame, limb, 3) [N]."""
+    """Forces of the ground on the feet, (frame, limb, 3) [N]."""
     tail: np.ndarray
     """Tip of the tail [m] and the normal force of the ground on the tail [N], (frame, 4)."""
     level: np.ndarray | None

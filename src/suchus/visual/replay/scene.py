@@ -58,7 +58,7 @@ KEYS = {
     "water": COLOURS["water"],
 }
 """Colours of what is not the robot."""
-_LATERAL_DISTANCE = 0.62  # how far a second robot walks beside the first, over the robot's length
+_LATERAL_DISTANCE = 0.62  # lateral distance between two robots, over the robot's length
 
 
 def scene(
@@ -87,7 +87,9 @@ def scene(
         "overlaid": overlaid,
         "slope": np.round(slope(ground.uphill, ground.sideways), 9).tolist(),
         "water": _packed_water(moving[0], ground, pack),
-        "floor": float(field(relief).min()) if isinstance(relief, Bumps) else 0.0,  # as deep as the field, as in model
+        "floor": float(field(relief).min())
+        if isinstance(relief, Bumps)
+        else 0.0,  # depth of the field, as in the physics model
         "metres_per_newton": ARROW * robot.length / (robot.mass * GRAVITY),
         "marks": [max(floor(x.min()) - 1, -50), min(ceil(x.max()) + 1, 50)],
         "mark_side": -0.4 * robot.length,

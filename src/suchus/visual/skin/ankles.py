@@ -18,7 +18,7 @@ from suchus.visual.skin.surface import Skin, skin
 ANKLES = tuple(f"{leg}_ankle" for leg in LEGS)
 """Names of the bones, which come after those of the bodies."""
 REACH = 0.9
-"""How far an ankle turns [rad]; a crocodile's turns about as far in the step of a high walk."""
+"""Greatest angle of an ankle [rad], about that of a crocodile's high walk."""
 NEAR = (0.012, 0.06)
 """Heights of the ball over the ground between which a foot ceases to lie flat [m]."""
 

@@ -44,7 +44,20 @@ def _limb(robot: Robot, leg: LegMeasures, front: bool, x_offset: float) -> Mesh:
     positions = [root, 0.5 * (root + hip), hip, hip + 0.25 * leg.femur, hip + 0.6 * leg.femur, knee - 0.15 * leg.femur,
              knee, knee + 0.15 * leg.tibia, knee + 0.35 * leg.tibia, knee + 0.72 * leg.tibia, end - 0.1 * leg.tibia,
              end + 0.15 * leg.foot_radius]  # fmt: skip
-    widths = [2.5, 2.4, 2.1, 1.95, 1.72, 1.42, 1.36, 1.46, 1.5, 1.12, 1.0, 1.0]  # forward, over the bone's radius
+    widths = [
+        2.5,
+        2.4,
+        2.1,
+        1.95,
+        1.72,
+        1.42,
+        1.36,
+        1.46,
+        1.5,
+        1.12,
+        1.0,
+        1.0,
+    ]  # half widths along x, over the bone's radius
     heights = [depth / r, depth / r, 1.9, 1.72, 1.5, 1.3, 1.26, 1.34, 1.36, 1.04, 0.95, 0.95]
     scale = [(stout if i < 10 else 1.0) * r for i in range(12)]
     knots = sorted(zip(positions, widths, heights, scale, strict=True))

@@ -44,9 +44,9 @@ class Skin:
     indices: np.ndarray
     """Bones that each vertex hangs on, (n, 4) int32."""
     weights: np.ndarray
-    """How much of each, (n, 4) [-]; they sum to one."""
+    """Weights of these bones, (n, 4) [-]; each row sums to one."""
     plain: bool
-    """Whether it is a plain hide with rods for limbs and balls for feet, and not the skin of a crocodile."""
+    """Whether the skin is a plain hide with rods for limbs and balls for feet, not a crocodile's."""
 
     def posed(self, positions: np.ndarray, quaternions: np.ndarray) -> np.ndarray:
         """Return the vertices in a posture, (n, 3) [m], by linear blend skinning.
