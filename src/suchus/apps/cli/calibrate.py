@@ -141,6 +141,6 @@ def _fit_log(options: CalibrateOptions, output: Path) -> int:
         play, offset = degrees
         table.add_row(name, str(fit.stiffness), play, str(fit.friction), offset)
     Console(highlight=False).print(table)
-    written = write(output, fits_text(fits))
-    print(f"written: {written}; intervals hold 95 % of what scatters, not what the model leaves out")
+    measured_file = write(output, fits_text(fits))
+    print(f"written: {measured_file}; intervals hold 95 % of what scatters, not what the model leaves out")
     return 0
