@@ -61,33 +61,35 @@ def calibrate(words: Sequence[str]) -> int:
         SuchusError: the words or a file make no sense, or the place is taken.
         BusFailure: a servo does not answer.
     """
-    about = "Find out how a robot is wired, where its zeros are and how stiff its servos are; files are never changed."
-    options = parse(CalibrateOptions, "suchus calibrate", words, about)
-    out = options.out or Path(_NEW[options.what])
-    check_writable(out.parent)
-    check_replaceable(out)
+    description = (
+        "Find out how a robot is wired, where its zeros are and how stiff its servos are; files are never changed."
+    )
+    options = parse(CalibrateOptions, "suchus calibrate", words, description)
+    output = options.out or Path(_NEW[options.what])
+    check_writable(output.parent)
+    check_replaceable(output)
     if options.what == "log":
-        return _log(options, out)
-    rig = Rig(options.robot, _known(options), clocked=options.clock == "bus")
+        return _fit_log(options, output)
+    rig = Rig(options.robot, _initial_wiring(options), clocked=options.clock == "bus")
     try:
         if options.what == "wiring":
             clock = BusClock(rig) if options.clock == "bus" else WallClock(rig.period)
-            write_wiring(find_wiring(rig, clock, lambda bus, number: _ask(options.robot, bus, number)), out)
+            write_wiring(find_wiring(rig, clock, lambda bus, number: _ask_joint(options.robot, bus, number)), output)
         else:
             posture = np.zeros(len(rig.servos))
             if options.posture is not None:
                 posture = intended(options.robot, gait_of(options.robot, options.posture), np.zeros(1)).targets[0]
-            wiring, off = find_zeros(rig, posture)
-            for name, angle in zip(rig.names, np.degrees(off), strict=True):
+            wiring, offsets = find_zeros(rig, posture)
+            for name, angle in zip(rig.names, np.degrees(offsets), strict=True):
                 print(f"{name}: its zero moves by {angle:.1f} degrees")
-            write_wiring(wiring, out)
+            write_wiring(wiring, output)
     finally:
         rig.close()
-    print(f"written: {out}; try it with suchus drive --hardware {out} --dry-run")
+    print(f"written: {output}; try it with suchus drive --hardware {output} --dry-run")
     return 0
 
 
-def _known(options: CalibrateOptions) -> Wiring:
+def _initial_wiring(options: CalibrateOptions) -> Wiring:
     """Return the wiring as far as it is known."""
     if options.hardware.exists():
         wiring = read_wiring(options.hardware, options.robot)
@@ -98,12 +100,18 @@ def _known(options: CalibrateOptions) -> Wiring:
         raise BadCommand(f"there is no {options.hardware}: say --port PORT and --model MODEL of the servos instead.")
     if options.model not in TABLES:
         raise UnknownName("model", options.model, TABLES)
-    place = BusPlace(port=options.port, baud=options.baud, protocol=TABLES[options.model].protocol)
-    return straight(options.robot, [place], options.model)
+    bus = BusPlace(port=options.port, baud=options.baud, protocol=TABLES[options.model].protocol)
+    return straight(options.robot, [bus], options.model)
 
 
-def _ask(robot: Robot, bus: int, number: int) -> tuple[str, int]:
-    """Ask a person what moved, until the answer makes sense."""
+def _ask_joint(robot: Robot, bus: int, number: int) -> tuple[str, int]:
+    """Ask a person which joint moved, until the answer names one, and return the joint and the sign of its motion.
+
+    Args:
+        robot: whose servos are calibrated.
+        bus: index of the servo's bus.
+        number: id of the servo on its bus.
+    """
     names = layout(robot).servos
     print(f"Number {number} on bus {bus} has turned by 5 degrees to more steps. Which joint moved, and in its positive")
     print(f"sense (+) or the other (-)? One of {', '.join(names)}, as {names[0]} +")
@@ -118,18 +126,21 @@ def _ask(robot: Robot, bus: int, number: int) -> tuple[str, int]:
         print("Say the joint and + or -.")
 
 
-def _log(options: CalibrateOptions, out: Path) -> int:
+def _fit_log(options: CalibrateOptions, output: Path) -> int:
+    """Fit stiffness, play, friction and zero of every servo to a log, print them, write them, and return 0."""
     if options.record is None:
         raise BadCommand("suchus calibrate log needs the record.nc of a drive, as out/drive_belly_crawl/record.nc.")
     record = load(options.record)
     fits = fit_log(record.isel(run=0) if "run" in record.dims else record)
     table = Table("servo", "stiffness [N m/rad]", "play [degrees]", "friction [N m]", "zero off [degrees]", box=None)
     for name, fit in fits.items():
-        degrees = (f"{np.degrees(one.value):.2f} +- {np.degrees(one.half):.2f}" for one in (fit.play, fit.offset))
+        degrees = (
+            f"{np.degrees(estimate.value):.2f} +- {np.degrees(estimate.half):.2f}"
+            for estimate in (fit.play, fit.offset)
+        )
         play, offset = degrees
         table.add_row(name, str(fit.stiffness), play, str(fit.friction), offset)
     Console(highlight=False).print(table)
-    print(
-        f"written: {write(out, fits_text(fits))}; intervals hold 95 % of what scatters, not what the model leaves out"
-    )
+    measured_file = write(output, fits_text(fits))
+    print(f"written: {measured_file}; intervals hold 95 % of what scatters, not what the model leaves out")
     return 0

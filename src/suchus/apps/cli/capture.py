@@ -124,9 +124,9 @@ def capture(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or the tracks make no sense.
     """
-    about = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
-    options = parse(CaptureOptions, "suchus capture", words, about)
-    out = options.out or (None if options.tables or options.forces else Path("captured.toml"))
+    description = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
+    options = parse(CaptureOptions, "suchus capture", words, description)
+    output = options.out or (None if options.tables or options.forces else Path("captured.toml"))
     if options.video and not options.tables:
         raise BadCommand("--video is drawn into the folder of --tables; give that too, as in --tables measured.")
     for folder in (options.tables, options.forces):
@@ -136,59 +136,59 @@ def capture(words: Sequence[str]) -> int:
     if options.tables and options.tables == options.forces:
         raise BadCommand(f"--tables and --forces both name {options.tables}; give each a folder of its own.")
     unknown = _unknown(options)
-    if out:
-        check_toml(out, "gait")
-        check_writable(out.parent)
-        check_replaceable(out)
+    if output:
+        check_toml(output, "gait")
+        check_writable(output.parent)
+        check_replaceable(output)
     if is_angle_table(options.tracks):
-        return _play(options, out, _asked(words), unknown)
+        return _write_played_gait(options, output, _robot_word(words), unknown)
     robot = options.robot
-    if out:
-        for place in places(out.parent, out.stem):
-            check_replaceable(place)
+    if output:
+        for path in places(output.parent, output.stem):
+            check_replaceable(path)
         check_needs(robot, NEEDED, "a gait from tracked keypoints")
     with working() as bars:
         move = bars.task(options.tracks.name)
         move("reading", 0.1)
-        tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
+        tracks = read_tracks(options.tracks, _reading_options(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        driven = driven_share(robot) if out else 1.0
-        walk = observe(tracks, tail_share=driven if options.tail_share is None else options.tail_share)
-        lines, notes, told = summary(walk), walk.notes, list[str]()
-        if out:
+        driven_fraction = driven_share(robot) if output else 1.0
+        walk = observe(tracks, tail_share=driven_fraction if options.tail_share is None else options.tail_share)
+        lines, notes, messages = summary(walk), walk.notes, list[str]()
+        if output:
             base = options.base or own_gait(robot)
             captured = to_gait(
                 walk,
                 robot,
                 base,
-                name=out.stem,
+                name=output.stem,
                 duty=options.duty,
                 girdles=options.girdles,
                 time=options.time,
                 trunk=options.trunk,
             )
-            apart = beside(walk, robot, captured.gait)
+            comparison = beside(walk, robot, captured.gait)
             lines, notes = [captured.timing, *lines], captured.notes
         if options.tables:
             move("measuring", 0.6)
-            told += _measured(walk, tracks, options.tables, options.video)
+            messages += _write_measurements(walk, tracks, options.tables, options.video)
         if options.forces:
-            body = options.robot if _asked(words) or walk.cycle.sizes["leg"] else ROBOTS["swimmer"]
-            told += _forces(walk, body, options, unknown, bars.reporter("forces"))
-        if out:
+            body = options.robot if _robot_word(words) or walk.cycle.sizes["leg"] else ROBOTS["swimmer"]
+            messages += _forces(walk, body, options, unknown, bars.reporter("forces"))
+        if output:
             move("writing", 0.8)
             if options.tables:
-                write_tables(apart, options.tables / "beside_the_robot")
-            write_gait(captured, walk, out)
-            picture = _draw(walk, out.parent, out.stem)
-            told += beside_lines(apart, robot.name)
-            told += [f"gait: {out}", f"diagram: {picture}", *run_it(robot, _asked(words), out)]
-    print(*lines, *(f"note: {note}" for note in notes), *told, sep="\n")
+                write_tables(comparison, options.tables / "beside_the_robot")
+            write_gait(captured, walk, output)
+            picture = _draw(walk, output.parent, output.stem)
+            messages += beside_lines(comparison, robot.name)
+            messages += [f"gait: {output}", f"diagram: {picture}", *run_it(robot, _robot_word(words), output)]
+    print(*lines, *(f"note: {note}" for note in notes), *messages, sep="\n")
     return 0
 
 
 def _unknown(options: CaptureOptions) -> Unknown:
-    """Return what the film does not show of the animal, as far as it was said."""
+    """Return the ranges of mass and friction, which the film does not show."""
     mass = options.mass
     if len(mass) > 2 or (mass and not 0.0 < mass[0] <= mass[-1]):
         raise BadCommand(
@@ -198,7 +198,15 @@ def _unknown(options: CaptureOptions) -> Unknown:
 
 
 def _forces(walk: Walk, body: Robot, options: CaptureOptions, unknown: Unknown, progress: Progress) -> list[str]:
-    """Compute the forces of a walk or a swim, write them, and return what is said of them."""
+    """Compute the forces of a walk or a swim, write them, and return the lines that describe them.
+
+    Args:
+        walk: the measured walk or swim.
+        body: robot whose body stands for the animal's.
+        options: of the command.
+        unknown: ranges of mass and friction that the film does not show.
+        progress: called with the fraction that is done, 0 to 1.
+    """
     assert options.forces is not None
     medium = options.medium
     if medium == "auto":
@@ -219,7 +227,7 @@ def _forces(walk: Walk, body: Robot, options: CaptureOptions, unknown: Unknown, 
 
 
 def _write_forces(data: xr.Dataset, folder: Path) -> list[str]:
-    """Write forces as tables, NetCDF and a figure, and return what is said of them."""
+    """Write forces as tables, NetCDF and a figure, and return the lines that describe them."""
     write_tables(data, folder)
     write(folder / "forces.nc", packed(data))
     save(ground_forces_figure(data) if data.attrs["medium"] == "land" else water_forces_figure(data), folder, "forces")
@@ -227,10 +235,17 @@ def _write_forces(data: xr.Dataset, folder: Path) -> list[str]:
     return [*said(data), *open_ends, f"forces: {folder}; what each column is stands in {folder / COLUMNS}"]
 
 
-def _measured(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> list[str]:
-    """Write the tables of a walk and their figures, and return the lines that say where they are."""
+def _write_measurements(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> list[str]:
+    """Write the tables and the figures of a walk, and return the lines that say where they are.
+
+    Args:
+        walk: the measured walk.
+        tracks: its keypoints.
+        folder: for the files.
+        video: the film, on which skeleton and contacts are drawn; None: no overlay.
+    """
     data = tables(walk)
-    drawn = overlay(tracks, walk.strides, walk.wrong, video) if video else None
+    overlay_image = overlay(tracks, walk.strides, walk.wrong, video) if video else None
     write_tables(data, folder)
     write(folder / "measured.nc", packed(data))
     if walk.cycle.sizes["leg"] or "spine_lateral" in walk.cycle or "tail_lateral" in walk.cycle:
@@ -238,14 +253,14 @@ def _measured(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> l
     save(strides_figure(data), folder, "strides")
     if "curvature" in data:
         save(curvature_figure(data), folder, "curvature")
-    told = [f"tables: {folder}, {data.sizes['stride']} strides; what each column is stands in {folder / COLUMNS}"]
-    if drawn is not None:
-        told.append(f"on the film: {write(folder / 'overlay.gif', drawn)}")
-    return told
+    messages = [f"tables: {folder}, {data.sizes['stride']} strides; what each column is stands in {folder / COLUMNS}"]
+    if overlay_image is not None:
+        messages.append(f"on the film: {write(folder / 'overlay.gif', overlay_image)}")
+    return messages
 
 
-def _asked(words: Sequence[str]) -> str:
-    """Return the robot as the user asked for it, a name or a file; empty where nothing was asked for."""
+def _robot_word(words: Sequence[str]) -> str:
+    """Return the robot's name or file as the user typed it; empty where the user named no robot."""
     for word, following in zip(words, [*words[1:], ""], strict=True):
         if word == "--robot":
             return following
@@ -254,10 +269,17 @@ def _asked(words: Sequence[str]) -> str:
     return ""
 
 
-def _play(options: CaptureOptions, out: Path | None, asked: str, unknown: Unknown) -> int:
-    """Write the gait that plays a table of joint angles, its tables, say what they are, and return 0."""
+def _write_played_gait(options: CaptureOptions, output: Path | None, robot_word: str, unknown: Unknown) -> int:
+    """Write the gait that plays a table of joint angles, and its tables, print what they are, and return 0.
+
+    Args:
+        options: of the command.
+        output: the gait file; None: no gait is written.
+        robot_word: the robot as the user named it; empty if not named.
+        unknown: ranges of mass and friction that the film does not show.
+    """
     cycle = read_angles(options.tracks)
-    gait = to_curves(cycle, options.robot, name=out.stem, period=options.period) if out else None
+    gait = to_curves(cycle, options.robot, name=output.stem, period=options.period) if output else None
     if gait:
         check_limits(options.robot, gait)
     if options.tables:
@@ -271,24 +293,25 @@ def _play(options: CaptureOptions, out: Path | None, asked: str, unknown: Unknow
                 cycle, options.robot, period=options.period, unknown=unknown, progress=bars.reporter("forces")
             )  # fmt: skip
         print(*_write_forces(data, options.forces), sep="\n")
-    if out is None or gait is None:
+    if output is None or gait is None:
         return 0
-    blueprint.write(gait, out)
-    left = max(zip(cycle.residual, cycle.joints, strict=True))
+    blueprint.write(gait, output)
+    largest_residual = max(zip(cycle.residual, cycle.joints, strict=True))
     print(f"{len(gait.curves)} servos of {options.robot.name} play {options.tracks.name}; closing the cycle changed")
-    print(f"{left[1]} most, by {np.degrees(left[0]):.1f} degrees in the root mean square.")
-    lines = run_it(options.robot, asked, out, "salamander")
-    print(f"gait: {out}", *lines, sep="\n")
+    print(f"{largest_residual[1]} most, by {np.degrees(largest_residual[0]):.1f} degrees in the root mean square.")
+    lines = run_it(options.robot, robot_word, output, "salamander")
+    print(f"gait: {output}", *lines, sep="\n")
     return 0
 
 
-def _how(options: CaptureOptions) -> ReadingOptions:
+def _reading_options(options: CaptureOptions) -> ReadingOptions:
+    """Return the settings with which tracks are read; ``--names`` becomes a mapping from names in the file to ours."""
     names = {}
     for pair in options.names:
-        theirs, equals, ours = pair.partition("=")
-        if not (theirs and equals and ours):
+        file_name, equals, keypoint = pair.partition("=")
+        if not (file_name and equals and keypoint):
             raise BadCommand(f"--names has {pair!r}; THEIRS=OURS is needed, as in left_fore_paw=LF.")
-        names[theirs] = ours
+        names[file_name] = keypoint
     return ReadingOptions(
         names=names,
         rate=options.fps,
@@ -302,11 +325,17 @@ def _how(options: CaptureOptions) -> ReadingOptions:
 
 
 def _draw(walk: Walk, folder: Path, stem: str) -> Path:
-    """Draw two mean cycles one after the other."""
+    """Draw the mean cycle twice in a row as a gait diagram and return the path of its PNG.
+
+    Args:
+        walk: the measured walk.
+        folder: for the figure.
+        stem: name of the file without its ending.
+    """
     cycle = walk.cycle
 
-    def twice(name: str) -> np.ndarray | None:
-        return np.tile(cycle[name].values, 2) if name in cycle else None
+    def repeat_cycle(quantity: str) -> np.ndarray | None:
+        return np.tile(cycle[quantity].values, 2) if quantity in cycle else None
 
     figure = gait_diagram(
         [
@@ -314,8 +343,8 @@ def _draw(walk: Walk, folder: Path, stem: str) -> Path:
                 legs=tuple(str(leg) for leg in cycle.leg.values),
                 time=np.concatenate([cycle.phase.values, 1.0 + cycle.phase.values]),
                 stance=np.tile(cycle.stance.values, 2),
-                **{part: twice(f"{part}_lateral") for part in ("spine", "tail")},
-                **{f"{part}_spread": twice(f"{part}_lateral_spread") for part in ("spine", "tail")},
+                **{region: repeat_cycle(f"{region}_lateral") for region in ("spine", "tail")},
+                **{f"{region}_spread": repeat_cycle(f"{region}_lateral_spread") for region in ("spine", "tail")},
                 label=walk.source,
             )
         ],

@@ -17,7 +17,7 @@ from suchus.apps.cli.word_checks import check_page
 from suchus.apps.report import OUTCOME, Comparison, compare, load_result, number, quantity, write_comparison
 from suchus.core.files import check_replaceable, check_writable
 
-_MOST = 24
+_MAX_ROWS = 24
 """Measures that the terminal shows; the page has all of them [-]."""
 
 
@@ -39,8 +39,10 @@ def compare_outcomes(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or a file make no sense, or the place cannot be written to.
     """
-    about = "Set two outcomes side by side: measures and their differences, verdicts, settings, figures and replays."
-    options = parse(CompareOptions, "suchus compare", words, about)
+    description = (
+        "Set two outcomes side by side: measures and their differences, verdicts, settings, figures and replays."
+    )
+    options = parse(CompareOptions, "suchus compare", words, description)
     check_page(options.out)
     check_writable(options.out.parent)
     check_replaceable(options.out)
@@ -63,15 +65,16 @@ def _folder(path: Path) -> Path:
         return path.parent
     if path.is_dir():
         return path
-    what = "is no outcome" if path.exists() else "is not there"
-    raise BadCommand(f"{path} {what}: name the folder that suchus run wrote, or the {OUTCOME} in it.")
+    problem = "is no outcome" if path.exists() else "is not there"
+    raise BadCommand(f"{path} {problem}: name the folder that suchus run wrote, or the {OUTCOME} in it.")
 
 
 def _show(comparison: Comparison) -> None:
+    """Print the settings, verdicts and measures in which two outcomes differ as tables."""
     console = Console(highlight=False)
     for letter, name in zip("AB", comparison.names, strict=True):
         console.print(escape(printable(f"{letter}: {name}")), soft_wrap=True)
-    _print(console, ("setting", "A", "B"), _settings(comparison)[:_MOST])
+    _print(console, ("setting", "A", "B"), _settings(comparison)[:_MAX_ROWS])
     _print(
         console, ("claim judged differently", "A", "B"), [(o.quantity, o.first, o.second) for o in comparison.changed]
     )
@@ -83,17 +86,17 @@ def _show(comparison: Comparison) -> None:
             "" if row.unit == "-" else row.unit,
             "" if row.share is None else f"{number(float(f'{100 * row.share:.3g}'), 6)} %",
         )
-        for row in comparison.measures[:_MOST]
+        for row in comparison.measures[:_MAX_ROWS]
     ]
     _print(console, ("measure", "A", "B", "unit", "relative to A"), rows)
 
 
 def _settings(comparison: Comparison) -> list[tuple[str, str, str]]:
-    """Return a row for each setting that differs, and one for all within one list, such as a robot's axis."""
+    """Return a row for each setting that differs; settings of one list, such as a robot's axis, share a row."""
     groups: dict[str, list[tuple[str, str, str]]] = {}
-    for one in comparison.settings:
-        row = one.name, _rounded(one.first), _rounded(one.second)
-        groups.setdefault(one.name.partition("[")[0], []).append(row)
+    for setting in comparison.settings:
+        row = setting.name, _rounded(setting.first), _rounded(setting.second)
+        groups.setdefault(setting.name.partition("[")[0], []).append(row)
     return [
         rows[0] if len(rows) == 1 else (f"{name}[]", "", f"{len(rows)} of its settings differ")
         for name, rows in groups.items()
@@ -102,10 +105,11 @@ def _settings(comparison: Comparison) -> list[tuple[str, str, str]]:
 
 def _rounded(text: str) -> str:
     """Return a setting with its numbers in four digits."""
-    return re.sub(r"\d+\.\d{4,}(e[+-]?\d+)?", lambda found: f"{float(found[0]):.4g}", text)
+    return re.sub(r"\d+\.\d{4,}(e[+-]?\d+)?", lambda match: f"{float(match[0]):.4g}", text)
 
 
 def _print(console: Console, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print a table whose first column is on the left; nothing without rows."""
     if not rows:
         return
     table = Table(box=None, padding=(0, 1, 0, 0))

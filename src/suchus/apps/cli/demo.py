@@ -26,7 +26,7 @@ from suchus.visual.replay import replay, save
 
 ROBOT, GAITS_SHOWN = "caiman", ("belly_crawl", "limbs_only")
 """Robot and gaits that are shown: live the first gait, on a page both side by side."""
-_NEEDED = ("viser", "mjviser")
+_VIEWER_PACKAGES = ("viser", "mjviser")
 """Packages of the extra ``viewer``."""
 
 
@@ -55,25 +55,31 @@ def demo(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the page cannot be written.
     """
-    about = "A robot walks: live in the browser, or on a page that plays offline."
-    options = parse(DemoOptions, "suchus demo", words, about)
+    description = "A robot walks: live in the browser, or on a page that plays offline."
+    options = parse(DemoOptions, "suchus demo", words, description)
     opener = None if options.no_browser else browser()
-    live = all(find_spec(name) for name in _NEEDED)
+    live = all(find_spec(name) for name in _VIEWER_PACKAGES)
     if opener is not None and live:
         return serve_walk(ViewWalkOptions(port=options.port), opener.open)
-    return _page(options.out, opener, live)
+    return _write_page(options.out, opener, live)
 
 
-def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
-    """Write the page, name it, and print the results."""
-    check_page(out)
-    check_replaceable(out)
-    check_writable(out.parent)
+def _write_page(output: Path, opener: BaseBrowser | None, live: bool) -> int:
+    """Write the page, print its path and the results, and return 0.
+
+    Args:
+        output: path of the page.
+        opener: browser that opens the page; None: none.
+        live: whether the packages of a live walk are installed.
+    """
+    check_page(output)
+    check_replaceable(output)
+    check_writable(output.parent)
     with working() as bars:
         move = bars.reporter("demo")
         walks = _walks(staged(move, "walking", 0.0, 0.8))
         move("drawing", 0.9)
-        path = save(_drawn(walks), out).absolute()
+        path = save(_drawn(walks), output).absolute()
     robot = ROBOTS[ROBOT]
     print(f"{robot.name}: a robot of {robot.length:.2f} m and {robot.mass:.1f} kg; two cycles of its crawl")
     for name in GAITS_SHOWN:

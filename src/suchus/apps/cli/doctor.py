@@ -39,9 +39,9 @@ _EXTRAS = {
     "meshes": "suchus import of a robot with meshes",
     "cluster": "studies on many machines",
 }
-"""What each extra is good for; those that only developers need are left out."""
+"""Purpose of each extra; extras for developers only are left out."""
 _PATIENCE = 300.0  # [s]; a cold disk and a slow machine
-_WIDE = 110  # columns
+_LINE_WIDTH = 110  # columns
 
 
 class UnfitMachine(SuchusError):
@@ -67,7 +67,7 @@ class Trial:
     found: Mapping[str, Any] | None
     """Output of the trial; None if it failed."""
     failure: str = ""
-    """Why it failed, in a line."""
+    """Reason of the failure, in one line."""
 
 
 def doctor(words: Sequence[str]) -> int:
@@ -95,46 +95,46 @@ def doctor(words: Sequence[str]) -> int:
         extras(),
     ]
     print(page(findings))
-    if wrong := [finding.wrong for finding in findings if finding.wrong]:
-        raise UnfitMachine(f"suchus cannot run here: {'; '.join(wrong)}.")
+    if problems := [finding.wrong for finding in findings if finding.wrong]:
+        raise UnfitMachine(f"suchus cannot run here: {'; '.join(problems)}.")
     print("suchus can run here.")
     return 0
 
 
 def page(findings: Iterable[Finding]) -> str:
-    """Return what was found as text."""
+    """Return the findings as one page of text."""
     head = f"suchus {installed('suchus') or '(not installed)'}, Python {platform.python_version()}, "
     lines = [head + f"{platform.system()} {platform.machine()}", ""]
     for finding in findings:
         for number, text in enumerate(finding.lines):
             label = finding.heading if number == 0 else ""
-            lines.append(fill(text, _WIDE, initial_indent=f"{label:<10} ", subsequent_indent=" " * 11))
+            lines.append(fill(text, _LINE_WIDTH, initial_indent=f"{label:<10} ", subsequent_indent=" " * 11))
     return "\n".join([*lines, ""])
 
 
-def packages(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
-    """Compare the packages that are there with those that suchus needs.
+def packages(requires: Iterable[str] | None = None, find_version: Callable[[str], str | None] | None = None) -> Finding:
+    """Compare the installed packages with the required packages.
 
     Args:
         requires: what suchus needs, as its metadata say it; by default those of the installed package.
-        at: gives the version of a package, None where it is not there.
+        find_version: gives the version of a package, None where it is not there.
     """
-    listed, wrong = [], []
+    listed, mismatches = [], []
     for need in _needs(requires, ""):
-        present = (at or installed)(need.name)
+        present = (find_version or installed)(need.name)
         listed.append(f"{need.name} {present or 'missing'}")
         if present is None or not need.specifier.contains(present, prereleases=True):
-            wrong.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
-    remedy = f"{', '.join(wrong)}: pip install --upgrade suchus" if wrong else ""
+            mismatches.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
+    remedy = f"{', '.join(mismatches)}: pip install --upgrade suchus" if mismatches else ""
     return Finding(heading="packages", lines=(", ".join(listed) or "unknown: suchus is not installed",), wrong=remedy)
 
 
-def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
-    """Tell which extras are there, and how to get the others; the arguments are those of ``packages``."""
+def extras(requires: Iterable[str] | None = None, find_version: Callable[[str], str | None] | None = None) -> Finding:
+    """Return which extras are installed and how to install the others; arguments as for ``packages``."""
     lines = []
     for extra, use in _EXTRAS.items():
         needs = _needs(requires, extra)
-        present = [(at or installed)(need.name) for need in needs]
+        present = [(find_version or installed)(need.name) for need in needs]
         fits = all(p and n.specifier.contains(p, prereleases=True) for n, p in zip(needs, present, strict=True))
         have = ", ".join(f"{need.name} {p}" for need, p in zip(needs, present, strict=True) if p)
         state = f"yes, {have}" if needs and fits else f"no: pip install 'suchus[{extra}]'"
@@ -143,22 +143,24 @@ def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None
 
 
 def cores() -> Finding:
-    """Tell how many threads are used."""
+    """Return how many threads suchus uses."""
     setting = os.environ.get("SUCHUS_THREADS")
-    said = "SUCHUS_THREADS is not set" if setting is None else f"SUCHUS_THREADS={setting}"
+    setting_text = "SUCHUS_THREADS is not set" if setting is None else f"SUCHUS_THREADS={setting}"
     try:
-        return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({said})",))
+        return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({setting_text})",))
     except SuchusError as error:
-        return Finding(heading="threads", lines=(said,), wrong=str(error).rstrip("."))
+        return Finding(heading="threads", lines=(setting_text,), wrong=str(error).rstrip("."))
 
 
 def bits() -> Finding:
-    """Tell what decides the last bits of numbers on this machine."""
-    told = machine.described()
+    """Return what decides the last bits of results on this machine: processor and libraries."""
+    machine_text = machine.described()
     names = ("processor", "vector instructions", "linear algebra", "C library")
-    digests = ", ".join(f"{part} {digest}" for part, digest in machine.arithmetic().items())
-    portable = f"portable ({machine.WANTED}): {told['portable']}"
-    return Finding(heading="last bits", lines=("; ".join(told[name] for name in names), f"{digests}; {portable}"))
+    digests = ", ".join(f"{component} {digest}" for component, digest in machine.arithmetic().items())
+    portable = f"portable ({machine.WANTED}): {machine_text['portable']}"
+    return Finding(
+        heading="last bits", lines=("; ".join(machine_text[name] for name in names), f"{digests}; {portable}")
+    )
 
 
 def walking(trial: Trial) -> Finding:
@@ -188,7 +190,7 @@ def compiled(trial: Trial) -> Finding:
 
 
 def places() -> Finding:
-    """Return whether results can be written here."""
+    """Return whether results can be written into the working folder."""
     try:
         with tempfile.TemporaryDirectory(dir=Path.cwd(), prefix=".suchus-"):
             return Finding(heading="results", lines=("this folder can be written to",))
@@ -197,20 +199,20 @@ def places() -> Finding:
 
 
 def opengl(trial: Trial) -> Finding:
-    """Tell of OpenGL, which suchus does without."""
+    """Return whether OpenGL draws off-screen; suchus does not need it."""
     offscreen = f"off-screen by {trial.found['by']}" if trial.found else "none off-screen"
     return Finding(heading="OpenGL", lines=(f"{offscreen}; suchus needs none, browsers draw with WebGL 2",))
 
 
 def browsing() -> Finding:
-    """Tell which browser opens."""
+    """Return which browser opens pages."""
     opener = browser()
     line = "none with a window: suchus demo writes a page" if opener is None else called(opener)
     return Finding(heading="browser", lines=(line,))
 
 
 def installed(name: str) -> str | None:
-    """Return the version of a package, None where it is not there."""
+    """Return the version of a package; None where it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -218,31 +220,34 @@ def installed(name: str) -> str | None:
 
 
 def tried(*names: str) -> list[Trial]:
-    """Return the results of trials, side by side, each in a process of its own."""
+    """Run trials side by side, each in its own process, and return their results."""
     command = [sys.executable, "-P", "-m", "suchus.apps.cli.doctor"]
     with ExitStack() as stack:
         running = []
         for name in names:
-            begun = subprocess.Popen([*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            running.append(stack.enter_context(begun))
-            stack.callback(begun.kill)  # before its end is waited for
+            trial_process = subprocess.Popen(
+                [*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            )
+            running.append(stack.enter_context(trial_process))
+            stack.callback(trial_process.kill)  # runs before the wait for the end of the process
         return [_outcome(process) for process in running]
 
 
 def _outcome(process: "subprocess.Popen[str]") -> Trial:
+    """Wait for a trial's process and return its result, or why it failed."""
     try:
-        out, err = process.communicate(timeout=_PATIENCE)
+        stdout, stderr = process.communicate(timeout=_PATIENCE)
     except subprocess.TimeoutExpired:
         return Trial(found=None, failure=f"no answer within {_PATIENCE:g} s")
     if process.returncode < 0:
         return Trial(found=None, failure=f"the process died of signal {-process.returncode}")
     if process.returncode > 0:
-        return Trial(found=None, failure=(err.strip().splitlines() or ["no word"])[-1])
-    return Trial(found=json.loads(out.splitlines()[-1]))
+        return Trial(found=None, failure=(stderr.strip().splitlines() or ["no word"])[-1])
+    return Trial(found=json.loads(stdout.splitlines()[-1]))
 
 
 def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
-    """Return what suchus, or one of its extras, needs here.
+    """Return the requirements of suchus or of one extra that apply to this machine.
 
     Raises:
         UnfitMachine: what reads requirements is missing.
@@ -256,11 +261,13 @@ def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
             requires = distribution("suchus").requires or ()
         except PackageNotFoundError:
             requires = ()
-    every = [parse(text) for text in requires]
-    plain = [need for need in every if need.marker is None or need.marker.evaluate({"extra": ""})]
+    requirements = [parse(text) for text in requires]
+    plain = [need for need in requirements if need.marker is None or need.marker.evaluate({"extra": ""})]
     if not extra:
         return plain
-    return [need for need in every if need not in plain and need.marker and need.marker.evaluate({"extra": extra})]
+    return [
+        need for need in requirements if need not in plain and need.marker and need.marker.evaluate({"extra": extra})
+    ]
 
 
 _TEXT = ("www-browser", "links", "elinks", "lynx", "w3m")
@@ -268,7 +275,7 @@ _TEXT = ("www-browser", "links", "elinks", "lynx", "w3m")
 
 
 def browser() -> webbrowser.BaseBrowser | None:
-    """Return the browser that an address is opened with, or None where there is none that draws.
+    """Return the browser that opens addresses; None where no graphical browser is found.
 
     It is the one that ``BROWSER`` names, or the system's; on Linux without a display there is none.
     """
@@ -279,9 +286,9 @@ def browser() -> webbrowser.BaseBrowser | None:
     return None if called(system) in _TEXT else system
 
 
-def called(found: webbrowser.BaseBrowser) -> str:
+def called(opener: webbrowser.BaseBrowser) -> str:
     """Return the name of a browser, as it is called on the command line."""
-    return Path(str(getattr(found, "name", ""))).name or type(found).__name__
+    return Path(str(getattr(opener, "name", ""))).name or type(opener).__name__
 
 
 def trial_walk() -> dict[str, Any]:
@@ -303,10 +310,10 @@ def trial_swim() -> dict[str, Any]:
 
     @numba.njit(parallel=True)  # type: ignore[untyped-decorator]
     def doubled(values: Any) -> Any:
-        out = np.empty_like(values)
+        results = np.empty_like(values)
         for i in numba.prange(values.size):
-            out[i] = 2.0 * values[i]
-        return out
+            results[i] = 2.0 * values[i]
+        return results
 
     doubled(np.ones(8))
     folder = compiled.FOLDER
@@ -330,7 +337,7 @@ def trial_draw() -> dict[str, Any]:
 
 
 TRIALS: dict[str, Callable[[], dict[str, Any]]] = {"walk": trial_walk, "swim": trial_swim, "draw": trial_draw}
-"""By name."""
+"""Trials by name."""
 
 
 if __name__ == "__main__":

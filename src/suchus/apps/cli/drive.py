@@ -50,9 +50,9 @@ from suchus.visual.figures import styled
 
 SWIM = "swim"
 """Gait that is the robot's own wave, as in suchus view --lake."""
-_PATIENT = 60.0  # [s]; for letting a robot down and writing its log, on a computer that is told to stop
-_SHOWN = 3  # ticks whose packets a dry run prints
-_HELD = 4.0  # [s]; how long a robot stands up
+_SHUTDOWN_TIME = 60.0  # [s]; for letting a robot down and writing its log, on a computer that is told to stop
+_MAX_PRINTED_TICKS = 3  # ticks whose packets a dry run prints
+_STANDING_TIME = 4.0  # [s]; how long a robot stands up
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,14 +96,16 @@ def run(words: Sequence[str]) -> int:
         SuchusError: the words or a file make no sense, or the robot cannot do it; nothing has moved.
         BusFailure: servos cannot be reached, or the robot had to be stopped; the log is kept.
     """
-    about = "Drive a robot of servos. Any key stops it, as Ctrl-C and the end of the terminal do; then it is let down."
-    options = parse(DriveOptions, "suchus drive", gait_first(words), about)
+    description = (
+        "Drive a robot of servos. Any key stops it, as Ctrl-C and the end of the terminal do; then it is let down."
+    )
+    options = parse(DriveOptions, "suchus drive", gait_first(words), description)
     gait, control = _movement(options)
     folder = options.out or Path("out") / f"drive_{gait.name}"
     check_writable(folder.parent)
     check_place(folder)
     if options.map is not None:
-        return _drive(options, gait, control, folder, words, lambda: _blind(options))
+        return _drive(options, gait, control, folder, words, lambda: _open_blind_rig(options))
     wiring = read_wiring(options.hardware, options.robot)
     if options.port is not None:
         if len(wiring.bus) != 1:
@@ -111,7 +113,7 @@ def run(words: Sequence[str]) -> int:
                 f"--port names one port, and {options.hardware} has {len(wiring.bus)} buses: name them there."
             )
         wiring = replace(wiring, bus=(replace(wiring.bus[0], port=options.port),))
-    return _drive(options, gait, control, folder, words, lambda: _opened(options, wiring, gait, control))
+    return _drive(options, gait, control, folder, words, lambda: _open_rig(options, wiring, gait, control))
 
 
 def _drive(
@@ -120,31 +122,47 @@ def _drive(
     control: Control,
     folder: Path,
     words: Sequence[str],
-    opened: Callable[[], AbstractContextManager[tuple[Rig | BlindRig, Any]]],
+    open_rig: Callable[[], AbstractContextManager[tuple[Rig | BlindRig, Any]]],
 ) -> int:
-    """Drive an opened robot, keep its log, and return 0."""
+    """Drive a robot, save its log, and return 0.
+
+    Args:
+        options: of the command.
+        gait: the gait.
+        control: the controller.
+        folder: of the log.
+        words: words of the command line, for the log.
+        open_rig: opens the robot and returns it with its clock.
+    """
     settings = DriveSettings(duration=options.seconds, stop=options.stop)
-    begun = time.perf_counter()
-    told = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
-    with finishing(_PATIENT), opened() as (rig, clock):
+    start = time.perf_counter()
+    experiment = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
+    with finishing(_SHUTDOWN_TIME), open_rig() as (rig, clock):
         check_drive(rig, gait, control)
         try:
-            with _keys() as asked, working() as bars:
+            with _watch_keys() as stop_reason, working() as bars:
                 record = drive(
-                    rig, gait, control, settings, clock=clock, asked=asked, say=bars.say, progress=bars.task(gait.name)
+                    rig,
+                    gait,
+                    control,
+                    settings,
+                    clock=clock,
+                    asked=stop_reason,
+                    say=bars.say,
+                    progress=bars.task(gait.name),
                 )
         except Stopped as stop:
             _hurry(getattr(stop, "record", None), folder)
             raise
         except (BusFailure, KeyboardInterrupt) as error:
-            _keep(told, getattr(error, "record", None), folder, words, time.perf_counter() - begun)
+            _save_log(experiment, getattr(error, "record", None), folder, words, time.perf_counter() - start)
             raise
-    _keep(told, record, folder, words, time.perf_counter() - begun)
+    _save_log(experiment, record, folder, words, time.perf_counter() - start)
     return 0
 
 
 @contextmanager
-def _blind(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
+def _open_blind_rig(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
     """Yield a robot of hobby servos and its clock; a dry run prints what would be written."""
     assert options.map is not None
     if options.clock == "bus":
@@ -160,15 +178,15 @@ def _blind(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
 
 
 class Shown:
-    """An I2C bus that is none: it prints the first things that are written to it."""
+    """A stand-in for an I2C bus; it prints the first writes."""
 
     def __init__(self) -> None:
-        self._left = 24
+        self._remaining_writes = 24
 
     def write_i2c_block_data(self, i2c_addr: int, register: int, data: Sequence[int]) -> None:
         """Print what would be written."""
-        self._left -= 1
-        if self._left >= 0:
+        self._remaining_writes -= 1
+        if self._remaining_writes >= 0:
             print(f"write {i2c_addr:#04x} {register:#04x}  {bytes(data).hex(' ')}")
 
     def close(self) -> None:
@@ -176,7 +194,7 @@ class Shown:
 
 
 def _movement(options: DriveOptions) -> tuple[Gait, Control]:
-    """Return the gait and what decides."""
+    """Return the gait and the controller that the options name."""
     robot = options.robot
     if options.gait == SWIM or (options.control == "swim" and not options.gait):
         gait, kind = swim_of(robot), "swim"
@@ -194,17 +212,24 @@ def _movement(options: DriveOptions) -> tuple[Gait, Control]:
         "closed": lambda: closed,
         "steered": lambda: replace(closed, heading=HeadingRule()),
         "pattern": PatternGenerator,
-        "stand": lambda: Standing(at=START + gait.period, hold=_HELD),
+        "stand": lambda: Standing(at=START + gait.period, hold=_STANDING_TIME),
         "swim": Swimming,
     }
     return gait, controls[kind]()
 
 
 @contextmanager
-def _opened(options: DriveOptions, wiring: Wiring, gait: Gait, control: Control) -> Iterator[tuple[Rig, Any]]:
-    """Yield the open robot and its clock; an emulated one in this process where nothing is to be opened."""
+def _open_rig(options: DriveOptions, wiring: Wiring, gait: Gait, control: Control) -> Iterator[tuple[Rig, Any]]:
+    """Yield the opened robot and its clock; a dry run emulates the robot in this process.
+
+    Args:
+        options: of the command.
+        wiring: buses and servos of the robot.
+        gait: gait in whose first posture an emulated robot starts.
+        control: the controller, which says which readings it needs.
+    """
     ports: list[Port] = []
-    clocked = options.clock == "bus" or options.dry_run
+    is_clocked = options.clock == "bus" or options.dry_run
     if options.dry_run:
         emulator = Emulator(wiring, EmulatedBody(options.robot, gait), clocked=True)
         ports = [
@@ -212,23 +237,33 @@ def _opened(options: DriveOptions, wiring: Wiring, gait: Gait, control: Control)
             for number, bus in enumerate(wiring.bus)
         ]
     rig = Rig(
-        options.robot, wiring, ports, clocked=clocked, without=options.without,
+        options.robot, wiring, ports, clocked=is_clocked, without=options.without,
         rate=None if options.dry_run else options.rate, needed=needs(control),
     )  # fmt: skip
     try:
-        yield rig, BusClock(rig) if clocked else WallClock(rig.period)
+        yield rig, BusClock(rig) if is_clocked else WallClock(rig.period)
     finally:
         rig.close()
 
 
-def _keep(told: Driven, record: xr.Dataset | None, folder: Path, words: Sequence[str], seconds: float) -> None:
-    """Write the folder of a log, and say what it says."""
+def _save_log(
+    experiment: Driven, record: xr.Dataset | None, folder: Path, words: Sequence[str], seconds: float
+) -> None:
+    """Write the folder of a log, and print the result and its cause.
+
+    Args:
+        experiment: the question that the log answers.
+        record: the log; None or empty: nothing is written.
+        folder: of the log.
+        words: words of the command line.
+        seconds: duration of the drive [s].
+    """
     if record is None or record.sizes["time"] < 1:
         return
-    outcome = told.tell(record, seconds)
+    outcome = experiment.tell(record, seconds)
     with styled():
-        figures = told.draw(outcome)
-    save_outcome(outcome, figures, told, folder, command=shlex.join(["suchus", "drive", *words]))
+        figures = experiment.draw(outcome)
+    save_outcome(outcome, figures, experiment, folder, command=shlex.join(["suchus", "drive", *words]))
     console = Console(highlight=False)
     console.print(outcome.decides, markup=False)
     cause = str(record.cause.item())
@@ -238,27 +273,30 @@ def _keep(told: Driven, record: xr.Dataset | None, folder: Path, words: Sequence
 
 
 def _hurry(record: xr.Dataset | None, folder: Path) -> None:
-    """Keep a log and nothing else: whoever told this process to stop does not wait for figures."""
+    """Save the log without figures, since a stopped process has little time left."""
     if record is not None and record.sizes["time"] > 0:
-        others = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
-        folder = next(place for place in chain([folder], others) if not there(place))  # an earlier log stays
+        alternatives = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
+        folder = next(
+            candidate for candidate in chain([folder], alternatives) if not there(candidate)
+        )  # an earlier log is not overwritten
         folder.mkdir(parents=True)
-        kept = save(record, folder / RECORD)
-        with suppress(OSError):  # a terminal that is gone
-            print(f"the log: {kept}", flush=True)
+        log_path = save(record, folder / RECORD)
+        with suppress(OSError):  # the terminal may be closed
+            print(f"the log: {log_path}", flush=True)
 
 
 @contextmanager
-def _keys() -> Iterator[Callable[[], str]]:
-    """Yield what says whether a key was pressed; the terminal is as before in the end."""
-    before = None
+def _watch_keys() -> Iterator[Callable[[], str]]:
+    """Yield a function that returns why to stop, such as a pressed key; restore the terminal at the end."""
+    terminal_settings = None
     with suppress(termios.error, OSError, ValueError, AttributeError):  # no terminal, or one that cannot be set
         if sys.stdin.isatty():
-            before = termios.tcgetattr(sys.stdin)
+            terminal_settings = termios.tcgetattr(sys.stdin)
             tty.setcbreak(sys.stdin)
 
-    def asked() -> str:
-        if before is None:
+    def stop_reason() -> str:
+        """Return why the robot must stop: a key or a closed terminal; empty while neither happened."""
+        if terminal_settings is None:
             return ""
         try:
             ready, _, _ = select.select((sys.stdin,), (), (), 0.0)
@@ -267,31 +305,31 @@ def _keys() -> Iterator[Callable[[], str]]:
             return "the terminal was closed."
 
     try:
-        yield asked
+        yield stop_reason
     finally:
-        if before is not None:
+        if terminal_settings is not None:
             with suppress(termios.error, OSError, ValueError):
-                termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+                termios.tcsetattr(sys.stdin, termios.TCSADRAIN, terminal_settings)
 
 
 class Telling:
-    """A port that prints what is sent over it: the handshake in short, then the packets of some ticks.
+    """A port that prints the packets sent over it during the first ticks.
 
     Args:
-        port: that it is.
-        framing: what is spoken.
-        wiring: names of those that are spoken to.
+        port: carries the packets.
+        framing: packet format of the protocol.
+        wiring: gives the names of the servos.
     """
 
     def __init__(self, port: Port, framing: Framing, wiring: Wiring) -> None:
         self.name = port.name
-        self._port, self._decoder, self._told = port, framing.requests(), 0
+        self._port, self._decoder, self._printed_ticks = port, framing.requests(), 0
         self._word = framing.word
-        self._names = {one.id: one.name for one in wiring.servo}
-        self._tables = {one.id: one.table for one in wiring.servo}
+        self._names = {servo.id: servo.name for servo in wiring.servo}
+        self._tables = {servo.id: servo.table for servo in wiring.servo}
 
     def send(self, data: bytes, wait: float) -> None:
-        """Send, and print what."""
+        """Send bytes, and print the packets in them."""
         for packet in self._decoder.feed(data):
             self._tell(packet, data)
         self._port.send(data, wait)
@@ -301,22 +339,23 @@ class Telling:
         return self._port.receive(wait)
 
     def close(self) -> None:
-        """Let go of it."""
+        """Close the port."""
         self._port.close()
 
     def _tell(self, packet: Packet, data: bytes) -> None:
+        """Print a packet that reads or writes all servos at once, with the servos' names and the bytes on the wire."""
         if packet.code not in (Instruction.SYNC_READ, Instruction.SYNC_WRITE):
             return
-        word, rest = self._word, packet.data
-        address = int.from_bytes(rest[:word], "little")
-        length = int.from_bytes(rest[word : 2 * word], "little")
+        word, payload = self._word, packet.data
+        address = int.from_bytes(payload[:word], "little")
+        length = int.from_bytes(payload[word : 2 * word], "little")
         table = next(iter(self._tables.values()))
-        register = next((one.name for one in table.registers if one.address == address), str(address))
+        register = next((entry.name for entry in table.registers if entry.address == address), str(address))
         if register == "goal_position":
-            self._told += 1
-        if self._told > _SHOWN:
+            self._printed_ticks += 1
+        if self._printed_ticks > _MAX_PRINTED_TICKS:
             return
         kind = "write" if packet.code == Instruction.SYNC_WRITE else "read"
         step = length + 1 if kind == "write" else 1
-        called = [self._names.get(rest[i], str(rest[i])) for i in range(2 * word, len(rest), step)]
-        print(f"{kind} {register}, {len(called)} of {', '.join(called[:3])} ...\n  {data.hex(' ')}")
+        servo_names = [self._names.get(payload[i], str(payload[i])) for i in range(2 * word, len(payload), step)]
+        print(f"{kind} {register}, {len(servo_names)} of {', '.join(servo_names[:3])} ...\n  {data.hex(' ')}")

@@ -72,27 +72,27 @@ def emulate(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or a file make no sense, or the ports cannot be made.
     """
-    about = (
+    description = (
         "Emulate a robot's servos on a bus: what drives them cannot tell them from real ones, and nothing can break."
     )
-    options = parse(EmulateOptions, "suchus emulate", _robot_first(words), about)
+    options = parse(EmulateOptions, "suchus emulate", _robot_first(words), description)
     if options.out is not None:
         check_writable(options.out.parent)
         check_replaceable(options.out)
     trouble = options.trouble
-    clocked = options.clock == "bus"
+    is_clocked = options.clock == "bus"
     body = EmulatedBody(
         options.robot,
         options.gait or own_gait(options.robot),
         ground=Ground(uphill=radians(options.slope)),
         lake=None if options.lake is None else Lake(level=options.lake),
         faults=[_fault(text, trouble.at) for text in options.fault],
-        latency=trouble.latency if clocked else 0.0,
+        latency=trouble.latency if is_clocked else 0.0,
     )
-    wiring, links = _wired(options)
-    server = Server(Emulator(wiring, body, trouble, clocked=clocked), links, sockets=options.socket)
+    wiring, links = _wiring_and_links(options)
+    server = Server(Emulator(wiring, body, trouble, clocked=is_clocked), links, sockets=options.socket)
     viewer: Any = None
-    each: Callable[[], None] = _nothing
+    after_step: Callable[[], None] = _do_nothing
     try:
         if options.socket or not links:
             wiring = _with_ports(wiring, server.ports)
@@ -102,15 +102,15 @@ def emulate(words: Sequence[str]) -> int:
             f"{', '.join(server.ports)}: the servos of {options.robot.name}, wired as {options.hardware} says",
             flush=True,
         )
-        if trouble.latency and clocked and abs(body.latency - trouble.latency) > 1e-9:
+        if trouble.latency and is_clocked and abs(body.latency - trouble.latency) > 1e-9:
             print(f"goals are {1e3 * body.latency:g} ms on their way, whole steps of the physics", flush=True)
         if options.view:
-            viewer = _watched(options, server, body)
-            each = viewer.look
+            viewer = _watching_page(options, server, body)
+            after_step = viewer.look
             print(f"open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
         end = body.tick + round(options.seconds / body.period) if options.seconds is not None else None
         with suppress(KeyboardInterrupt):
-            server.serve(until=lambda: end is not None and body.tick >= end, each=each)
+            server.serve(until=lambda: end is not None and body.tick >= end, each=after_step)
     finally:
         server.close()
         if viewer is not None:
@@ -121,36 +121,36 @@ def emulate(words: Sequence[str]) -> int:
     return 0
 
 
-def _nothing() -> None:
+def _do_nothing() -> None:
     """Do nothing after a step."""
 
 
-def _wired(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
-    """Return what hangs where, and under which names the pseudo-terminals are found."""
+def _wiring_and_links(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
+    """Return the wiring, and the links under which the pseudo-terminals are found."""
     if options.hardware.exists():
         wiring = read_wiring(options.hardware, options.robot)
-        ports = [Path(one.port) for one in wiring.bus if "://" not in one.port]
+        ports = [Path(bus.port) for bus in wiring.bus if "://" not in bus.port]
         return wiring, ports if len(ports) == len(wiring.bus) and not options.socket else []
     check_writable(options.hardware.parent)
     link = options.hardware.parent / f"{options.hardware.stem}.port"
-    place = BusPlace(port=link.name, protocol=options.protocol, baud=_BAUD[options.protocol])
-    return straight(options.robot, [place], USUAL[options.protocol], boards=True), [] if options.socket else [link]
+    bus_place = BusPlace(port=link.name, protocol=options.protocol, baud=_BAUD[options.protocol])
+    return straight(options.robot, [bus_place], USUAL[options.protocol], boards=True), [] if options.socket else [link]
 
 
 def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:
-    """Return a wiring whose buses are found where they are."""
-    named = [port if "://" in port else Path(port).name for port in ports]
-    return replace(wiring, bus=tuple(replace(one, port=port) for one, port in zip(wiring.bus, named, strict=True)))
+    """Return the wiring with the buses' present ports."""
+    port_names = [port if "://" in port else Path(port).name for port in ports]
+    return replace(wiring, bus=tuple(replace(bus, port=port) for bus, port in zip(wiring.bus, port_names, strict=True)))
 
 
-def _fault(text: str, at: float) -> Any:
-    kind, colon, part = text.partition(":")
-    if not colon or not part:
+def _fault(text: str, onset: float) -> Any:
+    kind, colon, joint = text.partition(":")
+    if not colon or not joint:
         raise BadCommand(f"--fault {text} names no part; say as limp:LF_yaw. The kinds are {', '.join(FAULTS)}.")
-    return from_table({"kind": kind, "joint": part, "at": at})
+    return from_table({"kind": kind, "joint": joint, "at": onset})
 
 
-def _watched(options: EmulateOptions, server: Server, body: EmulatedBody) -> Any:
+def _watching_page(options: EmulateOptions, server: Server, body: EmulatedBody) -> Any:
     """Return the page in a browser that watches the robot."""
     pages, ports = pages_of_viewer(), ", ".join(server.ports)
 
@@ -162,7 +162,7 @@ def _watched(options: EmulateOptions, server: Server, body: EmulatedBody) -> Any
 
 
 def _robot_first(words: Sequence[str]) -> list[str]:
-    """Let the robot be named as an option too, as everywhere else."""
+    """Move the value of ``--robot`` to the first place, where the parser expects the robot."""
     words = list(words)
     for i, word in enumerate(words):
         if word == "--robot" and i + 1 < len(words):

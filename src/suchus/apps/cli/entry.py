@@ -64,7 +64,7 @@ class Subcommand:
     """What ``--out`` names: a folder, a page, or a file for a gait or a robot; empty where it is not checked early."""
 
     def __call__(self, words: Sequence[str]) -> int:
-        """Carry the command out and return the exit code; what is plainly wrong is refused before it is loaded."""
+        """Check the words, carry out the command, and return the exit code."""
         check: Callable[[Subcommand, Sequence[str]], None] = resolve_name("suchus.apps.cli.word_checks:check_words")
         check(self, words)
         function: Callable[[Sequence[str]], int] = resolve_name(self.function)
@@ -238,7 +238,7 @@ def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] = CO
     try:
         if of_this_process and PORTABLE in os.environ:
             _begin_portable()
-        words, folder = _apart(words)
+        words, folder = _split_project(words)
         replace, mixed, any_size = (option in words for option in (REPLACE, MIXED, large.OPTION))
         words = [word for word in words if word not in (REPLACE, MIXED, large.OPTION)]
         with (
@@ -251,8 +251,8 @@ def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] = CO
             large.allowing(any_size),
         ):
             _check_words(words)
-            _check_room()
-            return _flushed(words, commands)
+            _check_memory()
+            return _dispatch_and_flush(words, commands)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
     except BusFailure as error:
@@ -270,7 +270,7 @@ def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] = CO
 
 
 def _check_words(words: Sequence[str]) -> None:
-    """Refuse what no result could hold, since results say by which command they were made.
+    """Refuse words that are not UTF-8, since every result stores its command as text.
 
     Raises:
         BadCommand: a word has bytes that are no UTF-8.
@@ -280,22 +280,22 @@ def _check_words(words: Sequence[str]) -> None:
             raise BadCommand(f"{word!r} is no text in UTF-8, as results, which hold their command, are: rename it.")
 
 
-def _check_room() -> None:
-    """Refuse to begin where libraries could not even be loaded, which would end in errors of theirs.
+def _check_memory() -> None:
+    """Refuse to start with too little memory for the libraries, whose own errors would be obscure.
 
     Raises:
         BadCommand: this process may take too little memory.
     """
-    room = large.memory()
-    if room is not None and room < LEAST:
+    memory_limit = large.memory()
+    if memory_limit is not None and memory_limit < LEAST:
         raise BadCommand(
-            f"this process may take {room / 1e9:.2g} GB of memory, and suchus needs {LEAST / 1e9:.2g} GB: raise the "
-            "limit, as with ulimit -v unlimited."
+            f"this process may take {memory_limit / 1e9:.2g} GB of memory, and suchus needs {LEAST / 1e9:.2g} GB: "
+            "raise the limit, as with ulimit -v unlimited."
         )
 
 
 def _begin_portable() -> None:
-    """Begin this process anew where it asks for portable arithmetic and its libraries do not know of it.
+    """Restart this process where its libraries do not yet use the portable arithmetic that it requests.
 
     Raises:
         OutsideLimits: this machine has no such arithmetic.
@@ -307,36 +307,37 @@ def _begin_portable() -> None:
         os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
 
 
-def _mixing(asked: bool) -> AbstractContextManager[None]:
-    if not asked:
+def _mixing(allow_mixed: bool) -> AbstractContextManager[None]:
+    """Return a context in which results of another arithmetic may be continued, if that is allowed."""
+    if not allow_mixed:
         return nullcontext()
     from suchus.core.machine import mixing  # noqa: PLC0415  as above
 
     return mixing()
 
 
-def _apart(words: list[str]) -> tuple[list[str], str | None]:
+def _split_project(words: list[str]) -> tuple[list[str], str | None]:
     """Return the words of the command, and the project folder that ``--project`` names among them; None for none.
 
     Raises:
         BadCommand: no folder follows, or two do.
     """
-    rest, folders = list[str](), list[str]()
-    left = iter(words)
-    for word in left:
+    command_words, folders = list[str](), list[str]()
+    word_iterator = iter(words)
+    for word in word_iterator:
         if word == PROJECT:
-            folders.append(next(left, ""))
+            folders.append(next(word_iterator, ""))
         elif word.startswith(f"{PROJECT}="):
             folders.append(word.partition("=")[2])
         else:
-            rest.append(word)
+            command_words.append(word)
     if len(folders) > 1 or "" in folders:
         raise BadCommand(f"{PROJECT} needs one folder, as in suchus list {PROJECT} my_lab.")
-    return rest, folders[0] if folders else None
+    return command_words, folders[0] if folders else None
 
 
-def _flushed(words: list[str], commands: Sequence[Subcommand]) -> int:
-    """Carry out a command line; what it printed is out when this returns.
+def _dispatch_and_flush(words: list[str], commands: Sequence[Subcommand]) -> int:
+    """Carry out a command line and flush standard output.
 
     Raises:
         Unwritable: standard output takes nothing, or the system refused a file in a way that nobody foresaw.
@@ -352,11 +353,12 @@ def _flushed(words: list[str], commands: Sequence[Subcommand]) -> int:
         if isinstance(error, SuchusError):
             raise
         _drop_output()
-        what = f"{error.filename} cannot be read or written" if error.filename else "what was to be printed is lost"
-        raise Unwritable(f"{what}: {(error.strerror or str(error)).lower()}.") from error
+        problem = f"{error.filename} cannot be read or written" if error.filename else "what was to be printed is lost"
+        raise Unwritable(f"{problem}: {(error.strerror or str(error)).lower()}.") from error
 
 
 def _dispatch(words: list[str], commands: Sequence[Subcommand]) -> int:
+    """Carry out the command that the first word names, or print version or help, and return the exit code."""
     if words and words[0] in ("--version", "-V"):
         if words[1:]:
             raise BadCommand(f"{words[0]} stands alone; leave out {' '.join(words[1:])!r}.")
@@ -374,18 +376,19 @@ def _dispatch(words: list[str], commands: Sequence[Subcommand]) -> int:
 
 
 def _help() -> str:
-    left = max(len(f"{c.name} {c.usage}") for c in COMMANDS)
-    right = max(len(example) for example, _ in _EXAMPLES)
+    """Return the help: every command with its usage and summary, then examples."""
+    command_width = max(len(f"{c.name} {c.usage}") for c in COMMANDS)
+    example_width = max(len(example) for example, _ in _EXAMPLES)
     return "\n".join(
         (
             "suchus: the open laboratory for crocodile-like robots",
             "",
             "usage: suchus COMMAND ...",
             "",
-            *(f"  {f'{c.name} {c.usage}':<{left}}  {c.summary}" for c in COMMANDS),
+            *(f"  {f'{c.name} {c.usage}':<{command_width}}  {c.summary}" for c in COMMANDS),
             "",
             "examples:",
-            *(f"  {example:<{right}}  {text}" for example, text in _EXAMPLES),
+            *(f"  {example:<{example_width}}  {text}" for example, text in _EXAMPLES),
             "",
             "suchus COMMAND --help describes a command; --version prints the version.",
             f"suchus COMMAND ... {PROJECT} DIR takes along what stands in a project folder; without it, what stands in",
@@ -434,15 +437,15 @@ def _hold(number: int) -> None:
     try:
         os.fstat(number)
     except OSError:
-        os.open(os.devnull, os.O_RDWR)  # takes the least number that is free
+        os.open(os.devnull, os.O_RDWR)  # the system assigns the lowest free number
 
 
 def _drop_output() -> None:
-    """Let what is still to be printed go nowhere, so that the end of the process does not complain of it again."""
+    """Redirect standard output to nowhere, so that the exit of the process reports no second error."""
     with suppress(OSError, ValueError):  # not every stream is a file
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def printable(text: str) -> str:
-    """Return a text whose letters a terminal shows and does not obey; spaces of every kind stay."""
+    """Return a text with control characters escaped; spaces of every kind stay."""
     return "".join(c if c.isprintable() or category(c) == "Zs" else c.encode("unicode_escape").decode() for c in text)

@@ -40,9 +40,11 @@ def export_robot(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the place cannot be written to.
     """
-    about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
+    description = (
+        "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
+    )
     _check_format(words)
-    options = parse(ExportOptions, "suchus export", words, about)
+    options = parse(ExportOptions, "suchus export", words, description)
     if options.out is None:
         check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"
@@ -53,7 +55,7 @@ def export_robot(words: Sequence[str]) -> int:
 
 
 def _check_format(words: Sequence[str]) -> None:
-    """Refuse a format that is not there with those near it; the parser only lists all."""
+    """Refuse an unknown format with a suggestion of similar ones; the parser only lists all formats."""
     for word in given(words, "--format"):
         if word not in get_args(Format):
             raise UnknownName("format", word, get_args(Format))

@@ -68,8 +68,8 @@ def export_commands(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, the servos cannot do it, or the place cannot be written to.
     """
-    about = "Write a gait as timed servo angles: CSV with pulses, and a ROS trajectory_msgs/JointTrajectory."
-    options = parse(ExportCommandsOptions, "suchus export-commands", gait_first(words), about)
+    description = "Write a gait as timed servo angles: CSV with pulses, and a ROS trajectory_msgs/JointTrajectory."
+    options = parse(ExportCommandsOptions, "suchus export-commands", gait_first(words), description)
     if (
         options.gait == ExportCommandsOptions().gait
         and options.gait.name not in words
@@ -90,46 +90,47 @@ def export_commands(words: Sequence[str]) -> int:
     samples = commands(options.robot, options.gait, servo_map, options.cycles)
     with working() as bars:
         move = bars.task(options.gait.name)
-        asked = cases(options.robot, (options.gait,))
-        (borne,) = loads_of_each(options.robot, asked, progress=staged(move, "walking", 0.0, 0.7))
-        borne = with_better(options.robot, asked[0], borne)
+        load_cases = cases(options.robot, (options.gait,))
+        (loads,) = loads_of_each(options.robot, load_cases, progress=staged(move, "walking", 0.0, 0.7))
+        loads = with_better(options.robot, load_cases[0], loads)
         move("walking", 1.0)
     try:
         check_commands(options.robot, options.gait, servo_map, samples)
-        check_loads(options.robot, options.gait, borne, options.at_limit, options.tracking)
+        check_loads(options.robot, options.gait, loads, options.at_limit, options.tracking)
     except OutsideLimits as error:
         with new_folder(folder) as draft:
-            _write_loads(options, borne, draft)
+            _write_loads(options, loads, draft)
         raise OutsideLimits(f"{error} What each servo bears stands in {folder / 'loads.csv'}.") from error
     with new_folder(folder) as draft:
-        _write_loads(options, borne, draft)
+        _write_loads(options, loads, draft)
         (draft / "commands.csv").write_text(csv_text(samples), encoding="utf-8")
         (draft / "trajectory.yaml").write_text(trajectory_text(options.robot, samples), encoding="utf-8")
         write_map(servo_map, draft / "servo_map.toml")
         (draft / "gait.toml").write_text(blueprint.render(options.gait), encoding="utf-8")
-    hardest = max(borne, key=lambda name: borne[name].torque / borne[name].limit)
-    load = borne[hardest]
+    hardest = max(loads, key=lambda name: loads[name].torque / loads[name].limit)
+    load = loads[hardest]
     print(f"{len(samples.time)} samples over {samples.time[-1]:g} s: {folder}")
     print(
         f"highest-loaded in simulation: {hardest}, {load.torque:.2f} of {load.limit:g} N m, "
         f"at the limit for {100 * load.at_limit:.1f} % of the walk"
     )
-    for sentence in overloaded(borne, options.at_limit):
+    for sentence in overloaded(loads, options.at_limit):
         print(f"warning: {sentence}")
     return 0
 
 
-def _write_loads(options: ExportCommandsOptions, borne: Mapping[str, ServoLoad], draft: Path) -> None:
-    """Write what the servos bear, and of which robot and gait."""
+def _write_loads(options: ExportCommandsOptions, loads: Mapping[str, ServoLoad], draft: Path) -> None:
+    """Write the loads of the servos, and the digests of robot and gait."""
     origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
-    (draft / "loads.csv").write_text(_loads_text(borne, options.at_limit), encoding="utf-8")
+    (draft / "loads.csv").write_text(_loads_text(loads, options.at_limit), encoding="utf-8")
     (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
 
-def _loads_text(borne: Mapping[str, ServoLoad], at_limit: float) -> str:
+def _loads_text(loads: Mapping[str, ServoLoad], at_limit: float) -> str:
+    """Return the loads as CSV, one row for each servo; torques in N m, times in s, angles in rad."""
     lines = ["servo,peak_torque_Nm,torque_limit_Nm,share_at_limit,first_at_s,off_rad,needed_Nm,would_do"]
-    for name, load in borne.items():
-        first = "" if load.first != load.first else f"{load.first:.2f}"
-        cells = f"{load.torque:.4f},{load.limit:g},{load.at_limit:.4f},{first},{load.off:.4f},{load.needed:.4f}"
+    for name, load in loads.items():
+        first_time = "" if load.first != load.first else f"{load.first:.2f}"
+        cells = f"{load.torque:.4f},{load.limit:g},{load.at_limit:.4f},{first_time},{load.off:.4f},{load.needed:.4f}"
         lines.append(f"{name},{cells},{load.other if load.at_limit > at_limit else ''}")
     return "\n".join(lines) + "\n"

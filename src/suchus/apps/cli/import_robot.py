@@ -52,18 +52,18 @@ def import_file(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the file is no robot that can be taken.
     """
-    about = (
+    description = (
         "Read a robot from a URDF or an MJCF: a draft in which every guess has a comment, and a gait to begin with. "
         "Nothing in the file is executed; what it includes is read from its own folder only."
     )
-    options = parse(ImportOptions, "suchus import", words, about)
-    out = options.out or Path(f"{options.file.stem}.toml")
-    check_toml(out, "robot")
-    check_writable(out.parent)
-    walk = out.with_name(f"{out.stem}_walk.toml")
-    for file in (out, walk):
+    options = parse(ImportOptions, "suchus import", words, description)
+    output = options.out or Path(f"{options.file.stem}.toml")
+    check_toml(output, "robot")
+    check_writable(output.parent)
+    gait_file = output.with_name(f"{output.stem}_walk.toml")
+    for file in (output, gait_file):
         check_replaceable(file)
-    said = Words(
+    settings = Words(
         front=options.front,
         heading=options.heading,
         neck=options.neck,
@@ -73,26 +73,26 @@ def import_file(words: Sequence[str]) -> int:
         packages=options.packages,
         without_meshes=options.without_meshes,
     )
-    draft = import_robot(options.file, name=out.stem, words=said)
+    draft = import_robot(options.file, name=output.stem, words=settings)
     print(*_plan(draft), *(f"note: {text}" for text in draft.remarks), sep="\n")
-    gait = _gait(draft, f"{out.stem}_walk")
+    gait = _gait(draft, f"{output.stem}_walk")
     head = (f"A draft that suchus read from {options.file.name}. Check it; what is guessed says so.", *draft.remarks)
-    blueprint.write(draft.robot, out, notes=draft.notes, head=head)
-    print(f"robot: {out}")
+    blueprint.write(draft.robot, output, notes=draft.notes, head=head)
+    print(f"robot: {output}")
     if gait is not None:
-        file = blueprint.write(gait, walk, head=("A first gait, not the best.",))
-        print(f"gait: {file}", *run_it(draft.robot, str(out), file), sep="\n")
+        file = blueprint.write(gait, gait_file, head=("A first gait, not the best.",))
+        print(f"gait: {file}", *run_it(draft.robot, str(output), file), sep="\n")
     return 0
 
 
 def _plan(draft: Draft) -> list[str]:
     """Return the body plan in lines."""
-    robot, place = draft.robot, layout(draft.robot)
+    robot, robot_layout = draft.robot, layout(draft.robot)
     hinges = [hinge.turn for hinge in robot.axis_hinges]
     counts = ", ".join(f"{hinges.count(turn)} {turn}" for turn in ("yaw", "pitch", "roll") if turn in hinges)
     lines = [
-        f"{robot.name}: {robot.mass:.4g} kg, {robot.length:.4g} m, {len(place.hinges)} hinges, "
-        f"{len(place.servos)} driven",
+        f"{robot.name}: {robot.mass:.4g} kg, {robot.length:.4g} m, {len(robot_layout.hinges)} hinges, "
+        f"{len(robot_layout.servos)} driven",
         f"axis: {len(robot.axis)} segment{'s' * (len(robot.axis) > 1)} from {robot.axis[0].name} to "
         f"{robot.axis[-1].name}; {counts or 'no'} hinges; root {robot.root}",
     ]
@@ -105,6 +105,7 @@ def _plan(draft: Draft) -> list[str]:
 
 
 def _gait(draft: Draft, name: str) -> Gait | None:
+    """Return a first gait for the draft; None, with a printed note, where its joints allow none."""
     try:
         return draft_gait(draft.robot, name)
     except OutsideLimits as error:

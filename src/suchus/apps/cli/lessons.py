@@ -26,14 +26,16 @@ def lessons(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the place cannot be written to.
     """
-    about = "Five lessons of ten minutes: each a page with a replay, a slider and a question, which plays offline."
-    options = parse(LessonsOptions, "suchus lessons", words, about)
+    description = (
+        "Five lessons of ten minutes: each a page with a replay, a slider and a question, which plays offline."
+    )
+    options = parse(LessonsOptions, "suchus lessons", words, description)
     check_writable(options.out)
     for file in lesson_files(options.out):
         check_replaceable(file)
     with working() as bars:
-        first, *pages = write_lessons(options.out, progress=bars.reporter("lessons"))
+        start_page, *pages = write_lessons(options.out, progress=bars.reporter("lessons"))
     for path in pages:
         print(f"{path}, {path.stat().st_size / 1e6:.1f} MB")
-    print(f"begin with {first}: it needs no network, so send the folder to the class")
+    print(f"begin with {start_page}: it needs no network, so send the folder to the class")
     return 0

@@ -40,14 +40,14 @@ def optimise(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or the file make no sense, or nothing can be written.
     """
-    ready = "\n".join(f"  {name}: {made.__doc__}" for name, made in READY.items())
-    about = f"Search for a better gait or body. A search that was stopped is continued. Ready-made:\n{ready}"
-    options = parse(OptimiseOptions, "suchus optimise", words, about)
-    spec = _asked(options)
+    ready = "\n".join(f"  {name}: {builder.__doc__}" for name, builder in READY.items())
+    description = f"Search for a better gait or body. A search that was stopped is continued. Ready-made:\n{ready}"
+    options = parse(OptimiseOptions, "suchus optimise", words, description)
+    spec = _read_search(options)
     folder = options.out or Path("out") / "optimise" / spec.name
     check_writable(folder)
-    for place in (RESULT, *(file for arm in spec.arms for file in run_files(spec, arm.name))):
-        check_replaceable(folder / place)
+    for file_name in (RESULT, *(file for arm in spec.arms for file in run_files(spec, arm.name))):
+        check_replaceable(folder / file_name)
     cpu = time.process_time()
     with at_scheduler(options.scheduler) as client, working() as bars:
         results = conduct(spec, folder, progress=bars.reporter(spec.name), client=client)
@@ -65,7 +65,7 @@ def optimise(words: Sequence[str]) -> int:
     return 0
 
 
-def _asked(options: OptimiseOptions) -> Optimisation:
+def _read_search(options: OptimiseOptions) -> Optimisation:
     """Return the search that is asked for."""
     if options.what in READY:
         spec = READY[options.what]()

@@ -21,8 +21,8 @@ from suchus.robot.gaits import gait_of
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 
-_SHELF = "caiman"
-_WIDE = 110  # characters of a line of the description in the help
+_DEFAULT_ROBOT = "caiman"
+_LINE_WIDTH = 110  # characters of a line of the description in the help
 
 QUICK = Annotated[
     bool,
@@ -72,8 +72,8 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
         SuchusError: an option or a value makes no sense; the message is one sentence.
         SystemExit: help was asked for, and printed.
     """
-    quick = "--quick" in words
-    start = experiment.quick() if quick else experiment
+    is_quick = "--quick" in words
+    start = experiment.quick() if is_quick else experiment
     robot = _robot(words)
     if robot is not None:
         start = start.on(robot)
@@ -89,9 +89,11 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
         ],
     )
     names = ["quick", "out", "csv", "json", *(f.name for f in fields(start))]  # type: ignore[arg-type]
-    about = f"{start.title}\n\nAnswers: {start.shows}"
-    chosen = parse(options, prog, words, about, names, robot=getattr(start, "robot", None))
-    return RunRequest(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv, json=chosen.json)
+    description = f"{start.title}\n\nAnswers: {start.shows}"
+    settings = parse(options, prog, words, description, names, robot=getattr(start, "robot", None))
+    return RunRequest(
+        experiment=settings.experiment, quick=is_quick, out=settings.out, csv=settings.csv, json=settings.json
+    )
 
 
 def _robot(words: Sequence[str]) -> Robot | None:
@@ -99,11 +101,11 @@ def _robot(words: Sequence[str]) -> Robot | None:
 
     None where they name none, or none that there is: what is wrong is said when all words are read.
     """
-    named = given(words, "--robot")
-    if not named or named[-1].startswith("-"):
+    robot_words = given(words, "--robot")
+    if not robot_words or robot_words[-1].startswith("-"):
         return None
     try:
-        robot: Robot = ROBOTS.resolve(named[-1])
+        robot: Robot = ROBOTS.resolve(robot_words[-1])
     except SuchusError:
         return None
     return robot
@@ -120,7 +122,7 @@ def parse(
     names: Sequence[str] = (),
     robot: Robot | None = None,
 ) -> Options:
-    """Let tyro read the words; what it refuses becomes one sentence.
+    """Parse the words with tyro; a refusal becomes one sentence.
 
     Args:
         options: dataclass of what can be said.
@@ -137,15 +139,15 @@ def parse(
     """
     box = io.StringIO()
     names = names or [f.name for f in fields(options)]  # type: ignore[arg-type]
-    chosen: Any
+    settings: Any
     try:
         with redirect_stderr(box):
-            chosen, unknown = tyro.cli(
+            settings, unknown = tyro.cli(
                 options,
                 prog=prog,
-                description="\n".join(fill(line, _WIDE) for line in description.splitlines()),
+                description="\n".join(fill(line, _LINE_WIDTH) for line in description.splitlines()),
                 args=list(words),
-                registry=_registry(lambda: _robot(words) or robot or ROBOTS[_SHELF]),
+                registry=_registry(lambda: _robot(words) or robot or ROBOTS[_DEFAULT_ROBOT]),
                 return_unknown_args=True,
             )
     except _NoWordError:
@@ -162,33 +164,41 @@ def parse(
         if unknown[0].startswith("-"):
             raise UnknownName("option", unknown[0].partition("=")[0], [f"--{n.replace('_', '-')}" for n in names])
         raise BadCommand(f"{unknown[0]!r} is one word too many; see {prog} --help.")
-    return chosen
+    return settings
 
 
-def _registry(walker: Callable[[], Robot]) -> ConstructorRegistry:
+def _registry(default_robot: Callable[[], Robot]) -> ConstructorRegistry:
     """Robots and gaits are named on the command line, or written in a file.
 
     Args:
-        walker: returns the robot for which a gait is read.
+        default_robot: returns the robot for which a gait is read.
     """
     registry = ConstructorRegistry()
     robots: tuple[Any, ...] = (Robot, Robot | None)
     for kind in robots:
         registry.primitive_rule(_shelf_rule(kind, "ROBOT", "the record's", ROBOTS.resolve))
     for kind in (Gait, Gait | None):
-        registry.primitive_rule(_shelf_rule(kind, "GAIT", "own", lambda word: gait_of(walker(), word)))
+        registry.primitive_rule(_shelf_rule(kind, "GAIT", "own", lambda word: gait_of(default_robot(), word)))
     return registry
 
 
 def _shelf_rule(
-    kind: Any, metavar: str, own: str, meant: Callable[[str], Any]
+    kind: Any, metavar: str, default_label: str, resolve: Callable[[str], Any]
 ) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
+    """Return the rule by which tyro reads a robot or a gait from one word.
+
+    Args:
+        kind: type of the option that the rule reads.
+        metavar: word that stands for the value in the help.
+        default_label: how the help names the default None.
+        resolve: returns what a word names.
+    """
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
         metavar=f"{metavar}|FILE.toml",
-        instance_from_str=lambda words: _meant(_first(words), meant),
+        instance_from_str=lambda words: _resolve_word(_first_word(words), resolve),
         is_instance=lambda value: isinstance(value, kind),
-        str_from_instance=lambda value: [own if value is None else str(value.name)],
+        str_from_instance=lambda value: [default_label if value is None else str(value.name)],
     )
     return lambda info: spec if info.type == kind else None
 
@@ -197,7 +207,7 @@ class _NoWordError(Exception):
     """Only an option that is not known stands where a name could stand."""
 
 
-def _first(words: Any) -> str:
+def _first_word(words: Any) -> str:
     """Return the first word; beside options that it does not know, tyro hands lists of lists over."""
     while not isinstance(words, str):
         if not words:
@@ -206,10 +216,10 @@ def _first(words: Any) -> str:
     return words
 
 
-def _meant(word: str, meant: Callable[[str], Any]) -> Any:
-    """What a word stands for: a name on the shelf, or a file."""
+def _resolve_word(word: str, resolve: Callable[[str], Any]) -> Any:
+    """Return the object that a word names, by a name on the shelf or a file."""
     try:
-        return meant(word)
+        return resolve(word)
     except UnknownName as error:
         raise BadCommand(f"{error} A path to a TOML file will do as well.") from error
     except SuchusError as error:  # some are ValueErrors, which tyro would take for its own
@@ -249,7 +259,7 @@ _PLAIN = (
     ),
     (r"no type matching .* could be instantiated from \[(.*)\]", r"\1 is not what is needed"),
 )
-"""What Python says of its own functions, in words of those who type."""
+"""Messages of Python as patterns, and the plain words that replace them."""
 
 
 def gait_first(words: Sequence[str]) -> list[str]:

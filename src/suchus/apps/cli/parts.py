@@ -51,13 +51,13 @@ def list_parts(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, a library is missing, or the place cannot be written to.
     """
-    about = (
+    description = (
         "A building sheet: parts with masses and lengths, frames, cables, plates, wiring, foam; outlines as STL and "
         "DXF; URDF with ros2_control, controllers and a trajectory.\n\nusage: suchus parts ROBOT [options]"
     )
-    first = list(takewhile(lambda word: not word.startswith("-"), words[:1]))
-    named = ["--robot", first[0]] if first else []
-    options = parse(PartsOptions, "suchus parts", [*named, *words[len(first) :]], about)
+    positional = list(takewhile(lambda word: not word.startswith("-"), words[:1]))
+    robot_words = ["--robot", positional[0]] if positional else []
+    options = parse(PartsOptions, "suchus parts", [*robot_words, *words[len(positional) :]], description)
     robot = options.robot
     gait = options.gait or own_gait(robot)
     motors = None if options.motors is None else blueprint.read_motors(options.motors)
@@ -68,14 +68,14 @@ def list_parts(words: Sequence[str]) -> int:
     folder = options.out or Path("export") / f"{robot.name}_parts"
     check_writable(folder.parent)
     check_replaceable(folder)
-    found = sheet(robot, motors=motors, wall=options.wall, density=options.density)
+    parts_sheet = sheet(robot, motors=motors, wall=options.wall, density=options.density)
     samples = commands(robot, gait, straight(robot))
     origin = {"robot": digest({"robot": robot}), "gait": digest({"gait": gait}), "versions": versions()}
     with working() as bars, new_folder(folder) as draft:
         bars.task(f"building sheet of {robot.name}")
-        write_parts(found, draft, gait=gait, samples=samples, outlines=not options.no_outlines)
+        write_parts(parts_sheet, draft, gait=gait, samples=samples, outlines=not options.no_outlines)
         (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    for sentence in (*mass_said(found), floats_said(found), unfit(robot)):
+    for sentence in (*mass_said(parts_sheet), floats_said(parts_sheet), unfit(robot)):
         if sentence:
             print(sentence)
     print(f"the page with all of it: {folder / PAGE}")

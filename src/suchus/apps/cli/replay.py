@@ -43,26 +43,32 @@ def make_replay(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or the record make no sense, or the place cannot be written to.
     """
-    about = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
-    options = parse(ReplayOptions, "suchus replay", words, about)
+    description = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
+    options = parse(ReplayOptions, "suchus replay", words, description)
     check_file(options.file)
-    out = options.out or options.file.with_suffix(".html")
-    check_page(out)
-    check_replaceable(out)
+    output = options.out or options.file.with_suffix(".html")
+    check_page(output)
+    check_replaceable(output)
     stored = record.load(options.file)
-    shown = _chosen(stored, options.run, "--run")
-    ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")
-    named = str(shown.robot.item()) if "robot" in shown.coords else "caiman"
-    robot = ROBOTS[named] if options.robot is None else options.robot
-    shown = held(shown, robot)
-    labels = [_label(run).replace("_", " ") for run in (shown, ghost) if run is not None]
-    save(replay(shown, robot, ghost=ghost, labels=labels, title=options.title), out)
-    print(f"{robot.name}, {' and '.join(labels)}: {out}, {out.stat().st_size / 1e6:.1f} MB")
+    main_run = _select_run(stored, options.run, "--run")
+    ghost = None if options.ghost is None else _select_run(stored, options.ghost, "--ghost")
+    robot_name = str(main_run.robot.item()) if "robot" in main_run.coords else "caiman"
+    robot = ROBOTS[robot_name] if options.robot is None else options.robot
+    main_run = held(main_run, robot)
+    labels = [_label(run).replace("_", " ") for run in (main_run, ghost) if run is not None]
+    save(replay(main_run, robot, ghost=ghost, labels=labels, title=options.title), output)
+    print(f"{robot.name}, {' and '.join(labels)}: {output}, {output.stat().st_size / 1e6:.1f} MB")
     return 0
 
 
-def _chosen(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:
-    """Return one run of a record."""
+def _select_run(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:
+    """Return one run of a record, by its label or its number.
+
+    Args:
+        stored: the record.
+        name: label or number of the run; None: the only run.
+        option: option that names the run, for messages.
+    """
     if "run" not in stored.dims:
         if name is not None and name not in ("0", _label(stored)):
             raise BadCommand(f"{option} asks for {name!r}, but the record holds one run only: leave it out.")

@@ -32,7 +32,7 @@ class Reproduction:
     """An experiment that is to be run again."""
 
     name: str
-    """On the shelf."""
+    """Name of the experiment on the shelf."""
     out: Path
     """The folder for results."""
     quick: bool
@@ -48,7 +48,7 @@ class Reproduction:
 
     @property
     def command(self) -> str:
-        """What makes the same result again."""
+        """Command that makes the same result again."""
         return f"suchus run {self.name}{' --quick' * self.quick}"
 
 
@@ -57,9 +57,9 @@ class Reproduced:
     """Result of an experiment, or the reason why it failed."""
 
     result: Result | Failure
-    """For the page."""
+    """Result or failure, for the page."""
     summary: str
-    """The same in a line."""
+    """Summary of the result in one line."""
 
 
 def attempt(task: Reproduction, progress: Progress) -> Reproduced:
@@ -71,17 +71,17 @@ def attempt(task: Reproduction, progress: Progress) -> Reproduced:
     """
     try:
         with replacing(task.replace):
-            done = perform(task.experiment, task.name, task.out, progress, task.command)
-        result = load_result(done.folder)
+            saved_run = perform(task.experiment, task.name, task.out, progress, task.command)
+        result = load_result(saved_run.folder)
     except SuchusError as error:
         return failed(task.name, str(error))
     except Exception as error:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
-    return Reproduced(result=result, summary=f"{_summary(result)} ({done.seconds:.1f} s)")
+    return Reproduced(result=result, summary=f"{_summary(result)} ({saved_run.seconds:.1f} s)")
 
 
 def kept(task: Reproduction) -> Reproduced | None:
-    """Return the result that an earlier run left, if it is whole and a run would give the same again.
+    """Return the stored result of an earlier run, if it is complete and a new run would give the same.
 
     That is so if the settings, the files of suchus and the versions of libraries are the same. An experiment that is no
     part of suchus itself is always run again, since its own code is in no digest.
@@ -89,26 +89,27 @@ def kept(task: Reproduction) -> Reproduced | None:
     try:
         experiment = task.experiment
         result = load_result(task.out / task.name)
-        same = made_alike(result.outcome["provenance"], experiment.settings())
+        is_same = made_alike(result.outcome["provenance"], experiment.settings())
     except SuchusError:
         return None
-    if not (same and whole(result) and result.outcome["command"] == task.command and _is_ours(experiment)):
+    if not (is_same and whole(result) and result.outcome["command"] == task.command and _is_shipped(experiment)):
         return None
     return Reproduced(result=result, summary=f"{_summary(result)} (kept from an earlier run)")
 
 
-def _is_ours(experiment: Experiment) -> bool:
+def _is_shipped(experiment: Experiment) -> bool:
     file = sys.modules[type(experiment).__module__].__file__
     return file is not None and Path(file).is_relative_to(Path(suchus.__file__).parent)
 
 
 def _summary(result: Result) -> str:
-    words = [verdict["verdict"] for verdict in result.outcome["verdicts"]]
-    return f"{result.name}: {', '.join(f'{words.count(word)} {word}' for word in dict.fromkeys(words)) or 'no verdict'}"
+    verdicts = [verdict["verdict"] for verdict in result.outcome["verdicts"]]
+    counts = [f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts)]
+    return f"{result.name}: {', '.join(counts) or 'no verdict'}"
 
 
 def failed(name: str, sentence: str, trace: str = "") -> Reproduced:
-    """Return what is reported of an experiment that failed.
+    """Return the result of an experiment that failed.
 
     Args:
         name: of the experiment.
@@ -120,12 +121,12 @@ def failed(name: str, sentence: str, trace: str = "") -> Reproduced:
 
 REPORT = "report.html"
 """Name of the page of all experiments."""
-_MOST = 4
+_MAX_DEFAULT_JOBS = 4
 """Experiments at a time unless more are asked for [-]; beyond, the longest one alone decides, and each takes memory."""
-_EACH = 1
+_THREADS_PER_EXPERIMENT = 1
 """Threads of each of several experiments [-]: two would end the flow's small loops little sooner, for twice the
 processor time."""
-_LONG = (
+_SLOW_EXPERIMENTS = (
     "swimming",
     "feedback",
     "joint_faults",
@@ -136,7 +137,7 @@ _LONG = (
     "swim_free",
     "crawl_stability",
 )
-"""What takes longest is begun first, so that no process idles in the end."""
+"""Slowest experiments, which are started first so that no process idles at the end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,7 +147,8 @@ class ReproduceOptions:
     out: OUT = Path("out")
     quick: QUICK = False
     jobs: Annotated[
-        int | None, tyro.conf.arg(help=f"Experiments at a time; by default one for each core, {_MOST} at most.")
+        int | None,
+        tyro.conf.arg(help=f"Experiments at a time; by default one for each core, {_MAX_DEFAULT_JOBS} at most."),
     ] = None
     anew: Annotated[
         bool,
@@ -163,9 +165,9 @@ def reproduce(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
-    about = "Run every experiment and write one page with all results, DIR/report.html."
-    options = parse(ReproduceOptions, "suchus reproduce", words, about)
-    sound = dict(EXPERIMENTS.items())  # what is broken is attempted too, and reported with what is wrong
+    description = "Run every experiment and write one page with all results, DIR/report.html."
+    options = parse(ReproduceOptions, "suchus reproduce", words, description)
+    sound = dict(EXPERIMENTS.items())  # broken experiments are attempted too, and their errors are reported
     tasks = [
         Reproduction(name=name, out=options.out, quick=options.quick, replace=asked_to_replace())
         for name in EXPERIMENTS
@@ -179,9 +181,9 @@ def reproduce(words: Sequence[str]) -> int:
     for task in tasks:
         check_place(options.out / task.name)
     check_replaceable(options.out / REPORT)
-    jobs = min(threads.count(), _MOST) if options.jobs is None else options.jobs
+    jobs = min(threads.count(), _MAX_DEFAULT_JOBS) if options.jobs is None else options.jobs
     with working() as bars:
-        outcomes = [done.result for done in _reproduced(tasks, bars, jobs=jobs, anew=options.anew)]
+        outcomes = [reproduced.result for reproduced in _run_tasks(tasks, bars, jobs=jobs, anew=options.anew)]
         results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
         failures = [outcome for outcome in outcomes if isinstance(outcome, Failure)]
         page = write_page(results, failures, options.out / REPORT)
@@ -189,7 +191,7 @@ def reproduce(words: Sequence[str]) -> int:
     return 1 if failures else 0
 
 
-def _reproduced(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: bool) -> list[Reproduced]:
+def _run_tasks(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: bool) -> list[Reproduced]:
     """Return the result of each task; the longest are begun first.
 
     A process that dies takes its experiment with it and nothing else. When this one is stopped, by Ctrl-C or an error,
@@ -205,19 +207,19 @@ def _reproduced(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: b
         kind="reproduction",
         piece="experiment",
         unit="experiments",
-        work=partial(_attempted, shelf=list(suchus.experiments.catalog.__path__)),
+        work=partial(_attempt_with_shelf, shelf=list(suchus.experiments.catalog.__path__)),
         items=order,
-        tries=1,  # an experiment that takes too much memory takes it again
-        died=_died,
+        tries=1,  # a second try would need the same memory again
+        died=_report_crash,
     )
     side_by_side = min(jobs, sum(not results.has(n) for n in range(len(order))) or 1)
     try:
         finish(
             job,
             results,
-            place=place_for("reproduce", jobs=side_by_side, each=_EACH),
+            place=place_for("reproduce", jobs=side_by_side, each=_THREADS_PER_EXPERIMENT),
             each=lambda number: bars.task(order[number].name),
-            finished=lambda _, done: bars.say(done.summary),
+            finished=lambda _, reproduced: bars.say(reproduced.summary),
         )
     finally:
         for number, task in enumerate(order):
@@ -230,8 +232,8 @@ class _Results:
     """Results of experiments, each a folder that the run itself writes; those of a run that would repeat them stay."""
 
     def __init__(self, tasks: Sequence[Reproduction], anew: bool) -> None:
-        old = {} if anew else {number: kept(task) for number, task in enumerate(tasks)}
-        self._results = {number: result for number, result in old.items() if result is not None}
+        stored = {} if anew else {number: kept(task) for number, task in enumerate(tasks)}
+        self._results = {number: result for number, result in stored.items() if result is not None}
 
     def has(self, number: int) -> bool:
         """Return whether a result is there."""
@@ -242,17 +244,17 @@ class _Results:
         return self._results[number]
 
     def put(self, number: int, result: Reproduced) -> None:
-        """Take up a result, whose folder is written."""
+        """Store a result whose folder is written."""
         self._results[number] = result
 
 
-def _attempted(task: Reproduction, progress: Progress, shelf: list[str]) -> Reproduced:
+def _attempt_with_shelf(task: Reproduction, progress: Progress, shelf: list[str]) -> Reproduced:
     """Attempt an experiment, also in a process of its own, which knows the same shelf."""
     suchus.experiments.catalog.__path__[:] = shelf
     return attempt(task, progress)
 
 
-def _died(task: Reproduction, exit_code: int | None) -> Reproduced:
+def _report_crash(task: Reproduction, exit_code: int | None) -> Reproduced:
     sweep(task.out / task.name)
     return failed(
         task.name, f"its process ended with exit code {exit_code}; where memory was short, --jobs 1 takes less of it."
@@ -260,4 +262,4 @@ def _died(task: Reproduction, exit_code: int | None) -> Reproduced:
 
 
 def _rank(task: Reproduction) -> int:
-    return _LONG.index(task.name) if task.name in _LONG else len(_LONG)
+    return _SLOW_EXPERIMENTS.index(task.name) if task.name in _SLOW_EXPERIMENTS else len(_SLOW_EXPERIMENTS)

@@ -45,20 +45,20 @@ class Performed:
     """An experiment that was run and saved."""
 
     outcome: Outcome
-    """Its outcome."""
+    """Outcome of the experiment."""
     folder: Path
     """Folder of its files."""
     seconds: float
     """Duration of running and drawing [s]."""
 
 
-def perform(experiment: Experiment, name: str, out: Path, progress: Progress, command: str) -> Performed:
+def perform(experiment: Experiment, name: str, results_folder: Path, progress: Progress, command: str) -> Performed:
     """Run an experiment, draw its figures and save all of it in ``out / name``.
 
     Args:
         experiment: the question.
         name: its name on the shelf.
-        out: the folder for results.
+        results_folder: the folder for results.
         progress: called with the share that is done, 0 to 1.
         command: what makes the same result again.
 
@@ -66,23 +66,23 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
         Unwritable: the results cannot be saved; reported before the run where it can be known.
     """
     start = time.perf_counter()
-    check_place(out / name)
-    options = [f"--{one.name.replace('_', '-')}" for one in fields(experiment)]  # type: ignore[arg-type]
+    check_place(results_folder / name)
+    options = [f"--{setting.name.replace('_', '-')}" for setting in fields(experiment)]  # type: ignore[arg-type]
     with _plain_sums(), plain_warnings(name, options=options):
         outcome = experiment.run(progress)
         progress("drawing", 1.0)
         with styled():
             figures = experiment.draw(outcome)
         progress("saving", 1.0)
-        folder = save_outcome(outcome, figures, experiment, out / name, command=command)
+        folder = save_outcome(outcome, figures, experiment, results_folder / name, command=command)
     for path in outcome.kept:
-        with suppress(OSError):  # what cannot be removed costs no result
+        with suppress(OSError):  # a file that cannot be removed does not spoil the result
             path.unlink()
     return Performed(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
 
 
 def _plain_sums() -> AbstractContextManager[object]:
-    """Let xarray take NumPy's sums and medians, whatever else is installed beside it.
+    """Make xarray use NumPy's sums and medians, whatever other libraries are installed.
 
     Those of ``numbagg``, which comes with the extra ``capture``, round otherwise, so that equal runs would not give
     equal bytes everywhere; and they compile for up to half a minute in every process.
@@ -90,19 +90,19 @@ def _plain_sums() -> AbstractContextManager[object]:
     return xr.set_options(use_numbagg=False, use_bottleneck=False)  # type: ignore[no-untyped-call]
 
 
-def show_outcome(question: Experiment, done: Performed) -> None:
+def show_outcome(question: Experiment, saved_run: Performed) -> None:
     """Print the answer, the numbers that carry it, the verdicts, and where everything else is."""
     console = Console(highlight=False)
     console.print(f"[bold]{escape(question.title)}[/]")
     for line in moves(question):
         console.print(escape(line))
-    console.print(escape(answer(done.outcome.decides)))
-    rows = carried(question.answers, done.outcome.measures)
+    console.print(escape(answer(saved_run.outcome.decides)))
+    rows = carried(question.answers, saved_run.outcome.measures)
     numbers = Table("measure", "value", *["interval"] * any(row[2] for row in rows), box=None, padding=(0, 2, 0, 0))
     for row in rows:
-        numbers.add_row(*(escape(part) for part in row if part or len(numbers.columns) > 2))
+        numbers.add_row(*(escape(cell) for cell in row if cell or len(numbers.columns) > 2))
     console.print(numbers)
-    if done.outcome.verdicts:
+    if saved_run.outcome.verdicts:
         table = Table(box=None, padding=(0, 2, 0, 0))
         for heading, side in (
             ("claim", "left"),
@@ -111,18 +111,20 @@ def show_outcome(question: Experiment, done: Performed) -> None:
             ("verdict", "left"),
         ):
             table.add_column(heading, justify=side, style=None)  # type: ignore[arg-type]
-        for verdict in done.outcome.verdicts:
+        for verdict in saved_run.outcome.verdicts:
             claim = verdict.claim
             table.add_row(
                 escape(f"{claim.quantity} ({claim.place})"),
                 quantity(claim.value, claim.unit, 3),
-                quantity(verdict.measured, _unit(verdict, done.outcome), 3),
+                quantity(verdict.measured, _unit(verdict, saved_run.outcome), 3),
                 f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]{', fragile' if verdict.fragile else ''}",
             )
         console.print(table)
-    if done.outcome.unjudged:
-        console.print(escape(done.outcome.unjudged), soft_wrap=True)
-    console.print(f"{done.seconds:.1f} s; the page with all of it: {escape(str(done.folder / PAGE))}", soft_wrap=True)
+    if saved_run.outcome.unjudged:
+        console.print(escape(saved_run.outcome.unjudged), soft_wrap=True)
+    console.print(
+        f"{saved_run.seconds:.1f} s; the page with all of it: {escape(str(saved_run.folder / PAGE))}", soft_wrap=True
+    )
 
 
 def _unit(verdict: Verdict, outcome: Outcome) -> str:
@@ -132,20 +134,20 @@ def _unit(verdict: Verdict, outcome: Outcome) -> str:
 
 
 def moves(question: Experiment) -> list[str]:
-    """Return in a sentence in which gaits the robot moves, where it is another one than the question's own."""
+    """Return a sentence that names the gaits, if the robot is not the experiment's own robot."""
     robot = getattr(question, "robot", None)
-    one = getattr(question, "gait", None)
-    gaits = getattr(question, "gaits", ()) if one is None else (one,)
+    single_gait = getattr(question, "gait", None)
+    gaits = getattr(question, "gaits", ()) if single_gait is None else (single_gait,)
     if not gaits or robot is None or robot == getattr(type(question)(), "robot", None):
         return []
     if gaits[0].name == DRAFTED:
         return [f"No gait on the shelf suits {robot.name}: it moves in one that was drafted for it."]
-    told = []
+    gait_texts = []
     for gait in gaits:
         shelf = GAITS.get(gait.name, gait)
-        other = f" (a cycle in {gait.period:.3g} s; {shelf.period:.3g} s on the shelf)"
-        told.append(gait.name + (other if gait.period != shelf.period else ""))
-    return [f"{robot.name} moves in the gait{'s' * (len(told) > 1)} {listed(told)}."]
+        period_note = f" (a cycle in {gait.period:.3g} s; {shelf.period:.3g} s on the shelf)"
+        gait_texts.append(gait.name + (period_note if gait.period != shelf.period else ""))
+    return [f"{robot.name} moves in the gait{'s' * (len(gait_texts) > 1)} {listed(gait_texts)}."]
 
 
 def run(words: Sequence[str]) -> int:
@@ -164,40 +166,41 @@ def run(words: Sequence[str]) -> int:
     choice = choose(EXPERIMENTS[name], name, options)
     check_writable(choice.out)
     with working() as bar:
-        done = perform(choice.experiment, name, choice.out, bar.task(name), _again(words))
-    tables = write_tables(done.outcome.record, done.folder / TABLES) if choice.csv else None
+        saved_run = perform(choice.experiment, name, choice.out, bar.task(name), _repeat_command(words))
+    tables = write_tables(saved_run.outcome.record, saved_run.folder / TABLES) if choice.csv else None
     if choice.json:
-        print((done.folder / OUTCOME).read_text(encoding="utf-8"), end="")
+        print((saved_run.folder / OUTCOME).read_text(encoding="utf-8"), end="")
         return 0
-    show_outcome(choice.experiment, done)
+    show_outcome(choice.experiment, saved_run)
     if tables is not None:
         print(f"the record as CSV: {tables}")
     return 0
 
 
-def run_it(robot: Robot, asked: str, gait: Path, first: str = "displacement") -> list[str]:
-    """Return the line that says how to see a gait on a robot; nothing where no question suits it.
+def run_it(robot: Robot, robot_word: str, gait: Path, experiment_name: str = "displacement") -> list[str]:
+    """Return the command that runs a gait on a robot; empty where no experiment suits the robot.
 
     Args:
         robot: the robot.
-        asked: its name or its file; empty for the robot of the shelf that is taken where none is named.
+        robot_word: its name or its file; empty for the robot of the shelf that is taken where none is named.
         gait: the file of the gait.
-        first: the question to ask where the robot suits it, before how far it walks and how fast.
+        experiment_name: the question to ask where the robot suits it, before how far it walks and how fast.
     """
-    for name, option in ((first, "--gait"), ("displacement", "--gait"), ("speed_range", "--gaits")):
+    for name, option in ((experiment_name, "--gait"), ("displacement", "--gait"), ("speed_range", "--gaits")):
         if not lacking(robot, EXPERIMENTS[name].needs):
-            who = ("--robot", asked) if asked else ()
-            return [f"run it: {shlex.join(['suchus', 'run', name, *who, option, str(gait)])}"]
+            robot_option = ("--robot", robot_word) if robot_word else ()
+            return [f"run it: {shlex.join(['suchus', 'run', name, *robot_option, option, str(gait)])}"]
     return []
 
 
-def _again(words: Sequence[str]) -> str:
+def _repeat_command(words: Sequence[str]) -> str:
     """Return the command that makes the same result again, from any folder."""
     project = current()
     return shlex.join(["suchus", "run", *words, *((PROJECT, str(project.folder)) if project else ())])
 
 
 def _help() -> str:
+    """Return the help of ``suchus run``: its options and every experiment with its title."""
     shelf = EXPERIMENTS.sources()
     width = max((len(name) for name in shelf), default=0)
     return "\n".join(

@@ -20,7 +20,7 @@ _LISTED = {
     "controllers": "suchus.robot.control:CONTROLLERS",
     "measures": "suchus.experiments.study:MEASURES",
 }
-"""Where each shelf is, by its name."""
+"""Module and object of each shelf, by the shelf's name."""
 _SCATTERED = ("controllers", "measures")
 """Shelves whose modules declare things with names of their own."""
 _USAGE = f"""usage: suchus list [{PROJECT} DIR]
@@ -58,28 +58,28 @@ def title(source: Source) -> str:
     if source.file is None:
         return ""
     if source.file.suffix == ".toml":
-        first = _text(source.file).lstrip().partition("\n")[0]
-        return first.lstrip("# ") if first.startswith("#") else ""
+        first_line = _text(source.file).lstrip().partition("\n")[0]
+        return first_line.lstrip("# ") if first_line.startswith("#") else ""
     try:
         tree = ast.parse(_text(source.file))
     except (SyntaxError, ValueError):
         return "(cannot be read)"
-    parts = [part for part in tree.body if isinstance(part, (ast.ClassDef, ast.FunctionDef))]
-    inside = next((part for part in parts if part.name == source.attribute), tree)
-    return (ast.get_docstring(inside) or "").partition("\n")[0]
+    definitions = [node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
+    docstring_owner = next((node for node in definitions if node.name == source.attribute), tree)
+    return (ast.get_docstring(docstring_owner) or "").partition("\n")[0]
 
 
 def _needs(source: Source) -> str:
-    """Return what an experiment needs of a robot, and for whom a gait was made."""
+    """Return the capabilities that an experiment needs, or the robots for which a gait was made."""
     if source.attribute:
         return ""
-    needs, robots = _stated(source, "needs"), _stated(source, "made_for")
+    needs, robots = _assigned_texts(source, "needs"), _assigned_texts(source, "made_for")
     text = f" (needs {', '.join(needs).replace('_', ' ')})" if needs else ""
     return text + (f" (of {', '.join(robots)})" if robots else "")
 
 
 def _origin(source: Source, shelf: str) -> str:
-    """Return where a thing of the user's comes from, and what is wrong with it."""
+    """Return the source of a user's entry, and the error if it cannot be loaded."""
     if source.shipped:
         return ""
     try:
@@ -89,15 +89,15 @@ def _origin(source: Source, shelf: str) -> str:
     return f" [{source.place}]"
 
 
-def _stated(source: Source, what: str) -> tuple[str, ...]:
+def _assigned_texts(source: Source, name: str) -> tuple[str, ...]:
     """Return the texts of an assignment in a module, or in a class of it, read without importing it."""
     if source.file is None or source.file.suffix != ".py":
         return ()
     try:
         for node in ast.walk(ast.parse(_text(source.file))):
-            if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == what for t in node.targets):
-                return tuple(str(part) for part in ast.literal_eval(node.value))
-    except (SyntaxError, ValueError, TypeError):  # a text that is not written out
+            if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == name for t in node.targets):
+                return tuple(str(text) for text in ast.literal_eval(node.value))
+    except (SyntaxError, ValueError, TypeError):  # a text that is no literal
         return ()
     return ()
 

@@ -53,20 +53,20 @@ class SizeOptions:
 
 
 def size_servos(words: Sequence[str]) -> int:
-    """Write what was found, say it, and return 0.
+    """Size the servos, write page and tables, print the answer, and return 0.
 
     Raises:
         SuchusError: the words make no sense, a simulation fails, or the place cannot be written to.
     """
-    about = (
+    description = (
         "Size the servos of a robot: what each bears in its gaits, and the cheapest servos of one family that are "
         "enough, by simulation; if a gait is too fast for them, the period at which they are.\n\n"
         "usage: suchus size ROBOT GAIT ... [options]"
     )
-    first = list(takewhile(lambda word: not word.startswith("-"), words))
-    named = ["--robot", first[0]] if first else []
-    walks = ["--gaits", *first[1:]] if len(first) > 1 else []
-    options = parse(SizeOptions, "suchus size", [*named, *words[len(first) :], *walks], about)
+    positional = list(takewhile(lambda word: not word.startswith("-"), words))
+    robot_words = ["--robot", positional[0]] if positional else []
+    gait_words = ["--gaits", *positional[1:]] if len(positional) > 1 else []
+    options = parse(SizeOptions, "suchus size", [*robot_words, *words[len(positional) :], *gait_words], description)
     robot = options.robot
     require("size", "hours", options.hours, 0.01, 1000.0, "h")
     for slope in options.slope:
@@ -78,7 +78,7 @@ def size_servos(words: Sequence[str]) -> int:
     folder = options.out or Path("export") / f"{robot.name}_size"
     check_writable(folder.parent)
     check_replaceable(folder)
-    asked = cases(
+    load_cases = cases(
         robot,
         gaits,
         slopes=[radians(slope) for slope in options.slope],
@@ -87,17 +87,19 @@ def size_servos(words: Sequence[str]) -> int:
         water=options.water,
     )
     with working() as bars:
-        found = size(robot, asked, motors=motors, family=options.family, progress=bars.reporter(f"sizing {robot.name}"))
+        sizing = size(
+            robot, load_cases, motors=motors, family=options.family, progress=bars.reporter(f"sizing {robot.name}")
+        )
     origin = {
         "robot": digest({"robot": robot}),
-        "cases": [case.name for case in asked],
+        "cases": [case.name for case in load_cases],
         "motors": "those of suchus" if motors is None else _digests(list(motors.values())),
         "versions": versions(),
     }
     with new_folder(folder) as draft:
-        write_size(found, draft, hours=options.hours)
+        write_size(sizing, draft, hours=options.hours)
         (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    for sentence in answer(found, options.hours):
+    for sentence in answer(sizing, options.hours):
         print(sentence)
     print(f"the page with all of it: {folder / PAGE}")
     return 0
@@ -114,9 +116,9 @@ def _fault(word: str, robot: Robot) -> Fault:
         BadCommand: it is not of the form KIND:PART.
         UnknownName: there is no such kind, or the robot has no such part.
     """
-    kind, colon, part = word.partition(":")
-    if not colon or not part:
+    kind, colon, joint = word.partition(":")
+    if not colon or not joint:
         raise BadCommand(f"--fault {word} is no fault; say KIND:PART, as limp:LF_pitch, with {', '.join(FAULTS)}.")
-    fault = from_table({"kind": kind, "joint": part})
+    fault = from_table({"kind": kind, "joint": joint})
     fault.refuse(robot)
     return fault

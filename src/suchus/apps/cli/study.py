@@ -53,14 +53,14 @@ def study(words: Sequence[str]) -> int:
     Raises:
         SuchusError: the words or the file make no sense, or the store cannot be written to.
     """
-    about = "Run many variants of one run, and store what is measured. A study that was stopped is continued."
-    options = parse(StudyOptions, "suchus study", words, about)
+    description = "Run many variants of one run, and store what is measured. A study that was stopped is continued."
+    options = parse(StudyOptions, "suchus study", words, description)
     if options.jobs < 1:
         raise BadCommand(f"--jobs is {options.jobs}; at least 1 process is needed.")
     if options.jobs > 1 and options.scheduler is not None:
         raise BadCommand("--jobs and --scheduler exclude each other: the workers of a cluster are started with it.")
     if str(options.file) == CLAIMS and not there(options.file):
-        return _claims(options)
+        return _study_claims(options)
     spec = read_study(options.file)
     if options.only:
         raise BadCommand("--only is for claims only; another study has nothing but its own runs.")
@@ -84,58 +84,67 @@ def study(words: Sequence[str]) -> int:
     return 0
 
 
-def _claims(options: StudyOptions) -> int:
+def _study_claims(options: StudyOptions) -> int:
     """Conduct the ready-made study of the claims, or finish it."""
     claims = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
-    asked = [study for one in EXPERIMENTS.values() if (study := varied_study(one)) is not None]
-    unknown = [name for name in options.only if name not in {one.name for one in asked}]
+    specs = [study for experiment in EXPERIMENTS.values() if (study := varied_study(experiment)) is not None]
+    unknown = [name for name in options.only if name not in {spec.name for spec in specs}]
     if unknown:
-        able = listed([one.name for one in asked])
-        raise BadCommand(f"--only {', '.join(unknown)} cannot be asked again; those that can are {able}.")
+        study_names = listed([spec.name for spec in specs])
+        raise BadCommand(f"--only {', '.join(unknown)} cannot be asked again; those that can are {study_names}.")
     for name in ("result", "renewed"):
         check_replaceable(folder / name)
-    asked = [one for one in asked if not options.only or one.name in options.only]
+    specs = [spec for spec in specs if not options.only or spec.name in options.only]
     if options.finished:
         record = None if options.only else answer_finished(claims, folder)
-        answered = {one.name: found for one in asked if (found := varied_finished(one, folder)) is not None}
-        return _answered(record, answered, folder)
+        results = {spec.name: result for spec in specs if (result := varied_finished(spec, folder)) is not None}
+        return _write_answers(record, results, folder)
     with at_scheduler(options.scheduler) as client, working() as bars:
         record = None
         if not options.only:
             record = conduct_claims(claims, folder, progress=bars.reporter(CLAIMS), client=client, jobs=options.jobs)
-        answered = {
-            one.name: conduct_varied(one, folder, progress=bars.reporter(one.name), client=client, jobs=options.jobs)
-            for one in asked
+        results = {
+            spec.name: conduct_varied(spec, folder, progress=bars.reporter(spec.name), client=client, jobs=options.jobs)
+            for spec in specs
         }
-        return _answered(record, answered, folder)
+        return _write_answers(record, results, folder)
 
 
-def _answered(record: xr.Dataset | None, varied: Mapping[str, xr.Dataset], folder: Path) -> int:
-    """Write what became of the claims, say where, and return 0.
+def _write_answers(record: xr.Dataset | None, varied_results: Mapping[str, xr.Dataset], folder: Path) -> int:
+    """Write the verdicts on the claims, print where they are, and return 0.
+
+    Args:
+        record: of the study of walks; None: only rows of single experiments are renewed.
+        varied_results: results of the varied experiments, by name.
+        folder: of the study.
 
     Raises:
         UnreadableFile: there is nothing to answer from.
     """
     if record is None:
-        return _renewed(varied, folder)
-    result = write_claims(record, folder / "result", varied)
-    walked = int((record.status == "walked").sum())
-    again = sum(one.sizes["sample"] for one in varied.values())
+        return _renew_share_rows(varied_results, folder)
+    result = write_claims(record, folder / "result", varied_results)
+    walked_count = int((record.status == "walked").sum())
+    rerun_count = sum(results.sizes["sample"] for results in varied_results.values())
     print(
-        f"{record.sizes['sample']} designs and gaits, {walked} walked, and {again} designs and settings of "
-        f"{len(varied)} other experiments; the page is {result / 'index.html'}"
+        f"{record.sizes['sample']} designs and gaits, {walked_count} walked, and {rerun_count} designs and settings of "
+        f"{len(varied_results)} other experiments; the page is {result / 'index.html'}"
     )
     return 0
 
 
-def _renewed(varied: Mapping[str, xr.Dataset], folder: Path) -> int:
-    if not varied:
+def _renew_share_rows(varied_results: Mapping[str, xr.Dataset], folder: Path) -> int:
+    """Write the rows of single experiments into the table of shares, print which they are, and return 0."""
+    if not varied_results:
         raise UnreadableFile(
             f"{folder} holds too few points of what was asked; leave out --finished, and they are made."
         )
-    result = write_renewed(varied, folder / "renewed")
-    rows = sum(one.sizes["claim"] for one in varied.values())
-    told = listed([f"{name} ({one.sizes['sample']} designs)" for name, one in varied.items()])
-    print(f"{rows} rows of {told} are renewed in the table of shares, {result / SHARES}; other rows are as they ship")
+    result = write_renewed(varied_results, folder / "renewed")
+    rows = sum(results.sizes["claim"] for results in varied_results.values())
+    row_sources = listed([f"{name} ({results.sizes['sample']} designs)" for name, results in varied_results.items()])
+    print(
+        f"{rows} rows of {row_sources} are renewed in the table of shares, {result / SHARES}; "
+        "other rows are as they ship"
+    )
     return 0

@@ -12,7 +12,7 @@ from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
 
 from suchus.core.progress import Progress
 
-_EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
+_LINE_INTERVAL = 10.0  # [s]; between lines where there is no terminal for a bar
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,29 +22,30 @@ class Bars:
     _progress: rich_progress.Progress
 
     def task(self, name: str) -> Progress:
-        """Add a bar and return what moves it."""
+        """Add a bar and return the function that moves it."""
         task: TaskID = self._progress.add_task(name, total=1.0, stage="")
 
-        def move(stage: str, share: float) -> None:
-            self._progress.update(task, completed=share, stage=stage)
+        def move(stage: str, fraction: float) -> None:
+            self._progress.update(task, completed=fraction, stage=stage)
 
         return move
 
     @property
     def seen(self) -> bool:
-        """Whether there is a terminal to show them on."""
+        """Whether standard error is a terminal, which shows the bars."""
         return self._progress.console.is_terminal
 
     def reporter(self, name: str) -> Progress:
-        """Add a bar and return what moves it, or says a line now and then where there is no terminal."""
-        move, last = self.task(name), time.monotonic()
+        """Add a bar and return the function that moves it; without a terminal the function prints lines."""
+        move, last_time = self.task(name), time.monotonic()
 
-        def tell(stage: str, share: float) -> None:
-            nonlocal last
-            move(stage, share)
-            if not self.seen and time.monotonic() - last > _EVERY:
-                last = time.monotonic()
-                self.say(f"{name}: {stage}, {share:.0%}")
+        def tell(stage: str, fraction: float) -> None:
+            """Move the bar; without a terminal print a line every ten seconds."""
+            nonlocal last_time
+            move(stage, fraction)
+            if not self.seen and time.monotonic() - last_time > _LINE_INTERVAL:
+                last_time = time.monotonic()
+                self.say(f"{name}: {stage}, {fraction:.0%}")
 
         return tell
 

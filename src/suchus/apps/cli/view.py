@@ -100,12 +100,15 @@ def _is_record(word: str) -> bool:
 
 
 def _walk(words: Sequence[str]) -> int:
-    about = "A robot walks live in the browser: change its gait, make joints fail, push it."
-    first = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
-    named = [part for option, word in zip(("--robot", "--gait"), first, strict=False) for part in (option, word)]
-    given = [*named, *words[len(first) :]]
-    options = parse(ViewWalkOptions, "suchus view", given, about)
-    if options.lake and not first and "--robot" not in given:
+    """Read the options of a live walk, serve it until interrupted, and return 0."""
+    description = "A robot walks live in the browser: change its gait, make joints fail, push it."
+    positional = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
+    option_words = [
+        argument for option, word in zip(("--robot", "--gait"), positional, strict=False) for argument in (option, word)
+    ]
+    arguments = [*option_words, *words[len(positional) :]]
+    options = parse(ViewWalkOptions, "suchus view", arguments, description)
+    if options.lake and not positional and "--robot" not in arguments:
         options = replace(options, robot=ROBOTS["floating_caiman"])
     return serve_walk(options)
 
@@ -126,18 +129,19 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
     def session() -> Session:
         return Session(robot, gait, timestep=options.timestep, swim=swim)
 
-    session()  # refuses what cannot be walked, before a browser
+    session()  # refuses an impossible walk before a browser opens
     pages = pages_of_viewer()
-    how = "in a lake" if options.lake else gait.name
+    setting = "in a lake" if options.lake else gait.name
     return _serve(
-        lambda client: pages.LivePage(client, session()), options, f"{robot.name}, {how}", opened,
+        lambda client: pages.LivePage(client, session()), options, f"{robot.name}, {setting}", opened,
         camera=pages.camera(robot),
     )  # fmt: skip
 
 
 def _replay(words: Sequence[str]) -> int:
-    about = "A record played back in the browser."
-    options = parse(Replaying, "suchus view", words, about)
+    """Read the options of a replay, serve the record until interrupted, and return 0."""
+    description = "A record played back in the browser."
+    options = parse(Replaying, "suchus view", words, description)
     runs = takes(options.record, options.robot)
     ghosts = takes(options.ghost, options.robot) if options.ghost else ()
     animals = _animals(options, runs)
@@ -154,8 +158,9 @@ def _animals(options: Replaying, runs: Sequence[Take]) -> tuple[FilmedAnimal, ..
 
 
 def _swim(words: Sequence[str]) -> int:
-    about = "Play a swim back in the browser, with vorticity and pressure of the flow, or the vortices around it."
-    options = parse(ViewSwimOptions, "suchus view swim", words, about)
+    """Read the options of a swim's replay, serve it in the plane or in space until interrupted, and return 0."""
+    description = "Play a swim back in the browser, with vorticity and pressure of the flow, or the vortices around it."
+    options = parse(ViewSwimOptions, "suchus view swim", words, description)
     space = vortex_film(options.record)
     if space is not None:
         pages = pages_of_viewer()
@@ -170,7 +175,7 @@ def _swim(words: Sequence[str]) -> int:
 
 
 def pages_of_viewer() -> Any:
-    """Return what needs viser, or say that it is missing."""
+    """Return the module of the pages, which needs viser; refuse where viser is not installed."""
     try:
         from suchus.apps.viewer import pages  # noqa: PLC0415  an optional extra, needed here only
     except ModuleNotFoundError as error:
@@ -184,18 +189,27 @@ def pages_of_viewer() -> Any:
 
 def _serve(
     page: Callable[[Any], Any],
-    where: Where,
+    address: Where,
     title: str,
     opened: Callable[[str], object] | None = None,
     **settings: Any,
 ) -> int:
+    """Serve pages until interrupted, and return 0.
+
+    Args:
+        page: makes the page of one browser from viser's handle of it.
+        address: host, port and number of browsers.
+        title: title of the pages, also printed.
+        opened: called with the address once it can be opened.
+        **settings: further settings of ``Viewer``.
+    """
     pages = pages_of_viewer()
-    viewer = pages.Viewer(page, host=where.host, port=where.port, most=where.most, title=title, **settings)
+    viewer = pages.Viewer(page, host=address.host, port=address.port, most=address.most, title=title, **settings)
     try:
         print(f"{title}: open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
-        if where.host not in _LOOPBACK:
+        if address.host not in _LOOPBACK:
             print(
-                f"Whoever reaches {where.host} and knows this address can look and meddle; nothing is encrypted.",
+                f"Whoever reaches {address.host} and knows this address can look and meddle; nothing is encrypted.",
                 flush=True,
             )
         if opened is not None:

@@ -18,7 +18,7 @@ _HELP = ("-h", "--help")
 
 
 def check_words(command: Subcommand, words: Sequence[str]) -> None:
-    """Refuse what names nothing, and an output file that cannot be.
+    """Refuse unknown names, missing input files and unusable output paths.
 
     Args:
         command: the command, which says what its words name.
@@ -37,19 +37,19 @@ def check_words(command: Subcommand, words: Sequence[str]) -> None:
     for kind in command.shelf_options:
         for name in given(words, f"--{kind}"):
             _check_name(kind, name)
-    for out in given(words, "--out"):
-        if command.output and out and not out.startswith("-"):
-            _check_out(command.output, Path(out))
+    for output in given(words, "--out"):
+        if command.output and output and not output.startswith("-"):
+            _check_out(command.output, Path(output))
 
 
 def given(words: Sequence[str], option: str) -> list[str]:
-    """Return the values that words give an option, before all of them are read."""
+    """Return the values of an option among the words, before the parser reads them."""
     joined = [word.partition("=")[2] for word in words if word.startswith(f"{option}=")]
-    return joined + [after for word, after in pairwise(words) if word == option]
+    return joined + [following for word, following in pairwise(words) if word == option]
 
 
 def check_page(path: Path) -> None:
-    """Refuse a page that a browser would not open as one.
+    """Refuse a page whose file name does not end in .html.
 
     Raises:
         BadCommand: the name of its file does not end in .html.
@@ -59,7 +59,7 @@ def check_page(path: Path) -> None:
 
 
 def check_toml(path: Path, content: str) -> None:
-    """Refuse a file for a gait or a robot that would not be read as one.
+    """Refuse a file for a gait or a robot whose name does not end in .toml.
 
     Raises:
         BadCommand: the name of the file does not end in .toml.
@@ -69,6 +69,7 @@ def check_toml(path: Path, content: str) -> None:
 
 
 def _check_first(command: Subcommand, words: Sequence[str]) -> None:
+    """Refuse a first word that is no name on the shelf or no input file of the command."""
     word = words[0] if words else ""
     if not word or word.startswith("-"):
         if command.first_word == "experiment":
@@ -101,6 +102,7 @@ def _shelf(kind: str) -> Mapping[str, Source]:
 
 
 def _check_out(content: str, path: Path) -> None:
+    """Refuse an output path of the wrong kind, or one that cannot be written or must not be replaced."""
     if content == "folder":
         check_writable(path)
         return

@@ -15,22 +15,22 @@ class Actor:
         limbs: of a robot.
     """
 
-    def __init__(self, first: Float[np.ndarray, "run servo"], periods: int, limbs: int) -> None:
-        self.target, self.periods = first, periods
-        self._begin, self._passed = first.copy(), 0
-        self._phase = np.zeros((len(first), limbs))
+    def __init__(self, initial_target: Float[np.ndarray, "run servo"], periods: int, limbs: int) -> None:
+        self.target, self.periods = initial_target, periods
+        self._begin, self._elapsed_periods = initial_target.copy(), 0
+        self._phase = np.zeros((len(initial_target), limbs))
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """Return the angles in which the robots begin [rad]."""
         return self.target
 
     def aim(self, target: Float[np.ndarray, "run servo"]) -> None:
-        """Begin the way to other angles [rad]."""
-        self._begin[:], self.target[:], self._passed = self.target, target, 0
+        """Set the angles that the next action commands [rad]."""
+        self._begin[:], self.target[:], self._elapsed_periods = self.target, target, 0
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
         """Return the angles at the end of the next control period."""
         del tick, sensed
-        self._passed += 1
-        way = self._passed / self.periods
-        return Command(self._begin + way * (self.target - self._begin), self._phase)
+        self._elapsed_periods += 1
+        fraction = self._elapsed_periods / self.periods
+        return Command(self._begin + fraction * (self.target - self._begin), self._phase)

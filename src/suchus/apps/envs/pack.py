@@ -37,14 +37,14 @@ from suchus.sim.model import activations, compile_model, standing
 from suchus.sim.model.export import home
 
 STILL = 3.0
-"""How long a robot has stood before an episode of standing begins [s]; it has settled after two."""
-_SOON = 0.2  # [s]; when standing up begins, where no crawl is needed
-_STANDS = 0.6
+"""Time that a robot stands before an episode of standing begins [s]; it settles within 2 s."""
+_START_DELAY = 0.2  # [s]; when standing up begins, where no crawl is needed
+_MIN_STANDING_FRACTION = 0.6
 """Height of the snout of a robot that stands, over that of hind leg, trunk and head in one line [-].
 
 The article's robot has 0.99 when it stands and 0.2 when it lies.
 """
-_STRAIGHT = "limbs_only"  # the trunk is straight in its first posture
+_STRAIGHT_GAIT = "limbs_only"  # the trunk is straight in its first posture
 
 
 def begin(task: Task) -> Beginning:
@@ -57,35 +57,42 @@ def begin(task: Task) -> Beginning:
         OutsideLimits: its joints cannot follow its swimming motion.
     """
     if task.start == "upright":
-        return _upright(task.body, task.ground, task.timestep)
+        return _standing_beginning(task.body, task.ground, task.timestep)
     model = compile_model(task.body, task.timestep)
     if task.start == "swimming":
-        return _afloat(task, model)
+        return _floating_beginning(task, model)
     qpos, servos = home(model, task.body, task.gait)
     return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
 
 
-def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
-    """Return a beginning with its joints displaced by ``jitter``, shape (servo,) [rad]; the commanded angles stay.
+def off_by(task: Task, beginning: Beginning, jitter: np.ndarray) -> Beginning:
+    """Return a beginning with its joints displaced; the commanded angles stay.
 
     A lying robot is put on the ground again. One that stands keeps what cables bend, which is
     no joint's alone.
+
+    Args:
+        task: the task.
+        beginning: state and commanded angles without displacement.
+        jitter: displacement of each servo's joint, shape (servo,) [rad].
     """
     model = compile_model(task.body, task.timestep)
     if task.start == "lying":
-        return at._replace(qpos=standing(model, task.robot, hip_height(task.robot, task.gait), at.commanded + jitter))
-    qpos = at.qpos.copy()
+        return beginning._replace(
+            qpos=standing(model, task.robot, hip_height(task.robot, task.gait), beginning.commanded + jitter)
+        )
+    qpos = beginning.qpos.copy()
     direct = [servo for servo, hinge in enumerate(layout(task.robot).servo_hinges) if hinge >= 0]
     qpos[model.jnt_qposadr[model.actuator_trnid[direct, 0]]] += jitter[direct]
-    return at._replace(qpos=qpos)
+    return beginning._replace(qpos=qpos)
 
 
-def _afloat(task: Task, model: Any) -> Beginning:
+def _floating_beginning(task: Task, model: Any) -> Beginning:
     """Put a robot on the water, or into a flow, in the mean posture of its swimming motion."""
     swim = task.swum
     check_limits(task.robot, swim)
     check_speeds(task.robot, swim)
-    servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # its limbs held, its axis straight
+    servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # limbs folded back, axis straight
     stands = standing(model, task.robot, hip_height(task.robot, task.gait), servos)
     if task.solved is not None:
         return Beginning(stands, np.zeros(model.nv), activations(model, servos), servos)
@@ -101,12 +108,12 @@ def _afloat(task: Task, model: Any) -> Beginning:
 
 
 @lru_cache(maxsize=16)
-def _upright(robot: Robot, ground: Ground, timestep: float) -> Beginning:
-    """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
-    straight, period = GAITS[_STRAIGHT], control_period(robot)
+def _standing_beginning(robot: Robot, ground: Ground, timestep: float) -> Beginning:
+    """Simulate how a robot stands up, and return the state in which it stands still."""
+    straight, period = GAITS[_STRAIGHT_GAIT], control_period(robot)
     gait = straight if suits(robot, straight) else own_gait(robot).without("axis")
     balance = scaled(BALANCE, length_factor=size_of(robot))
-    control = Standing(at=_SOON, hold=STILL, balance=balance)
+    control = Standing(at=_START_DELAY, hold=STILL, balance=balance)
     run = Run(robot=robot, gait=gait, ground=ground, control=control)
     ticks = ceil((control.upright_from(robot) + STILL) / period)
     loop = Loop([run], timestep, ticks=ticks)
@@ -119,13 +126,13 @@ def _upright(robot: Robot, ground: Ground, timestep: float) -> Beginning:
             f"robot {robot.name!r} does not stand up: {batch.cause[0]}; an upright start needs one that does.",
             time=float(batch.ended[0]),
         )
-    height, least = float(loop.sensors["snout_position"][0, 2]), _STANDS * stretched(robot)
-    if height < least:
+    height, min_height = float(loop.sensors["snout_position"][0, 2]), _MIN_STANDING_FRACTION * stretched(robot)
+    if height < min_height:
         raise InvalidDesign(
-            f"robot {robot.name!r} falls over as it stands up: its snout is {height:.3g} m high, and {least:.3g} m at "
-            "least are those of one that stands; an upright start needs a robot that stays up."
+            f"robot {robot.name!r} falls over as it stands up: its snout is {height:.3g} m high, and "
+            f"{min_height:.3g} m at least are those of one that stands; an upright start needs a robot that stays up."
         )
-    qpos, qvel, act = (np.array(part[0]) for part in (batch.qpos, batch.qvel, batch.activations))
+    qpos, qvel, act = (np.array(state_array[0]) for state_array in (batch.qpos, batch.qvel, batch.activations))
     return Beginning(qpos, qvel, act, np.array(loop.command.targets[0]))
 
 
@@ -169,7 +176,9 @@ class Pack:
         self._begin = begin(task)
         self._low, self._high = servo_ranges(task.robot).T
         self._cranks = turning(task.robot)
-        self._turn = task.decision * np.array([task.robot.servo(name).speed for name in layout(task.robot).servos])
+        self._max_crank_turn = task.decision * np.array(
+            [task.robot.servo(name).speed for name in layout(task.robot).servos]
+        )
         periods = round(task.decision / control_period(task.robot))
         self._actor = Actor(np.tile(self._begin.commanded, (count, 1)), periods, len(layout(task.robot).limbs))
         if task.solved is None:
@@ -181,7 +190,7 @@ class Pack:
         self._observer = Observer(task.robot, count, goal=task.goal is not None)
         self._goals = np.zeros((count, 2))
         self._commanded = self._actor.target  # a view; the actor writes it
-        self._turned = np.zeros_like(self._commanded)
+        self._command_change = np.zeros_like(self._commanded)
         self._phases = np.zeros(count)
         self._power = np.zeros_like(self._commanded)
         self.chances = [Chance()] * count
@@ -217,48 +226,58 @@ class Pack:
             chance = draw(self.task, random)
             faults = () if chance.broken is None else (chance.broken,)
             pushes = () if chance.push is None else (chance.push,)
-            at = off_by(self.task, self._begin, jitter)
-            self.loop.restart(i, at, faults, pushes)
+            beginning = off_by(self.task, self._begin, jitter)
+            self.loop.restart(i, beginning, faults, pushes)
             if self._tanks is not None:
-                self._tanks.restart(i, at, faults, pushes)
-            self._actor.target[i], self._turned[i] = self._begin.commanded, 0.0
+                self._tanks.restart(i, beginning, faults, pushes)
+            self._actor.target[i], self._command_change[i] = self._begin.commanded, 0.0
             self.chances[i], self.faults[i], self.causes[i] = chance, chance.fault, ""
             self._phases[i] = chance.phase
             self._set_goal(i)
 
     def feel(self) -> Float[np.ndarray, "run n"]:
         """Return the observation of each robot, see ``senses``."""
-        commanded = np.where(self._cranks, self._turned / self._turn, (self._commanded - self.centre) / self.task.span)
+        commanded = np.where(
+            self._cranks, self._command_change / self._max_crank_turn, (self._commanded - self.centre) / self.task.span
+        )
         goal = None if self.task.goal is None else (self._offset(self.task.goal), self.remaining)
         return self._observer.observe(self.loop.sensed(), self.phase, commanded, goal)
 
-    def act(self, actions: Float[np.ndarray, "run servo"], who: Bool[np.ndarray, " run"]) -> Terms:
+    def act(self, actions: Float[np.ndarray, "run servo"], active_mask: Bool[np.ndarray, " run"]) -> Terms:
         """Let the chosen robots act for one step; the terms of the others have no meaning.
 
         A crank has no centre: an action turns it on from its last commanded angle, at most at its no-load speed.
 
         Args:
             actions: -1 to 1, values beyond are clipped [-].
-            who: whether each robot acts [-].
+            active_mask: whether each robot acts [-].
         """
-        shares = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
-        angles = np.clip(self.centre + self.task.span * shares, self._low, self._high)
-        target = np.where(self._cranks, self._commanded + self._turn * shares, angles)
-        target = np.where(who[:, None] & (True if self._tanks is None else self._tanks.moved), target, self._commanded)
-        turned = target - self._commanded
-        before, work, far = self.loop.sensors["centre_of_mass"].copy(), np.zeros(self.count), self.remaining
-        self.loop.choose(who)
+        clipped = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
+        angles = np.clip(self.centre + self.task.span * clipped, self._low, self._high)
+        target = np.where(self._cranks, self._commanded + self._max_crank_turn * clipped, angles)
+        target = np.where(
+            active_mask[:, None] & (True if self._tanks is None else self._tanks.moved), target, self._commanded
+        )
+        command_change = target - self._commanded
+        last_position, work, last_goal_distance = (
+            self.loop.sensors["centre_of_mass"].copy(),
+            np.zeros(self.count),
+            self.remaining,
+        )
+        self.loop.choose(active_mask)
         self._actor.aim(target)
         if self._tanks is not None:
-            work = self._tanks.act(target, who)
+            work = self._tanks.act(target, active_mask)
             self.loop.skip(self._actor.periods)
         else:
             for period in range(1, self._actor.periods + 1):
                 self.loop.decide()
-                self.loop.advance(felt=period == self._actor.periods)  # nothing feels the ground in between
+                self.loop.advance(
+                    felt=period == self._actor.periods
+                )  # contact loads are read at the end of the action only
                 work += self._servo_power() * self.loop.period
-        self._turned = np.where(who[:, None], turned, self._turned)
-        return self._terms(who, before, far, work, (turned**2).sum(axis=1))
+        self._command_change = np.where(active_mask[:, None], command_change, self._command_change)
+        return self._terms(active_mask, last_position, last_goal_distance, work, (command_change**2).sum(axis=1))
 
     def record(self, robot: int) -> xr.Dataset:
         """Return one robot as it is now, as a record of one sample."""
@@ -295,43 +314,65 @@ class Pack:
         return np.asarray(np.abs(power, out=power).sum(axis=1))
 
     def _terms(
-        self, who: np.ndarray, before: np.ndarray, far: np.ndarray, work: np.ndarray, action_rate: np.ndarray
+        self,
+        active_mask: np.ndarray,
+        last_position: np.ndarray,
+        last_goal_distance: np.ndarray,
+        work: np.ndarray,
+        action_rate: np.ndarray,
     ) -> Terms:
-        after, diverged = self.loop.sensors["centre_of_mass"], who & ~self.loop.batch.alive
-        moved = np.where(diverged[:, None], 0.0, after - before)
-        drift = np.where(diverged, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
+        """Return the terms of the reward of one step, and note why episodes ended.
+
+        Args:
+            active_mask: which robots acted, (run,).
+            last_position: centres of mass before the step, (run, 3) [m].
+            last_goal_distance: distances to the goals before the step, (run,) [m].
+            work: work of the servos in the step, (run,) [J].
+            action_rate: squared change of the commanded angles, summed over the servos, (run,) [rad2].
+        """
+        position, diverged = self.loop.sensors["centre_of_mass"], active_mask & ~self.loop.batch.alive
+        displacement = np.where(diverged[:, None], 0.0, position - last_position)
+        drift = np.where(diverged, 0.0, np.abs(position[:, 1]) - np.abs(last_position[:, 1]))
         height, level = (
             self.loop.sensors["snout_position"][:, 2],
             rotation.upward(self.loop.sensors["imu_orientation"])[:, 2],
         )
-        low = (height < self.task.least_height) & (self.task.least_height > 0.0)
-        fell = low | (level < self.task.least_level)
-        left = self.remaining
-        reached = who & (left <= 0.0) & ~(fell | diverged) & (self.task.goal is not None)
-        for i in np.flatnonzero(who & (fell | diverged)):
-            self.causes[i] = self._why(int(i), bool(diverged[i]), float(height[i]), float(level[i]))
-        for i in np.flatnonzero(reached):
+        is_low = (height < self.task.least_height) & (self.task.least_height > 0.0)
+        has_fallen = is_low | (level < self.task.least_level)
+        goal_distance = self.remaining
+        has_reached = active_mask & (goal_distance <= 0.0) & ~(has_fallen | diverged) & (self.task.goal is not None)
+        for i in np.flatnonzero(active_mask & (has_fallen | diverged)):
+            self.causes[i] = self._end_cause(int(i), bool(diverged[i]), float(height[i]), float(level[i]))
+        for i in np.flatnonzero(has_reached):
             self.causes[i] = f"it reached the goal at {self.time[i]:.2f} s"
         return Terms(
-            forward=moved[:, 0],
+            forward=displacement[:, 0],
             lateral_drift=drift,
-            upright=np.where(fell | diverged, 0.0, self.task.decision),
+            upright=np.where(has_fallen | diverged, 0.0, self.task.decision),
             work=np.where(diverged, 0.0, work),
             action_rate=action_rate,
-            approach=np.where(diverged, 0.0, far - left),
-            goal=reached,
-            fall=fell | diverged,
+            approach=np.where(diverged, 0.0, last_goal_distance - goal_distance),
+            goal=has_reached,
+            fall=has_fallen | diverged,
         )
 
-    def _why(self, robot: int, diverged: bool, height: float, level: float) -> str:
-        when = f"at {self.time[robot]:.2f} s"
+    def _end_cause(self, robot: int, diverged: bool, height: float, level: float) -> str:
+        """Return the sentence that says why a robot's episode ended: divergence, a low snout or a tilt.
+
+        Args:
+            robot: index of the robot.
+            diverged: whether its simulation diverged.
+            height: height of its snout [m].
+            level: cosine of the tilt of its root [-].
+        """
+        time_text = f"at {self.time[robot]:.2f} s"
         if diverged:
-            return f"the simulation diverged {when}: {self.loop.batch.cause[robot]}"
+            return f"the simulation diverged {time_text}: {self.loop.batch.cause[robot]}"
         if 0.0 < self.task.least_height > height:
-            return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
-        tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
+            return f"it fell {time_text}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
+        tilt, max_tilt = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
         root = self.task.robot.root
-        return f"it rolled over {when}: the {root} is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
+        return f"it rolled over {time_text}: the {root} is tilted by {tilt:.0f} degrees, beyond {max_tilt:.0f}"
 
 
 def draw(task: Task, random: np.random.Generator) -> Chance:

@@ -16,7 +16,7 @@ from suchus.robot.design.scale import control_period
 from suchus.robot.motion import Gait, Steer, cycle_targets, movement
 
 Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
-"""From observations to actions."""
+"""Function from observations to actions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,9 +26,9 @@ class Still:
     task: Task
     """The task, for whose robot the actions are."""
 
-    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+    def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return zeros."""
-        return np.zeros((len(seen), len(layout(self.task.robot).servos)))
+        return np.zeros((len(observations), len(layout(self.task.robot).servos)))
 
 
 @dataclass(slots=True)
@@ -40,9 +40,9 @@ class Anything:
     random: np.random.Generator
     """Random generator."""
 
-    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+    def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return random actions."""
-        return self.random.uniform(-1.0, 1.0, (len(seen), len(layout(self.task.robot).servos)))
+        return self.random.uniform(-1.0, 1.0, (len(observations), len(layout(self.task.robot).servos)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,19 +56,19 @@ class Follow:
     gait: Gait
     """The gait; it is played with the period of the task's gait."""
 
-    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+    def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the gait's angles at the end of the step."""
         task, gait, robot = self.task, self.gait, self.task.robot
-        sine, cosine = part(seen, "clock", robot).astype(float).T
+        sine, cosine = part(observations, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.gait.period
         targets = cycle_targets(robot, gait, clock)
         actions = (targets - np.array(self.centre)) / task.span
         cranks = turning(robot)
         if cranks.any():
-            behind = targets - np.pi * part(seen, "servo_position", robot)
+            crank_error = targets - np.pi * part(observations, "servo_position", robot)
             speed = np.array([robot.servo(name).speed for name in layout(robot).servos])
-            ahead = (np.mod(behind + np.pi, 2 * np.pi) - np.pi) / (task.decision * speed)
-            actions = np.where(cranks, ahead, actions)
+            crank_actions = (np.mod(crank_error + np.pi, 2 * np.pi) - np.pi) / (task.decision * speed)
+            actions = np.where(cranks, crank_actions, actions)
         return np.clip(actions, -1.0, 1.0)
 
 
@@ -81,24 +81,24 @@ class SwimToGoal:
     centre: tuple[float, ...]
     """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
     hold: HeadingHold = field(default_factory=HeadingHold)
-    """Its gain and its bends steer, by the bearing of the goal in the present step; its state is not used."""
+    """Gain and bends of the steering, driven by the present bearing of the goal; the state is not used."""
 
-    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+    def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
         task, robot = self.task, self.task.robot
         swim = movement(robot, task.swum)
-        sine, cosine = part(seen, "clock", robot).astype(float).T
+        sine, cosine = part(observations, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
-        direction = part(seen, "goal_direction", robot).astype(float)
-        share = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
-        steer = Steer(bend=self.hold.trunk_turn * share, tail=self.hold.turn * share)
+        direction = part(observations, "goal_direction", robot).astype(float)
+        bend_fraction = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
+        steer = Steer(bend=self.hold.trunk_turn * bend_fraction, tail=self.hold.turn * bend_fraction)
         phases = clock[:, None] + np.array(swim.gaits[0].limb_phases)
         targets = swim.targets(phases, swim.axis_of_clock(clock), steer)
         return np.clip((targets - np.array(self.centre)) / task.span, -1.0, 1.0)
 
 
 class Controlled:
-    """A controller of the shelf, which feels what the observation holds; for one ``play``, since it remembers.
+    """A controller of the shelf that reads the observations; it has state, so use one for each ``play``.
 
     It is called in every control period with the observation of the present step; its commands for air are ignored.
 
@@ -123,13 +123,13 @@ class Controlled:
         self._ticks, self._tick = steps * self._per_step, 0
         self._controller: Controller | None = None
 
-    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+    def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Call the controller for every control period of the step and return the last commanded angles as actions."""
-        task, count = self._task, len(seen)
+        task, count = self._task, len(observations)
         if self._controller is None:
             runs = Runs.alike(self._control, task.robot, self._gait, count=count, ticks=self._ticks)
             self._controller = self._control.start(runs, self._period)
-        sensed = felt(seen, task.robot, self._tick * self._period)
+        sensed = felt(observations, task.robot, self._tick * self._period)
         for _ in range(self._per_step):
             targets = self._controller.command(self._tick, sensed).targets
             self._tick += 1
@@ -163,16 +163,16 @@ def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps
         steps: number of steps after which an episode ends.
     """
     env = CrocodileVectorEnv(episodes, task, max_episode_steps=steps)
-    seen, _ = env.reset(seed=seed)
-    going = np.ones(episodes, dtype=bool)
-    returns, lasted, forward, approach = np.zeros((4, episodes))
+    observations, _ = env.reset(seed=seed)
+    is_running = np.ones(episodes, dtype=bool)
+    returns, durations, forward, approach = np.zeros((4, episodes))
     goal = np.zeros(episodes, dtype=bool)
-    while going.any():
-        seen, rewards, terminated, truncated, infos = env.step(policy(seen))
-        returns += np.where(going, rewards, 0.0)
-        lasted += going * task.decision
-        forward += np.where(going, infos["forward"], 0.0)
-        approach += np.where(going, infos["approach"], 0.0)
-        goal |= going & infos["goal"]
-        going &= ~(terminated | truncated)
-    return Played(returns=returns, lasted=lasted, forward=forward, approach=approach, goal=goal)
+    while is_running.any():
+        observations, rewards, terminated, truncated, infos = env.step(policy(observations))
+        returns += np.where(is_running, rewards, 0.0)
+        durations += is_running * task.decision
+        forward += np.where(is_running, infos["forward"], 0.0)
+        approach += np.where(is_running, infos["approach"], 0.0)
+        goal |= is_running & infos["goal"]
+        is_running &= ~(terminated | truncated)
+    return Played(returns=returns, lasted=durations, forward=forward, approach=approach, goal=goal)

@@ -35,11 +35,11 @@ class Sense(NamedTuple):
     name: str
     """Name of the reading."""
     columns: slice
-    """Its columns in an observation."""
+    """Columns of the reading in an observation."""
     scale: str
     """Scale by which it is divided, with its unit."""
     what: str
-    """What it measures, in words."""
+    """Description of the measured quantity."""
 
 
 @lru_cache(maxsize=64)
@@ -50,37 +50,47 @@ def senses(robot: Robot, *, goal: bool = False) -> tuple[Sense, ...]:
         robot: the robot.
         goal: whether its task has a goal, which adds the last two readings.
     """
-    place, pace = layout(robot), 1.0 / sqrt(beside_article(robot).length)
-    servos, cranks = len(place.servos), bool(turning(robot).any())
+    robot_layout, pace = layout(robot), 1.0 / sqrt(beside_article(robot).length)
+    servos, cranks = len(robot_layout.servos), bool(turning(robot).any())
     angle = "angle of each servo" + (", of a crank within half a turn to either side" if cranks else "")
-    last = "last commanded angle of each servo, relative to its centre: the last action"
+    last_action_text = "last commanded angle of each servo, relative to its centre: the last action"
     rows: tuple[tuple[str, int, str, str], ...] = (
         ("servo_position", servos, "pi rad", angle),
         ("servo_velocity", servos, f"{SPEED * pace:.3g} rad/s", "speed of each servo"),
         ("servo_torque", servos, "its limit, N m", "torque of each servo"),
         (
             "foot_pressure",
-            len(place.limbs),
+            len(robot_layout.limbs),
             "weight, N",
             "normal force under each foot, the mean over a control period",
         ),
-        ("belly_pressure", len(place.trunk), "weight, N", "the same under each body of the trunk"),
+        ("belly_pressure", len(robot_layout.trunk), "weight, N", "the same under each body of the trunk"),
         ("tail_pressure", 1, "weight, N", "the same under the tail"),
-        ("upward", 3, "1", f"the world's upward direction in the {place.robot.root}, from the IMU's orientation"),
-        ("ahead", 3, "1", f"the world's x direction in the {place.robot.root}, from the IMU's orientation"),
-        ("angular_velocity", 3, f"{RATE * pace:.3g} rad/s", f"of the IMU in the {place.robot.root}, in its own frame"),
+        (
+            "upward",
+            3,
+            "1",
+            f"the world's upward direction in the {robot_layout.robot.root}, from the IMU's orientation",
+        ),
+        ("ahead", 3, "1", f"the world's x direction in the {robot_layout.robot.root}, from the IMU's orientation"),
+        (
+            "angular_velocity",
+            3,
+            f"{RATE * pace:.3g} rad/s",
+            f"of the IMU in the {robot_layout.robot.root}, in its own frame",
+        ),
         ("acceleration", 3, f"{ACCELERATION:.1f} m/s2", "of the IMU with gravity, in its own frame"),
         ("clock", 2, "1", "sine and cosine of the phase of a clock with the gait's period"),
-        ("last_action", servos, "span, rad", last),
+        ("last_action", servos, "span, rad", last_action_text),
     )
     if goal:
-        towards = f"level direction to the goal in the {place.robot.root}, as a beacon and the IMU give it"
+        towards = f"level direction to the goal in the {robot_layout.robot.root}, as a beacon and the IMU give it"
         rows += (("goal_direction", 3, "1", towards),)
         rows += (("goal_distance", 1, f"{FAR:g} L, m", "distance that remains to the goal, L the robot's length"),)
     ends = np.cumsum([count for _, count, _, _ in rows]).tolist()
     return tuple(
-        Sense(name, slice(end - count, end), scale, what)
-        for (name, count, scale, what), end in zip(rows, ends, strict=True)
+        Sense(name, slice(end - count, end), scale, description)
+        for (name, count, scale, description), end in zip(rows, ends, strict=True)
     )
 
 
@@ -104,10 +114,10 @@ def part(observations: Float[np.ndarray, "*b n"], name: str, robot: Robot | str 
     Raises:
         UnknownName: there is no such reading.
     """
-    known = senses(ROBOTS.resolve(robot))
-    if observations.shape[-1] > known[-1].columns.stop:
-        known = senses(ROBOTS.resolve(robot), goal=True)
-    columns = {sense.name: sense.columns for sense in known}
+    readings = senses(ROBOTS.resolve(robot))
+    if observations.shape[-1] > readings[-1].columns.stop:
+        readings = senses(ROBOTS.resolve(robot), goal=True)
+    columns = {sense.name: sense.columns for sense in readings}
     if name not in columns:
         raise UnknownName("reading", name, columns)
     return observations[..., columns[name]]
@@ -116,18 +126,18 @@ def part(observations: Float[np.ndarray, "*b n"], name: str, robot: Robot | str 
 @lru_cache(maxsize=64)
 def scales(robot: Robot) -> Mapping[str, float | Float[np.ndarray, " servo"]]:
     """Return the scale of every reading of a robot by its name, in SI units; numbers or one for each servo."""
-    weight, slow = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
+    weight, time_factor = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
     limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
     limits.flags.writeable = False
     return MappingProxyType(
         {
             "servo_position": ANGLE,
-            "servo_velocity": SPEED / slow,
+            "servo_velocity": SPEED / time_factor,
             "servo_torque": limits,
             "foot_pressure": weight,
             "belly_pressure": weight,
             "tail_pressure": weight,
-            "angular_velocity": RATE / slow,
+            "angular_velocity": RATE / time_factor,
             "acceleration": ACCELERATION,
             "goal_distance": FAR * robot.length,
         }
@@ -144,11 +154,11 @@ class Observer:
     """
 
     def __init__(self, robot: Robot, count: int, *, goal: bool) -> None:
-        known = senses(robot, goal=goal)
-        self._rows = np.zeros((count, known[-1].columns.stop))
-        self._columns = {sense.name: self._rows[:, sense.columns] for sense in known}
+        readings = senses(robot, goal=goal)
+        self._rows = np.zeros((count, readings[-1].columns.stop))
+        self._columns = {sense.name: self._rows[:, sense.columns] for sense in readings}
         self._scale = np.ones(self._rows.shape[1])
-        for sense in known:
+        for sense in readings:
             self._scale[sense.columns] = scales(robot).get(sense.name, 1.0)
         self._cranks = turning(robot)
 
@@ -172,7 +182,7 @@ class Observer:
         position = sensed.servo_position
         if self._cranks.any():
             position = np.where(self._cranks, np.mod(position + np.pi, 2 * np.pi) - np.pi, position)
-        upward, ahead = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
+        upward, forward = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
         columns["servo_position"][:] = position
         columns["servo_velocity"][:] = sensed.servo_velocity
         columns["servo_torque"][:] = sensed.servo_torque
@@ -180,14 +190,14 @@ class Observer:
         columns["belly_pressure"][:] = sensed.belly_pressure
         columns["tail_pressure"][:, 0] = sensed.tail_pressure
         columns["upward"][:] = upward
-        columns["ahead"][:] = ahead
+        columns["ahead"][:] = forward
         columns["angular_velocity"][:] = sensed.angular_velocity
         columns["acceleration"][:] = sensed.acceleration
         columns["clock"][:, 0], columns["clock"][:, 1] = np.sin(turn), np.cos(turn)
         columns["last_action"][:] = commanded
         if goal is not None:
             offset, remaining = goal
-            columns["goal_direction"][:] = _direction(offset, upward, ahead)
+            columns["goal_direction"][:] = _direction(offset, upward, forward)
             columns["goal_distance"][:, 0] = remaining
         rows = self._rows
         rows /= self._scale
@@ -197,32 +207,32 @@ class Observer:
 
 
 def felt(observations: Float[np.ndarray, "run n"], robot: Robot, time: float) -> Sensed:
-    """Return the readings that observations were made of; readings beyond their scales stay clipped.
+    """Return the sensor readings from which observations were made; clipped readings stay clipped.
 
     Args:
         observations: one row for each robot.
         robot: the robot that they belong to.
         time: time of the readings [s].
     """
-    seen = {sense.name: part(observations, sense.name, robot).astype(float) for sense in senses(robot)}
+    readings = {sense.name: part(observations, sense.name, robot).astype(float) for sense in senses(robot)}
     scale = scales(robot)
-    rows = np.stack([seen["ahead"], np.cross(seen["upward"], seen["ahead"]), seen["upward"]], axis=1)
+    rows = np.stack([readings["ahead"], np.cross(readings["upward"], readings["ahead"]), readings["upward"]], axis=1)
     return Sensed(
         time=time,
-        servo_position=scale["servo_position"] * seen["servo_position"],
-        servo_velocity=scale["servo_velocity"] * seen["servo_velocity"],
-        servo_torque=scale["servo_torque"] * seen["servo_torque"],
-        foot_pressure=scale["foot_pressure"] * seen["foot_pressure"],
-        belly_pressure=scale["belly_pressure"] * seen["belly_pressure"],
-        tail_pressure=scale["tail_pressure"] * seen["tail_pressure"][:, 0],
+        servo_position=scale["servo_position"] * readings["servo_position"],
+        servo_velocity=scale["servo_velocity"] * readings["servo_velocity"],
+        servo_torque=scale["servo_torque"] * readings["servo_torque"],
+        foot_pressure=scale["foot_pressure"] * readings["foot_pressure"],
+        belly_pressure=scale["belly_pressure"] * readings["belly_pressure"],
+        tail_pressure=scale["tail_pressure"] * readings["tail_pressure"][:, 0],
         orientation=Rotation.from_matrix(rows).as_quat(scalar_first=True),
-        angular_velocity=scale["angular_velocity"] * seen["angular_velocity"],
-        acceleration=scale["acceleration"] * seen["acceleration"],
+        angular_velocity=scale["angular_velocity"] * readings["angular_velocity"],
+        acceleration=scale["acceleration"] * readings["acceleration"],
     )
 
 
-def _direction(offset: np.ndarray, upward: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+def _direction(offset: np.ndarray, upward: np.ndarray, forward: np.ndarray) -> np.ndarray:
     """Return the direction to the goal in the root, shape (run, 3), 0 at the goal [-]."""
-    far = np.linalg.norm(offset, axis=1, keepdims=True)
-    unit = np.divide(offset, far, out=np.zeros_like(offset), where=far > 0.0)
-    return np.asarray(unit[:, :1] * ahead + unit[:, 1:] * np.cross(upward, ahead))
+    distance = np.linalg.norm(offset, axis=1, keepdims=True)
+    unit = np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0.0)
+    return np.asarray(unit[:, :1] * forward + unit[:, 1:] * np.cross(upward, forward))

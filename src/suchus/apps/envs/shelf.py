@@ -114,8 +114,8 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
     }
     for name, value in values.items():
         if name in kinds and not isinstance(value, kinds[name]):
-            wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds[name])
-            raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {wanted} is needed.")
+            allowed_types = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds[name])
+            raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {allowed_types} is needed.")
     if "robot" in values:
         task = task.on(values.pop("robot"), values.pop("gait", None))
     return replace(task, **values)

@@ -42,16 +42,18 @@ def checked(actions: Any, shape: tuple[int, ...]) -> Float[np.ndarray, "*b servo
     Raises:
         OutsideLimits: they have another shape, or are not finite.
     """
-    numbers = np.asarray(actions, dtype=float)
-    if numbers.shape != shape:
-        raise OutsideLimits(f"actions have the shape {numbers.shape}; {shape} is needed: one number for each servo.")
-    if not np.isfinite(numbers).all():
+    action_values = np.asarray(actions, dtype=float)
+    if action_values.shape != shape:
+        raise OutsideLimits(
+            f"actions have the shape {action_values.shape}; {shape} is needed: one number for each servo."
+        )
+    if not np.isfinite(action_values).all():
         raise OutsideLimits("an action is not a finite number; -1 to 1 is allowed.")
-    return numbers
+    return action_values
 
 
 def check_render_mode(mode: str | None) -> None:
-    """Refuse a way of rendering that is not there.
+    """Refuse an unknown render mode.
 
     Raises:
         UnknownName: the message lists those that are.
@@ -132,28 +134,32 @@ def step_info(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
 def portrait(pack: Pack, robot: int) -> np.ndarray:
     """Return a picture of one robot of a pack."""
     text = f"{pack.time[robot]:.2f} s  {pack.chances[robot].fault}"
-    around = Surroundings(up=up(pack.task.ground), goal=pack.task.goal, place=pack.goals[robot])
-    return picture(pack.task.robot, pack.record(robot), text, around)
+    surroundings = Surroundings(up=up(pack.task.ground), goal=pack.task.goal, place=pack.goals[robot])
+    return picture(pack.task.robot, pack.record(robot), text, surroundings)
 
 
 def metadata(task: Task) -> dict[str, Any]:
-    """Return what gymnasium wants to know about rendering."""
+    """Return render modes and frame rate, as gymnasium's ``metadata``."""
     return {"render_modes": list(RENDER_MODES), "render_fps": round(1.0 / task.decision)}
 
 
 WIDTH, HEIGHT = 640, 480
-"""Of a picture [pixel]."""
+"""Width and height of a picture [pixel]."""
 _DPI = 100
 _PLACES = ((0.12, 0.622, 0.8, 0.333), (0.12, 0.09, 0.8, 0.52))
-"""Of the two views, as shares of the picture: left, bottom, width, height."""
-_SPAN, _WIDE, _TALL = 1.6, 0.5, 0.75  # [m]; what is seen of the article's robot: along the walk, across it, and up
-_BELOW = 0.03  # [m]; what is seen below the ground
-_TINT = 0.22  # of the water's colour and the goal's
+"""Rectangles of the two views as fractions of the picture: left, bottom, width, height."""
+_VIEW_LENGTH, _VIEW_WIDTH, _VIEW_HEIGHT = (
+    1.6,
+    0.5,
+    0.75,
+)  # [m]; what is seen of the article's robot: along the walk, across it, and up
+_VIEW_DEPTH = 0.03  # [m]; what is seen below the ground
+_TINT = 0.22  # opacity of the water and of the goal
 _EDGE = 0.45  # [-]; of the picture's sides from its middle, where an arrow points to a goal beyond it
 _ARROW = 0.06  # [-]; its length, of the picture's width
 
 
-_SKY = 0.4
+_SKY_FRACTION = 0.4
 """Share of the view from the side that is above a robot which floats high above the ground [-]."""
 
 
@@ -164,12 +170,14 @@ class Surroundings:
     up: Float[np.ndarray, "3"]
     """Unit vector against gravity."""
     goal: AnyGoal | None = None
-    """What the goal is; None where there is none."""
+    """The goal; None without a goal."""
     place: Float[np.ndarray, "2"] | None = None
-    """Where it is, forward and left in the world [m]."""
+    """Position of the goal, forward and left in the world [m]."""
 
 
-def picture(robot: Robot, record: xr.Dataset, text: str, around: Surroundings) -> UInt8[np.ndarray, "height width 3"]:
+def picture(
+    robot: Robot, record: xr.Dataset, text: str, surroundings: Surroundings
+) -> UInt8[np.ndarray, "height width 3"]:
     """Return a robot from above and from its right side, with its centre of mass, as red, green and blue.
 
     Water is blue, its surface a line; the goal is a ring, or a line where it is land, and an arrow at the edge of the
@@ -179,70 +187,83 @@ def picture(robot: Robot, record: xr.Dataset, text: str, around: Surroundings) -
         robot: whose record it is.
         record: of one run, one sample.
         text: what is written above.
-        around: gravity and the goal.
+        surroundings: gravity and the goal.
     """
     with styled(font__size=9, axes__titlesize=10, xtick__labelsize=8, ytick__labelsize=8, axes__labelsize=9):
         figure = new(width=WIDTH / _DPI, height=HEIGHT / _DPI)
         figure.set_dpi(_DPI)
         figure.set_layout_engine("none")  # finding a layout would take three quarters of the time
-        above, side = (figure.add_axes(place) for place in _PLACES)
-        above.tick_params(labelbottom=False)
-        draw_posture(above, robot, record, 0.0)
-        draw_posture(side, robot, record, 0.0, view="side")
+        top_axes, side_axes = (figure.add_axes(rectangle) for rectangle in _PLACES)
+        top_axes.tick_params(labelbottom=False)
+        draw_posture(top_axes, robot, record, 0.0)
+        draw_posture(side_axes, robot, record, 0.0, view="side")
         x, y, z = record.centre_of_mass.values[0].tolist()
-        span, wide, below, tall = (beside_article(robot).length * part for part in (_SPAN, _WIDE, _BELOW, _TALL))
-        low = max(-below, z - (1 - _SKY) * (tall + below))
-        above.set(xlim=(x - span / 2, x + span / 2), ylim=(y - wide / 2, y + wide / 2), ylabel="left [m]", title=text)
-        side.set(
-            xlim=(x - span / 2, x + span / 2), ylim=(low, low + tall + below), xlabel="forward [m]", ylabel="up [m]"
+        view_length, view_width, view_depth, view_height = (
+            beside_article(robot).length * length for length in (_VIEW_LENGTH, _VIEW_WIDTH, _VIEW_DEPTH, _VIEW_HEIGHT)
+        )
+        lower_bound = max(-view_depth, z - (1 - _SKY_FRACTION) * (view_height + view_depth))
+        top_axes.set(
+            xlim=(x - view_length / 2, x + view_length / 2),
+            ylim=(y - view_width / 2, y + view_width / 2),
+            ylabel="left [m]",
+            title=text,
+        )
+        side_axes.set(
+            xlim=(x - view_length / 2, x + view_length / 2),
+            ylim=(lower_bound, lower_bound + view_height + view_depth),
+            xlabel="forward [m]",
+            ylabel="up [m]",
         )
         if "water_level" in record:
-            draw_water(above, side, float(record.water_level[0]), around.up, y)
-        if around.goal is not None and around.place is not None:
-            _draw_goal(above, side, around.goal, around.place)
+            draw_water(top_axes, side_axes, float(record.water_level[0]), surroundings.up, y)
+        if surroundings.goal is not None and surroundings.place is not None:
+            _draw_goal(top_axes, side_axes, surroundings.goal, surroundings.place)
         canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()
     return np.array(canvas.buffer_rgba())[..., :3]
 
 
-def draw_water(above: Axes, side: Axes, level: float, up: Float[np.ndarray, "3"], left: float) -> None:
+def draw_water(top_axes: Axes, side_axes: Axes, level: float, upward: Float[np.ndarray, "3"], section_y: float) -> None:
     """Draw the water of a lake as far as two views reach, its surface as a line.
 
     Args:
-        above: view from above; water is where there is some over the ground.
-        side: view from the side.
+        top_axes: view from above; water is where there is some over the ground.
+        side_axes: view from the side.
         level: of the surface above the world's origin, against gravity [m].
-        up: unit vector against gravity.
-        left: where the view from the side cuts the water [m].
+        upward: unit vector against gravity.
+        section_y: where the view from the side cuts the water [m].
     """
-    x, y = np.array(above.get_xlim()), np.array(above.get_ylim())
-    depth = level - up[0] * x[None, :] - up[1] * y[:, None]
+    x, y = np.array(top_axes.get_xlim()), np.array(top_axes.get_ylim())
+    depth = level - upward[0] * x[None, :] - upward[1] * y[:, None]
     if (depth > 0.0).any():
-        above.contourf(x, y, depth, levels=[0.0, max(depth.max(), 1e-9)], colors=[COLOURS["water"]], alpha=_TINT)
-    line = [(level - up[1] * left) / up[0]] if up[0] else []  # where the surface meets the ground
+        top_axes.contourf(x, y, depth, levels=[0.0, max(depth.max(), 1e-9)], colors=[COLOURS["water"]], alpha=_TINT)
+    line = [(level - upward[1] * section_y) / upward[0]] if upward[0] else []  # where the surface meets the ground
     ends = np.sort([*x, *(shore for shore in line if x[0] < shore < x[1])])
     for pair in pairwise(ends):
-        heights = (level - up[0] * np.array(pair) - up[1] * left) / up[2]
+        heights = (level - upward[0] * np.array(pair) - upward[1] * section_y) / upward[2]
         if heights.mean() > 0.0:
-            side.fill_between(pair, 0.0, heights, color=COLOURS["water"], alpha=_TINT, linewidth=0, zorder=0.1)
-            side.plot(pair, heights, color=COLOURS["water"], linewidth=1.2, zorder=0.2)
+            side_axes.fill_between(pair, 0.0, heights, color=COLOURS["water"], alpha=_TINT, linewidth=0, zorder=0.1)
+            side_axes.plot(pair, heights, color=COLOURS["water"], linewidth=1.2, zorder=0.2)
 
 
-def _draw_goal(above: Axes, side: Axes, goal: AnyGoal, place: Float[np.ndarray, "2"]) -> None:
-    (left, right), (low, high) = above.get_xlim(), above.get_ylim()
+def _draw_goal(top_axes: Axes, side_axes: Axes, goal: AnyGoal, position: Float[np.ndarray, "2"]) -> None:
+    """Draw the goal in both views, and an arrow towards it where it lies outside of the view from above."""
+    (x_min, x_max), (y_min, y_max) = top_axes.get_xlim(), top_axes.get_ylim()
     colour = COLOURS["limbs_only"]
     if isinstance(goal, Landing):
-        for ax in (above, side):
-            ax.axvline(float(place[0]), color=colour, linestyle=(0, (4, 2)))
+        for ax in (top_axes, side_axes):
+            ax.axvline(float(position[0]), color=colour, linestyle=(0, (4, 2)))
     else:
-        above.add_patch(Circle((float(place[0]), float(place[1])), goal.within, facecolor="none", edgecolor=colour))
-        side.axvspan(
-            float(place[0]) - goal.within, float(place[0]) + goal.within, color=colour, alpha=_TINT, linewidth=0
+        top_axes.add_patch(
+            Circle((float(position[0]), float(position[1])), goal.within, facecolor="none", edgecolor=colour)
         )
-    centre = np.array([left + right, low + high]) / 2
-    towards = place - centre if not isinstance(goal, Landing) else np.array([place[0] - centre[0], 0.0])
-    beyond = float((np.abs(towards) / (_EDGE * np.array([right - left, high - low]))).max())
-    if beyond > 1.0:
-        head = centre + towards / beyond
-        tail = head - _ARROW * (right - left) * towards / np.hypot(*towards)
-        above.annotate("", tuple(head), tuple(tail), arrowprops={"arrowstyle": "-|>", "color": colour}, zorder=9)
+        side_axes.axvspan(
+            float(position[0]) - goal.within, float(position[0]) + goal.within, color=colour, alpha=_TINT, linewidth=0
+        )
+    centre = np.array([x_min + x_max, y_min + y_max]) / 2
+    direction = position - centre if not isinstance(goal, Landing) else np.array([position[0] - centre[0], 0.0])
+    overshoot = float((np.abs(direction) / (_EDGE * np.array([x_max - x_min, y_max - y_min]))).max())
+    if overshoot > 1.0:
+        head = centre + direction / overshoot
+        tail = head - _ARROW * (x_max - x_min) * direction / np.hypot(*direction)
+        top_axes.annotate("", tuple(head), tuple(tail), arrowprops={"arrowstyle": "-|>", "color": colour}, zorder=9)

@@ -19,8 +19,8 @@ from suchus.swimming.water import Outline
 if TYPE_CHECKING:
     from suchus.swimming.coupling import Swim
 
-_ENDS = (Diverged, InvalidDesign, NotConverged, OutsideLimits)
-"""What ends an episode: robot and flow diverge, the body leaves its plane or its box, or moves too fast for it."""
+_END_ERRORS = (Diverged, InvalidDesign, NotConverged, OutsideLimits)
+"""Errors that end an episode: divergence, a body that leaves its plane or box, or one that moves too fast."""
 
 
 class Tanks:
@@ -60,23 +60,25 @@ class Tanks:
         self._actors[sim], self._ticks[sim] = actor, 0
         self._swims[sim].stepper.show(self._batch, sim)
 
-    def act(self, target: Float[np.ndarray, "run servo"], who: Bool[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
+    def act(
+        self, target: Float[np.ndarray, "run servo"], active_mask: Bool[np.ndarray, " run"]
+    ) -> Float[np.ndarray, " run"]:
         """Let robots swim for a step on the way to other servo angles; return the work of their servos [J].
 
         Args:
             target: commanded at the end of the step [rad].
-            who: whether each robot swims; who no longer can is no longer alive in the batch.
+            active_mask: whether each robot swims; who no longer can is no longer alive in the batch.
         """
-        work = np.zeros(len(who))
-        for sim in np.flatnonzero(who).tolist():
-            swim, before = self._swims[sim], self._swims[sim].effort
+        work = np.zeros(len(active_mask))
+        for sim in np.flatnonzero(active_mask).tolist():
+            swim, last_effort = self._swims[sim], self._swims[sim].effort
             self._actors[sim].aim(target[sim : sim + 1])
             self._ticks[sim] += self._periods
             try:
                 swim.go(self._ticks[sim] * self._period, progress=silent)
-            except _ENDS as error:
+            except _END_ERRORS as error:
                 self._batch.alive[sim], self._batch.ended[sim], self._batch.cause[sim] = False, swim.time, str(error)
                 continue
             swim.stepper.show(self._batch, sim)
-            work[sim] = swim.effort - before
+            work[sim] = swim.effort - last_effort
         return work

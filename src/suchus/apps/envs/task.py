@@ -77,9 +77,11 @@ class Goal:
         del ground, lake
         return begin + self.distance * np.array([np.cos(bearing), np.sin(bearing)])
 
-    def offset(self, place: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]) -> Float[np.ndarray, "run 2"]:
+    def offset(
+        self, position: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]
+    ) -> Float[np.ndarray, "run 2"]:
         """Return the vectors from centres of mass to their goals [m]."""
-        return goal - place
+        return goal - position
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,10 +132,12 @@ class Landing:
         assert lake is not None  # see ``check``
         return np.array([lake.shore(ground.uphill) + self.beyond, begin[1]])
 
-    def offset(self, place: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]) -> Float[np.ndarray, "run 2"]:
+    def offset(
+        self, position: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]
+    ) -> Float[np.ndarray, "run 2"]:
         """Return the vectors from centres of mass straight up the shore to the line, zero beyond it [m]."""
-        ahead = np.maximum(goal[:, 0] - place[:, 0], 0.0)
-        return np.stack([ahead, np.zeros_like(ahead)], axis=1)
+        distance = np.maximum(goal[:, 0] - position[:, 0], 0.0)
+        return np.stack([distance, np.zeros_like(distance)], axis=1)
 
 
 AnyGoal = Goal | Landing
@@ -227,7 +231,7 @@ NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "swimming": ("axis",),
     }
 )
-"""What a beginning needs of a robot: names of ``design.NEEDS``."""
+"""Capabilities that each start needs of a robot: names of ``design.NEEDS``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -252,7 +256,7 @@ class Breaks:
         with Checks("breaks", self) as check:
             check.that(self.joints is None or len(self.joints) > 0, "breaks.joints is empty; name one servo at least")
             check.that(len(self.kinds) > 0, "breaks.kinds is empty; name one fault at least")
-            _check_when(check, "breaks", self.earliest, self.latest)
+            _check_times(check, "breaks", self.earliest, self.latest)
         allowed = tuple(name for name, kind in FAULTS.items() if kind.acts_on == "servo")
         for kind in self.kinds:
             if kind not in allowed:
@@ -264,12 +268,15 @@ class Breaks:
         Raises:
             UnknownName: the robot has no such servo.
         """
-        place = layout(robot)
+        robot_layout = layout(robot)
         if self.joints is None:
-            return tuple(name for limb in place.limbs for name in place.servos[limb.servos]) or place.servos
+            return (
+                tuple(name for limb in robot_layout.limbs for name in robot_layout.servos[limb.servos])
+                or robot_layout.servos
+            )
         for name in self.joints:
-            if name not in place.servos:
-                raise UnknownName("servo", name, place.servos)
+            if name not in robot_layout.servos:
+                raise UnknownName("servo", name, robot_layout.servos)
         return self.joints
 
     def possible(self, robot: Robot) -> tuple[Fault, ...]:
@@ -279,7 +286,7 @@ class Breaks:
         return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.among(robot))
 
     def draw(self, random: np.random.Generator, robot: Robot) -> Fault:
-        """Draw one for a robot."""
+        """Draw the fault of one episode."""
         if self.faults:
             return self.faults[int(random.integers(len(self.faults)))]
         joints = self.among(robot)
@@ -312,7 +319,7 @@ class Pushes:
         with Checks("pushes", self) as check:
             check.number("most", 0.0, 1e3, "N")
             check.number("lasting", 1e-3, 60.0, "s")
-            _check_when(check, "pushes", self.earliest, self.latest)
+            _check_times(check, "pushes", self.earliest, self.latest)
 
     def where(self, robot: Robot) -> str:
         """Return the body of a robot that is pushed."""
@@ -321,18 +328,19 @@ class Pushes:
         return front_segment(robot)
 
 
-def _check_when(check: Checks, owner: str, earliest: float, latest: float) -> None:
-    """Refuse times between which nothing can happen."""
+def _check_times(check: Checks, owner: str, first_time: float, last_time: float) -> None:
+    """Refuse an interval of time that is negative or ends before it begins."""
     check.number("earliest", 0.0, 3600.0, "s")
     check.number("latest", 0.0, 3600.0, "s")
     check.that(
-        earliest <= latest, f"{owner}.earliest is {earliest} s and {owner}.latest {latest} s; they must not decrease"
+        first_time <= last_time,
+        f"{owner}.earliest is {first_time} s and {owner}.latest {last_time} s; they must not decrease",
     )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """What is to be learned.
+    """Definition of a reinforcement learning task.
 
     An action is one number from -1 to 1 for each servo: its commanded angle is ``centre + span * action``, within its
     range. The actions are servo angles rather than changes to a gait, because with changes the shelf's gait would be
@@ -433,19 +441,21 @@ class Task:
             UnsuitedRobot: the robot lacks what the beginning needs, or no gait on the shelf suits it.
         """
         check_needs(robot, NEEDED[self.start], f"a task that begins {self.start}")
-        longer, heavier = robot.length / self.robot.length, robot.mass / self.robot.mass
-        slower = control_period(robot) / control_period(self.robot)
+        length_factor, mass_factor = robot.length / self.robot.length, robot.mass / self.robot.mass
+        time_factor = control_period(robot) / control_period(self.robot)
         changes: dict[str, Any] = {}
-        if slower != 1.0:
-            changes = {name: round(slower * getattr(self, name), 12) for name in ("decision", "timestep")}
-        if slower != 1.0 or not suits(robot, self.gait):
-            changes |= scaled_fields(self, ["least_height"], length_factor=longer, mass_factor=heavier)
+        if time_factor != 1.0:
+            changes = {name: round(time_factor * getattr(self, name), 12) for name in ("decision", "timestep")}
+        if time_factor != 1.0 or not suits(robot, self.gait):
+            changes |= scaled_fields(self, ["least_height"], length_factor=length_factor, mass_factor=mass_factor)
             changes |= {"gait": gait or own_gait(robot)}
             for name in ("rewards", "breaks", "pushes", "goal"):
                 if getattr(self, name) is not None:
-                    changes[name] = scaled(getattr(self, name), length_factor=longer, mass_factor=heavier)
+                    changes[name] = scaled(getattr(self, name), length_factor=length_factor, mass_factor=mass_factor)
             if self.lake is not None:
-                changes["lake"] = replace(self.lake, level=longer * self.lake.at(0.0)[0])  # its water stays water
+                changes["lake"] = replace(
+                    self.lake, level=length_factor * self.lake.at(0.0)[0]
+                )  # the lake keeps its depth relative to the robot
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
 
     def __post_init__(self) -> None:
@@ -471,9 +481,9 @@ class Task:
                 not (self.start == "swimming" and self.lake is None and self.solved is None),
                 "task.lake is None; a task that begins swimming needs water: give it a land.Lake",
             )
-            alone = self.lake is None and self.ground == Ground() and not isinstance(self.goal, Landing)
+            is_open_water = self.lake is None and self.ground == Ground() and not isinstance(self.goal, Landing)
             check.that(
-                self.solved is None or (self.start == "swimming" and alone),
+                self.solved is None or (self.start == "swimming" and is_open_water),
                 "task.water is a flow, which has neither surface nor ground: the task must begin swimming, without "
                 'lake, ground or landing; leave them out, or take water="sections"',
             )
@@ -483,13 +493,13 @@ class Task:
             check.number("jitter", 0.0, 0.5, "rad")
             check.number("least_level", -1.0, 1.0, "")
             check.number("least_height", 0.0, 10.0, "m")
-            for name, whole, part in (
+            for name, multiple, divisor in (
                 ("decision", self.decision, period),
                 ("timestep", period, self.timestep),
             ):
-                share = whole / part if part > 0 else 0.0
+                ratio = multiple / divisor if divisor > 0 else 0.0
                 check.that(
-                    abs(share - round(share)) < 1e-6,
+                    abs(ratio - round(ratio)) < 1e-6,
                     f"task.{name} is {getattr(self, name)} s; it must fit the control period of {period} s "
                     "a whole number of times",
                 )

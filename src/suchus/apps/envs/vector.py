@@ -24,7 +24,7 @@ from suchus.apps.envs.task import Task
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
 
-_AT_RESET = ("time", "fault")  # what is said when an episode begins
+_AT_RESET = ("time", "fault")  # entries of ``info`` when an episode begins
 
 
 class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # gymnasium is not read by mypy
@@ -65,7 +65,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._randoms = [seeding.np_random()[0] for _ in range(num_envs)]
-        self._over = np.ones(num_envs, dtype=bool)
+        self._is_over = np.ones(num_envs, dtype=bool)
         self._steps = np.zeros(num_envs, dtype=int)
 
     def reset(
@@ -80,13 +80,13 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         Raises:
             InvalidDesign: not as many seeds as robots, or a mask of another shape.
         """
-        who = _mask(options, self.num_envs)
+        mask = _mask(options, self.num_envs)
         for i, episode_seed in enumerate(_seeds(seed, self.num_envs)):
-            if episode_seed is not None and who[i]:
+            if episode_seed is not None and mask[i]:
                 self._randoms[i] = seeding.np_random(episode_seed)[0]
-        self._restart(who)
+        self._restart(mask)
         infos: dict[str, Any] = {}
-        self._say(infos, self._beginnings(), who)
+        self._add_infos(infos, self._beginnings(), mask)
         return self.pack.feel(), infos
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -96,27 +96,27 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
             OutsideLimits: actions of another shape, or not finite.
             gymnasium.error.ResetNeeded: an episode is over and ``autoreset_mode`` is ``Disabled``.
         """
-        numbers = checked(actions, self.action_space.shape)
-        again = self._over.copy()
-        if self.autoreset_mode is not AutoresetMode.NEXT_STEP and again.any():
-            raise gymnasium.error.ResetNeeded(f"the episodes of robots {np.flatnonzero(again).tolist()} are over.")
-        terms = self.pack.act(numbers, ~again)
-        self._steps[~again] += 1
-        rewards = np.where(again, 0.0, terms.reward(self.task.rewards))
-        terminated = ~again & terms.over
-        late = self._steps >= (self.max_episode_steps or np.inf)
-        truncated = ~again & late
-        said = step_info(self.pack, terms)
-        self._over = terminated | truncated
+        action_values = checked(actions, self.action_space.shape)
+        was_over = self._is_over.copy()
+        if self.autoreset_mode is not AutoresetMode.NEXT_STEP and was_over.any():
+            raise gymnasium.error.ResetNeeded(f"the episodes of robots {np.flatnonzero(was_over).tolist()} are over.")
+        terms = self.pack.act(action_values, ~was_over)
+        self._steps[~was_over] += 1
+        rewards = np.where(was_over, 0.0, terms.reward(self.task.rewards))
+        terminated = ~was_over & terms.over
+        has_timed_out = self._steps >= (self.max_episode_steps or np.inf)
+        truncated = ~was_over & has_timed_out
+        step_values = step_info(self.pack, terms)
+        self._is_over = terminated | truncated
         infos: dict[str, Any] = {}
-        begun = again
-        if self.autoreset_mode is AutoresetMode.SAME_STEP and self._over.any():
-            begun = self._over.copy()
-            self._say_final(infos, said, begun)
-        self._say(infos, said, ~begun)
-        if begun.any():
-            self._restart(begun)
-            self._say(infos, self._beginnings(), begun)
+        new_mask = was_over
+        if self.autoreset_mode is AutoresetMode.SAME_STEP and self._is_over.any():
+            new_mask = self._is_over.copy()
+            self._add_final_infos(infos, step_values, new_mask)
+        self._add_infos(infos, step_values, ~new_mask)
+        if new_mask.any():
+            self._restart(new_mask)
+            self._add_infos(infos, self._beginnings(), new_mask)
         return self.pack.feel(), rewards, terminated, truncated, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
@@ -125,44 +125,55 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
             return None
         return tuple(portrait(self.pack, i) for i in range(self.num_envs))
 
-    def _restart(self, who: np.ndarray) -> None:
-        robots = np.flatnonzero(who).tolist()
+    def _restart(self, mask: np.ndarray) -> None:
+        robots = np.flatnonzero(mask).tolist()
         self.pack.restart(robots, [self._randoms[i] for i in robots])
-        self._steps[who], self._over[who] = 0, False
+        self._steps[mask], self._is_over[mask] = 0, False
 
     def _beginnings(self) -> dict[str, np.ndarray]:
         return dict(zip(_AT_RESET, (self.pack.time, self.pack.faults.copy()), strict=True))
 
-    def _say(self, infos: dict[str, Any], said: dict[str, np.ndarray], who: np.ndarray) -> None:
-        """Put the values of some robots into ``infos``, and beside each name the mask of these robots."""
-        if not who.any():
-            return
-        if who.all():
-            infos |= said | {f"_{name}": who.copy() for name in said}
-            return
-        for name, values in said.items():
-            nothing = np.full(self.num_envs, None) if values.dtype == object else np.zeros_like(values)
-            infos[name] = np.where(who, values, infos.get(name, nothing))
-            infos[f"_{name}"] = infos.get(f"_{name}", np.zeros(self.num_envs, dtype=bool)) | who
+    def _add_infos(self, infos: dict[str, Any], values_by_name: dict[str, np.ndarray], mask: np.ndarray) -> None:
+        """Add values of some robots to ``infos``, and under ``_NAME`` the mask of these robots.
 
-    def _say_final(self, infos: dict[str, Any], said: dict[str, np.ndarray], who: np.ndarray) -> None:
-        last, final = self.pack.feel(), np.full(self.num_envs, None)
-        for i in np.flatnonzero(who):
-            final[i] = last[i].copy()
-        about: dict[str, Any] = {}
-        self._say(about, said, who)
-        infos.update(final_obs=final, _final_obs=who.copy(), final_info=about, _final_info=who.copy())
+        Args:
+            infos: to add to; earlier values of other robots stay.
+            values_by_name: one value for each robot, (num_envs,).
+            mask: the robots whose values are added, (num_envs,).
+        """
+        if not mask.any():
+            return
+        if mask.all():
+            infos |= values_by_name | {f"_{name}": mask.copy() for name in values_by_name}
+            return
+        for name, values in values_by_name.items():
+            default = np.full(self.num_envs, None) if values.dtype == object else np.zeros_like(values)
+            infos[name] = np.where(mask, values, infos.get(name, default))
+            infos[f"_{name}"] = infos.get(f"_{name}", np.zeros(self.num_envs, dtype=bool)) | mask
+
+    def _add_final_infos(self, infos: dict[str, Any], values_by_name: dict[str, np.ndarray], mask: np.ndarray) -> None:
+        """Add last observations and values of the robots whose episodes end now, as gymnasium names them."""
+        observations, final_observations = self.pack.feel(), np.full(self.num_envs, None)
+        for i in np.flatnonzero(mask):
+            final_observations[i] = observations[i].copy()
+        final_info: dict[str, Any] = {}
+        self._add_infos(final_info, values_by_name, mask)
+        infos.update(
+            final_obs=final_observations, _final_obs=mask.copy(), final_info=final_info, _final_info=mask.copy()
+        )
 
 
 def _mode(mode: AutoresetMode | str) -> Any:
+    """Return the mode of automatic resets that a word names; refuse an unknown one."""
     try:
         return AutoresetMode(mode)
     except ValueError as error:
-        allowed = ", ".join(repr(known.value) for known in AutoresetMode)
+        allowed = ", ".join(repr(mode_member.value) for mode_member in AutoresetMode)
         raise InvalidDesign(f"autoreset_mode is {mode!r}; {allowed} are allowed.") from error
 
 
 def _seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
+    """Return one seed for each robot, None where a robot keeps its random generator."""
     if seed is None:
         return [None] * count
     if isinstance(seed, (int, np.integer)):
@@ -173,6 +184,7 @@ def _seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | No
 
 
 def _mask(options: dict[str, Any] | None, count: int) -> np.ndarray:
+    """Return which robots are reset, (num_envs,); refuse a mask of another shape or type."""
     if not options or "reset_mask" not in options:
         return np.ones(count, dtype=bool)
     mask = np.asarray(options["reset_mask"])

@@ -16,19 +16,19 @@ class ComparisonRow:
     """One row of the comparison."""
 
     animal: Animal
-    """The animal's number."""
+    """The animal's quantity, with its range."""
     article: str
-    """The article's, empty if it gives none."""
+    """Value in the article, as text; empty if it gives none."""
     ours: str
-    """Ours."""
+    """Value of the robot, as text."""
     seen: str
-    """The animal's number, as text."""
+    """Value or range of the animal, as text."""
     experiment: str
-    """Where ours comes from; empty if it is a measure of the robot itself."""
+    """Experiment that measured the robot's value; empty if it follows from the design."""
 
 
 Results = Mapping[str, Result]
-_TAIL = ("limbs", "tail_yaw")  # a tail begins at the hips, and is no tail where it is stiff
+_TAIL = ("limbs", "tail_yaw")  # needed of a robot whose tail is compared: a tail behind the hips that bends
 _DURATION = CRAWL_END - CRAWL_START
 _COORDINATED, _LIMBS_ONLY = CLAIMS["displacement_coordinated"].value, CLAIMS["displacement_limbs_only"].value
 
@@ -45,13 +45,14 @@ def beside(robot: Robot, results: Results) -> tuple[ComparisonRow, ...]:
 
 
 def _row(animal: Animal, robot: Robot, results: Results) -> ComparisonRow | None:
-    experiment, measure, printed = _OURS[animal.key]
+    """Return the row of one animal's number; None if the robot or the results give no value for it."""
+    experiment, measure, article_value = _COMPARISONS[animal.key]
     value = measure(robot, results)
     if value is None:
         return None
     return ComparisonRow(
         animal=animal,
-        article=quantity(printed, animal.unit, 2),
+        article=quantity(article_value, animal.unit, 2),
         ours=quantity(value, animal.unit, 2),
         seen=_range(animal),
         experiment=experiment,
@@ -65,7 +66,7 @@ def _range(animal: Animal) -> str:
 
 
 def _measured(results: Results, experiment: str, *names: str) -> list[float] | None:
-    """Measures of an experiment, or None if it was not run or did not come to all of them."""
+    """Return values of measures of an experiment; None if the experiment or one of the values is missing."""
     if experiment not in results:
         return None
     outcome = results[experiment].outcome["measures"]
@@ -80,8 +81,8 @@ def _tail_length(robot: Robot, _: Results) -> float | None:
 def _tail_mass(robot: Robot, _: Results) -> float | None:
     if lacking(robot, _TAIL):
         return None
-    behind = robot.axis[robot.root_place + 1 :]
-    return sum(shape.mass for segment in behind for shape in segment.shapes) / robot.mass
+    tail_segments = robot.axis[robot.root_place + 1 :]
+    return sum(shape.mass for segment in tail_segments for shape in segment.shapes) / robot.mass
 
 
 def _mass(robot: Robot, _: Results) -> float | None:
@@ -89,32 +90,32 @@ def _mass(robot: Robot, _: Results) -> float | None:
 
 
 def _speed(_: Robot, results: Results) -> float | None:
-    found = _measured(results, "displacement", "forward_coordinated")
-    return found[0] / _DURATION if found else None
+    distances = _measured(results, "displacement", "forward_coordinated")
+    return distances[0] / _DURATION if distances else None
 
 
 def _high_walk_speed(_: Robot, results: Results) -> float | None:
-    found = _measured(results, "speed_range", "speed_high_walk")
-    return found[0] if found else None
+    speeds = _measured(results, "speed_range", "speed_high_walk")
+    return speeds[0] if speeds else None
 
 
 def _stride_share(_: Robot, results: Results) -> float | None:
-    found = _measured(results, "displacement", "forward_coordinated", "forward_limbs_only")
-    return 1.0 - found[1] / found[0] if found else None
+    distances = _measured(results, "displacement", "forward_coordinated", "forward_limbs_only")
+    return 1.0 - distances[1] / distances[0] if distances else None
 
 
 def _duty_factor(_: Robot, results: Results) -> float | None:
-    found = _measured(results, "gait_diagram", *(f"duty_factor_{leg}" for leg in LEGS))
-    return sum(found) / len(found) if found else None
+    duty_factors = _measured(results, "gait_diagram", *(f"duty_factor_{leg}" for leg in LEGS))
+    return sum(duty_factors) / len(duty_factors) if duty_factors else None
 
 
 def _death_roll(_: Robot, results: Results) -> float | None:
-    found = _measured(results, "death_roll", "rate_c_shape_water")
-    return abs(found[0]) if found else None
+    roll_rates = _measured(results, "death_roll", "rate_c_shape_water")
+    return abs(roll_rates[0]) if roll_rates else None
 
 
 _Measured = Callable[[Robot, Results], float | None]
-_OURS: Mapping[str, tuple[str, _Measured, float | None]] = MappingProxyType(
+_COMPARISONS: Mapping[str, tuple[str, _Measured, float | None]] = MappingProxyType(
     {
         "tail_length": ("", _tail_length, CLAIMS["tail_share"].value),
         "tail_mass": ("", _tail_mass, None),

@@ -36,8 +36,8 @@ def write_parts(sheet: Sheet, folder: Path, *, gait: Gait, samples: Commands, ou
         write(folder / name, text)
     if outlines:
         (folder / "outlines").mkdir()
-        for part in printed(sheet):
-            write(folder / "outlines" / f"{part.name}.stl", stl(part))
+        for body_part in printed(sheet):
+            write(folder / "outlines" / f"{body_part.name}.stl", stl(body_part))
         write(folder / "outlines" / "top.dxf", top_dxf(sheet))
         if sheet.plates:
             write(folder / "outlines" / "plates.dxf", plates_dxf(sheet.plates))
@@ -54,23 +54,23 @@ def _write_ros(robot: Robot, samples: Commands, folder: Path) -> None:
     write(folder / f"{robot.name}.urdf", described(robot))
     write(folder / "controllers.yaml", controllers(robot))
     write(folder / "trajectory.yaml", trajectory_text(robot, samples, virtual=True))
-    if said := note(robot):
-        write(folder / "README.txt", said + "\n")
+    if note_text := note(robot):
+        write(folder / "README.txt", note_text + "\n")
 
 
 def printed(sheet: Sheet) -> list[BodyPart]:
     """Return the parts that are printed: of those that mirror each other the left one."""
     rights = {f"R{girdle.name}_" for girdle in sheet.robot.girdles}
     return [
-        part
-        for part in sheet.parts
-        if part.kind in ("rod", "shell", "foot") and not part.name.startswith(tuple(rights) or ("\0",))
+        body_part
+        for body_part in sheet.parts
+        if body_part.kind in ("rod", "shell", "foot") and not body_part.name.startswith(tuple(rights) or ("\0",))
     ]
 
 
 def tables(sheet: Sheet) -> dict[str, str]:
     """Return the tables of a sheet by the names of their files."""
-    found = {
+    texts = {
         "parts.csv": _csv(
             ("body", "part", "kind", "what", "length_m", "width_m", "height_m", "mass_kg", "x_m", "y_m", "z_m"),
             [(p.body, p.name, p.kind, p.about, *p.size, p.mass, *p.centre) for p in sheet.parts],
@@ -114,28 +114,31 @@ def tables(sheet: Sheet) -> dict[str, str]:
             ("body", "foam_m3", "raised_m"),
             [
                 *sheet.floating.foam,
-                *((f"air of {body}", sheet.floating.air * share, None) for body, share in sheet.floating.chambers),
+                *(
+                    (f"air of {body}", sheet.floating.air * volume_fraction, None)
+                    for body, volume_fraction in sheet.floating.chambers
+                ),
             ],
         ),
     }
     if sheet.links:
-        found["denavit_hartenberg.csv"] = _csv(
+        texts["denavit_hartenberg.csv"] = _csv(
             ("chain", "joint", "a_m", "alpha_rad", "d_m", "turned_by"),
             [(k.chain, k.number, k.a, k.alpha, k.d, k.turned_by) for k in sheet.links],
         )
     if sheet.plates:
         columns = ("plate", "radius_m", "thickness_m", "hole_1_aside_m", "hole_1_up_m", "hole_2_aside_m", "hole_2_up_m")
         rows = [(p.name, p.radius, p.thickness, *p.holes[0], *p.holes[1]) for p in sheet.plates]
-        found["plates.csv"] = _csv(columns, rows)
+        texts["plates.csv"] = _csv(columns, rows)
     for cord in sheet.cords:
         drive = "actuator_m" if cord.linear else "pulley_rad"
-        about = ("bend_rad", drive, "cord_towards_the_bend_m", "cord_away_from_it_m")
-        found[f"{cord.name}.csv"] = _csv(about, cord.table)
-    return found
+        cord_columns = ("bend_rad", drive, "cord_towards_the_bend_m", "cord_away_from_it_m")
+        texts[f"{cord.name}.csv"] = _csv(cord_columns, cord.table)
+    return texts
 
 
 def mass_said(sheet: Sheet) -> list[str]:
-    """Return what the masses say, in sentences."""
+    """Return sentences on total mass, its parts, and the shift of the centre of mass."""
     total = sum(body.simulated for body in sheet.bodies)
     servos, walls = sum(body.servos for body in sheet.bodies), sum(body.printed for body in sheet.bodies)
     if not isfinite(servos):
@@ -144,23 +147,25 @@ def mass_said(sheet: Sheet) -> list[str]:
             "Its servos are numbers and not yet bought, so that their mass is not known: suchus size chooses some, and "
             "suchus parts takes the robot.toml that it writes."
         ]
-    rest = total - servos - walls
+    remaining_mass = total - servos - walls
     x, _, z = (1000 * (a - b) for a, b in zip(sheet.built, sheet.centre, strict=True))
-    said = [
+    sentences = [
         f"The robot weighs {total:.2f} kg in the simulation: {servos:.2f} kg are servos, {walls:.2f} kg printed walls "
-        f"and foam, and {rest:.2f} kg are left for battery, electronics, brackets and screws.",
+        f"and foam, and {remaining_mass:.2f} kg are left for battery, electronics, brackets and screws.",
         f"Without what is left, its centre of mass lies {abs(x):.0f} mm {'ahead of' if x >= 0 else 'behind'} and "
         f"{abs(z):.0f} mm {'above' if z >= 0 else 'below'} the simulated one; battery and electronics should mend it.",
     ]
     heavy = [body for body in sheet.bodies if body.rest < 0.0]
     if heavy:
         names = ", ".join(f"{body.name} by {-1000 * body.rest:.0f} g" for body in heavy)
-        said.append(f"Heavier than in the simulation are {names}: give the robot these masses and walk it once more.")
-    return said
+        sentences.append(
+            f"Heavier than in the simulation are {names}: give the robot these masses and walk it once more."
+        )
+    return sentences
 
 
 def floats_said(sheet: Sheet) -> str:
-    """Return whether it floats, in a sentence."""
+    """Return a sentence that says whether the robot floats, with the volumes of foam and air."""
     floating = sheet.floating
     foam = sum(volume for _, volume, _ in floating.foam)
     if floating.lacking > 0.0:
@@ -173,6 +178,7 @@ def floats_said(sheet: Sheet) -> str:
 
 
 def _content(sheet: Sheet, gait: Gait, picture: dict[str, str], outlines: bool) -> dict[str, object]:
+    """Return the variables of the page's template."""
     counts: dict[str, int] = {}
     for motor in sheet.bought.values():
         counts[motor.name] = counts.get(motor.name, 0) + 1
@@ -194,10 +200,11 @@ def _content(sheet: Sheet, gait: Gait, picture: dict[str, str], outlines: bool) 
 
 
 def _csv(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return a table as CSV with six digits; empty cells for values that are not known."""
     text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(head)
-    out.writerows([_cell(value) for value in row] for row in rows)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows([_cell(value) for value in row] for row in rows)
     return text.getvalue()
 
 

@@ -11,7 +11,7 @@ from suchus.apps.report.result import Moving, Picture, Result
 from suchus.core.errors import IncompatibleRecord
 from suchus.core.files import write
 
-_SHOWN = 80
+_MAX_SETTING_LENGTH = 80
 """Letters of a setting that the page shows [-]."""
 
 
@@ -20,9 +20,9 @@ class Compared:
     """One measure of both outcomes."""
 
     name: str
-    """Its name."""
+    """Name of the measure."""
     unit: str
-    """Its unit; both units where they differ."""
+    """Unit of the measure; both units where they differ."""
     first: float | None
     """Value in the first outcome; None where it has none."""
     second: float | None
@@ -87,39 +87,43 @@ class Comparison:
     @property
     def changed(self) -> tuple[Judged, ...]:
         """Claims that both judge, and differently."""
-        judged = (verdict for verdict in self.verdicts if verdict.first and verdict.second)
-        return tuple(verdict for verdict in judged if verdict.first != verdict.second)
+        common_verdicts = (verdict for verdict in self.verdicts if verdict.first and verdict.second)
+        return tuple(verdict for verdict in common_verdicts if verdict.first != verdict.second)
 
 
-def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison:
+def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Comparison:
     """Set two outcomes side by side.
 
     Args:
-        first: an outcome.
-        second: another, to be compared with it.
+        result_a: an outcome.
+        result_b: another, to be compared with it.
         names: what they are called.
 
     Raises:
         IncompatibleRecord: they have no measure in common.
     """
-    given = first.outcome["measures"], second.outcome["measures"]
-    measures = [_compared(name, *given) for name in _union(first, second)]
-    if not any(one.first is not None and one.second is not None for one in measures):
+    measures_of_both = result_a.outcome["measures"], result_b.outcome["measures"]
+    measures = [_compare_measure(name, *measures_of_both) for name in _union(result_a, result_b)]
+    if not any(measure.first is not None and measure.second is not None for measure in measures):
         raise IncompatibleRecord(
-            f"{first.folder} ({first.name}) and {second.folder} ({second.name}) have no measure in common; compare two "
-            "outcomes of one experiment."
+            f"{result_a.folder} ({result_a.name}) and {result_b.folder} ({result_b.name}) have no measure in common; "
+            "compare two outcomes of one experiment."
         )
-    measures.sort(key=lambda one: (one.difference is None, -_size(one)))  # equal ones stay in their order
-    judged = list(_judged(first.outcome["verdicts"], second.outcome["verdicts"]))
-    judged.sort(key=lambda one: (one.first == one.second, not (one.first and one.second)))
-    flat = [dict(_flat(one.outcome.get("settings", {}))) for one in (first, second)]
+    measures.sort(
+        key=lambda measure: (measure.difference is None, -_size(measure))
+    )  # a stable sort: equal measures keep their order
+    verdicts = list(_pair_verdicts(result_a.outcome["verdicts"], result_b.outcome["verdicts"]))
+    verdicts.sort(key=lambda verdict: (verdict.first == verdict.second, not (verdict.first and verdict.second)))
+    flat = [dict(_flat(result.outcome.get("settings", {}))) for result in (result_a, result_b)]
     differ = [name for name in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(name) != flat[1].get(name)]
     return Comparison(
         names=names,
-        results=(first, second),
+        results=(result_a, result_b),
         measures=tuple(measures),
-        verdicts=tuple(judged),
-        settings=tuple(Setting(name=n, first=_short(flat[0].get(n)), second=_short(flat[1].get(n))) for n in differ),
+        verdicts=tuple(verdicts),
+        settings=tuple(
+            Setting(name=n, first=_shorten(flat[0].get(n)), second=_shorten(flat[1].get(n))) for n in differ
+        ),
     )
 
 
@@ -134,74 +138,89 @@ def write_comparison(comparison: Comparison, path: str | Path) -> Path:
     return write(path, text)
 
 
-def render_comparison(comparison: Comparison, place: str | Path) -> str:
+def render_comparison(comparison: Comparison, page_folder: str | Path) -> str:
     """Return the page as text.
 
     Args:
         comparison: what to show.
-        place: the folder of the page, from which it shows the replays.
+        page_folder: the folder of the page, from which it shows the replays.
     """
-    place = Path(place)
-    first, second = comparison.results
+    page_folder = Path(page_folder)
+    a, b = comparison.results
     content: dict[str, Any] = {
         "it": comparison,
-        "titles": list(dict.fromkeys([first.outcome["title"], second.outcome["title"]])),
-        "pictures": _pairs({p.name: p for p in first.pictures}, {p.name: p for p in second.pictures}),
-        "replays": _pairs({r.file.name: r for r in first.replays}, {r.file.name: r for r in second.replays}),
+        "titles": list(dict.fromkeys([a.outcome["title"], b.outcome["title"]])),
+        "pictures": _pairs({p.name: p for p in a.pictures}, {p.name: p for p in b.pictures}),
+        "replays": _pairs({r.file.name: r for r in a.replays}, {r.file.name: r for r in b.replays}),
     }
-    return render("compare.html", place, content)
+    return render("compare.html", page_folder, content)
 
 
 def _pairs(
-    first: Mapping[str, Picture] | Mapping[str, Moving], second: Mapping[str, Picture] | Mapping[str, Moving]
+    a: Mapping[str, Picture] | Mapping[str, Moving], b: Mapping[str, Picture] | Mapping[str, Moving]
 ) -> list[tuple[str, tuple[Any, Any]]]:
-    return [(name, (first.get(name), second.get(name))) for name in dict.fromkeys([*first, *second])]
+    return [(name, (a.get(name), b.get(name))) for name in dict.fromkeys([*a, *b])]
 
 
-def _union(first: Result, second: Result) -> list[str]:
-    return list(dict.fromkeys([*first.outcome["measures"], *second.outcome["measures"]]))
+def _union(a: Result, b: Result) -> list[str]:
+    return list(dict.fromkeys([*a.outcome["measures"], *b.outcome["measures"]]))
 
 
-def _compared(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> Compared:
-    a, b = first.get(name), second.get(name)
-    units = list(dict.fromkeys(one["unit"] for one in (a, b) if one))
-    values = [one["value"] if one else None for one in (a, b)]
-    difference = share = None
+def _compare_measure(name: str, first_measures: Mapping[str, Any], second_measures: Mapping[str, Any]) -> Compared:
+    """Return one measure of two outcomes with its difference, absolute and relative."""
+    a, b = first_measures.get(name), second_measures.get(name)
+    units = list(dict.fromkeys(entry["unit"] for entry in (a, b) if entry))
+    values = [entry["value"] if entry else None for entry in (a, b)]
+    difference = relative_difference = None
     if len(units) == 1 and values[0] is not None and values[1] is not None:
         difference = values[1] - values[0]
-        share = difference / abs(values[0]) if values[0] else None
+        relative_difference = difference / abs(values[0]) if values[0] else None
     return Compared(
-        name=name, unit=" / ".join(units), first=values[0], second=values[1], difference=difference, share=share
+        name=name,
+        unit=" / ".join(units),
+        first=values[0],
+        second=values[1],
+        difference=difference,
+        share=relative_difference,
     )
 
 
-def _size(one: Compared) -> float:
-    """How much a measure differs, relative to the first as it is shown: metres and newtons are sorted together."""
-    if one.share is None:
-        return inf if one.difference else 0.0
-    return abs(one.share)
+def _size(measure: Compared) -> float:
+    """Return the relative difference of a measure, by which measures of all units are sorted."""
+    if measure.share is None:
+        return inf if measure.difference else 0.0
+    return abs(measure.share)
 
 
-def _judged(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
-    before, after = ({verdict["claim"]: verdict for verdict in verdicts} for verdicts in (first, second))
-    for claim in dict.fromkeys([*before, *after]):
-        judged = before.get(claim) or after[claim]
-        words = [str(by_claim[claim]["verdict"]) if claim in by_claim else "" for by_claim in (before, after)]
-        yield Judged(quantity=judged["quantity"], where=judged["where"], first=words[0], second=words[1])
+def _pair_verdicts(rows_a: Sequence[Mapping[str, Any]], rows_b: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
+    """Yield each claim with its verdict in two outcomes, in the order of the first outcome."""
+    first_verdicts, second_verdicts = ({row["claim"]: row for row in rows} for rows in (rows_a, rows_b))
+    for claim in dict.fromkeys([*first_verdicts, *second_verdicts]):
+        verdict_pair = first_verdicts.get(claim) or second_verdicts[claim]
+        verdict_words = [
+            str(by_claim[claim]["verdict"]) if claim in by_claim else ""
+            for by_claim in (first_verdicts, second_verdicts)
+        ]
+        yield Judged(
+            quantity=verdict_pair["quantity"],
+            where=verdict_pair["where"],
+            first=verdict_words[0],
+            second=verdict_words[1],
+        )
 
 
 def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """Yield every value of nested settings with its dotted path."""
     if isinstance(value, Mapping):
-        for name, below in value.items():
-            yield from _flat(below, f"{path}.{name}".lstrip("."))
+        for name, child in value.items():
+            yield from _flat(child, f"{path}.{name}".lstrip("."))
     elif isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
-        for i, below in enumerate(value):
-            yield from _flat(below, f"{path}[{i}]")
+        for i, child in enumerate(value):
+            yield from _flat(child, f"{path}[{i}]")
     else:
         yield path, value
 
 
-def _short(value: Any) -> str:
+def _shorten(value: Any) -> str:
     text = "" if value is None else str(value)
-    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+    return text if len(text) <= _MAX_SETTING_LENGTH else f"{text[: _MAX_SETTING_LENGTH - 1]}…"

@@ -19,8 +19,11 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
 from suchus.visual.replay.page import environment, rendered
 
-_TIMESTEP, _EVERY = 0.005, 2  # of the physics [s], and of the samples: a page is to be light, and replays are smoothed
-_DEEP = 1.0
+_TIMESTEP, _SAMPLE_INTERVAL = (
+    0.005,
+    2,
+)  # [s] of physics, and steps between samples; few samples keep the page small
+_WATER_LEVEL = 1.0
 """Level of the water in which the swimmer swims [m]."""
 
 
@@ -33,7 +36,7 @@ class Lesson:
     title: str
     """Heading."""
     caption: str
-    """What there is to see, in a sentence or two."""
+    """Description of the scene, in one or two sentences."""
     choice: str
     """Name of the slider."""
     runs: tuple[Run, ...]
@@ -47,7 +50,7 @@ class Lesson:
     because: str
     """Explanation, which holds whichever run is the answer."""
     command: str
-    """Where to go on, on the command line."""
+    """Command to continue with."""
 
 
 def lessons() -> tuple[Lesson, ...]:
@@ -55,62 +58,66 @@ def lessons() -> tuple[Lesson, ...]:
     return _bending(), _timing(), _joints(), _friction(), _waves()
 
 
-def write_lessons(folder: Path, chosen: Sequence[Lesson] = (), progress: Progress = silent) -> list[Path]:
+def write_lessons(folder: Path, selection: Sequence[Lesson] = (), progress: Progress = silent) -> list[Path]:
     """Write lessons and a page that lists them, and return the paths, the list first.
 
     Args:
         folder: for the pages; made where it is not there.
-        chosen: the lessons; all if empty.
+        selection: the lessons; all if empty.
         progress: called with the share that is done, 0 to 1.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
-    chosen = chosen or lessons()
-    listing = environment().get_template("lessons.html").render(lessons=chosen, version=versions()["suchus"])
+    selection = selection or lessons()
+    listing = environment().get_template("lessons.html").render(lessons=selection, version=versions()["suchus"])
     pages = {"index": listing}
-    for i, (lesson, following) in enumerate(zip(chosen, [*chosen[1:], None], strict=True)):
-        part = staged(progress, lesson.name, i / len(chosen), (i + 1) / len(chosen))
-        pages[lesson.name] = page(lesson, following, part)
-    return [write(file, pages[file.stem]) for file in lesson_files(folder, chosen)]
+    for i, (lesson, following) in enumerate(zip(selection, [*selection[1:], None], strict=True)):
+        page_progress = staged(progress, lesson.name, i / len(selection), (i + 1) / len(selection))
+        pages[lesson.name] = page(lesson, following, page_progress)
+    return [write(file, pages[file.stem]) for file in lesson_files(folder, selection)]
 
 
-def lesson_files(folder: Path, chosen: Sequence[Lesson] = ()) -> list[Path]:
+def lesson_files(folder: Path, selection: Sequence[Lesson] = ()) -> list[Path]:
     """Return where ``write_lessons`` writes, in the order in which it does."""
-    return [folder / f"{name}.html" for name in ("index", *(lesson.name for lesson in chosen or lessons()))]
+    return [folder / f"{name}.html" for name in ("index", *(lesson.name for lesson in selection or lessons()))]
 
 
 def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = silent) -> str:
     """Return a lesson as an HTML page; ``following`` is the lesson that it leads to."""
-    first = lesson.runs[0]
+    first_run = lesson.runs[0]
     duration = START + lesson.cycles * max(run.gait.period for run in lesson.runs)
-    record = simulate(lesson.runs, duration=duration, timestep=_TIMESTEP, every=_EVERY, progress=progress)
-    apart = [record.isel(run=i) for i in range(len(lesson.runs))]
-    far = [float(one.centre_of_mass[-1, 0] - one.centre_of_mass[0, 0]) for one in apart]
+    record = simulate(lesson.runs, duration=duration, timestep=_TIMESTEP, every=_SAMPLE_INTERVAL, progress=progress)
+    run_records = [record.isel(run=i) for i in range(len(lesson.runs))]
+    distances = [
+        float(run_record.centre_of_mass[-1, 0] - run_record.centre_of_mass[0, 0]) for run_record in run_records
+    ]
     labels = [run.label for run in lesson.runs]
     return rendered(
-        "lesson.html", apart[0], first.robot, others=apart[1:], choice=lesson.choice, labels=labels, title=lesson.title,
-        caption=lesson.caption, question=lesson.question, options=labels, right=lesson.right(far),
-        because=lesson.because, numbers=[f"{value:.2f} m".replace("-", "−") for value in far],
+        "lesson.html", run_records[0], first_run.robot, others=run_records[1:], choice=lesson.choice, labels=labels,
+        title=lesson.title, caption=lesson.caption, question=lesson.question, options=labels,
+        right=lesson.right(distances), because=lesson.because,
+        numbers=[f"{value:.2f} m".replace("-", "−") for value in distances],
         heading=f"forward in {duration:g} s", command=lesson.command, following=following,
     )  # fmt: skip
 
 
-def _farthest(far: Sequence[float]) -> int:
-    return int(np.argmax(far))
+def _farthest(distances: Sequence[float]) -> int:
+    return int(np.argmax(distances))
 
 
-def _least(far: Sequence[float]) -> int:
-    return int(np.argmin(far))
+def _least(distances: Sequence[float]) -> int:
+    return int(np.argmin(distances))
 
 
-def _backwards(far: Sequence[float]) -> int:
+def _backwards(distances: Sequence[float]) -> int:
     """Return the first run that goes backwards; the one that gets least far where none does."""
-    behind = np.flatnonzero(np.asarray(far) < 0.0)
-    return int(behind[0]) if behind.size else _least(far)
+    backward_runs = np.flatnonzero(np.asarray(distances) < 0.0)
+    return int(backward_runs[0]) if backward_runs.size else _least(distances)
 
 
 def _bending() -> Lesson:
+    """Return the lesson in which the slider scales the lateral bend of spine and tail."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     return Lesson(
         name="bending",
@@ -118,8 +125,8 @@ def _bending() -> Lesson:
         caption="The legs do exactly the same in every run. Only how far spine and tail bend is different.",
         choice="Bend of spine and tail",
         runs=tuple(
-            Run(robot=robot, gait=gait.bent(share), label=f"{share:.0%} of its crawl")
-            for share in (0.0, 0.25, 0.5, 0.75, 1.0)
+            Run(robot=robot, gait=gait.bent(bend_factor), label=f"{bend_factor:.0%} of its crawl")
+            for bend_factor in (0.0, 0.25, 0.5, 0.75, 1.0)
         ),
         cycles=2,
         question="With which bend does it get farthest?",
@@ -133,6 +140,7 @@ def _bending() -> Lesson:
 
 
 def _timing() -> Lesson:
+    """Return the lesson in which the slider delays the bend of the spine against the limbs."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     lags = {"in time with the legs": 0.0, "1/8 cycle late": 0.125, "1/4 cycle late": 0.25, "3/8 cycle late": 0.375,
             "1/2 cycle late": 0.5}  # fmt: skip
@@ -153,6 +161,7 @@ def _timing() -> Lesson:
 
 
 def _joints() -> Lesson:
+    """Return the lesson in which the slider chooses the joint that gives no torque."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     return Lesson(
         name="joints",
@@ -175,6 +184,7 @@ def _joints() -> Lesson:
 
 
 def _friction() -> Lesson:
+    """Return the lesson in which the slider scales the friction of the ground."""
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     factors = {
         "a tenth of usual": 0.1,
@@ -203,6 +213,7 @@ def _friction() -> Lesson:
 
 
 def _waves() -> Lesson:
+    """Return the lesson in which the slider sets the number of waves on a swimming body."""
     robot, gait = ROBOTS["swimmer"], GAITS["undulation"]
     waves = {"one, from tail to head": -1.0, "none: all joints at once": 0.0, "a half, from head to tail": 0.5,
              "one, from head to tail": 1.0, "one and a half, from head to tail": 1.5}  # fmt: skip
@@ -216,7 +227,7 @@ def _waves() -> Lesson:
                 robot=robot,
                 gait=gait.with_numbers(waves=count),
                 label=label,
-                lake=Lake(level=_DEEP),
+                lake=Lake(level=_WATER_LEVEL),
                 control=Swimming(),
             )
             for label, count in waves.items()

@@ -35,9 +35,9 @@ MARKS = {
 MOST = 6
 """Numbers that stand below an answer [-]."""
 _LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "of": "", "rule": (), "models": ()}
-"""What older outcomes do not say of a verdict."""
+"""Defaults of entries that older outcomes lack."""
 _WORDS = {"com": "centre of mass", "pp": "peak to peak", "p99": "99th percentile"}
-"""What parts of the names of measures are short for."""
+"""Abbreviations in the names of measures, and their long forms."""
 _HEAVY = 2 * 2**20
 """Size of a replay or a table [byte] beyond which it is linked and does not travel inside the page."""
 
@@ -61,24 +61,24 @@ def render_outcome_page(result: Result) -> str:
     outcome = result.outcome
     lead = answer(outcome["decides"])
     measures = {
-        name: Measure(nan if one["value"] is None else one["value"], one["unit"])
-        for name, one in outcome["measures"].items()
+        name: Measure(nan if measure["value"] is None else measure["value"], measure["unit"])
+        for name, measure in outcome["measures"].items()
     }
-    first = result.replays[0].file if result.replays else None
-    inside = first is not None and first.stat().st_size <= _HEAVY
+    first_replay = result.replays[0].file if result.replays else None
+    is_embedded = first_replay is not None and first_replay.stat().st_size <= _HEAVY
     content = {
         "result": result,
         "outcome": outcome,
         "on_shelf": outcome["experiment"] in EXPERIMENTS,
         "lead": lead,
         "more": outcome["decides"][len(lead) :].strip(),
-        "robot": _named(outcome, "robot"),
-        "gait": _named(outcome, "gait"),
+        "robot": _setting_name(outcome, "robot"),
+        "gait": _setting_name(outcome, "gait"),
         "verdicts": list(told(result)),
         "carried": carried(outcome.get("answers", ()), measures),
         "differs": outcome.get("differs"),
-        "replay": read_text(first, 2 * _HEAVY) if first is not None and inside else "",
-        "beside": [*result.replays[1 if inside else 0 :], *result.films],
+        "replay": read_text(first_replay, 2 * _HEAVY) if first_replay is not None and is_embedded else "",
+        "beside": [*result.replays[1 if is_embedded else 0 :], *result.films],
         "data": [_table("numbers.csv", _numbers(measures)), *_data(result)],
         "marks": MARKS,
     }
@@ -88,12 +88,17 @@ def render_outcome_page(result: Result) -> str:
 def told(result: Result) -> Iterator[dict[str, Any]]:
     """Yield the verdicts of a result as pages show them: with their spread, and how many designs agree."""
     for verdict in result.outcome["verdicts"]:
-        whole = {**_LACKING, **verdict}
-        yield {**whole, "experiment": result.name, "of_designs": _share(whole), "scatter": _scatter(whole)}
+        full_verdict = {**_LACKING, **verdict}
+        yield {
+            **full_verdict,
+            "experiment": result.name,
+            "of_designs": _share(full_verdict),
+            "scatter": _scatter(full_verdict),
+        }
 
 
 def answer(decides: str) -> str:
-    """Return the first two sentences of what decided."""
+    """Return the first two sentences of an outcome's explanation."""
     return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
 
 
@@ -109,16 +114,20 @@ def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tup
     finite = [name for name, measure in measures.items() if isfinite(measure.value)]
     ends = ("_low", "_high")
     rows = []
-    named = [one for one in answers if one in finite] or [one for one in finite if not one.endswith(ends)]
-    for name in named[:MOST]:
-        low, high = (measures.get(name + end) for end in ends)
+    names = [measure_name for measure_name in answers if measure_name in finite] or [
+        measure_name for measure_name in finite if not measure_name.endswith(ends)
+    ]
+    for name in names[:MOST]:
+        lower_bound, upper_bound = (measures.get(name + end) for end in ends)
         unit = measures[name].unit
         spread = ""
-        if low is not None and high is not None and low.value < high.value:  # of a single repeat it is not known
-            spread = f"{number(low.value, 3)} to {quantity(high.value, unit, 3)}"
+        if (
+            lower_bound is not None and upper_bound is not None and lower_bound.value < upper_bound.value
+        ):  # a single repeat has no interval
+            spread = f"{number(lower_bound.value, 3)} to {quantity(upper_bound.value, unit, 3)}"
         rows.append(
             (
-                " ".join(_WORDS.get(part, part) for part in name.split("_")),
+                " ".join(_WORDS.get(word, word) for word in name.split("_")),
                 quantity(measures[name].value, unit, 3),
                 spread,
             )
@@ -130,8 +139,8 @@ def _share(verdict: Mapping[str, Any]) -> str:
     """Return in a sentence how many plausible designs agree."""
     share = verdict.get("share")
     if not share:
-        if few := str(verdict.get("too_few", "")):
-            return few
+        if shortage := str(verdict.get("too_few", "")):
+            return shortage
         unswept = str(verdict.get("unswept", ""))
         return f"Not tried on other designs: {unswept}." if unswept else ""
     text = (
@@ -146,23 +155,27 @@ def _share(verdict: Mapping[str, Any]) -> str:
 
 def _scatter(verdict: Mapping[str, Any]) -> str:
     """Return the range of a measured number's repeats, empty if nothing was repeated."""
-    low, high = verdict.get("low"), verdict.get("high")
-    if low is None or high is None:
+    lower_bound, upper_bound = verdict.get("low"), verdict.get("high")
+    if lower_bound is None or upper_bound is None:
         return ""
-    return f"{number(low, 3)} to {quantity(high, verdict['unit'], 3)} in {verdict.get('repeats', 'repeats')}"
+    interval = f"{number(lower_bound, 3)} to {quantity(upper_bound, verdict['unit'], 3)}"
+    return f"{interval} in {verdict.get('repeats', 'repeats')}"
 
 
-def _named(outcome: Mapping[str, Any], what: str) -> str:
+def _setting_name(outcome: Mapping[str, Any], field: str) -> str:
     """Return the name of the robot or the gait of an outcome; empty where it has none."""
     settings = outcome.get("settings")
-    value = settings.get(what) if isinstance(settings, Mapping) else None
+    value = settings.get(field) if isinstance(settings, Mapping) else None
     return str(value.get("name", "")) if isinstance(value, Mapping) else ""
 
 
 def _numbers(measures: Mapping[str, Measure]) -> str:
     """Return all numbers as CSV, with nothing for one that is not finite."""
     text = io.StringIO()
-    rows = ((name, repr(one.value) if isfinite(one.value) else "", one.unit) for name, one in measures.items())
+    rows = (
+        (name, repr(measure.value) if isfinite(measure.value) else "", measure.unit)
+        for name, measure in measures.items()
+    )
     csv.writer(text).writerows([("measure", "value", "unit"), *rows])
     return text.getvalue()
 
@@ -172,12 +185,12 @@ def _data(result: Result) -> Iterator[dict[str, Any]]:
     for picture in result.pictures:
         file = result.folder / f"{picture.name}.data.csv"
         if file.is_file():
-            yield _table(file.name, _short(file), file)
+            yield _table(file.name, _text_if_light(file), file)
     for name, text in result.tables.items():
         yield _table(name, text if len(text) <= _HEAVY else "", result.folder / name)
 
 
-def _short(file: Path) -> str:
+def _text_if_light(file: Path) -> str:
     """Return a text that travels inside the page; nothing of one that is too long."""
     try:
         return read_text(file, _HEAVY)

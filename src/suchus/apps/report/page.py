@@ -26,9 +26,9 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics.energy import METRES
 from suchus.visual import figures
 
-_ENOUGH = 60
+_MIN_GIST_LENGTH = 60
 """Letters that say something [-]."""
-_PUT_IN = ("by construction", "fitted", "said twice")
+_INPUT_STANDINGS = ("by construction", "fitted", "said twice")
 """Standings of what is no evidence though it may agree."""
 
 
@@ -60,38 +60,39 @@ def write_page(results: Sequence[Result], failures: Sequence[Failure], path: str
     return write(path, text)
 
 
-def render_page(results: Sequence[Result], failures: Sequence[Failure], place: str | Path | None = None) -> str:
+def render_page(results: Sequence[Result], failures: Sequence[Failure], page_folder: str | Path | None = None) -> str:
     """Return the page as text.
 
     Args:
         results: in the order of the page.
         failures: what did not.
-        place: the folder of the page, from which it links films and replays; None: the one that holds the results.
+        page_folder: the folder of the page, from which it links films and replays; None: the folder of the results.
     """
-    place = None if place is None else Path(place)
-    return render("page.html", place, _content(results, failures), tied=tied, gist=_gist)
+    page_folder = None if page_folder is None else Path(page_folder)
+    return render("page.html", page_folder, _content(results, failures), tied=tied, gist=_gist)
 
 
 def _gist(text: str) -> str:
-    """Return the first sentences of a text, as many as it takes to say something."""
+    """Return the first sentences of a text, at least ``_MIN_GIST_LENGTH`` characters."""
     gist = ""
     for sentence in re.split(r"(?<=[.:;]) ", text):
         gist = f"{gist} {sentence}".strip()
-        if len(gist) > _ENOUGH and gist.endswith("."):
+        if len(gist) > _MIN_GIST_LENGTH and gist.endswith("."):
             break
     return gist
 
 
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
-    order = {key: place for place, key in enumerate(CLAIMS)}
+    """Return the variables of the page's template."""
+    order = {key: rank for rank, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
-    robot, others = robot_of(results)
-    judged = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
-    verdicts = [verdict for result in results for verdict in told(result) if judged]
+    robot, robot_counts = robot_of(results)
+    is_article_robot = robot.name == ARTICLES  # the article's claims hold for the article's robot only
+    verdicts = [verdict for result in results for verdict in told(result) if is_article_robot]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
-    words = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
-    worth = standings(words)
-    named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
+    verdict_by_claim = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
+    worth = standings(verdict_by_claim)
+    own_choices = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
         "pages": {result.name: result.folder / PAGE for result in results},
@@ -99,27 +100,27 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "title": TITLE,
         "authors": AUTHORS,
         "failures": failures,
-        "judged": judged,
+        "judged": is_article_robot,
         "verdicts": verdicts,
         "headline": [verdict for verdict in verdicts if verdict["claim"] in HEADLINE],
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
         "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
         "marks": MARKS,
-        "count": counted(words, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
-        "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _PUT_IN},
-        "tally": {result.name: _counts(result.outcome["verdicts"] if judged else ()) for result in results},
-        "untouched": [c for c in CLAIMS.values() if judged and not c.of and c.key not in words],
+        "count": counted(verdict_by_claim, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
+        "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _INPUT_STANDINGS},
+        "tally": {result.name: _counts(result.outcome["verdicts"] if is_article_robot else ()) for result in results},
+        "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in verdict_by_claim],
         "beside": beside(robot, {result.name: result for result in results}),
         "metres": metres({result.name: result for result in results}),
         "shown": next((result for result in results if result.replays), None),
         "robot": robot,
         "sized": robot.name if robot.name in ROBOTS else "FILE.toml",
-        "others": others,
+        "others": robot_counts,
         "drawing": _drawing(robot),
         "parts": parts(tables_of(robot) or robot),
-        "chosen": {robot.name: choices(robot, named)}
-        | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items() if judged},
-        "misprints": tuple(ERRATA.values()) if judged else (),
+        "chosen": {robot.name: choices(robot, own_choices)}
+        | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items() if is_article_robot},
+        "misprints": tuple(ERRATA.values()) if is_article_robot else (),
         "versions": versions(),
     }
 
@@ -130,7 +131,7 @@ def _counts(verdicts: Sequence[Mapping[str, Any]]) -> dict[str, int]:
 
 
 def _place(result: Result, order: Mapping[str, int]) -> int:
-    """Where the article comes to the last claim of a result, its main one; what claims nothing comes last."""
+    """Return the rank of a result's last claim in the article; results without claims rank last."""
     return max((order.get(v["claim"], len(order)) for v in result.outcome["verdicts"]), default=len(order))
 
 
@@ -163,12 +164,12 @@ class Metre:
 def metres(results: Mapping[str, Result]) -> list[Metre]:
     """Return the rows that the outcomes allow, in the order from land to depth."""
     rows = []
-    for ending, where in METRES.items():
+    for ending, terrain in METRES.items():
         for name, result in results.items():
             outcome = result.outcome["measures"]
-            speed, work, cost = (_with_unit(outcome.get(f"{what}_{ending}")) for what in _MEASURES)
+            speed, work, cost = (_with_unit(outcome.get(f"{measure_name}_{ending}")) for measure_name in _MEASURES)
             if speed and work:
-                rows.append(Metre(where=where, experiment=name, speed=speed, work=work, cost=cost))
+                rows.append(Metre(where=terrain, experiment=name, speed=speed, work=work, cost=cost))
     return rows
 
 
@@ -191,11 +192,12 @@ def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
     robots = [robot for result in results if (robot := _robot(result.outcome.get("settings", {}))) is not None]
     if not robots:
         return ROBOTS[ARTICLES], {}
-    (most, _), *others = Counter(robots).most_common()
-    return most, {robot.name: count for robot, count in others}
+    (main_robot, _), *other_counts = Counter(robots).most_common()
+    return main_robot, {robot.name: count for robot, count in other_counts}
 
 
 def _robot(settings: Any) -> Robot | None:
+    """Return the robot that the settings of an outcome describe; None if this version cannot build it."""
     values = settings.get("robot") if isinstance(settings, Mapping) else None
     try:
         return described_robot(values) if isinstance(values, Mapping) else None
@@ -210,7 +212,7 @@ class Row:
     field: str
     """Dotted path."""
     value: str
-    """Its value with its unit."""
+    """Value of the field, with its unit."""
     meaning: str
     """Meaning of the number, from the docstring of its field."""
 
@@ -233,44 +235,52 @@ class ChosenNumber:
 
 def parts(design: Any) -> dict[str, tuple[Row, ...]]:
     """Return the rows of each part of a robot, by the part's name."""
-    about = meanings(type(design))
+    field_meanings = meanings(type(design))
     tables: dict[str, tuple[Row, ...]] = {}
     for f in fields(design):
-        part = getattr(design, f.name)
-        if is_dataclass(part):
-            meaning = about.get(f.name, "")
+        section = getattr(design, f.name)
+        if is_dataclass(section):
+            meaning = field_meanings.get(f.name, "")
             title = f"{f.name.replace('_', ' ')}: {meaning[:1].lower()}{meaning[1:]}"
-            tables[title] = tuple(rows(part, f.name))
+            tables[title] = tuple(rows(section, f.name))
     return tables
 
 
 def rows(design: Any, path: str = "") -> Iterator[Row]:
     """Yield a row for every number below a frozen value."""
-    about = meanings(type(design))
+    field_meanings = meanings(type(design))
     for f in fields(design):
-        value, meaning = getattr(design, f.name), about.get(f.name, "")
-        below = f"{path}.{f.name}".lstrip(".")
+        value, meaning = getattr(design, f.name), field_meanings.get(f.name, "")
+        field_path = f"{path}.{f.name}".lstrip(".")
         if is_dataclass(value):
-            yield from rows(value, below)
+            yield from rows(value, field_path)
         else:
-            yield Row(field=below, value=_shown(value, unit(meaning)), meaning=_plain(meaning))
+            yield Row(field=field_path, value=_format_value(value, unit(meaning)), meaning=_plain(meaning))
 
 
-def choices(design: Any, chosen: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
+def choices(design: Any, chosen_numbers: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
     """Return a row for every number that the article does not give."""
-    return tuple(_choice(design, free) for free in chosen)
+    return tuple(_choice(design, free) for free in chosen_numbers)
 
 
-def _choice(design: Any, one: Chosen) -> ChosenNumber:
-    value, unit = value_at(design, one.field), unit_at(design, one.field)
+def _choice(design: Any, free_number: Chosen) -> ChosenNumber:
+    """Return the row of one number that the article does not give."""
+    value, unit = value_at(design, free_number.field), unit_at(design, free_number.field)
     return ChosenNumber(
-        field=one.field, value=_shown(value, unit), low=number(one.low), high=number(one.high), why=one.why
+        field=free_number.field,
+        value=_format_value(value, unit),
+        low=number(free_number.low),
+        high=number(free_number.high),
+        why=free_number.why,
     )
 
 
-def _shown(value: Any, unit: str) -> str:
+def _format_value(value: Any, unit: str) -> str:
+    """Return a value with its unit; a range as "a to b", a longer tuple as its elements."""
     if isinstance(value, tuple):
-        return " to ".join(_shown(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))
+        return (
+            " to ".join(_format_value(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))
+        )
     return quantity(value, unit) if isinstance(value, (int, float)) else str(value)
 
 

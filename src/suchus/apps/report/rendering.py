@@ -19,17 +19,23 @@ from jinja2.runtime import Context
 from markupsafe import Markup
 from PIL import Image
 
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def quantity(value: float | None, unit: str, digits: int = 4) -> str:
-    """Return a number with its unit; angles in degrees too. Nothing where there is no number."""
+    """Return a number with its unit; angles in degrees too. Nothing where there is no number.
+
+    Args:
+        value: in ``unit``; None where it is not known.
+        unit: as measures name it; ``-`` for none.
+        digits: significant digits.
+    """
     if value is None:
         return ""
-    shown = number(value, digits)
+    text = number(value, digits)
     if unit == "rad":
-        return f"{shown} rad ({number(degrees(value), 3)}°)"
-    return shown if unit in ("-", "1", "") else f"{shown} {'°C' if unit == 'degC' else unit}"
+        return f"{text} rad ({number(degrees(value), 3)}°)"
+    return text if unit in ("-", "1", "") else f"{text} {'°C' if unit == 'degC' else unit}"
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -37,7 +43,7 @@ def number(value: float, digits: int = 4) -> str:
     if isinstance(value, int):
         return str(value).replace("-", "−")
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
-    exponent = f" × 10{str(int(power)).translate(_RAISED)}" if power else ""
+    exponent = f" × 10{str(int(power)).translate(_SUPERSCRIPTS)}" if power else ""
     return mantissa.replace("-", "−") + exponent
 
 
@@ -63,19 +69,19 @@ def embedded(svg: Path, png: Path) -> Markup:
         svg: the figure as a drawing.
         png: the figure as pixels.
     """
-    drawn = as_drawing(svg.read_text(encoding="utf-8"))
-    if len(drawn) <= _HEAVY or not png.is_file():
-        return drawn
-    return min(drawn, as_pixels(png.read_bytes()), key=len)
+    drawing = as_drawing(svg.read_text(encoding="utf-8"))
+    if len(drawing) <= _HEAVY or not png.is_file():
+        return drawing
+    return min(drawing, as_pixels(png.read_bytes()), key=len)
 
 
 def as_drawing(svg: str) -> Markup:
     """Return an SVG as a data URI, without what only editors need and with coordinates to a hundredth of a point."""
-    slim = _DATA.sub(_rounded, _OVERHEAD.sub("", svg))
-    slim = re.sub(r">\s+<", "><", slim).strip()
-    if "'" in slim or "&" in slim:
-        return Markup(f"data:image/svg+xml;base64,{base64.b64encode(slim.encode()).decode()}")
-    escaped = re.sub(r"\s+", " ", slim).replace("%", "%25").replace("#", "%23").replace('"', "'")
+    compact_svg = _DATA.sub(_rounded, _OVERHEAD.sub("", svg))
+    compact_svg = re.sub(r">\s+<", "><", compact_svg).strip()
+    if "'" in compact_svg or "&" in compact_svg:
+        return Markup(f"data:image/svg+xml;base64,{base64.b64encode(compact_svg.encode()).decode()}")
+    escaped = re.sub(r"\s+", " ", compact_svg).replace("%", "%25").replace("#", "%23").replace('"', "'")
     return Markup(_PLAIN_TEXT + escaped.replace("<", "%3C").replace(">", "%3E"))
 
 
@@ -84,9 +90,9 @@ def as_pixels(png: bytes) -> Markup:
     with Image.open(io.BytesIO(png)) as picture:
         flat = Image.new("RGB", picture.size, "white")
         flat.paste(picture, mask=picture.getchannel("A") if picture.mode == "RGBA" else None)
-    slim = io.BytesIO()
-    flat.quantize(_COLOURS, dither=Image.Dither.NONE).save(slim, format="PNG", optimize=True)
-    return Markup(f"data:image/png;base64,{base64.b64encode(slim.getvalue()).decode()}")
+    compact_png = io.BytesIO()
+    flat.quantize(_COLOURS, dither=Image.Dither.NONE).save(compact_png, format="PNG", optimize=True)
+    return Markup(f"data:image/png;base64,{base64.b64encode(compact_png.getvalue()).decode()}")
 
 
 def _rounded(attribute: re.Match[str]) -> str:
@@ -96,18 +102,18 @@ def _rounded(attribute: re.Match[str]) -> str:
     return f'{name}="{_NUMBER.sub(lambda n: f"{float(n[0]):.2f}".rstrip("0").rstrip("."), value)}"'
 
 
-def render(template: str, place: Path | None, content: dict[str, Any], **filters: Any) -> str:
+def render(template: str, page_folder: Path | None, content: dict[str, Any], **filters: Any) -> str:
     """Return a page as text.
 
     Args:
         template: name of its file.
-        place: the folder of the page, from which it links files; None: the one that holds their folders.
+        page_folder: the folder of the page, from which it links files; None: the one that holds their folders.
         content: what the template names.
         filters: of the template, beside ``quantity``, ``number`` and ``link``.
     """
     environment = _environment(tuple(filters.items()))
     style = Markup(environment.get_template("style.css").render())
-    return environment.get_template(template).render(style=style, page_folder=place, **content) + "\n"
+    return environment.get_template(template).render(style=style, page_folder=page_folder, **content) + "\n"
 
 
 @cache
@@ -127,5 +133,5 @@ def _environment(filters: tuple[tuple[str, Callable[..., Any]], ...]) -> Environ
 @pass_context
 def _link(context: Context, file: Path) -> str:
     """Return how the page that is rendered names a file."""
-    place = context["page_folder"]
-    return quote(Path(os.path.relpath(file, file.parent.parent if place is None else place)).as_posix())
+    page_folder = context["page_folder"]
+    return quote(Path(os.path.relpath(file, file.parent.parent if page_folder is None else page_folder)).as_posix())

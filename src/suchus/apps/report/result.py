@@ -19,16 +19,16 @@ OUTCOME = "outcome.json"
 RECORD = "record.nc"
 
 
-class _Described(BaseModel):
+class _OutcomePart(BaseModel):
     model_config = ConfigDict(strict=True, extra="allow")
 
 
-class _Measure(_Described):
+class _Measure(_OutcomePart):
     value: FiniteFloat | None
     unit: str
 
 
-class _Share(_Described):
+class _Share(_OutcomePart):
     share: FiniteFloat
     low: FiniteFloat
     high: FiniteFloat
@@ -38,7 +38,7 @@ class _Share(_Described):
     above: bool = False
 
 
-class _Verdict(_Described):
+class _Verdict(_OutcomePart):
     claim: str
     quantity: str
     statement: str
@@ -59,18 +59,18 @@ class _Verdict(_Described):
     too_few: str = ""
 
 
-class _Provenance(_Described):
+class _Provenance(_OutcomePart):
     config_hash: str
     seed: Any
     seconds: FiniteFloat
 
 
-class _File(_Described):
+class _File(_OutcomePart):
     name: str
     caption: str
 
 
-class _Outcome(_Described):
+class _Outcome(_OutcomePart):
     experiment: str
     title: str
     shows: str
@@ -87,7 +87,7 @@ class _Outcome(_Described):
 
 
 def check_described(outcome: Any, file: Path) -> None:
-    """Refuse what no outcome says.
+    """Refuse the contents of a file that is no outcome.
 
     Args:
         outcome: what a file says, as JSON is read.
@@ -99,12 +99,12 @@ def check_described(outcome: Any, file: Path) -> None:
     try:
         _Outcome.model_validate(outcome)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False)[0]
-        place = ".".join(map(str, first["loc"]))
-        if first["type"] == "missing":
-            raise IncompatibleRecord(f"{file} lacks {place}.") from error
+        first_error = error.errors(include_url=False, include_input=False)[0]
+        location = ".".join(map(str, first_error["loc"]))
+        if first_error["type"] == "missing":
+            raise IncompatibleRecord(f"{file} lacks {location}.") from error
         raise IncompatibleRecord(
-            f"{file} is no outcome of suchus: {place or 'it'} is of another kind ({first['msg'].lower()})."
+            f"{file} is no outcome of suchus: {location or 'it'} is of another kind ({first_error['msg'].lower()})."
         ) from error
 
 
@@ -117,13 +117,13 @@ class Picture:
     """A figure ready for a page."""
 
     name: str
-    """Its file's name without the ending."""
+    """Name of the file without its ending."""
     caption: str
     """Caption: what the picture or replay shows."""
     file: Path
     """The picture as a drawing; as pixels it stands beside it."""
     wide: bool = False
-    """Whether it is so wide that half a page would make it too small to read."""
+    """Whether the figure needs the full width of the page to be readable."""
 
     @property
     def source(self) -> Markup:
@@ -133,7 +133,7 @@ class Picture:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Moving:
-    """A film or a replay that stands beside the page: it is linked, since it is too heavy to travel inside."""
+    """A film or a replay in a file of its own, which the page links."""
 
     file: Path
     """Path of the file."""
@@ -173,7 +173,7 @@ class Failure:
     sentence: str
     """One sentence that says why it failed."""
     trace: str = ""
-    """Where in the code, if it was none of our own errors."""
+    """Traceback, if the error is not one of suchus' own."""
 
 
 def load_result(folder: str | Path) -> Result:
@@ -192,12 +192,12 @@ def load_result(folder: str | Path) -> Result:
             Picture(
                 name=f["name"],
                 caption=f["caption"],
-                file=_inside(folder, f"{f['name']}.svg"),
-                wide=_wide(_inside(folder, f"{f['name']}.svg")),
+                file=_path_inside(folder, f"{f['name']}.svg"),
+                wide=_is_wide(_path_inside(folder, f"{f['name']}.svg")),
             )
             for f in outcome["figures"]
         )
-        tables = {name: read_text(_inside(folder, name)) for name in outcome["tables"]}
+        tables = {name: read_text(_path_inside(folder, name)) for name in outcome["tables"]}
         films = _moving(folder, outcome.get("films", ()))
         replays = _moving(folder, outcome.get("replays", ()))
     except UnreadableFile:
@@ -209,22 +209,25 @@ def load_result(folder: str | Path) -> Result:
 
 def whole(result: Result) -> bool:
     """Return whether every file that an outcome names is in its folder: record, films and replays too."""
-    names = [RECORD, *(file["name"] for part in ("films", "replays") for file in result.outcome.get(part, ()))]
-    return all(_inside(result.folder, name).is_file() for name in names)
+    names = [
+        RECORD,
+        *(file["name"] for file_list in ("films", "replays") for file in result.outcome.get(file_list, ())),
+    ]
+    return all(_path_inside(result.folder, name).is_file() for name in names)
 
 
-def _wide(svg: Path) -> bool:
+def _is_wide(svg: Path) -> bool:
     """Return whether a drawing is wider than a figure that fills one column of text."""
     width = re.search(r'<svg[^>]*\bwidth="([\d.]+)pt"', read_text(svg)[:2000])
     return width is not None and float(width[1]) > _COLUMN
 
 
 def _moving(folder: Path, outcome: Iterable[Mapping[str, str]]) -> tuple[Moving, ...]:
-    files = (Moving(file=_inside(folder, one["name"]), caption=one["caption"]) for one in outcome)
-    return tuple(one for one in files if one.file.is_file())
+    files = (Moving(file=_path_inside(folder, entry["name"]), caption=entry["caption"]) for entry in outcome)
+    return tuple(entry for entry in files if entry.file.is_file())
 
 
-def _inside(folder: Path, name: str) -> Path:
+def _path_inside(folder: Path, name: str) -> Path:
     """A file of the folder itself; a name that leads elsewhere is refused."""
     if Path(name).name != name:
         raise IncompatibleRecord(f"{folder / OUTCOME} is no outcome of suchus: {name!r} is no file of its folder.")

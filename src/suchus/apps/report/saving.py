@@ -55,15 +55,15 @@ def save_outcome(
             (draft / name).write_text(replay.html, encoding="utf-8")
         record.save(outcome.record, draft / RECORD)
         captions = {name: pictures.caption(figure) for name, figure in figures.items()}
-        described = describe(outcome, experiment, captions, command)
-        text = json.dumps(described, indent=2, ensure_ascii=False, allow_nan=False)
+        outcome_table = describe(outcome, experiment, captions, command)
+        text = json.dumps(outcome_table, indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
         write_outcome_page(draft)
     return folder
 
 
 def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, str], command: str) -> dict[str, Any]:
-    """Return what ``outcome.json`` says; numbers that are not finite become null."""
+    """Return the contents of ``outcome.json``; numbers that are not finite become null."""
     return {
         "experiment": outcome.experiment,
         "title": experiment.title,
@@ -88,18 +88,18 @@ def differing(experiment: Experiment) -> list[dict[str, str]]:
     """Return the fields in which a question differs from the one on the shelf, with both values in words."""
     shelf, rows = type(experiment)(), []
     for name in experiment.settings():
-        here, there = getattr(experiment, name), getattr(shelf, name)
-        if here != there:
-            value, usual = _called(here), _called(there)
-            changed = f"another {value}" if value == usual else value
-            rows.append({"name": name, "value": changed, "shelf": usual})
+        setting, default = getattr(experiment, name), getattr(shelf, name)
+        if setting != default:
+            value, default_text = _setting_text(setting), _setting_text(default)
+            text = f"another {value}" if value == default_text else value
+            rows.append({"name": name, "value": text, "shelf": default_text})
     return rows
 
 
-def _called(value: Any) -> str:
+def _setting_text(value: Any) -> str:
     """Return a field's value in words: of a robot or a gait its name."""
     if isinstance(value, tuple):
-        return ", ".join(_called(one) for one in value) or "none"
+        return ", ".join(_setting_text(element) for element in value) or "none"
     if isinstance(value, float):
         return number(value, 4)
     return str(getattr(value, "name", value))
@@ -110,6 +110,7 @@ def _measure(measure: Measure) -> dict[str, Any]:
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
+    """Return a verdict for ``outcome.json``: claim, rule, measured value and interval, and share of designs."""
     claim, rule, share = verdict.claim, verdict.rule, verdict.share
     return {
         "claim": claim.key,

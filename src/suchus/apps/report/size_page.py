@@ -44,7 +44,7 @@ _COLUMNS = (
 
 
 def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
-    """Write what was found into a folder that is there.
+    """Write page, tables and robot file into an existing folder.
 
     Args:
         sizing: what was found.
@@ -66,12 +66,12 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
 
 
 def uses(family: ServoFamily) -> list[Used]:
-    """Return what each servo of a family uses, in the case that asks most of it."""
-    found = []
+    """Return the use of torque and heat of each servo of a family, in its hardest case."""
+    servo_uses = []
     for name, case, _ in family.binding():
         load, motor = family.loads[case][name], family.chosen[name]
-        found.append(Used(name, motor.name, load.line / FULL_WOUND, load.rms / motor.continuous_torque))
-    return found
+        servo_uses.append(Used(name, motor.name, load.line / FULL_WOUND, load.rms / motor.continuous_torque))
+    return servo_uses
 
 
 def servos_text(sizing: Sizing) -> str:
@@ -91,6 +91,16 @@ def servos_text(sizing: Sizing) -> str:
 
 
 def _row(family: str, motor: Motor | None, servo: str, case: str, load: ServoLoad, period: float) -> list[object]:
+    """Return one row of the table of servos in the order of ``_COLUMNS``.
+
+    Args:
+        family: name of the family of servos.
+        motor: the servo that is bought; None for the servo of the design.
+        servo: name of the servo in the robot.
+        case: name of the movement.
+        load: what the servo bears in it.
+        period: period of the gait [s].
+    """
     heat = None if motor is None else load.rms / motor.continuous_torque
     limit = load.line if motor is None else load.line / FULL_WOUND
     return [
@@ -121,8 +131,8 @@ def families_text(sizing: Sizing, hours: float) -> str:
 
 def counted(family: ServoFamily) -> dict[str, int]:
     """Return how many of each servo are bought, the cheapest first."""
-    ones = sorted(family.chosen.values(), key=lambda motor: sum(motor.price))
-    return {motor.name: ones.count(motor) for motor in dict.fromkeys(ones)}
+    motors = sorted(family.chosen.values(), key=lambda motor: sum(motor.price))
+    return {motor.name: motors.count(motor) for motor in dict.fromkeys(motors)}
 
 
 def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
@@ -130,73 +140,79 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
     best = sizing.best
     if best is None:
         reasons = "; ".join(f"{family.name}: {family.lacking}" for family in sizing.families)
-        return [f"No family of servos does for {sizing.robot.name}. {reasons}.", *_own_too_warm(sizing)]
+        return [f"No family of servos does for {sizing.robot.name}. {reasons}.", *_overheating(sizing)]
     counts = " and ".join(f"{count} {name}" for name, count in counted(best).items())
-    low, high = best.price
-    name, case, most = best.binding()[0]
-    said = [
-        f"{best.name} does for {sizing.robot.name}{_slower(sizing, best)}: {counts}, {low:.0f} to "
-        f"{high:.0f} EUR, {1000 * best.mass:.0f} g.",
-        f"The binding servo is {name} in {case}, which uses {100 * most:.0f} % of what {best.chosen[name].name} has, "
-        f"by {why(best.chosen[name], best.loads[case][name])}.",
+    min_price, max_price = best.price
+    name, case, use_fraction = best.binding()[0]
+    sentences = [
+        f"{best.name} does for {sizing.robot.name}{_slower(sizing, best)}: {counts}, {min_price:.0f} to "
+        f"{max_price:.0f} EUR, {1000 * best.mass:.0f} g.",
+        f"The binding servo is {name} in {case}, which uses {100 * use_fraction:.0f} % of what "
+        f"{best.chosen[name].name} has, by {why(best.chosen[name], best.loads[case][name])}.",
         f"A battery for {hours:g} h needs at most {best.battery(hours):.1f} Ah at {best.volts:g} V, by the hungriest "
         f"movement.",
     ]
-    kept = [cable.name for cable in sizing.robot.cables if cable.linear is not None]
-    if kept:
-        said.append(f"The linear actuator of {' and '.join(kept)} stays as it is: no family has one.")
+    actuator_names = [cable.name for cable in sizing.robot.cables if cable.linear is not None]
+    if actuator_names:
+        sentences.append(f"The linear actuator of {' and '.join(actuator_names)} stays as it is: no family has one.")
     slower = sizing.slower
     if slower is not None:
-        low, high = slower.price
+        min_price, max_price = slower.price
         counts = " and ".join(f"{count} {name}" for name, count in counted(slower).items())
-        said.append(
-            f"{slower.name} would do{_slower(sizing, slower)}: {counts}, {low:.0f} to {high:.0f} EUR.",
+        sentences.append(
+            f"{slower.name} would do{_slower(sizing, slower)}: {counts}, {min_price:.0f} to {max_price:.0f} EUR.",
         )
     remembered = sorted({field.replace("_", " ") for motor in best.chosen.values() for field in motor.remembered})
     if remembered:
-        said.append(f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy.")
-    return said + _own_too_warm(sizing)
+        sentences.append(
+            f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy."
+        )
+    return sentences + _overheating(sizing)
 
 
-def _own_too_warm(sizing: Sizing) -> list[str]:
+def _overheating(sizing: Sizing) -> list[str]:
     """Return in a sentence which servo of the design would get too warm the soonest; nothing if none would."""
-    warm = [
+    overheated = [
         (load.warm_after, name, case, load)
         for case, loads in sizing.own.items()
         for name, load in loads.items()
         if isfinite(load.warm_after)
     ]
-    if not warm:
+    if not overheated:
         return []
-    after, name, case, load = min(warm, key=lambda one: one[:3])
+    time_to_limit, name, case, load = min(overheated, key=lambda entry: entry[:3])
     winding = sizing.robot.servo(name).winding
     assert winding is not None
     assert winding.heat is not None
-    count = len({name for _, name, _, _ in warm})
-    who = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
-    most = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would never stop warming"
+    count = len({name for _, name, _, _ in overheated})
+    servo_text = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
+    final_text = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would never stop warming"
     return [
-        f"As it is designed, {who}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
-        f"{after / 60:.2g} min and {most} if the movement went on for ever."
+        f"As it is designed, {servo_text}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
+        f"{time_to_limit / 60:.2g} min and {final_text} if the movement went on for ever."
     ]
 
 
 def _slower(sizing: Sizing, family: ServoFamily) -> str:
-    """Return with which periods a family does, where they are not those that were asked for."""
-    slow = {gait: period for gait, period in _periods(sizing, family).items() if family.factors[gait] != 1.0}
-    own = {case.gait.name: case.gait.period for case in sizing.cases}
-    texts = [f"{gait} at a period of {period:.3g} s instead of {own[gait]:.3g} s" for gait, period in slow.items()]
+    """Return the gaits' longer periods at which a family is strong enough; empty if none is longer."""
+    longer_periods = {gait: period for gait, period in _periods(sizing, family).items() if family.factors[gait] != 1.0}
+    design_periods = {case.gait.name: case.gait.period for case in sizing.cases}
+    texts = [
+        f"{gait} at a period of {period:.3g} s instead of {design_periods[gait]:.3g} s"
+        for gait, period in longer_periods.items()
+    ]
     return f" with {' and '.join(texts)}" if texts else ""
 
 
 def _periods(sizing: Sizing, family: ServoFamily | None) -> dict[str, float]:
-    own = {case.gait.name: case.gait.period for case in sizing.cases}
-    return {gait: period * (1.0 if family is None else family.factors[gait]) for gait, period in own.items()}
+    design_periods = {case.gait.name: case.gait.period for case in sizing.cases}
+    return {gait: period * (1.0 if family is None else family.factors[gait]) for gait, period in design_periods.items()}
 
 
 def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float) -> dict[str, Any]:
+    """Return the variables of the page's template."""
     best = sizing.best
-    own = [
+    overloaded = [
         {"servo": name, "case": case, "load": load}
         for case, loads in sizing.own.items()
         for name, load in loads.items()
@@ -209,13 +225,13 @@ def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float
             "bought": best.chosen[name].name,
             "case": case,
             "load": best.loads[case][name],
-            "use": most,
+            "use": use_fraction,
             "why": why(best.chosen[name], best.loads[case][name]),
             "rated": best.chosen[name].continuous_torque,
             "tension": _tension(best.loads[case][name]),
-            "warm": _warm(best.loads[case][name]),
+            "warm": _temperature_text(best.loads[case][name]),
         }
-        for name, case, most in binding
+        for name, case, use_fraction in binding
         if best is not None
     ]
     return {
@@ -235,7 +251,7 @@ def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float
         "hours": hours,
         "pictures": pictures,
         "rows": rows,
-        "weak": own,
+        "weak": overloaded,
         "best": best,
         "allowed": AT_LIMIT,
     }
@@ -245,7 +261,7 @@ def _tension(load: ServoLoad) -> str:
     return f"{number(load.tension, 2)} N" if isfinite(load.tension) else ""
 
 
-def _warm(load: ServoLoad) -> str:
+def _temperature_text(load: ServoLoad) -> str:
     """Return how warm a servo gets, or when it is too warm."""
     if isfinite(load.warm_after):
         return f"too warm after {load.warm_after / 60:.0f} min"
@@ -253,15 +269,17 @@ def _warm(load: ServoLoad) -> str:
 
 
 def _csv(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Return a table as CSV with five digits; empty cells for values that are not known."""
     text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(head)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
     for row in rows:
-        out.writerow([_cell(value) for value in row])
+        writer.writerow([_cell(value) for value in row])
     return text.getvalue()
 
 
 def _cell(value: object) -> object:
+    """Return a cell as CSV shows it: yes or no, five digits, or nothing."""
     if value is None or (isinstance(value, float) and value != value):
         return ""
     if isinstance(value, bool):

@@ -15,10 +15,10 @@ from suchus.core.jobs.processes import deaf
 from suchus.core.stopping import end_with_parent
 from suchus.robot.design import Robot
 
-_PICTURE = 1 / 25  # [s]; between two pictures that are handed over
-_GONE = (EOFError, OSError)  # what a pipe says when the other end has ended
-_PATIENCE = 5.0  # [s]; for a process that was told to stop
-_COURTESY = 5  # by so much its priority is lower than that of the bus
+_PICTURE_INTERVAL = 1 / 25  # [s]; between two pictures that are handed over
+_PIPE_CLOSED = (EOFError, OSError)  # errors of a pipe whose other end is closed
+_STOP_TIMEOUT = 5.0  # [s]; for a process that was told to stop
+_NICE_INCREMENT = 5  # lowers the priority below that of the bus
 
 
 class WatchedApart:
@@ -35,52 +35,52 @@ class WatchedApart:
     """
 
     def __init__(self, robot: Robot, picture: Callable[[], WatchedRobot], *, port: int, title: str) -> None:
-        self._picture, self._taken = picture, 0.0
+        self._picture, self._picture_time = picture, 0.0
         spawning = get_context("spawn")
-        self._pipe, there = spawning.Pipe()
-        self._process = spawning.Process(target=_serve, args=(there, robot, port, title), daemon=True)
+        self._pipe, child_pipe = spawning.Pipe()
+        self._process = spawning.Process(target=_serve_pictures, args=(child_pipe, robot, port, title), daemon=True)
         with deaf():
             self._process.start()
-        there.close()
+        child_pipe.close()
         try:
             self._pipe.send(picture())
-            told: str | SuchusError = self._pipe.recv()
-        except _GONE as error:
+            answer: str | SuchusError = self._pipe.recv()
+        except _PIPE_CLOSED as error:
             self.stop()
             raise CannotServe("the process that serves the page ended before it did; try it without --view.") from error
-        if isinstance(told, SuchusError):
+        if isinstance(answer, SuchusError):
             self.stop()
-            raise told
-        self.url = told
+            raise answer
+        self.url = answer
 
     def look(self) -> None:
-        """Hand a picture over, where one is due and the page asked for it; never wait for the page."""
-        now = time.monotonic()
-        if now - self._taken < _PICTURE:
+        """Send the robot's state if it is due and the page requested it; never wait for the page."""
+        time_now = time.monotonic()
+        if time_now - self._picture_time < _PICTURE_INTERVAL:
             return
-        with suppress(*_GONE):
+        with suppress(*_PIPE_CLOSED):
             if self._pipe.poll():
                 self._pipe.recv()
-                self._taken = now
+                self._picture_time = time_now
                 self._pipe.send(self._picture())
 
     def stop(self) -> None:
         """End the page and its process."""
         self._pipe.close()
-        self._process.join(_PATIENCE)
+        self._process.join(_STOP_TIMEOUT)
         if self._process.is_alive():
             self._process.kill()
 
 
-def _serve(pipe: Connection, robot: Robot, port: int, title: str) -> None:
+def _serve_pictures(pipe: Connection, robot: Robot, port: int, title: str) -> None:
     """Serve pictures until the other end of the pipe is closed."""
     end_with_parent()
     with suppress(OSError):
-        os.nice(_COURTESY)
-    seen: WatchedRobot = pipe.recv()
+        os.nice(_NICE_INCREMENT)
+    watched_robot: WatchedRobot = pipe.recv()
     try:
         viewer = Viewer(
-            lambda client: WatchPage(client, robot, lambda: seen), port=port, title=title, camera=camera(robot)
+            lambda client: WatchPage(client, robot, lambda: watched_robot), port=port, title=title, camera=camera(robot)
         )
     except SuchusError as error:
         pipe.send(error)
@@ -89,6 +89,6 @@ def _serve(pipe: Connection, robot: Robot, port: int, title: str) -> None:
         pipe.send(viewer.url)
         while True:
             pipe.send(None)
-            seen = pipe.recv()
-    except _GONE:
+            watched_robot = pipe.recv()
+    except _PIPE_CLOSED:
         viewer.stop()

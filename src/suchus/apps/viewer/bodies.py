@@ -15,7 +15,7 @@ from suchus.sim.model import compile_model, joint_addresses
 from suchus.visual.skin import Poses, ankles, bone_names, footed
 
 COLOURS = 7
-"""Into how many colours the skin is cut; more look smoother and move slower [-]."""
+"""Number of colours into which the skin is cut; more look smoother and move slower [-]."""
 
 
 class BodyPoses:
@@ -27,17 +27,17 @@ class BodyPoses:
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
-        self._place = layout(robot)
+        self._layout = layout(robot)
         self.model = compile_model(robot)
-        self._feet = np.zeros((len(self._place.limbs), 3))
+        self._feet = np.zeros((len(self._layout.limbs), 3))
         self._data = mujoco.MjData(self.model)
-        self._joints = joint_addresses(self.model, self._place.hinges)
+        self._joints = joint_addresses(self.model, self._layout.hinges)
 
-    def put(self, now: Mapping[str, np.ndarray]) -> None:
+    def put(self, state: Mapping[str, np.ndarray]) -> None:
         """Take the posture of an instant, by the names of ``record.VARIABLES``."""
-        self._data.qpos[:3], self._data.qpos[3:7] = now["position"], now["orientation"]
-        self._data.qpos[self._joints] = now["joint_angle"]
-        self._feet = np.asarray(now["foot_position"])
+        self._data.qpos[:3], self._data.qpos[3:7] = state["position"], state["orientation"]
+        self._data.qpos[self._joints] = state["joint_angle"]
+        self._feet = np.asarray(state["foot_position"])
         mujoco.mj_kinematics(self.model, self._data)
 
     def bones(self, relief: Relief | None) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -46,8 +46,8 @@ class BodyPoses:
         Args:
             relief: what stands up from the ground; None where it is even.
         """
-        places, turns = zip(*map(self.body, bone_names(self.robot)), strict=True)
-        feet_flat = ankles(self.robot, Poses(np.array([places]), np.array([turns])), self._feet[None], relief)
+        positions, quaternions = zip(*map(self.body, bone_names(self.robot)), strict=True)
+        feet_flat = ankles(self.robot, Poses(np.array([positions]), np.array([quaternions])), self._feet[None], relief)
         poses = zip(feet_flat.positions[0], feet_flat.quaternions[0], strict=True)
         return dict(zip(footed(self.robot).bones, poses, strict=True))
 
@@ -57,9 +57,9 @@ class BodyPoses:
 
     def geom(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Return position [m] and orientation wxyz of a geom."""
-        turned = np.empty(4)
-        mujoco.mju_mat2Quat(turned, self._data.geom_xmat[number])
-        return np.array(self._data.geom_xpos[number]), turned
+        orientation = np.empty(4)
+        mujoco.mju_mat2Quat(orientation, self._data.geom_xmat[number])
+        return np.array(self._data.geom_xpos[number]), orientation
 
     def body(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Return position [m] and orientation wxyz of a body."""
@@ -68,11 +68,11 @@ class BodyPoses:
 
     def part(self, name: str) -> np.ndarray:
         """Return where the joint of a servo, or the foot of a leg, is [m]; for the cable, where its first joint is."""
-        place = self._place
-        if name in place.limb_names:
+        robot_layout = self._layout
+        if name in robot_layout.limb_names:
             return np.array(self._data.site(f"{name}_foot").xpos)
-        servo = place.servos.index(name) if name in place.servos else -1
-        hinge = place.cable(servo).hinges[0] if servo in place.cables else name
+        servo = robot_layout.servos.index(name) if name in robot_layout.servos else -1
+        hinge = robot_layout.cable(servo).hinges[0] if servo in robot_layout.cables else name
         return np.array(self._data.xanchor[self.model.joint(hinge).id])
 
 
@@ -102,30 +102,30 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
         robot: whose skin.
         count: of colours.
     """
-    whole = footed(robot)
-    of_faces = whole.colours[whole.faces].astype(float).mean(axis=1)
-    centres, group = kmeans2(of_faces, count, minit="++", seed=0)
-    dense = np.zeros((len(whole.vertices), len(whole.bones)))
-    np.add.at(dense, (np.arange(len(dense))[:, None], whole.indices), whole.weights)
-    parts = []
+    surface = footed(robot)
+    face_colours = surface.colours[surface.faces].astype(float).mean(axis=1)
+    centres, group = kmeans2(face_colours, count, minit="++", seed=0)
+    dense = np.zeros((len(surface.vertices), len(surface.bones)))
+    np.add.at(dense, (np.arange(len(dense))[:, None], surface.indices), surface.weights)
+    skin_pieces = []
     for number, centre in enumerate(centres):
-        faces_of_colour = whole.faces[group == number]
+        faces_of_colour = surface.faces[group == number]
         if len(faces_of_colour) == 0:
             continue
         vertices, faces = np.unique(faces_of_colour, return_inverse=True)
-        used = np.flatnonzero(dense[vertices].any(axis=0))
+        used_bones = np.flatnonzero(dense[vertices].any(axis=0))
         red, green, blue = (round(float(value)) for value in centre)
-        parts.append(
+        skin_pieces.append(
             SkinPiece(
-                vertices=whole.vertices[vertices],
+                vertices=surface.vertices[vertices],
                 faces=faces.reshape(-1, 3),
-                weights=dense[np.ix_(vertices, used)],
-                bones=tuple(whole.bones[bone] for bone in used),
-                rest=whole.rest[used],
+                weights=dense[np.ix_(vertices, used_bones)],
+                bones=tuple(surface.bones[bone] for bone in used_bones),
+                rest=surface.rest[used_bones],
                 colour=(red, green, blue),
             )
         )
-    return tuple(parts)
+    return tuple(skin_pieces)
 
 
 def support(feet: np.ndarray, loaded: np.ndarray) -> np.ndarray:
@@ -138,6 +138,6 @@ def support(feet: np.ndarray, loaded: np.ndarray) -> np.ndarray:
     corners = feet[loaded]
     if len(corners) < 3:
         return np.asarray(corners)
-    middle = corners.mean(axis=0)
-    order = np.argsort(np.arctan2(corners[:, 1] - middle[1], corners[:, 0] - middle[0]))
+    center = corners.mean(axis=0)
+    order = np.argsort(np.arctan2(corners[:, 1] - center[1], corners[:, 0] - center[0]))
     return np.asarray(corners[order])

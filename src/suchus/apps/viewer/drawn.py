@@ -14,7 +14,10 @@ from suchus.robot.robots import beside_article
 from suchus.sim.fault import Fault
 
 Look = Literal["skin", "collision geoms"]
-_MARK, _WORD = 0.026, 0.035  # [m]; radius of a mark on the article's robot, and how far above it its word is
+_MARK_RADIUS, _LABEL_HEIGHT = (
+    0.026,
+    0.035,
+)  # [m]; radius of a mark on the article's robot, and how far above it its word is
 LIMP, LOCKED = (225, 60, 45), (40, 40, 45)
 """Colours of the marks on joints that have failed."""
 GHOST = (120, 140, 200)
@@ -38,14 +41,15 @@ class DrawnRobot:
         self._marks: dict[str, Any] = {}
         self._size = beside_article(robot).length
         self._failed: tuple[Fault, ...] = ()
-        self._look: Look = "skin"
+        self._geometry: Look = "skin"
         self._geoms: dict[int, Any] = {}
-        cut = pieces(robot, 1) if ghost else pieces(robot)
-        self._skin = [(piece, self._piece(i, piece)) for i, piece in enumerate(cut)]
+        skin_pieces = pieces(robot, 1) if ghost else pieces(robot)
+        self._skin = [(piece, self._piece(i, piece)) for i, piece in enumerate(skin_pieces)]
 
     def _geom(self, number: int) -> Any:
+        """Add a collision geom of the robot to the scene and return its handle."""
         mesh = create_primitive_mesh(self.posture.model, number)
-        colour = tuple(int(255 * part) for part in self.posture.model.geom_rgba[number][:3])
+        colour = tuple(int(255 * component) for component in self.posture.model.geom_rgba[number][:3])
         return self._scene.add_mesh_simple(
             f"{self._root}/geom_{number}",
             np.asarray(mesh.vertices),
@@ -56,12 +60,13 @@ class DrawnRobot:
         )
 
     def _piece(self, number: int, piece: Any) -> Any:
-        still = np.tile([1.0, 0.0, 0.0, 0.0], (len(piece.bones), 1))
+        """Add a piece of the skin to the scene and return its handle."""
+        identity = np.tile([1.0, 0.0, 0.0, 0.0], (len(piece.bones), 1))
         return self._scene.add_mesh_skinned(
             f"{self._root}/skin_{number}",
             piece.vertices,
             piece.faces,
-            bone_wxyzs=still,
+            bone_wxyzs=identity,
             bone_positions=piece.rest,
             skin_weights=piece.weights,
             color=GHOST if self._ghost else piece.colour,
@@ -69,20 +74,20 @@ class DrawnRobot:
             receive_shadow=False,  # of itself: the scutes would drown in it
         )
 
-    def look(self, look: Look) -> None:
+    def look(self, geometry: Look) -> None:
         """Show the skin or the collision geoms."""
-        if look != "skin" and not self._geoms:
+        if geometry != "skin" and not self._geoms:
             self._geoms = {number: self._geom(number) for number in self.posture.geoms()}
-        self._look = look
+        self._geometry = geometry
         for handle in self._geoms.values():
-            handle.visible = look != "skin"
+            handle.visible = geometry != "skin"
         for _, handle in self._skin:
-            handle.visible = look == "skin"
+            handle.visible = geometry == "skin"
 
-    def show(self, now: Mapping[str, np.ndarray]) -> None:
+    def show(self, state: Mapping[str, np.ndarray]) -> None:
         """Move to an instant, by the names of ``record.VARIABLES``."""
-        self.posture.put(now)
-        if self._look == "skin":
+        self.posture.put(state)
+        if self._geometry == "skin":
             bones = self.posture.bones(self.relief)
             for piece, handle in self._skin:
                 for bone, name in zip(handle.bones, piece.bones, strict=True):
@@ -90,9 +95,9 @@ class DrawnRobot:
         else:
             for number, handle in self._geoms.items():
                 handle.position, handle.wxyz = self.posture.geom(number)
-        for part, (ball, label) in self._marks.items():
-            ball.position = self.posture.part(part)
-            label.position = ball.position + np.array([0.0, 0.0, self._size * _WORD])
+        for joint, (ball, label) in self._marks.items():
+            ball.position = self.posture.part(joint)
+            label.position = ball.position + np.array([0.0, 0.0, self._size * _LABEL_HEIGHT])
 
     def mark(self, faults: Sequence[Fault]) -> None:
         """Mark the joints and legs that are broken, each with how."""
@@ -105,21 +110,22 @@ class DrawnRobot:
         self._marks = {fault.part: self._mark(fault) for fault in faults if fault.acts_on != "sensor"}
 
     def _mark(self, fault: Fault) -> tuple[Any, Any]:
-        part, kind = fault.part, fault.kind()
-        place = self.posture.part(part)
+        """Add a ball and a label at the joint or foot that a fault breaks, and return both handles."""
+        joint, kind = fault.part, fault.kind()
+        position = self.posture.part(joint)
         ball = self._scene.add_icosphere(
-            f"{self._root}/failed_{part}",
-            self._size * _MARK,
+            f"{self._root}/failed_{joint}",
+            self._size * _MARK_RADIUS,
             color=LIMP if kind == "limp" else LOCKED,
-            position=place,
+            position=position,
             opacity=0.85,
         )
-        text = f"{part} {kind}".replace("_", " ")
-        label = self._scene.add_label(f"{self._root}/word_{part}", text, position=place, anchor="bottom-center")
+        text = f"{joint} {kind}".replace("_", " ")
+        label = self._scene.add_label(f"{self._root}/word_{joint}", text, position=position, anchor="bottom-center")
         return ball, label
 
 
-_LINE, _FOOT = 0.008, 0.012
+_LINE_THICKNESS, _FOOT_RADIUS = 0.008, 0.012
 """Thickness of the lines and radius of the feet, over the animal's length [-]."""
 
 
@@ -135,15 +141,16 @@ class DrawnAnimal:
     def __init__(self, scene: Any, root: str, animal: FilmedAnimal) -> None:
         self._animal = animal
         self._lines = scene.add_line_segments(
-            f"{root}/lines", np.zeros((len(animal.bones), 2, 3)), GHOST, thickness=_LINE * animal.size
+            f"{root}/lines", np.zeros((len(animal.bones), 2, 3)), GHOST, thickness=_LINE_THICKNESS * animal.size
         )
         self._feet = [
-            scene.add_icosphere(f"{root}/foot_{i}", _FOOT * animal.size, color=GHOST) for i in range(len(animal.feet))
+            scene.add_icosphere(f"{root}/foot_{i}", _FOOT_RADIUS * animal.size, color=GHOST)
+            for i in range(len(animal.feet))
         ]
 
     def show(self, time: float) -> None:
         """Move to a time of the record [s]."""
-        place = self._animal.at(time)
-        self._lines.points = place[np.array(self._animal.bones)].astype(np.float32)
+        positions = self._animal.at(time)
+        self._lines.points = positions[np.array(self._animal.bones)].astype(np.float32)
         for ball, foot in zip(self._feet, self._animal.feet, strict=True):
-            ball.position = place[foot]
+            ball.position = positions[foot]

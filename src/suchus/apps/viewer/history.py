@@ -27,23 +27,23 @@ class History:
         every: between two rows [s].
     """
 
-    def __init__(self, limbs: Sequence[str], every: float = 0.02) -> None:
-        self._every, self._columns = every, columns(limbs)
-        self._rows: deque[list[float]] = deque(maxlen=round(WINDOW / every) + 1)
+    def __init__(self, limbs: Sequence[str], interval: float = 0.02) -> None:
+        self._interval, self._columns = interval, columns(limbs)
+        self._rows: deque[list[float]] = deque(maxlen=round(WINDOW / interval) + 1)
 
-    def note(self, time: float, now: Mapping[str, np.ndarray], displaced: tuple[float, float]) -> None:
-        """Keep an instant, if it is time for one.
+    def note(self, time: float, state: Mapping[str, np.ndarray], displacement: tuple[float, float]) -> None:
+        """Store a row, if the interval since the last row has passed.
 
         Args:
             time: [s].
-            now: the instant, by the names of ``record.VARIABLES``.
-            displaced: forward and to the left since the walk began [m].
+            state: the instant, by the names of ``record.VARIABLES``.
+            displacement: forward and to the left since the walk began [m].
         """
-        if self._rows and time - self._rows[-1][0] < self._every - 1e-9:
+        if self._rows and time - self._rows[-1][0] < self._interval - 1e-9:
             return
-        feet = now["foot_force"][:, 2]
-        self._rows.append([time, float(now["centre_of_mass"][2]), *displaced, *map(float, feet),
-                           float(now["belly_force"][:, 2].sum()), float(now["tail_force"][2])])  # fmt: skip
+        feet = state["foot_force"][:, 2]
+        self._rows.append([time, float(state["centre_of_mass"][2]), *displacement, *map(float, feet),
+                           float(state["belly_force"][:, 2].sum()), float(state["tail_force"][2])])  # fmt: skip
 
     def table(self) -> dict[str, np.ndarray]:
         """Return the columns by name, each of shape (row,)."""
@@ -59,8 +59,8 @@ def table_of(record: xr.Dataset, origin: np.ndarray) -> dict[str, np.ndarray]:
         origin: from where the displacement is counted, (3,) [m].
     """
     com, feet = record.centre_of_mass.values, record.foot_force.sel(xyz="z").values
-    displaced = com - origin
-    values = [record.time.values, com[:, 2], displaced[:, 0], displaced[:, 1], *feet.T]
+    displacement = com - origin
+    values = [record.time.values, com[:, 2], displacement[:, 0], displacement[:, 1], *feet.T]
     values += [record.belly_force.sel(xyz="z").sum("segment").values, record.tail_force.sel(xyz="z").values]
     names = columns([str(limb) for limb in record.leg.values])
     return dict(zip(names, (np.asarray(column, dtype=float) for column in values), strict=True))

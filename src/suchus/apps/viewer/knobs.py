@@ -10,7 +10,7 @@ from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.motion import Gait, check_limits
 from suchus.robot.robots import beside_article
 
-_HALVINGS = 14  # of the distance to a value that the robot cannot reach: a ten-thousandth of it
+_MAX_HALVINGS = 14  # of the distance to a value that the robot cannot reach; 14 leave a ten-thousandth
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,7 +18,7 @@ class Knob:
     """A number that people may turn, in the unit in which they see it."""
 
     label: str
-    """Beside the slider."""
+    """Label of the slider."""
     unit: str
     """Unit in which it is shown."""
     low: float
@@ -39,29 +39,29 @@ class Knob:
         """Return a shown value with its unit."""
         return f"{value:.4g} {self.unit}".rstrip()
 
-    def within(self, value: object, now: float) -> tuple[float, str]:
-        """Return a value that is allowed and, where it is not the one asked for, a sentence that says so.
+    def within(self, value: object, current: float) -> tuple[float, str]:
+        """Return the nearest allowed value, and a sentence if it differs from the requested value.
 
         Args:
             value: asked for, in the knob's unit; anything.
-            now: which stands, and stays where what is asked for is no number.
+            current: which stands, and stays where what is asked for is no number.
         """
         try:
             number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
-            return now, f"{self.label}: {str(value)[:40]!r} is no number; it stays at {self.said(now)}."
+            return current, f"{self.label}: {str(value)[:40]!r} is no number; it stays at {self.said(current)}."
         if not isfinite(number):
-            return now, f"{self.label}: {number} is no finite number; it stays at {self.said(now)}."
-        held = min(max(number, self.low), self.high)
-        if held != number:
+            return current, f"{self.label}: {number} is no finite number; it stays at {self.said(current)}."
+        clipped = min(max(number, self.low), self.high)
+        if clipped != number:
             allowed = f"{self.low:g} to {self.said(self.high)}"
-            return held, f"{self.label}: {self.said(number)} is outside {allowed}; it is {self.said(held)} now."
+            return clipped, f"{self.label}: {self.said(number)} is outside {allowed}; it is {self.said(clipped)} now."
         return number, ""
 
 
 _DEGREE = radians(1.0)
 
-_SHARE = 0.01  # a per cent
+_SHARE = 0.01  # one per cent
 
 GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
     {
@@ -130,17 +130,17 @@ BUMPS = Knob(
     label="bumps", unit="mm", low=0.0, high=60.0, step=5.0, scale=1e-3,
     hint="Height of a field of random bumps ahead; the walk begins anew on them.",
 )  # fmt: skip
-"""For a robot as long as the article's; see ``bumps_under``."""
+"""Knob of the bumps for a robot as long as the article's; see ``bumps_under``."""
 SPEED = Knob(label="playback speed", unit="x", low=0.05, high=4.0, step=0.05, hint="1 is real time.")
 FORCE = Knob(label="force", unit="N", low=0.0, high=60.0, step=1.0)
-"""For a robot as heavy as the article's; see ``force_on``."""
+"""Knob of the force for a robot as heavy as the article's; see ``force_on``."""
 PUSH_DURATION = Knob(label="duration", unit="s", low=0.02, high=2.0, step=0.02, hint="Duration of the push.")
 DIRECTION = Knob(
     label="direction", unit="deg", low=-180.0, high=180.0, step=15.0, scale=_DEGREE,
     hint="0 pushes forward, 90 to the left, 180 backward.",
 )  # fmt: skip
-_PUSH = 15.0  # [N]; on the article's robot, at first
-_FAINT = 1.0  # [N]; a lighter body is pushed in millinewtons
+_DEFAULT_PUSH = 15.0  # [N]; on the article's robot, at first
+_MIN_NEWTON_WEIGHT = 1.0  # [N]; a lighter body is pushed in millinewtons
 
 LEVEL = Knob(
     label="water level", unit="mm", low=0.0, high=1000.0, step=5.0, scale=1e-3,
@@ -153,42 +153,42 @@ AIR_FRACTION = Knob(
 
 
 def force_on(robot: Robot) -> Knob:
-    """Return the knob of a push's force, which follows the weight of whom it pushes, in newtons or millinewtons."""
+    """Return the knob of a push's force, scaled by the robot's weight, in newtons or millinewtons."""
     weight = robot.mass * GRAVITY
-    unit, scale = ("N", 1.0) if weight >= _FAINT else ("mN", 1e-3)
-    shown = f"{weight / scale:.0f}" if weight / scale >= 10.0 else f"{weight / scale:.2g}"
-    hint = f"{robot.name} weighs {shown} {unit}."
-    high = _rounded(FORCE.high * beside_article(robot).weight / scale)
-    return replace(FORCE, unit=unit, scale=scale, high=high, step=_rounded(high / 60.0), hint=hint)
+    unit, scale = ("N", 1.0) if weight >= _MIN_NEWTON_WEIGHT else ("mN", 1e-3)
+    weight_text = f"{weight / scale:.0f}" if weight / scale >= 10.0 else f"{weight / scale:.2g}"
+    hint = f"{robot.name} weighs {weight_text} {unit}."
+    upper_bound = _rounded(FORCE.high * beside_article(robot).weight / scale)
+    return replace(FORCE, unit=unit, scale=scale, high=upper_bound, step=_rounded(upper_bound / 60.0), hint=hint)
 
 
 def push_on(robot: Robot) -> float:
     """Return the force of a push as it is set at first [N]: 0.43 of the weight of a body of another size."""
-    return _rounded(_PUSH * beside_article(robot).weight)
+    return _rounded(_DEFAULT_PUSH * beside_article(robot).weight)
 
 
 def bumps_under(robot: Robot) -> Knob:
-    """Return the knob of the bumps' height, which follows the length of whom they are under."""
+    """Return the knob of the bumps' height, scaled by the robot's length."""
     return _resized(BUMPS, beside_article(robot).length)
 
 
 def knobs_of(robot: Robot, gait: Gait) -> Mapping[str, Knob]:
-    """Return what can be turned of a gait, by name: the numbers that it has and that move something of the robot."""
-    place = layout(robot)
+    """Return the knobs of a gait by name: the parameters of the gait that move a joint of the robot."""
+    robot_layout = layout(robot)
     lacking = {
-        *(() if place.limbs else ("duty_factor", "height")),
+        *(() if robot_layout.limbs else ("duty_factor", "height")),
         *(() if gait.has("foot paths") else ("height",)),
-        *(() if place.trunk_yaw else ("trunk_bend", "trunk_offset")),
-        *(() if place.tail_yaw or place.cables else ("tail_bend", "tail_lag")),
-        *(() if place.tail_pitch else ("tail_pitch",)),
+        *(() if robot_layout.trunk_yaw else ("trunk_bend", "trunk_offset")),
+        *(() if robot_layout.tail_yaw or robot_layout.cables else ("tail_bend", "tail_lag")),
+        *(() if robot_layout.tail_pitch else ("tail_pitch",)),
     }
-    numbers = gait.numbers() if gait.has("steering") else {}
-    return {name: knob for name, knob in GAIT_KNOBS.items() if name in numbers and name not in lacking}
+    parameters = gait.numbers() if gait.has("steering") else {}
+    return {name: knob for name, knob in GAIT_KNOBS.items() if name in parameters and name not in lacking}
 
 
-def _resized(knob: Knob, share: float) -> Knob:
-    low, high = (float(f"{share * end:.2g}") for end in (knob.low, knob.high))
-    return replace(knob, low=low, high=high, step=_rounded(share * knob.step))
+def _resized(knob: Knob, factor: float) -> Knob:
+    lower_bound, upper_bound = (float(f"{factor * end:.2g}") for end in (knob.low, knob.high))
+    return replace(knob, low=lower_bound, high=upper_bound, step=_rounded(factor * knob.step))
 
 
 def _rounded(value: float) -> float:
@@ -201,7 +201,7 @@ def shown(gait: Gait, name: str) -> float:
 
 
 def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
-    """Return a gait with one field turned as far as the robot's joints follow, and a sentence if that is not as asked.
+    """Return a gait with one parameter changed as far as the joints allow, and a sentence if that is not as asked for.
 
     Args:
         robot: who walks.
@@ -209,27 +209,37 @@ def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str
         name: of the knob.
         value: asked for, in the knob's unit; anything.
     """
-    knob, now = knobs_of(robot, gait)[name], shown(gait, name)
-    aim, notice = knob.within(value, now)
-    if notice and aim == now:
+    knob, current = knobs_of(robot, gait)[name], shown(gait, name)
+    target, notice = knob.within(value, current)
+    if notice and target == current:
         return gait, notice
-    wanted, why = _tried(robot, gait, name, aim * knob.scale)
-    if not why:
-        return wanted, notice
-    fits, reached = gait, now
-    for i in range(1, _HALVINGS + 1):
-        between = reached + (aim - now) / 2**i
-        trial, refused = _tried(robot, gait, name, between * knob.scale)
-        if not refused:
-            fits, reached = trial, between
-    return fits, f"{knob.label}: the robot cannot follow {knob.said(aim)}; it is {knob.said(reached)} now. {why}"
+    target_gait, error = _gait_with(robot, gait, name, target * knob.scale)
+    if not error:
+        return target_gait, notice
+    feasible_gait, feasible_value = gait, current
+    for i in range(1, _MAX_HALVINGS + 1):
+        trial_value = feasible_value + (target - current) / 2**i
+        trial, trial_error = _gait_with(robot, gait, name, trial_value * knob.scale)
+        if not trial_error:
+            feasible_gait, feasible_value = trial, trial_value
+    return (
+        feasible_gait,
+        f"{knob.label}: the robot cannot follow {knob.said(target)}; it is {knob.said(feasible_value)} now. {error}",
+    )
 
 
-def _tried(robot: Robot, gait: Gait, name: str, value: float) -> tuple[Gait, str]:
-    """Return a gait with one field changed, and why the robot cannot follow it; empty if it can."""
+def _gait_with(robot: Robot, gait: Gait, name: str, value: float) -> tuple[Gait, str]:
+    """Return a gait with one field changed, and why the robot cannot follow it; empty if it can.
+
+    Args:
+        robot: who walks.
+        gait: the gait before the change.
+        name: of the field.
+        value: of the field, in SI units.
+    """
     try:
-        changed = gait.with_numbers(**{name: value})
-        check_limits(robot, changed)
+        gait_variant = gait.with_numbers(**{name: value})
+        check_limits(robot, gait_variant)
     except (InvalidDesign, NotConverged, OutsideLimits) as error:
         return gait, str(error)
-    return changed, ""
+    return gait_variant, ""

@@ -26,7 +26,7 @@ class SavedFile(NamedTuple):
     name: str
     """Name of the file."""
     content: bytes
-    """Its text, in UTF-8."""
+    """Text of the file, in UTF-8."""
 
 
 def gait_file(robot: Robot, settings: Settings) -> SavedFile:
@@ -98,7 +98,7 @@ class Controls:
             self._faults()
         with gui.add_folder("Push"):
             self._add_settings("force", "direction", "push_duration")
-            self._on(gui.add_button("push the trunk", color="orange"), lambda _: session.push())
+            self._connect(gui.add_button("push the trunk", color="orange"), lambda _: session.push())
         with gui.add_folder("Ground"):
             self._add_settings("uphill", "sideways", "bumps")
         if session.settings.swim is not None:
@@ -111,29 +111,31 @@ class Controls:
         """Whether the walk stands still."""
         return bool(self._pause.value)
 
-    def pause(self, on: bool) -> None:
+    def pause(self, is_paused: bool) -> None:
         """Let the walk stand still, or go on."""
-        self._pause.value = on
+        self._pause.value = is_paused
 
-    def _on(self, handle: Any, act: Callable[[Any], object]) -> None:
-        """Let a control act, when a person moves it; what ``act`` returns is shown where it is a sentence."""
+    def _connect(self, handle: Any, act: Callable[[Any], object]) -> None:
+        """Call ``act`` when a person moves a control, and show the sentence that ``act`` may return."""
 
-        def moved(event: Any) -> None:
-            if event.client is None:  # set by ourselves
+        def on_event(event: Any) -> None:
+            """Count a touch, act, and show the sentence that the action returns."""
+            if event.client is None:  # the program set the value
                 return
             self.touched += 1
             answer = act(handle.value)
             if isinstance(answer, str):
                 self._say(answer)
 
-        (handle.on_click if hasattr(handle, "on_click") else handle.on_update)(moved)
+        (handle.on_click if hasattr(handle, "on_click") else handle.on_update)(on_event)
 
     def _playback(self) -> None:
+        """Add pause, reset and playback speed."""
         gui = self._gui
         with gui.add_folder("Walk"):
             self._pause = gui.add_checkbox("pause", initial_value=False)
-            self._on(self._pause, lambda _: None)
-            self._on(gui.add_button("reset", hint="Begin anew with everything as it is set."), self._reset)
+            self._connect(self._pause, lambda _: None)
+            self._connect(gui.add_button("reset", hint="Begin anew with everything as it is set."), self._reset)
             self._add_settings("speed")
 
     def _reset(self, _: object) -> None:
@@ -141,44 +143,46 @@ class Controls:
         self._pause.value = False
 
     def _add_switch(self, name: Switch, label: str, hint: str) -> None:
+        """Add a checkbox for a switch of ``Settings``; it shows the state that the session accepted."""
         box = self._gui.add_checkbox(label, initial_value=getattr(self._session.settings, name), hint=hint)
 
-        def act(on: object) -> str:
-            notice = self._session.switch(name, bool(on))
+        def act(is_on: object) -> str:
+            notice = self._session.switch(name, bool(is_on))
             box.value = getattr(self._session.settings, name)
             return notice
 
-        self._on(box, act)
+        self._connect(box, act)
         self._switches[name] = box
 
     def _gaits(self) -> None:
-        mine = self._session.settings.gait
+        """Add a menu of the gaits on the shelf that have the same sliders as the present gait."""
+        current_gait = self._session.settings.gait
         shelf: dict[str, Gait] = {name: gait for name, gait in GAITS.items() if self._fits(gait)}
-        if shelf.get(mine.name) != mine:
-            shelf = {mine.name: mine, **shelf}
-        menu = self._gui.add_dropdown("from the shelf", tuple(shelf), initial_value=mine.name)
+        if shelf.get(current_gait.name) != current_gait:
+            shelf = {current_gait.name: current_gait, **shelf}
+        menu = self._gui.add_dropdown("from the shelf", tuple(shelf), initial_value=current_gait.name)
 
-        def act(chosen: Any) -> str:
-            notice = self._session.adopt(shelf[chosen])
+        def act(gait_name: Any) -> str:
+            notice = self._session.adopt(shelf[gait_name])
             for name in knobs_of(self._session.robot, self._session.settings.gait):
                 self._sliders[name].value = self._gait_value(name)
             return notice
 
-        self._on(menu, act)
+        self._connect(menu, act)
 
     def _files(self, save: Save) -> None:
         """Offer gait and robot as TOML files, which every command takes in the place of a name."""
         gui, session = self._gui, self._session
         with gui.add_folder("Save"):
             gait = gui.add_button("save the gait", hint="A TOML file, with spine and tail as they are switched.")
-            self._on(gait, lambda _: save(gait_file(session.robot, session.settings)))
+            self._connect(gait, lambda _: save(gait_file(session.robot, session.settings)))
             robot = gui.add_button("save the robot", hint="A TOML file, to be changed by hand.")
-            self._on(robot, lambda _: save(robot_file(session.robot)))
+            self._connect(robot, lambda _: save(robot_file(session.robot)))
 
     def _fits(self, gait: Gait) -> bool:
         """Return whether a gait of the shelf has the same sliders, and the robot can follow it."""
-        robot, mine = self._session.robot, self._session.settings.gait
-        return set(knobs_of(robot, gait)) == set(knobs_of(robot, mine)) and suits(robot, gait)
+        robot, current_gait = self._session.robot, self._session.settings.gait
+        return set(knobs_of(robot, gait)) == set(knobs_of(robot, current_gait)) and suits(robot, gait)
 
     def _gait_value(self, name: str) -> float:
         return shown(self._session.settings.gait, name)
@@ -186,7 +190,7 @@ class Controls:
     def _add_slider(
         self, name: str, knob: Knob, value: Callable[[str], float], turn: Callable[[str, object], str]
     ) -> None:
-        """Add a slider that shows what became of what was asked for.
+        """Add a slider that shows the value that the session accepted.
 
         Args:
             name: of the number.
@@ -194,18 +198,18 @@ class Controls:
             value: returns the number as it is now, in the knob's unit.
             turn: asks for another value; returns a sentence if that is not as asked.
         """
-        now = value(name)
+        current = value(name)
         slider = self._gui.add_slider(
-            str(knob), min=min(knob.low, now), max=max(knob.high, now), step=knob.step, initial_value=now,
+            str(knob), min=min(knob.low, current), max=max(knob.high, current), step=knob.step, initial_value=current,
             hint=knob.hint,
         )  # fmt: skip
 
-        def act(wanted: object) -> str:
-            notice = turn(name, wanted)
+        def act(target: object) -> str:
+            notice = turn(name, target)
             slider.value = value(name)
             return notice
 
-        self._on(slider, act)
+        self._connect(slider, act)
         self._sliders[name] = slider
 
     def _add_settings(self, *names: str) -> None:
@@ -217,12 +221,13 @@ class Controls:
             )
 
     def _faults(self) -> None:
+        """Add a menu of joints with buttons that break and repair them, and the other faults in a folder."""
         gui, session = self._gui, self._session
         joint = gui.add_dropdown("joint", Limp.parts(session.robot), initial_value=Limp.parts(session.robot)[0])
-        self._on(gui.add_button("make it limp", color="red"), lambda _: session.lose(joint.value, "limp"))
-        self._on(gui.add_button("lock it", color="dark"), lambda _: session.lose(joint.value, "locked"))
-        self._on(gui.add_button("repair it", color="green"), lambda _: session.mend(joint.value))
-        self._on(gui.add_button("repair all", color="gray"), lambda _: session.mend())
+        self._connect(gui.add_button("make it limp", color="red"), lambda _: session.lose(joint.value, "limp"))
+        self._connect(gui.add_button("lock it", color="dark"), lambda _: session.lose(joint.value, "locked"))
+        self._connect(gui.add_button("repair it", color="green"), lambda _: session.mend(joint.value))
+        self._connect(gui.add_button("repair all", color="gray"), lambda _: session.mend())
         with gui.add_folder("Other faults", expand_by_default=False):
             self._other_faults()
 
@@ -231,21 +236,21 @@ class Controls:
         gui, session = self._gui, self._session
         kinds = tuple(name for name, _ in FAULTS.items() if name not in ("limp", "locked"))
         kind = gui.add_dropdown("fault", kinds, initial_value=kinds[0])
-        part = gui.add_dropdown("part", FAULTS[kinds[0]].parts(session.robot))
-        much = gui.add_number("how much", 0.0, step=0.01, hint="In SI units; faults without a number ignore it.")
+        joint = gui.add_dropdown("part", FAULTS[kinds[0]].parts(session.robot))
+        magnitude = gui.add_number("how much", 0.0, step=0.01, hint="In SI units; faults without a number ignore it.")
 
         def choose(name: object) -> None:
-            part.options = FAULTS[str(name)].parts(session.robot)
-            much.value = next(iter(numbers(FAULTS[str(name)]).values()), 0.0)
+            joint.options = FAULTS[str(name)].parts(session.robot)
+            magnitude.value = next(iter(numbers(FAULTS[str(name)]).values()), 0.0)
 
         def happen(_: object) -> str:
             fields = list(numbers(FAULTS[kind.value]))[:1]
-            return session.lose(part.value, kind.value, **dict.fromkeys(fields, float(much.value)))
+            return session.lose(joint.value, kind.value, **dict.fromkeys(fields, float(magnitude.value)))
 
         choose(kinds[0])
-        self._on(kind, choose)
-        self._on(gui.add_button("let it happen", color="red"), happen)
-        self._on(gui.add_button("repair this part", color="green"), lambda _: session.mend(part.value))
+        self._connect(kind, choose)
+        self._connect(gui.add_button("let it happen", color="red"), happen)
+        self._connect(gui.add_button("repair this part", color="green"), lambda _: session.mend(joint.value))
 
 
 DRAWN = 3
@@ -253,8 +258,8 @@ DRAWN = 3
 PLOT = 0.3
 """Time between two redraws of the plots [s]."""
 IDLE = 900.0
-"""After so long without a touch the walk pauses, so that a forgotten window costs nothing [s]."""
-_LATE = 0.25  # [s]; a slow machine simulates at most so much at once, and so goes slower than real time
+"""Time without a touch after which the walk pauses, so that a forgotten window costs nothing [s]."""
+_MAX_STEP = 0.25  # [s]; a slow machine simulates at most so much at once, and so goes slower than real time
 
 
 class LivePage(BrowserPage):
@@ -275,7 +280,7 @@ class LivePage(BrowserPage):
         with gui.add_folder("Look", expand_by_default=False):
             self._skin = gui.add_checkbox("skin", initial_value=True, hint="Off: the shapes that touch the ground.")
             self._follow = gui.add_checkbox("camera follows", initial_value=True)
-            switches = {name: gui.add_checkbox(label, initial_value=True) for name, label in _SHOWN}
+            switches = {name: gui.add_checkbox(label, initial_value=True) for name, label in _OVERLAYS}
         self._dock()
         self._plots = Plots(gui, uplot, session.robot)
         self._stage = WalkScene(client.scene, session.robot)
@@ -283,42 +288,43 @@ class LivePage(BrowserPage):
         self._skin.on_update(lambda _: self._stage.look("skin" if self._skin.value else "collision geoms"))
         self._switches = switches
         self._rate, self._pictures, self._plotted = 1.0, 0, 0.0
-        self._begun, self._bumps = -1, 0.0
-        self._touched, self._touched_at = (-1, 0.0), 0.0
+        self._walk_number, self._bumps = -1, 0.0
+        self._last_touch, self._touch_time = (-1, 0.0), 0.0
 
     def _save(self, file: SavedFile) -> None:
         self._client.send_file_download(file.name, file.content, save_immediately=True)
 
-    def draw(self, now: float, passed: float) -> None:
+    def draw(self, clock: float, elapsed: float) -> None:
         """Walk on, and draw the instant that is reached."""
-        settings, passed = self._session.settings, min(passed, _LATE)
+        settings, elapsed = self._session.settings, min(elapsed, _MAX_STEP)
         if not self._controls.paused:
-            self._session.advance(passed * settings.speed)
-            reached = settings.speed * passed / max(passed, monotonic() - now, 1e-6)
-            self._rate += 0.05 * (reached - self._rate)
-        if self._session.begun != self._begun:
-            self._begun = self._session.begun
+            self._session.advance(elapsed * settings.speed)
+            rate = settings.speed * elapsed / max(elapsed, monotonic() - clock, 1e-6)
+            self._rate += 0.05 * (rate - self._rate)
+        if self._session.begun != self._walk_number:
+            self._walk_number = self._session.begun
             self._stage.forget()
             if settings.bumps != self._bumps:
                 self._bumps = settings.bumps
                 self._stage.lay(settings.ground.relief)
         self._pictures += 1
         self._show(self._session.look(), everything=self._pictures % DRAWN == 1)
-        if now - self._plotted > PLOT:
-            self._plotted = now
+        if clock - self._plotted > PLOT:
+            self._plotted = clock
             self._plots.draw(self._session.table())
-        self._rest(now)
+        self._pause_if_idle(clock)
 
-    def _rest(self, now: float) -> None:
-        """Pause a walk that nobody has touched for long."""
-        touched = self._controls.touched, self._client.camera.update_timestamp
-        if touched != self._touched:
-            self._touched, self._touched_at = touched, now
-        if now - self._touched_at > self._idle and not self._controls.paused:
+    def _pause_if_idle(self, clock: float) -> None:
+        """Pause the walk after a long time without a touch."""
+        touch = self._controls.touched, self._client.camera.update_timestamp
+        if touch != self._last_touch:
+            self._last_touch, self._touch_time = touch, clock
+        if clock - self._touch_time > self._idle and not self._controls.paused:
             self._controls.pause(True)
             self._say(f"Paused after {self._idle / 60:.0f} minutes without a touch. Untick pause to go on.")
 
     def _show(self, instant: Instant, *, everything: bool) -> None:
+        """Move the scene to an instant; ``everything`` renews the track and the numbers too."""
         settings = self._session.settings
         self._stage.shown = {name: bool(box.value) for name, box in self._switches.items()}
         with self._client.atomic():
@@ -339,7 +345,7 @@ class LivePage(BrowserPage):
             self._client.add_notification("suchus", sentence, auto_close_seconds=7.0, color="yellow")
 
 
-_SHOWN = (
+_OVERLAYS = (
     ("forces", "forces on the feet"),
     ("support", "support and centre of mass"),
     ("track", "track on the ground"),
@@ -370,17 +376,18 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
             *((("under water", f"{float(instant.now['share_under']):.0%}"),) if instant.level is not None else ()),
         )
     )
-    said = _box(instant.trouble, "#fdecea", "#a1261b") if instant.trouble else _box(notice, "#fff6dc", "#6b5200")
+    notice_box = _box(instant.trouble, "#fdecea", "#a1261b") if instant.trouble else _box(notice, "#fff6dc", "#6b5200")
     failed = ", ".join(f"{fault.part.replace('_', ' ')} {fault.kind().replace('_', ' ')}" for fault in settings.broken)
     return (
         f'<div style="padding:4px 12px;font-family:sans-serif">'
         f'<div style="display:flex;flex-wrap:wrap;gap:2px 12px">{cells}</div>'
         f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(state)}</div>'
-        f'<div style="font-size:12px;color:#a1261b" data-suchus="failed">{escape(failed)}</div>{said}</div>'
+        f'<div style="font-size:12px;color:#a1261b" data-suchus="failed">{escape(failed)}</div>{notice_box}</div>'
     )
 
 
 def _box(text: str, back: str, ink: str) -> str:
+    """Return a sentence as a coloured HTML box; empty without a sentence."""
     if not text:
         return ""
     return (

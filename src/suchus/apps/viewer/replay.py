@@ -39,9 +39,9 @@ class Take:
     @property
     def origin(self) -> np.ndarray:
         """Where the centre of mass was when the walk began, (3,) [m]."""
-        first = int(np.searchsorted(self.record.time.values, START - 1e-9))
+        first_sample = int(np.searchsorted(self.record.time.values, START - 1e-9))
         com = self.record.centre_of_mass.values
-        return np.asarray(com[first if first < len(com) else 0])
+        return np.asarray(com[first_sample if first_sample < len(com) else 0])
 
     @property
     def end(self) -> float:
@@ -86,8 +86,14 @@ def takes(path: Path, robot: Robot | None = None) -> tuple[Take, ...]:
         raise IncompatibleRecord(f"{path} is no record of a run on land; view it with suchus view swim.")
     check_land(record, _NEEDED, str(path))
     names = (*VARIABLES, "cause", "ended", "mass", "period", "stands_on")
-    whole = record[[name for name in names if name in record] + (["water_level"] if _tells_level(record) else [])]
-    runs = [whole] if "run" not in whole.dims else [whole.isel(run=i) for i in range(whole.sizes["run"])]
+    run_variables = record[
+        [name for name in names if name in record] + (["water_level"] if _tells_level(record) else [])
+    ]
+    runs = (
+        [run_variables]
+        if "run" not in run_variables.dims
+        else [run_variables.isel(run=i) for i in range(run_variables.sizes["run"])]
+    )
     return tuple(_take(path, run, i, robot) for i, run in enumerate(runs))
 
 
@@ -100,22 +106,31 @@ def _tells_level(record: xr.Dataset) -> bool:
 
 
 def _take(path: Path, run: xr.Dataset, number: int, robot: Robot | None) -> Take:
-    who = robot or _robot(path, str(run.coords["robot"].item()) if "robot" in run.coords else "caiman")
-    if tuple(run.joint.values) != joint_names(who):
+    """Return one run of a record with its robot, ground and valid samples.
+
+    Args:
+        path: file of the record, for messages.
+        run: the run, without the dimension ``run``.
+        number: index of the run in the record.
+        robot: the robot that walks; by default the robot that the record names.
+    """
+    walker = robot or _robot(path, str(run.coords["robot"].item()) if "robot" in run.coords else "caiman")
+    if tuple(run.joint.values) != joint_names(walker):
         raise IncompatibleRecord(
-            f"{path} holds {run.sizes['joint']} joints and robot {who.name!r} has {len(joint_names(who))}: "
+            f"{path} holds {run.sizes['joint']} joints and robot {walker.name!r} has {len(joint_names(walker))}: "
             "name the robot that walked with --robot."
         )
-    run = held(run, who)
+    run = held(run, walker)
     valid = np.isfinite(run.position.values).all(axis=-1)
     if valid.sum() < 2:
         raise IncompatibleRecord(f"run {number} of {path} has fewer than two valid samples.")
     ground = ground_of(run) or Ground()
     label = str(run.coords["label"].item()) if "label" in run.coords else f"run {number}"
-    return Take(label=f"{number}: {label}", robot=who, record=run.isel(time=valid).load(), ground=ground)
+    return Take(label=f"{number}: {label}", robot=walker, record=run.isel(time=valid).load(), ground=ground)
 
 
 def _robot(path: Path, name: str) -> Robot:
+    """Return the robot of the shelf that a record names."""
     try:
         robot: Robot = ROBOTS[name]
     except UnknownName as error:
@@ -149,7 +164,7 @@ class Player:
                     self.time = self._start
 
     def seek(self, time: object) -> None:
-        """Jump to a time, as near as there is one; what is no number changes nothing [s]."""
+        """Jump to a time, clipped to the record; ignore a value that is no number [s]."""
         try:
             seconds = float(time)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):
@@ -159,9 +174,9 @@ class Player:
                 self.time = min(max(seconds, self._start), self._end)
 
 
-_ASIDE = 0.35
+_LATERAL_OFFSET = 0.35
 """Distance of the animal from the robot, to the robot's left, over the robot's length [-]."""
-_BACK = 0.06
+_MIDLINE_HEIGHT = 0.06
 """Height at which the midline is drawn where heights were not filmed, over the robot's length [-]."""
 
 
@@ -187,9 +202,9 @@ class FilmedAnimal:
     def at(self, time: float) -> Float[np.ndarray, "point 3"]:
         """Return the keypoints at a time of the record [m]; before and after the film as at its ends."""
         frame = float(np.interp(time, self.time, np.arange(len(self.time))))
-        first = min(int(frame), len(self.time) - 2)
-        part = frame - first
-        return np.asarray((1.0 - part) * self.position[first] + part * self.position[first + 1])
+        first_frame = min(int(frame), len(self.time) - 2)
+        fraction = frame - first_frame
+        return np.asarray((1.0 - fraction) * self.position[first_frame] + fraction * self.position[first_frame + 1])
 
     @property
     def size(self) -> float:
@@ -198,7 +213,7 @@ class FilmedAnimal:
 
 
 def beside(tracks: Tracks, take: Take) -> FilmedAnimal:
-    """Return an animal as it walks to the left of a robot, as long as the robot and with its cycle time.
+    """Return an animal to the left of a robot, scaled to the robot's length and period.
 
     Its film begins when the robot's first cycle does. Between frames in which a point was lost, it moves straight on.
 
@@ -209,29 +224,34 @@ def beside(tracks: Tracks, take: Take) -> FilmedAnimal:
     Raises:
         UnusableTracks: no walk can be seen in the tracks, or a point of the midline is never seen.
     """
-    animal = observe(tracks).numbers["period"].value
+    animal_period = observe(tracks).numbers["period"].value
     tracks = tracks.ahead()
     names = (*tracks.trunk_chain, *tracks.tail_chain[1:])
     names = names if names[0] == "snout" or "snout" not in tracks.points else ("snout", *names)
     chain = list(dict.fromkeys(names))
     points = [*chain, *LEGS]
-    place = np.stack([_filled(tracks, name) for name in points], axis=1)
-    links = np.linalg.norm(np.diff(place[:, : len(chain), :2], axis=1), axis=-1)
+    positions = np.stack([_track_without_gaps(tracks, name) for name in points], axis=1)
+    links = np.linalg.norm(np.diff(positions[:, : len(chain), :2], axis=1), axis=-1)
     scale = take.robot.length / float(np.median(links.sum(axis=1)))
-    place = scale * place
+    positions = scale * positions
     if not tracks.upright:
-        heights = np.where(np.arange(len(points)) < len(chain), _BACK * take.robot.length, 0.0)
-        place = np.concatenate([place, np.broadcast_to(heights, place.shape[:2])[..., None]], axis=-1)
-    hip, ground = chain.index("hip"), float(np.percentile(place[:, len(chain) :, 2], 5))
-    start = np.array([*place[0, hip, :2], ground])
-    place = place - start + np.array([*take.origin[:2], 0.0]) + np.array([0.0, _ASIDE * take.robot.length, 0.0])
-    robot = float(take.record["period"]) if "period" in take.record else float("nan")
-    pace = robot / animal if np.isfinite(robot) and robot > 0 else 1.0
+        heights = np.where(np.arange(len(points)) < len(chain), _MIDLINE_HEIGHT * take.robot.length, 0.0)
+        positions = np.concatenate([positions, np.broadcast_to(heights, positions.shape[:2])[..., None]], axis=-1)
+    hip, ground = chain.index("hip"), float(np.percentile(positions[:, len(chain) :, 2], 5))
+    start = np.array([*positions[0, hip, :2], ground])
+    positions = (
+        positions
+        - start
+        + np.array([*take.origin[:2], 0.0])
+        + np.array([0.0, _LATERAL_OFFSET * take.robot.length, 0.0])
+    )
+    robot_period = float(take.record["period"]) if "period" in take.record else float("nan")
+    pace = robot_period / animal_period if np.isfinite(robot_period) and robot_period > 0 else 1.0
     girdles = ("shoulder", "shoulder", "hip", "hip")
     return FilmedAnimal(
         label=tracks.source,
         time=START + pace * (tracks.time - tracks.time[0]),
-        position=place,
+        position=positions,
         bones=(
             *((i, i + 1) for i in range(len(chain) - 1)),
             *((chain.index(girdle), len(chain) + i) for i, girdle in enumerate(girdles)),
@@ -242,10 +262,10 @@ def beside(tracks: Tracks, take: Take) -> FilmedAnimal:
     )
 
 
-def _filled(tracks: Tracks, name: str) -> np.ndarray:
+def _track_without_gaps(tracks: Tracks, name: str) -> np.ndarray:
     """Return the track of a point without gaps, shape (frame, axis) [m or px]."""
     track = tracks.at(name)
-    seen = np.isfinite(track).all(axis=-1)
-    if not seen.any():
+    is_valid = np.isfinite(track).all(axis=-1)
+    if not is_valid.any():
         raise UnusableTracks(f"in {tracks.source} the keypoint {name} is never seen.")
-    return np.stack([np.interp(tracks.time, tracks.time[seen], axis[seen]) for axis in track.T], axis=-1)
+    return np.stack([np.interp(tracks.time, tracks.time[is_valid], axis[is_valid]) for axis in track.T], axis=-1)

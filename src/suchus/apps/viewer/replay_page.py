@@ -33,7 +33,7 @@ class ReplayPage(BrowserPage):
         self._ghosts = {take.label: take for take in ghosts}
         end = max(take.end for take in (*takes, *ghosts))
         self._animals = {take.label: animal for take, animal in zip(takes, animals, strict=bool(animals))}
-        self._drawn: DrawnAnimal | None = None
+        self._drawn_animal: DrawnAnimal | None = None
         self._player = Player(float(takes[0].record.time[0]), end)
         gui = client.gui
         with gui.add_folder("Replay"):
@@ -41,7 +41,9 @@ class ReplayPage(BrowserPage):
         with gui.add_folder("Record"):
             self._run = gui.add_dropdown("run", tuple(self._takes))
             self._ghost = (
-                gui.add_dropdown("ghost", tuple(self._ghosts), initial_value=_fellow(takes, ghosts)) if ghosts else None
+                gui.add_dropdown("ghost", tuple(self._ghosts), initial_value=_first_ghost(takes, ghosts))
+                if ghosts
+                else None
             )
         with gui.add_folder("Look"):
             skin = gui.add_checkbox("skin", initial_value=True, hint="Off: the shapes that touch the ground.")
@@ -53,10 +55,11 @@ class ReplayPage(BrowserPage):
             self._stage.compare(ghosts[0].robot)
         self._stage.look("skin")
         skin.on_update(lambda _: self._stage.look("skin" if skin.value else "collision geoms"))
-        self._shown: tuple[str, str] = ("", "")
+        self._labels: tuple[str, str] = ("", "")
         self._pictures, self._plotted = 0, 0.0
 
     def _play(self, gui: Any, end: float) -> None:
+        """Add the time slider, the pause and the playback speed, and connect them to the player."""
         player = self._player
         self._slider = gui.add_slider("time [s]", min=player.time, max=end, step=0.01, initial_value=player.time)
         paused = gui.add_checkbox("pause", initial_value=False)
@@ -76,40 +79,41 @@ class ReplayPage(BrowserPage):
         speed.on_update(faster)
         paused.on_update(pause)
 
-    def draw(self, now: float, passed: float) -> None:
+    def draw(self, clock: float, elapsed: float) -> None:
         """Play on, and draw the sample that is due."""
-        self._player.advance(passed)
+        self._player.advance(elapsed)
         take = self._takes[self._run.value]
         ghost = self._ghosts[self._ghost.value] if self._ghost is not None else None
         labels = (take.label, ghost.label if ghost else "")
-        if labels != self._shown:
-            self._shown, self._plotted = labels, 0.0
+        if labels != self._labels:
+            self._labels, self._plotted = labels, 0.0
             self._tables = take.table(), ghost.table() if ghost else None
             self._stage.lay(take.ground.relief)
-            self._accompany(take)
+            self._draw_animal(take)
             self._stage.draw_track(take.record.centre_of_mass.values[::5])
         self._pictures += 1
         self._show(take, ghost, everything=self._pictures % DRAWN == 1)
-        if now - self._plotted > PLOT:
-            self._plotted = now
+        if clock - self._plotted > PLOT:
+            self._plotted = clock
             self._plots.draw(*self._tables, now=self._player.time)
 
-    def _accompany(self, take: Take) -> None:
+    def _draw_animal(self, take: Take) -> None:
         """Draw the animal that walks beside a run."""
         if take.label in self._animals:
-            self._drawn = DrawnAnimal(self._client.scene, f"{WORLD}/animal", self._animals[take.label])
+            self._drawn_animal = DrawnAnimal(self._client.scene, f"{WORLD}/animal", self._animals[take.label])
 
     def _show(self, take: Take, ghost: Take | None, *, everything: bool) -> None:
+        """Move robot, water, ghost and animal to the player's time; ``everything`` renews slider and text too."""
         time = self._player.time
         with self._client.atomic():
-            now = take.at(time)
-            self._stage.place(now, (take.ground.uphill, take.ground.sideways), follow=bool(self._follow.value))
-            self._stage.show(now)
+            state = take.at(time)
+            self._stage.place(state, (take.ground.uphill, take.ground.sideways), follow=bool(self._follow.value))
+            self._stage.show(state)
             self._stage.flood(take.level(time))
             if ghost is not None and self._stage.ghost is not None:
                 self._stage.ghost.show(ghost.at(time))
-            if self._drawn is not None:
-                self._drawn.show(time)
+            if self._drawn_animal is not None:
+                self._drawn_animal.show(time)
             if everything:
                 self._slider.value = round(time, 2)
                 self._status.content = status_text(take, ghost, time, self._animals.get(take.label))
@@ -118,16 +122,16 @@ class ReplayPage(BrowserPage):
 def status_text(take: Take, ghost: Take | None, time: float, animal: FilmedAnimal | None = None) -> str:
     """Return the head of the page as HTML: the displacement of each at this time."""
     rows = []
-    for prefix, shown in (("", take), ("ghost", ghost)):
-        if shown is not None:
-            displaced = shown.at(time)["centre_of_mass"] - shown.origin
+    for prefix, run in (("", take), ("ghost", ghost)):
+        if run is not None:
+            displacement = run.at(time)["centre_of_mass"] - run.origin
             rows.append(
-                f'<tr><td style="padding-right:14px">{escape(f"{prefix} {shown.label}".strip())}</td>'
-                f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{displaced[0]:+.3f} m</td>'
-                f'<td style="font-weight:600">{displaced[1]:+.3f} m</td></tr>'
+                f'<tr><td style="padding-right:14px">{escape(f"{prefix} {run.label}".strip())}</td>'
+                f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{displacement[0]:+.3f} m</td>'
+                f'<td style="font-weight:600">{displacement[1]:+.3f} m</td></tr>'
             )
-    other = ghost is not None and not ghost.ground.looks_like(take.ground)
-    note = "<div>The ghost went on other ground, which is not shown.</div>" if other else ""
+    has_other_ground = ghost is not None and not ghost.ground.looks_like(take.ground)
+    note = "<div>The ghost went on other ground, which is not shown.</div>" if has_other_ground else ""
     if animal is not None:
         pace = "" if animal.pace == 1.0 else f" and slowed down by a factor of {animal.pace:.3g}"
         note += f"<div>Beside it: the animal in {escape(animal.label)}, scaled to the robot's length{pace}.</div>"
@@ -138,7 +142,7 @@ def status_text(take: Take, ghost: Take | None, time: float, animal: FilmedAnima
     )
 
 
-def _fellow(takes: Sequence[Take], ghosts: Sequence[Take]) -> str:
+def _first_ghost(takes: Sequence[Take], ghosts: Sequence[Take]) -> str:
     """Return the ghost to begin with: of one file with itself, the second run."""
-    same = takes[0].label == ghosts[0].label and len(ghosts) > 1 and takes[0].record.equals(ghosts[0].record)
-    return ghosts[1 if same else 0].label
+    is_same_record = takes[0].label == ghosts[0].label and len(ghosts) > 1 and takes[0].record.equals(ghosts[0].record)
+    return ghosts[1 if is_same_record else 0].label

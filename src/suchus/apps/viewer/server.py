@@ -32,8 +32,8 @@ from suchus.core.errors import SuchusError
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 """Names of this computer that no other one reaches."""
-_ANY = ("0.0.0.0", "::", "")
-_REFUSED = b"This is not the whole address. Open the one that suchus printed when it began to serve.\n"
+_ANY_ADDRESS = ("0.0.0.0", "::", "")
+_REFUSAL = b"This is not the whole address. Open the one that suchus printed when it began to serve.\n"
 
 Answer = Callable[[Any, Request], Response | None]
 
@@ -55,31 +55,32 @@ class Gate:
     def admits(self, request: Request) -> bool:
         """Return whether a request may be answered."""
         hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))
-        if len(hosts) != 1 or not self._ours(hosts[0]) or len(origins) > 1:
+        if len(hosts) != 1 or not self._is_own_name(hosts[0]) or len(origins) > 1:
             return False
         if origins and origins[0].lower() != f"http://{hosts[0].lower()}":
             return False
-        first = unquote(request.path.partition("?")[0]).strip("/").partition("/")[0]
-        return secrets.compare_digest(first.encode(), self.token.encode())
+        path_token = unquote(request.path.partition("?")[0]).strip("/").partition("/")[0]
+        return secrets.compare_digest(path_token.encode(), self.token.encode())
 
-    def _ours(self, host: str) -> bool:
-        """Return whether a name in a request is one of this server; a name that others rebind is not."""
+    def _is_own_name(self, host: str) -> bool:
+        """Return whether a host name in a request is a name of this server."""
         name = host.rpartition(":")[0] if host.rpartition(":")[2].isdecimal() else host
         name = name.strip("[]").lower()
         if name == self._host.lower():
             return True
         if self._host in LOOPBACK:
             return name in LOOPBACK
-        known = {socket.gethostname().lower(), socket.getfqdn().lower()}
-        return name in LOOPBACK or _is_address(name) or (self._host in _ANY and name in known)
+        host_names = {socket.gethostname().lower(), socket.getfqdn().lower()}
+        return name in LOOPBACK or _is_address(name) or (self._host in _ANY_ADDRESS and name in host_names)
 
     def guarded(self, answer: Answer) -> Answer:
-        """Return what answers requests as ``answer`` does, if they are admitted, with the headers of a closed page."""
+        """Return a handler that passes admitted requests to ``answer`` and adds protective headers."""
 
         def guard(connection: Any, request: Request) -> Response | None:
+            """Answer an admitted request with protective headers; refuse any other request with status 403."""
             if not self.admits(request):
-                headers = Headers({"Content-Type": "text/plain", "Content-Length": str(len(_REFUSED))})
-                return Response(HTTPStatus.FORBIDDEN.value, "Forbidden", headers, _REFUSED)
+                headers = Headers({"Content-Type": "text/plain", "Content-Length": str(len(_REFUSAL))})
+                return Response(HTTPStatus.FORBIDDEN.value, "Forbidden", headers, _REFUSAL)
             (host,) = request.headers.get_all("Host")
             request.path = "/" + request.path.strip("/").partition("/")[2]
             response = answer(connection, request)
@@ -108,7 +109,7 @@ class Gate:
 
 
 def _closed(host: str) -> dict[str, str]:
-    """Return headers that keep a page to itself: it loads nothing from elsewhere, and stands in no other page."""
+    """Return headers that forbid loading from other origins and embedding in other pages."""
     return {
         "Content-Security-Policy": (
             "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; "
@@ -125,6 +126,7 @@ def _closed(host: str) -> dict[str, str]:
 
 
 def _is_address(name: str) -> bool:
+    """Return whether a name is an IP address."""
     try:
         ipaddress.ip_address(name)
     except ValueError:
@@ -143,13 +145,13 @@ PANEL = 330
 WHOLE = 8192
 """Messages that go to a browser at once [-]; by viser's 128 a picture of a robot arrived in parts, and its skin, in
 as many meshes as it has colours, was torn in a browser that drew in between."""
-_PHONE = 576
+_MAX_PHONE_WIDTH = 576
 """Width of a window up to which viser shows all controls in a sheet at its lower end [pixel]."""
-_SHEET = 0.42
+_SHEET_FRACTION = 0.42
 """Share of the height of such a window that the sheet takes [-]."""
 _FOV = 0.72
 """Vertical angle of view [rad]."""
-_ROOMY = 0.8
+_MIN_ASPECT = 0.8
 """Width over height of a scene from which the camera need not stand farther away [-]."""
 _INK = f"""<style>
 :root[data-mantine-color-scheme="light"] {{
@@ -158,8 +160,8 @@ _INK = f"""<style>
 :root[data-mantine-color-scheme="dark"] {{
 --mantine-color-dimmed: #b8bcc0 !important; --mantine-color-dark-2: #b8bcc0 !important; }}
 :root {{ --mantine-color-red-filled: #c92a2a !important; }}
-@media (max-width: {_PHONE}px) {{
-[style*="max-height: 60%"] {{ max-height: {100 * _SHEET:.0f}% !important; width: 100% !important; }}
+@media (max-width: {_MAX_PHONE_WIDTH}px) {{
+[style*="max-height: 60%"] {{ max-height: {100 * _SHEET_FRACTION:.0f}% !important; width: 100% !important; }}
 [style*="max-height: 60%"] [style*="width: 20em"] {{ width: 100% !important; }}
 }}
 </style>"""
@@ -183,22 +185,22 @@ class BrowserPage(ABC):
         self._status = client.gui.add_html("")
 
     @abstractmethod
-    def draw(self, now: float, passed: float) -> None:
+    def draw(self, clock: float, elapsed: float) -> None:
         """Draw one picture.
 
         Args:
-            now: by a clock that never goes back [s].
-            passed: since the picture before [s].
+            clock: by a clock that never goes back [s].
+            elapsed: since the picture before [s].
         """
 
     def run(self) -> None:
         """Draw pictures until closed."""
-        before = monotonic()
+        last_clock = monotonic()
         while not self._closed.is_set():
-            now = monotonic()
-            self.draw(now, now - before)
-            before = now
-            self._closed.wait(max(0.005, FRAME - (monotonic() - now)))
+            clock = monotonic()
+            self.draw(clock, clock - last_clock)
+            last_clock = clock
+            self._closed.wait(max(0.005, FRAME - (monotonic() - clock)))
 
     def close(self) -> None:
         """End soon."""
@@ -244,24 +246,26 @@ class Viewer:
         camera: tuple[tuple[float, float, float], tuple[float, float, float]] = (CAMERA, LOOKS_AT),
     ) -> None:
         _check_free(host, port)
-        warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")  # a browser left in mid-frame
+        warnings.filterwarnings(
+            "ignore", message="Queued a .* on a closed connection"
+        )  # a browser that left during a frame
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser that leaves early is no error
-        self._open, self._most = open_page, most
+        self._open, self._max_browsers = open_page, most
         self._pages: dict[int, BrowserPage | None] = {}
         self._lock = Lock()
-        self._over = Event()
+        self._stop_event = Event()
         gate = Gate(host)
-        with redirect_stdout(io.StringIO()), gate.before():  # viser has a banner of its own
+        with redirect_stdout(io.StringIO()), gate.before():  # suppresses viser's banner
             self._server = _Server(host=host, port=port, label=title, verbose=False)
         self._server.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=(0, 114, 178))
         self._server.initial_camera.position, self._server.initial_camera.look_at = camera
         self._server.initial_camera.fov = _FOV
         self._camera = camera
         self._server.on_client_connect(self._come)
-        self._server.on_client_disconnect(self._go)
+        self._server.on_client_disconnect(self._disconnect_client)
         bound = self._server.get_port()
         try:
-            _check_shut(host, bound)
+            _check_refuses(host, bound)
         except CannotServe:
             self.stop()
             raise
@@ -275,12 +279,12 @@ class Viewer:
 
     def wait(self) -> None:
         """Serve until stopped or interrupted."""
-        while not self._over.wait(0.5):
+        while not self._stop_event.wait(0.5):
             pass
 
     def stop(self) -> None:
         """End all pages and the server."""
-        self._over.set()
+        self._stop_event.set()
         with self._lock:
             pages = list(self._pages.values())
         for page in pages:
@@ -290,13 +294,14 @@ class Viewer:
             self._server.stop()
 
     def _come(self, client: Any) -> None:
+        """Open a page for a new browser and draw it until it closes; refuse the browser if the server is full."""
         with self._lock:
-            full = len(self._pages) >= self._most or self._over.is_set()
-            if not full:
+            is_full = len(self._pages) >= self._max_browsers or self._stop_event.is_set()
+            if not is_full:
                 self._pages[client.client_id] = None
-        if full:
+        if is_full:
             client.gui.add_markdown(
-                f"**All {self._most} places are taken.** As many browsers are watching as this server lets in. "
+                f"**All {self._max_browsers} places are taken.** As many browsers are watching as this server lets in. "
                 "Close one of them and reload this page, or start the server with a greater `--most`."
             )
             return
@@ -308,34 +313,34 @@ class Viewer:
             client.gui.add_markdown(f"**This cannot be shown.** {error}")
             return
         with self._lock:
-            gone = client.client_id not in self._pages
-            if not gone:
+            is_gone = client.client_id not in self._pages
+            if not is_gone:
                 self._pages[client.client_id] = page
-        if not gone:
+        if not is_gone:
             page.run()
 
-    def _go(self, client: Any) -> None:
+    def _disconnect_client(self, client: Any) -> None:
         with self._lock:
             page = self._pages.pop(client.client_id, None)
         if page is not None:
             page.close()
 
 
-def _stand_back(camera: Any, place: Sequence[float], looks_at: Sequence[float]) -> None:
+def _stand_back(camera: Any, position: Sequence[float], looks_at: Sequence[float]) -> None:
     """Move a camera so far back that what it looks at fits between the panels, or above the sheet of a phone."""
-    wide, high = float(camera.image_width), float(camera.image_height)
-    phone = wide <= _PHONE
-    aspect = (wide if phone else max(wide - PANEL - PLOTS, 1.0)) / max(high, 1.0)
-    target, offset = np.array(looks_at), np.array(place) - np.array(looks_at)
-    offset *= max(1.0, _ROOMY / aspect)
-    if phone:  # what stood in the middle of the window stands in the middle above the sheet
-        target = target - np.array([0.0, 0.0, _SHEET * float(np.linalg.norm(offset)) * tan(0.5 * _FOV)])
+    width, height = float(camera.image_width), float(camera.image_height)
+    is_phone = width <= _MAX_PHONE_WIDTH
+    aspect = (width if is_phone else max(width - PANEL - PLOTS, 1.0)) / max(height, 1.0)
+    target, offset = np.array(looks_at), np.array(position) - np.array(looks_at)
+    offset *= max(1.0, _MIN_ASPECT / aspect)
+    if is_phone:  # centres the target above the sheet
+        target = target - np.array([0.0, 0.0, _SHEET_FRACTION * float(np.linalg.norm(offset)) * tan(0.5 * _FOV)])
     camera.position = target + offset
     camera.look_at = target
 
 
 def _check_free(host: str, port: int) -> None:
-    """Refuse a place that cannot be listened on; viser would search for another one, or for ever."""
+    """Refuse a port that cannot be listened on; viser would search for another one, or for ever."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         with socket.socket(family, kind, protocol) as probe:
@@ -348,17 +353,17 @@ def _check_free(host: str, port: int) -> None:
         ) from error
 
 
-def _check_shut(host: str, port: int) -> None:
-    """Refuse to serve where somebody without the whole address is let in."""
-    near = {"0.0.0.0": "127.0.0.1", "::": "::1", "": "127.0.0.1"}.get(host, host)
-    asking = HTTPConnection(near, port, timeout=10.0)
+def _check_refuses(host: str, port: int) -> None:
+    """Refuse to serve if a request without the token is answered."""
+    address = {"0.0.0.0": "127.0.0.1", "::": "::1", "": "127.0.0.1"}.get(host, host)
+    connection = HTTPConnection(address, port, timeout=10.0)
     try:
-        asking.request("GET", "/")
-        status = asking.getresponse().status
+        connection.request("GET", "/")
+        status = connection.getresponse().status
     except (OSError, HTTPException) as error:
         raise CannotServe(f"the server on {host}, port {port} does not answer: {error}.") from error
     finally:
-        asking.close()
+        connection.close()
     if status != HTTPStatus.FORBIDDEN:
         raise CannotServe("the server lets in whoever asks, which it must not; install the viser that suchus names.")
 

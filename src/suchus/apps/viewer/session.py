@@ -84,8 +84,8 @@ class Settings:
         """Return the gait of a robot with the switches of spine and tail."""
         if self.spine and self.tail:
             return self.gait
-        still = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
-        return divided(robot, self.gait).straightened(*still)
+        straight_chains = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
+        return divided(robot, self.gait).straightened(*straight_chains)
 
     def moved(self, robot: Robot) -> Gait:
         """Return the gait in which a robot moves now: that of its swim, or that of its walk."""
@@ -107,8 +107,8 @@ class Settings:
     @property
     def ground(self) -> Ground:
         """The ground that it walks on."""
-        length, start = (round(self.size * part, 9) for part in (_CORRELATION, BEFORE))
-        bumps = Bumps(height=self.bumps, correlation=length, start=start, seed=0) if self.bumps else None
+        correlation, start = (round(self.size * distance, 9) for distance in (_CORRELATION, BEFORE))
+        bumps = Bumps(height=self.bumps, correlation=correlation, start=start, seed=0) if self.bumps else None
         return Ground(uphill=self.uphill, sideways=self.sideways, relief=bumps)
 
 
@@ -134,13 +134,13 @@ class Instant:
     forward: float = 0.0
     """Displacement of the centre of mass since the first cycle began [m]."""
     aside: float = 0.0
-    """The same to the left [m]."""
+    """Displacement of the centre of mass to the left [m]."""
     pushed: tuple[float, float, float] | None = None
     """The force of a push that lasts [N]."""
     level: float | None = None
     """Level of the water above the ground where the walk began, against gravity [m]; None on dry land."""
     trouble: str = ""
-    """Why the walk has ended; empty while it has not."""
+    """Reason why the walk ended; empty while it goes on."""
 
 
 class Session:
@@ -160,8 +160,8 @@ class Session:
     def __init__(self, robot: Robot, gait: Gait, *, timestep: float | None = None, swim: Gait | None = None) -> None:
         check_limits(robot, gait)
         self.robot = robot
-        share = beside_article(robot).length
-        self.settings = Settings(gait=gait, force=push_on(robot), size=share, swim=swim)
+        length_ratio = beside_article(robot).length
+        self.settings = Settings(gait=gait, force=push_on(robot), size=length_ratio, swim=swim)
         self.begun = 0
         self._timestep = coarse_step(robot) if timestep is None else timestep
         self._period = control_period(robot)
@@ -170,7 +170,7 @@ class Session:
         self._begin()
 
     def reset(self) -> None:
-        """Begin the walk anew with everything as it is set, what is broken included."""
+        """Restart the walk with the present settings, faults included."""
         with self._lock:
             self._begin()
 
@@ -195,14 +195,14 @@ class Session:
         with self._lock:
             return self._change(replace(self.settings, gait=gait))
 
-    def switch(self, name: Switch, on: bool) -> str:
+    def switch(self, name: Switch, is_on: bool) -> str:
         """Turn spine, tail, the feedback rules, the heading loop or the swim on or off.
 
         Returns:
             A sentence if that cannot be.
         """
         with self._lock:
-            changes: dict[str, Any] = {name: bool(on)}
+            changes: dict[str, Any] = {name: bool(is_on)}
             return self._change(replace(self.settings, **changes))
 
     def put(self, name: str, value: object) -> str:
@@ -216,41 +216,44 @@ class Session:
         with self._lock:
             number, notice = knob.within(value, getattr(self.settings, name) / knob.scale)
             changes: dict[str, Any] = {name: number * knob.scale}
-            before, self.settings = self.settings, replace(self.settings, **changes)
-            if name == "bumps" and self.settings.bumps != before.bumps:
+            last_settings, self.settings = self.settings, replace(self.settings, **changes)
+            if name == "bumps" and self.settings.bumps != last_settings.bumps:
                 self._begin()
             elif name in ("uphill", "sideways"):
                 self._live.tilt(self.settings.ground)
             elif name in ("level", "air_fraction") and self.settings.lake is not None:
-                return self._fill(before) or notice
+                return self._fill(last_settings) or notice
             return notice
 
-    def lose(self, part: str, kind: str, **numbers: object) -> str:
-        """Let a part break as it is now; return a sentence if that cannot be.
+    def lose(self, part_name: str, kind: str, **parameters: object) -> str:
+        """Break a part in its present state; return a sentence if that is impossible.
 
         Args:
-            part: a joint, a leg or a group of sensors.
+            part_name: a joint, a leg or a group of sensors.
             kind: name of a fault on the shelf.
-            **numbers: of that fault; those left out are as on the shelf.
+            **parameters: of that fault; those left out are as on the shelf.
         """
         with self._lock:
             try:
-                fault = from_table({"kind": kind, "joint": part, **numbers})
+                fault = from_table({"kind": kind, "joint": part_name, **parameters})
                 self._live.begin(fault)
             except SuchusError as error:
                 return str(error)
-            others = tuple(other for other in self.settings.broken if other.part != part)
-            self.settings = replace(self.settings, broken=(*others, fault))
+            other_faults = self._faults_except(part_name)
+            self.settings = replace(self.settings, broken=(*other_faults, fault))
             return ""
 
-    def mend(self, part: str | None = None) -> None:
+    def mend(self, part_name: str | None = None) -> None:
         """Repair a part, or all of them."""
         with self._lock:
             for fault in self.settings.broken:
-                if part in (None, fault.part):
+                if part_name in (None, fault.part):
                     self._live.mend(fault.part)
-            left_broken = () if part is None else tuple(fault for fault in self.settings.broken if fault.part != part)
-            self.settings = replace(self.settings, broken=left_broken)
+            other_faults = () if part_name is None else self._faults_except(part_name)
+            self.settings = replace(self.settings, broken=other_faults)
+
+    def _faults_except(self, part_name: str) -> tuple[Fault, ...]:
+        return tuple(fault for fault in self.settings.broken if fault.part != part_name)
 
     def push(self) -> None:
         """Push the trunk as the settings say, now."""
@@ -267,22 +270,23 @@ class Session:
             return self._history.table()
 
     def look(self) -> Instant:
-        """Return what is seen now."""
+        """Return a copy of the present instant."""
         with self._lock:
             return replace(self.state)
 
-    def _fill(self, before: Settings) -> str:
-        """Let the water be as it is set, or keep the old one and say why."""
+    def _fill(self, last_settings: Settings) -> str:
+        """Apply the settings of the water; restore the last settings and return a sentence if that fails."""
         lake = self.settings.lake
         assert lake is not None
         try:
             self._live.fill(lake)
         except SuchusError as error:
-            self.settings = before
+            self.settings = last_settings
             return str(error)
         return ""
 
     def _begin(self) -> None:
+        """Start a new simulation from the present settings, with empty history and the robot at its start."""
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
         run = Run(
@@ -298,7 +302,7 @@ class Session:
         self._history.note(0.0, self._live.now, (0.0, 0.0))
 
     def _change(self, settings: Settings) -> str:
-        """Walk on by other settings, or keep the old ones and say why."""
+        """Continue the walk with other settings; keep the old ones and return a sentence if that fails."""
         try:
             self._live.walk(settings.moved(self.robot), settings.control)
         except SuchusError as error:
@@ -307,18 +311,26 @@ class Session:
         return ""
 
     def _step(self) -> None:
+        """Simulate one control period and update the instant that pages show; note why the walk ended."""
         try:
             self._live.step()
         except Diverged as error:
             self.state.trouble = f"{str(error).rstrip('.')}. Press reset to begin anew."
             return
-        time, now = self._live.time, self._live.now
+        time, state = self._live.time, self._live.now
         if time <= START + 1e-9:
-            self._origin = now["centre_of_mass"]
-        forward, aside, _ = now["centre_of_mass"] - self._origin
+            self._origin = state["centre_of_mass"]
+        forward, lateral_displacement, _ = state["centre_of_mass"] - self._origin
         if self._push is not None and time >= self._push.at + self._push.duration:
             self._push = None
-        pushed = self._push.force if self._push else None
+        push_force = self._push.force if self._push else None
         level = self.settings.level if self.settings.lake else None
-        self.state = Instant(time=time, now=now, forward=float(forward), aside=float(aside), pushed=pushed, level=level)
-        self._history.note(time, now, (float(forward), float(aside)))
+        self.state = Instant(
+            time=time,
+            now=state,
+            forward=float(forward),
+            aside=float(lateral_displacement),
+            pushed=push_force,
+            level=level,
+        )
+        self._history.note(time, state, (float(forward), float(lateral_displacement)))

@@ -24,7 +24,7 @@ from suchus.sim.model import compile_model
 from suchus.visual.figures import COLOURS
 from suchus.visual.figures.style import limb_colours
 
-_SIDES = 12  # of a rod's section
+_ROD_SIDES = 12  # sides of a rod's cross-section
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,29 +45,29 @@ def rod(shape: RodShape) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     Args:
         shape: of the rod.
     """
-    turn = 2 * np.pi * np.arange(_SIDES) / _SIDES
-    ring = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(_SIDES)])
-    up = np.array([0.0, 0.0, 1.0])
-    rings = [shape.radius * ring, shape.radius * ring + (1.0 - 0.9 * shape.head) * up]
+    turn = 2 * np.pi * np.arange(_ROD_SIDES) / _ROD_SIDES
+    ring = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(_ROD_SIDES)])
+    axis = np.array([0.0, 0.0, 1.0])
+    rings = [shape.radius * ring, shape.radius * ring + (1.0 - 0.9 * shape.head) * axis]
     if shape.head > 0.0:
-        rings += [shape.head_radius * ring + (1.0 - shape.head) * up]
-    vertices = np.concatenate([*rings, [0.0 * up], [up], [(1.0 - shape.head) * up]])
+        rings += [shape.head_radius * ring + (1.0 - shape.head) * axis]
+    vertices = np.concatenate([*rings, [0.0 * axis], [axis], [(1.0 - shape.head) * axis]])
     bottom, top, collar = len(vertices) - 3, len(vertices) - 2, len(vertices) - 1
-    i = np.arange(_SIDES)
-    j = (i + 1) % _SIDES
-    last = 2 * _SIDES if shape.head > 0.0 else _SIDES
+    i = np.arange(_ROD_SIDES)
+    j = (i + 1) % _ROD_SIDES
+    last_ring = 2 * _ROD_SIDES if shape.head > 0.0 else _ROD_SIDES
     faces = [
-        np.column_stack([i, j, _SIDES + j]),
-        np.column_stack([i, _SIDES + j, _SIDES + i]),
-        np.column_stack([j, i, np.full(_SIDES, bottom)]),
-        np.column_stack([last + i, last + j, np.full(_SIDES, top)]),
+        np.column_stack([i, j, _ROD_SIDES + j]),
+        np.column_stack([i, _ROD_SIDES + j, _ROD_SIDES + i]),
+        np.column_stack([j, i, np.full(_ROD_SIDES, bottom)]),
+        np.column_stack([last_ring + i, last_ring + j, np.full(_ROD_SIDES, top)]),
     ]
     if shape.head > 0.0:
-        faces.append(np.column_stack([last + j, last + i, np.full(_SIDES, collar)]))
+        faces.append(np.column_stack([last_ring + j, last_ring + i, np.full(_ROD_SIDES, collar)]))
     weights = np.zeros((len(vertices), 2))
-    near = np.r_[0:_SIDES, bottom]
+    base_vertices = np.r_[0:_ROD_SIDES, bottom]
     weights[:, 1] = 1.0
-    weights[near] = (1.0, 0.0)
+    weights[base_vertices] = (1.0, 0.0)
     return vertices, np.concatenate(faces), weights
 
 
@@ -106,29 +106,29 @@ class DrawnRod:
         )
 
     def put(self, start: np.ndarray, end: np.ndarray) -> None:
-        """Show it from one point to another [m]."""
-        along = np.asarray(end, dtype=float) - start
-        length = float(np.linalg.norm(along))
+        """Show the rod from one point to another [m]."""
+        axis = np.asarray(end, dtype=float) - start
+        length = float(np.linalg.norm(axis))
         if length < 1e-6:
             self.hide()
             return
-        turned = upright(along / length)
+        orientation = upright(axis / length)
         self._handle.visible = True
-        for bone, place in zip(self._handle.bones, (start, end), strict=True):
-            bone.position, bone.wxyz = place, turned
+        for bone, position in zip(self._handle.bones, (start, end), strict=True):
+            bone.position, bone.wxyz = position, orientation
 
     def hide(self) -> None:
-        """Show it no longer."""
+        """Hide the rod."""
         self._handle.visible = False
 
 
 CAMERA = (0.8, -1.4, 0.8)
-"""Where the camera is at first, for a robot as long as the article's [m]."""
+"""First position of the camera, for a robot as long as the article's [m]."""
 LOOKS_AT = (-0.02, 0.0, 0.0)
-"""Where it looks at first, for a robot as long as the article's [m]."""
-_WEIGHT = 0.276  # [m]; how long the weight of a robot as long as the article's is, as long as its trunk
+"""First target of the camera, for a robot as long as the article's [m]."""
+_WEIGHT_LENGTH = 0.276  # [m]; how long the weight of a robot as long as the article's is, as long as its trunk
 _TIP, _COM, _STEP = 0.06, 0.014, 0.005  # [m]; of a push above its body, radius of a ball, between points of the track
-_ABOVE = 0.003  # [m]; what is painted on the ground lies so far above it
+_PAINT_HEIGHT = 0.003  # [m]; what is painted on the ground lies so far above it
 WORLD = "/world"
 """Node of the scene that turns and moves with the ground."""
 _ARROW = RodShape(radius=0.006, head=0.028, head_radius=0.014)
@@ -137,7 +137,7 @@ _EDGE = RodShape(radius=0.0035)
 _PLUMB = RodShape(radius=0.0018)
 _STANDS = 0.12  # [m]; height of the centre of mass of the article's robot as it walks
 _LAKE = 12.0  # [m]; how far the water reaches that is drawn
-_STEPS = 400  # pieces of the track that are kept
+_STEPS = 400  # maximum number of stored points of the track
 
 
 def rgb(colour: str) -> tuple[int, int, int]:
@@ -147,8 +147,8 @@ def rgb(colour: str) -> tuple[int, int, int]:
 
 def camera(robot: Robot) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Return where the camera is at first and where it looks, to have a robot in view [m]."""
-    (a, b, c), (x, y, z), far = CAMERA, LOOKS_AT, beside_article(robot).length
-    return (far * a, far * b, far * c), (far * x, far * y, far * z)
+    (a, b, c), (x, y, z), scale = CAMERA, LOOKS_AT, beside_article(robot).length
+    return (scale * a, scale * b, scale * c), (scale * x, scale * y, scale * z)
 
 
 def light(scene: Any) -> None:
@@ -172,9 +172,9 @@ class WalkScene:
     def __init__(self, scene: Any, robot: Robot) -> None:
         self._scene, self._size = scene, beside_article(robot).length
         weight = robot.mass * GRAVITY
-        self._per_newton, self._least = self._size * _WEIGHT / weight, LOADED_SHARE * weight
-        place = layout(robot)
-        self._radii = np.array([limb.girdle.limb.foot.radius for limb in place.limbs])
+        self._per_newton, self._load_threshold = self._size * _WEIGHT_LENGTH / weight, LOADED_SHARE * weight
+        robot_layout = layout(robot)
+        self._radii = np.array([limb.girdle.limb.foot.radius for limb in robot_layout.limbs])
         self._front = front_segment(robot)
         light(scene)
         self._world = scene.add_frame(WORLD, show_axes=False)
@@ -185,7 +185,7 @@ class WalkScene:
         self.lay(None)
         self._forces = [self._rod(f"force_{limb}", _ARROW, colour) for limb, colour in limb_colours(robot)]
         self._push = self._rod("push", _PUSH, COLOURS["printed"])
-        self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(len(place.limbs))]
+        self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(len(robot_layout.limbs))]
         self._com = scene.add_icosphere(f"{WORLD}/centre_of_mass", self._size * _COM, color=rgb(COLOURS["tail"]))
         self._plumb = self._rod("plumb", _PLUMB, COLOURS["tail"])
         self._track = scene.add_line_segments(
@@ -201,9 +201,9 @@ class WalkScene:
 
     def lay(self, relief: Relief | None) -> None:
         """Lay the ground, even or with what stands up from it."""
-        for drawn in (self.robot, self.ghost):
-            if drawn is not None:
-                drawn.relief = relief
+        for drawn_robot in (self.robot, self.ghost):
+            if drawn_robot is not None:
+                drawn_robot.relief = relief
         for handle in (self._relief, self._grid):
             if handle is not None:
                 handle.remove()
@@ -240,41 +240,46 @@ class WalkScene:
         self.ghost = DrawnRobot(self._scene, f"{WORLD}/ghost", robot, ghost=True)
         self.ghost.relief = self.robot.relief
 
-    def look(self, look: Look) -> None:
+    def look(self, geometry: Look) -> None:
         """Show skins or collision geoms."""
-        for drawn in (self.robot, self.ghost):
-            if drawn is not None:
-                drawn.look(look)
+        for drawn_robot in (self.robot, self.ghost):
+            if drawn_robot is not None:
+                drawn_robot.look(geometry)
 
-    def place(self, now: Mapping[str, np.ndarray], tilt: tuple[float, float], *, follow: bool) -> None:
-        """Turn the world as its slope says, and move it so that a camera that follows keeps the robot in view.
+    def place(self, state: Mapping[str, np.ndarray], tilt: tuple[float, float], *, follow: bool) -> None:
+        """Turn the world by its slope, and move it so that a camera that follows keeps the robot in view.
 
         In water it follows up and down too, from the height of the centre of mass of a robot that stands.
-        """
-        turned = slope(*tilt)
-        self._world.wxyz = turned
-        x, y, z = now["centre_of_mass"]
-        above = 0.0 if self._water is None or not self._water.visible else max(float(z) - self._size * _STANDS, 0.0)
-        centre = np.array([x, y, above]) if follow else np.zeros(3)
-        self._world.position = -rotate(turned, centre)
 
-    def show(self, now: Mapping[str, np.ndarray], pushed: tuple[float, float, float] | None = None) -> None:
+        Args:
+            state: the instant, by the names of ``record.VARIABLES``.
+            tilt: slopes of the ground, uphill and left side up [rad].
+            follow: whether the camera follows.
+        """
+        orientation = slope(*tilt)
+        self._world.wxyz = orientation
+        x, y, z = state["centre_of_mass"]
+        height = 0.0 if self._water is None or not self._water.visible else max(float(z) - self._size * _STANDS, 0.0)
+        centre = np.array([x, y, height]) if follow else np.zeros(3)
+        self._world.position = -rotate(orientation, centre)
+
+    def show(self, state: Mapping[str, np.ndarray], push_force: tuple[float, float, float] | None = None) -> None:
         """Show an instant, by the names of ``record.VARIABLES``, and a push that lasts."""
-        self.robot.show(now)
-        feet, forces, com = now["foot_position"], now["foot_force"], now["centre_of_mass"]
+        self.robot.show(state)
+        feet, forces, com = state["foot_position"], state["foot_force"], state["centre_of_mass"]
         ground = feet - np.array([0.0, 0.0, 1.0]) * self._radii[:, None]
-        loaded = forces[:, 2] > self._least
+        loaded = forces[:, 2] > self._load_threshold
         for arrow, foot, force, stands in zip(self._forces, ground, forces, loaded, strict=True):
             if self.shown["forces"] and stands:
                 arrow.put(foot, foot + self._per_newton * force)
             else:
                 arrow.hide()
-        if pushed is None:
+        if push_force is None:
             self._push.hide()
         else:
             tip = self.robot.posture.body(self._front)[0] + np.array([0.0, 0.0, self._size * _TIP])
-            self._push.put(tip - self._per_newton * np.array(pushed), tip)
-        self._stand(ground, loaded, com)
+            self._push.put(tip - self._per_newton * np.array(push_force), tip)
+        self._draw_support(ground, loaded, com)
 
     def flood(self, level: float | None) -> None:
         """Draw the surface of the water, level where the ground slopes.
@@ -293,11 +298,18 @@ class WalkScene:
         self._water.visible = True
         self._water.position = np.array([0.0, 0.0, level + float(np.asarray(self._world.position)[2])])
 
-    def _stand(self, feet: np.ndarray, loaded: np.ndarray, com: np.ndarray) -> None:
-        above = self._size * _ABOVE
-        corners = support(feet, loaded) + np.array([0.0, 0.0, above])
+    def _draw_support(self, feet: np.ndarray, loaded: np.ndarray, com: np.ndarray) -> None:
+        """Draw the support polygon, the projected centre of mass and the plumb line between.
+
+        Args:
+            feet: points of the feet on the ground, (limb, 3) [m].
+            loaded: which feet carry load, (limb,).
+            com: centre of mass, (3,) [m].
+        """
+        paint_height = self._size * _PAINT_HEIGHT
+        corners = support(feet, loaded) + np.array([0.0, 0.0, paint_height])
         floor = float(feet[loaded, 2].mean()) if loaded.any() else 0.0
-        below = np.array([com[0], com[1], floor + above])
+        ground_point = np.array([com[0], com[1], floor + paint_height])
         sides = len(corners) if len(corners) > 2 else len(corners) - 1
         for i, edge in enumerate(self._support):
             if self.shown["support"] and i < sides:
@@ -305,25 +317,25 @@ class WalkScene:
             else:
                 edge.hide()
         self._com.visible = bool(self.shown["support"])
-        self._com.position = below
+        self._com.position = ground_point
         if self.shown["support"]:
-            self._plumb.put(below, com)
+            self._plumb.put(ground_point, com)
         else:
             self._plumb.hide()
 
     def go(self, com: np.ndarray) -> None:
         """Lengthen the track on the ground to where the centre of mass is now."""
-        here = np.array([com[0], com[1], 0.0])
-        if self._path and np.linalg.norm(here - self._path[-1]) < self._size * _STEP:
+        track_point = np.array([com[0], com[1], 0.0])
+        if self._path and np.linalg.norm(track_point - self._path[-1]) < self._size * _STEP:
             return
-        self._path = [*self._path, here][-_STEPS:]
+        self._path = [*self._path, track_point][-_STEPS:]
         self.draw_track(np.array(self._path))
 
     def draw_track(self, path: np.ndarray) -> None:
         """Draw a track on the ground, (point, 3) [m], at whatever height its points are."""
         self._track.visible = bool(self.shown["track"] and len(path) > 1)
         if len(path) > 1:
-            level = heights(self.robot.relief, path[:, 0], path[:, 1]) + self._size * _ABOVE
+            level = heights(self.robot.relief, path[:, 0], path[:, 1]) + self._size * _PAINT_HEIGHT
             path = np.column_stack([path[:, :2], level])
             self._track.points = np.stack([path[:-1], path[1:]], axis=1).astype(np.float32)
 

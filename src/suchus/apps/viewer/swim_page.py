@@ -18,7 +18,7 @@ from suchus.apps.viewer.swim import Film, PlottedCurve, VortexFilm, colours
 from suchus.visual.figures import COLOURS, vortices
 from suchus.visual.skin.mesh import Mesh
 
-_CYCLE = 4.0  # [s]; in which a cycle is played at speed 1
+_CYCLE_DURATION = 4.0  # [s]; in which a cycle is played at speed 1
 _INKS = (COLOURS["ours"], COLOURS["limbs_only"], COLOURS["tail"], COLOURS["limbs_tail_lifted"])
 
 
@@ -35,31 +35,31 @@ class CyclePage(BrowserPage):
 
     @abstractmethod
     def show(self) -> None:
-        """Draw what is due, unless it is what the browser shows."""
+        """Draw the frame that is due, unless the browser shows it already."""
 
     @property
     def frames(self) -> int:
         """Frames of the cycle; none is left out, however slow the browser [-]."""
         return 1
 
-    def place(self, of: float) -> None:
-        """Go to a share of the cycle; what is no number is its start [-]."""
-        self._place = min(max(of, 0.0), 1.0) if np.isfinite(of) else 0.0
+    def place(self, phase: float) -> None:
+        """Go to a phase of the cycle, 0 to 1; a value that is no number becomes 0 [-]."""
+        self._place = min(max(phase, 0.0), 1.0) if np.isfinite(phase) else 0.0
 
-    def draw(self, now: float, passed: float) -> None:
-        """Play on, and draw what is due."""
-        del now
+    def draw(self, clock: float, elapsed: float) -> None:
+        """Advance the phase unless paused, and draw the frame that is due."""
+        del clock
         if not self._pause.value:
-            self._place = (self._place + self._speed.value * min(passed / _CYCLE, 1.0 / self.frames)) % 1.0
+            self._place = (self._place + self._speed.value * min(elapsed / _CYCLE_DURATION, 1.0 / self.frames)) % 1.0
         self.show()
 
     def _add_player(self) -> None:
-        """Add what stops the cycle and sets its pace, to the folder that is open."""
+        """Add pause and playback speed to the open folder."""
         self._pause = self._client.gui.add_checkbox("pause", initial_value=False)
         self._speed = self._client.gui.add_slider("playback speed [x]", 0.05, 4.0, 0.05, 1.0)
 
     def _measured(self, curves: Sequence[PlottedCurve]) -> None:
-        """Put what was measured, if anything, to the left of the scene."""
+        """Plot the measured curves to the left of the scene."""
         if curves:
             gui = self._client.gui
             panel = gui.add_panel()
@@ -72,19 +72,27 @@ class CyclePage(BrowserPage):
 
 def status(title: str, lines: Sequence[tuple[str, str]], bar: str = "") -> str:
     """Return the head of a page as HTML: a title, lines with their names, and what the colours mean."""
-    told = "".join(f'<div data-suchus="{name}" style="color:#444">{line}</div>' for name, line in lines)
-    return f'<div style="padding:4px 12px;font:13px sans-serif"><b>{escape(title)}</b>{told}{bar}</div>'
+    rows = "".join(f'<div data-suchus="{name}" style="color:#444">{line}</div>' for name, line in lines)
+    return f'<div style="padding:4px 12px;font:13px sans-serif"><b>{escape(title)}</b>{rows}{bar}</div>'
 
 
-def colour_bar(quantity: str, inks: np.ndarray, limit: float, low: str, high: str) -> str:
-    """Return colours from ``-limit`` to ``limit`` as HTML, with what its ends mean in words."""
+def colour_bar(quantity: str, inks: np.ndarray, limit: float, low_label: str, high_label: str) -> str:
+    """Return a colour bar as HTML.
+
+    Args:
+        quantity: what the colours show, with its unit.
+        inks: colours from the lower to the upper end, (n, 3), 0 to 255.
+        limit: value at the upper end; the lower end is its negative.
+        low_label: what the lower end means.
+        high_label: what the upper end means.
+    """
     stops = ",".join("rgb({},{},{})".format(*ink) for ink in inks)
     return (
         f'<div style="margin-top:8px;font-weight:600">{quantity}</div>'
         f'<div style="height:14px;border-radius:2px;background:linear-gradient(90deg,{stops})"></div>'
         f'<div style="display:flex;justify-content:space-between"><span>{-limit:.3g}</span><span>0</span>'
         f'<span>{limit:.3g}</span></div><div style="display:flex;justify-content:space-between;color:#666;'
-        f'font-size:11px"><span>{low}</span><span>{high}</span></div>'
+        f'font-size:11px"><span>{low_label}</span><span>{high_label}</span></div>'
     )
 
 
@@ -110,7 +118,7 @@ def _draw_curve(gui: Any, curve: PlottedCurve) -> None:
 
 
 CAMERA = ((0.75, -0.05, 3.3), (0.75, 0.0, 0.0))
-"""Where the camera is at first and where it looks [m]."""
+"""First position and target of the camera [m]."""
 _SKIN, _EDGE = "#C9DCCB", "#2F4737"
 _WORDS = {"vorticity": ("turns clockwise", "counter-clockwise"), "pressure": ("suction", "pressure")}
 
@@ -144,24 +152,25 @@ class SwimPage(CyclePage):
             "/body", np.zeros((3, 3)), np.array([[0, 1, 2]]), color=rgb(_SKIN), side="double", cast_shadow=False
         )
         self._edge = scene.add_line_segments("/edge", np.zeros((1, 2, 3)), rgb(_EDGE), thickness=0.006)
-        self._shown: tuple[str, str, int] = ("", "", -1)
+        self._shown_frame: tuple[str, str, int] = ("", "", -1)
 
     def show(self) -> None:
-        """Draw the frame that is due, unless it is what the browser shows."""
+        """Draw the frame that is due, unless the browser shows it already."""
         if not self._pause.value:
             self._phase.value = round(self._place, 2)
         film = self._films[self._film.value]
         frame = int(np.argmin(np.abs((film.phase - self._place + 0.5) % 1.0 - 0.5)))
-        now = film.title, str(self._field.value), frame
-        if now != self._shown:
-            self._show(film, now[1], frame, anew=now[:2] != self._shown[:2])
-            self._shown = now
+        frame_key = film.title, str(self._field.value), frame
+        if frame_key != self._shown_frame:
+            self._show(film, frame_key[1], frame, anew=frame_key[:2] != self._shown_frame[:2])
+            self._shown_frame = frame_key
 
     def _seek(self, event: Any) -> None:
         if event.client is not None:
             self.place(float(self._phase.value))
 
     def _show(self, film: Film, field: str, frame: int, *, anew: bool) -> None:
+        """Draw a field and the body of one frame; ``anew`` replaces the picture since its size may differ."""
         field = field if field in film.fields else "none"
         with self._client.atomic():
             if anew and self._image is not None:
@@ -182,17 +191,18 @@ class SwimPage(CyclePage):
             self._status.content = swim_text(film, field, frame)
 
     def _body_at(self, sides: np.ndarray) -> None:
-        left, right = (np.column_stack([side, np.zeros(len(side))]) for side in sides)
-        count = np.arange(len(left) - 1)
-        across = len(left)
-        self._body.vertices = np.concatenate([left, right]).astype(np.float32)
+        """Move the body's surface and edge to its two sides, (2, station, 2) [m]."""
+        left_side, right_side = (np.column_stack([side, np.zeros(len(side))]) for side in sides)
+        count = np.arange(len(left_side) - 1)
+        side_count = len(left_side)
+        self._body.vertices = np.concatenate([left_side, right_side]).astype(np.float32)
         self._body.faces = np.concatenate(
             [
-                np.column_stack([count, count + across, count + 1]),
-                np.column_stack([count + 1, count + across, count + across + 1]),
+                np.column_stack([count, count + side_count, count + 1]),
+                np.column_stack([count + 1, count + side_count, count + side_count + 1]),
             ]
         ).astype(np.uint32)
-        ring = np.concatenate([left, right[::-1], left[:1]]) + np.array([0.0, 0.0, 0.004])
+        ring = np.concatenate([left_side, right_side[::-1], left_side[:1]]) + np.array([0.0, 0.0, 0.004])
         self._edge.points = np.stack([ring[:-1], ring[1:]], axis=1).astype(np.float32)
 
 
@@ -205,7 +215,7 @@ def swim_text(film: Film, field: str, frame: int) -> str:
     return status(film.title, [("frame", frame_text(frame, film.phase))], bar)
 
 
-_BOTH, _LOWER, _NONE = "both halves", "lower half", "none"
+_BOTH_HALVES, _LOWER_HALF, _NO_SURFACES = "both halves", "lower half", "none"
 
 
 class VortexPage(CyclePage):
@@ -225,33 +235,35 @@ class VortexPage(CyclePage):
         with gui.add_folder("Replay"):
             self._frame = gui.add_slider("frame", 1, max(self._count, 2), 1, 1, disabled=self._count == 1)
             self._back = gui.add_button("step back")
-            self._on = gui.add_button("step forward")
+            self._forward = gui.add_button("step forward")
             self._add_player()
         with gui.add_folder("Vortices"):
-            low, high = film.levels
+            min_level, max_level = film.levels
             self._halves = gui.add_dropdown(
-                "surfaces", (_BOTH, _LOWER, _NONE), hint="The half above the plane of symmetry hides the body."
+                "surfaces",
+                (_BOTH_HALVES, _LOWER_HALF, _NO_SURFACES),
+                hint="The half above the plane of symmetry hides the body.",
             )
             self._level = gui.add_slider(
-                "Q [1/s²]", low, high, 0.05 * film.level, film.level,
+                "Q [1/s²]", min_level, max_level, 0.05 * film.level, film.level,
                 hint="Second invariant of the velocity's gradient on the surfaces; lower ones lie farther out.",
             )  # fmt: skip
         self._frame.on_update(self._seek)
         self._back.on_click(lambda _: self.step(-1))
-        self._on.on_click(lambda _: self.step(1))
+        self._forward.on_click(lambda _: self.step(1))
         self._dock()
         self._measured(film.curves())
         light(client.scene)
         skin = film.body(0)
-        red, green, blue = (round(255 * part) for part in vortices.SKIN)
+        red, green, blue = (round(255 * component) for component in vortices.SKIN)
         self._body = client.scene.add_mesh_simple(
             "/body", skin.vertices.astype(np.float32), skin.faces.astype(np.uint32), color=(red, green, blue),
             cast_shadow=False,
         )  # fmt: skip
         self._made: dict[int, Any] = {}
-        self._of: tuple[float, str] = (film.level, _BOTH)
+        self._surface_settings: tuple[float, str] = (film.level, _BOTH_HALVES)
         self._blocks = film.blocks(film.level)
-        self._shown: tuple[float, str, int] | None = None
+        self._shown_frame: tuple[float, str, int] | None = None
 
     @property
     def frames(self) -> int:
@@ -269,22 +281,22 @@ class VortexPage(CyclePage):
         return min(int(self._place * self._count), self._count - 1)
 
     def show(self) -> None:
-        """Draw the frame that is due, unless it is what the browser shows."""
+        """Draw the frame that is due, unless the browser shows it already."""
         due = (self._film.within(float(self._level.value)), str(self._halves.value), self.frame)
-        if due == self._shown:
+        if due == self._shown_frame:
             return
         level, halves, frame = due
         with self._client.atomic():
-            if (level, halves) != self._of:
+            if (level, halves) != self._surface_settings:
                 self._forget(level, halves)
             for number, surface in self._made.items():
                 surface.visible = number == frame
-            if halves != _NONE and frame not in self._made:
-                self._made[frame] = self._drawn(frame)
+            if halves != _NO_SURFACES and frame not in self._made:
+                self._made[frame] = self._draw_surface(frame)
             self._body.vertices = self._film.body(frame).vertices.astype(np.float32)
             self._frame.value = frame + 1
             self._status.content = vortex_text(self._film, frame, level, self._blocks)
-        self._shown = due
+        self._shown_frame = due
 
     def _seek(self, event: Any) -> None:
         if event.client is not None:
@@ -295,16 +307,18 @@ class VortexPage(CyclePage):
         self._place = (frame % self._count + 0.5) / self._count
 
     def _forget(self, level: float, halves: str) -> None:
+        """Remove all surfaces and take over another level and another choice of halves."""
         for surface in self._made.values():
             surface.remove()
         self._made.clear()
-        if level != self._of[0]:
+        if level != self._surface_settings[0]:
             self._blocks = self._film.blocks(level)
-        self._of = level, halves
+        self._surface_settings = level, halves
 
-    def _drawn(self, frame: int) -> Any:
-        level, halves = self._of
-        mesh = self._film.surfaces(frame, level, blocks=self._blocks, lower=halves == _LOWER)
+    def _draw_surface(self, frame: int) -> Any:
+        """Add the surfaces of one frame to the scene and return their handle."""
+        level, halves = self._surface_settings
+        mesh = self._film.surfaces(frame, level, blocks=self._blocks, lower=halves == _LOWER_HALF)
         return self._client.scene.add_mesh_trimesh(
             f"/vortices/{level:.6g}_{halves[:4]}_{frame}", _coloured(mesh), cast_shadow=False, receive_shadow=False
         )
@@ -324,8 +338,8 @@ def _coloured(mesh: Mesh) -> trimesh.Trimesh:
 def vortex_text(film: VortexFilm, frame: int, level: float, blocks: int) -> str:
     """Return the head of the page as HTML: which frame, which surfaces, and what their colours mean."""
     inks = np.round(255.0 * vortices.colours(np.linspace(-1.0, 1.0, 9), 1.0)).astype(int)
-    of = f", of blocks of {blocks} cells" if blocks > 1 else ""
-    lines = [("frame", frame_text(frame, film.phase)), ("level", f"surfaces of Q = {level:.3g} 1/s²{of}")]
+    block_text = f", of blocks of {blocks} cells" if blocks > 1 else ""
+    lines = [("frame", frame_text(frame, film.phase)), ("level", f"surfaces of Q = {level:.3g} 1/s²{block_text}")]
     bar = colour_bar(
         "vorticity about the vertical [1/s]", inks, film.limit, "clockwise from above", "counter-clockwise"
     )

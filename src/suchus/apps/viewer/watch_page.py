@@ -13,21 +13,21 @@ from suchus.apps.viewer.server import BrowserPage
 from suchus.apps.viewer.stage import WalkScene
 from suchus.robot.design import Robot, layout
 
-_DRAWN = 3  # frames for one renewal of numbers and track
-_PLOT = 0.3  # [s]; between two redraws of the plots
+_FRAMES_PER_RENEWAL = 3  # frames for one renewal of numbers and track
+_PLOT_INTERVAL = 0.3  # [s]; between two redraws of the plots
 
 
 class WatchedRobot(NamedTuple):
-    """What is seen of a robot now."""
+    """State of a watched robot."""
 
     time: float
-    """Since it began [s]."""
+    """Time since the robot began to move [s]."""
     now: Mapping[str, np.ndarray]
-    """By the names of ``record.VARIABLES``, without run and time."""
+    """Values by the names of ``record.VARIABLES``, without run and time."""
     level: float | None
-    """Of the water above the ground where it began [m]; None on dry land."""
+    """Level of the water above the ground at the start [m]; None on dry land."""
     state: str
-    """What it does, in words."""
+    """Description of what the robot does."""
 
 
 class WatchPage(BrowserPage):
@@ -39,9 +39,9 @@ class WatchPage(BrowserPage):
         look: returns what is seen now; called from a thread of the browser's.
     """
 
-    def __init__(self, client: Any, robot: Robot, look: Callable[[], WatchedRobot]) -> None:
+    def __init__(self, client: Any, robot: Robot, get_robot: Callable[[], WatchedRobot]) -> None:
         super().__init__(client)
-        self._look = look
+        self._get_robot = get_robot
         with client.gui.add_folder("Look"):
             self._skin = client.gui.add_checkbox("skin", initial_value=True, hint="Off: the shapes that are simulated.")
             self._follow = client.gui.add_checkbox("camera follows", initial_value=True)
@@ -51,44 +51,48 @@ class WatchPage(BrowserPage):
         self._stage.look("skin")
         self._skin.on_update(lambda _: self._stage.look("skin" if self._skin.value else "collision geoms"))
         self._history = History(layout(robot).limb_names)
-        self._origin = self._look().now["centre_of_mass"]
-        self._pictures, self._plotted, self._before = 0, 0.0, -1.0
+        self._origin = self._get_robot().now["centre_of_mass"]
+        self._pictures, self._plotted, self._last_time = 0, 0.0, -1.0
 
-    def draw(self, now: float, passed: float) -> None:
+    def draw(self, clock: float, elapsed: float) -> None:
         """Draw the instant that is reached."""
-        del passed
-        seen = self._look()
+        del elapsed
+        watched_robot = self._get_robot()
         self._pictures += 1
-        forward, aside, _ = seen.now["centre_of_mass"] - self._origin
-        if seen.time != self._before:
-            self._before = seen.time
-            self._history.note(seen.time, seen.now, (float(forward), float(aside)))
+        forward, lateral_displacement, _ = watched_robot.now["centre_of_mass"] - self._origin
+        if watched_robot.time != self._last_time:
+            self._last_time = watched_robot.time
+            self._history.note(watched_robot.time, watched_robot.now, (float(forward), float(lateral_displacement)))
         with self._client.atomic():
-            self._stage.place(seen.now, (0.0, 0.0), follow=bool(self._follow.value))
-            self._stage.show(seen.now)
-            self._stage.flood(seen.level)
-            if self._pictures % _DRAWN == 1:
-                self._stage.go(seen.now["centre_of_mass"])
-                self._status.content = _status(seen, float(forward), float(aside))
-        if now - self._plotted > _PLOT:
-            self._plotted = now
+            self._stage.place(watched_robot.now, (0.0, 0.0), follow=bool(self._follow.value))
+            self._stage.show(watched_robot.now)
+            self._stage.flood(watched_robot.level)
+            if self._pictures % _FRAMES_PER_RENEWAL == 1:
+                self._stage.go(watched_robot.now["centre_of_mass"])
+                self._status.content = _status(watched_robot, float(forward), float(lateral_displacement))
+        if clock - self._plotted > _PLOT_INTERVAL:
+            self._plotted = clock
             self._plots.draw(self._history.table())
 
 
-def _status(seen: WatchedRobot, forward: float, aside: float) -> str:
+def _status(watched_robot: WatchedRobot, forward: float, lateral_displacement: float) -> str:
     """Return the head of the page as HTML."""
     cells = "".join(
         f'<div style="white-space:nowrap"><div style="font-size:11px;color:#666">{label}</div>'
         f'<div style="font-size:17px;font-weight:600" data-suchus="{label}">{value}</div></div>'
         for label, value in (
-            ("time", f"{seen.time:.1f} s"),
+            ("time", f"{watched_robot.time:.1f} s"),
             ("forward", f"{forward:+.3f} m"),
-            ("to the left", f"{aside:+.3f} m"),
-            *((("under water", f"{float(seen.now['share_under']):.0%}"),) if seen.level is not None else ()),
+            ("to the left", f"{lateral_displacement:+.3f} m"),
+            *(
+                (("under water", f"{float(watched_robot.now['share_under']):.0%}"),)
+                if watched_robot.level is not None
+                else ()
+            ),
         )
     )
     return (
         f'<div style="padding:4px 12px;font-family:sans-serif">'
         f'<div style="display:flex;flex-wrap:wrap;gap:2px 12px">{cells}</div>'
-        f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(seen.state)}</div></div>'
+        f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(watched_robot.state)}</div></div>'
     )

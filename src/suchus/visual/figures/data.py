@@ -27,7 +27,7 @@ from matplotlib.ticker import FixedLocator
 
 MOST: Final = 10_000
 """Values of one field that go into the table [-]; of a finer one every n-th along both axes."""
-_CARRIED: Final = "suchus_values"
+_FIELD_ATTRIBUTE: Final = "suchus_values"
 
 Cells = dict[str, str]
 """One row: text by column."""
@@ -39,35 +39,35 @@ class _Quantity(NamedTuple):
     name: str
     """Quantity and unit."""
     places: np.ndarray
-    """Of the ticks on the axis."""
+    """Positions of the ticks on the axis."""
     words: list[str]
-    """Beside the ticks; none on an axis of numbers."""
+    """Labels of the ticks; empty on an axis of numbers."""
 
     def word(self, value: float) -> str:
-        """Return the word beside the axis that a place on it has; empty on an axis of numbers."""
+        """Return the tick label at a position on the axis; empty on an axis of numbers."""
         return self.words[int(np.argmin(np.abs(self.places - float(value))))] if self.words else ""
 
 
 _Quantities = tuple[_Quantity, _Quantity]
-"""Of a panel, along x and along y."""
+"""Quantities of a panel along x and along y."""
 
 
 @dataclass(frozen=True, slots=True)
 class CarriedField:
-    """A field as it was computed, where what is drawn of it is smoothed or turned into lines."""
+    """A field as it was computed; the drawing may smooth it or turn it into lines."""
 
     values: np.ndarray
     """Shape (y, x), in the unit of the colour bar."""
     x: np.ndarray | None
     """Places along x, in the unit of the axis; None: evenly over the picture."""
     y: np.ndarray | None
-    """The same along y."""
+    """Places along y, likewise."""
 
 
 def carry(
     artist: Artist | ScalarMappable, values: np.ndarray, x: np.ndarray | None = None, y: np.ndarray | None = None
 ) -> None:
-    """Attach a field to the picture of it, to be written into the figure's table in its place.
+    """Attach the computed field to the artist that draws it, for the figure's table.
 
     Args:
         artist: what ``imshow`` or ``contourf`` returned.
@@ -75,13 +75,13 @@ def carry(
         x: places along x, in the unit of the axis; not needed of a picture.
         y: the same along y.
     """
-    setattr(artist, _CARRIED, CarriedField(np.asarray(values), x, y))
+    setattr(artist, _FIELD_ATTRIBUTE, CarriedField(np.asarray(values), x, y))
 
 
-def field_of(drawn: Artist | ScalarMappable) -> np.ndarray:
-    """Return the field that a picture shows, NaN where it has no value: what it carries, else its colours'."""
-    carried = getattr(drawn, _CARRIED, None)
-    values: Any = carried.values if carried is not None else drawn.get_array()  # type: ignore[union-attr]
+def field_of(artist: Artist | ScalarMappable) -> np.ndarray:
+    """Return the field that an artist shows, NaN where it has no value."""
+    field = getattr(artist, _FIELD_ATTRIBUTE, None)
+    values: Any = field.values if field is not None else artist.get_array()  # type: ignore[union-attr]
     return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
 
 
@@ -99,49 +99,51 @@ def table(figure: Figure) -> str:
 
 
 def _rows(figure: Figure) -> Iterator[Cells]:
+    """Yield one row for every point of every series, panel by panel."""
     panels = [panel for ax in figure.axes for panel in (ax, *ax.child_axes) if isinstance(panel, Axes)]
-    shown = [ax for ax in panels if ax.get_label() != "<colorbar>"]
-    known = _labelled(shown)
-    for i, ax in enumerate(shown, start=1):
+    axes = [ax for ax in panels if ax.get_label() != "<colorbar>"]
+    labels = _labels_by_style(axes)
+    for i, ax in enumerate(axes, start=1):
         title = _plain(ax.get_title("left") or ax.get_title())
         panel = f"{i} {title}".strip()
-        for name, points in _series(ax, known):
+        for name, points in _series(ax, labels):
             for point in points:
                 yield {"panel": panel, "series": name, **point}
 
 
-def _labelled(panels: Sequence[Axes]) -> Mapping[tuple[str, ...], str]:
+def _labels_by_style(panels: Sequence[Axes]) -> Mapping[tuple[str, ...], str]:
     """Return the label of each look that a labelled line has: lines that look alike elsewhere show the same."""
-    found: dict[tuple[str, ...], str] = {}
+    labels: dict[tuple[str, ...], str] = {}
     for line in (line for ax in panels for line in ax.lines):
         if not hidden(line.get_label()):
-            found.setdefault(_look(line), _plain(str(line.get_label())))
-    return found
+            labels.setdefault(_line_style(line), _plain(str(line.get_label())))
+    return labels
 
 
-def _look(line: Line2D) -> tuple[str, ...]:
+def _line_style(line: Line2D) -> tuple[str, ...]:
     return to_hex(line.get_color()), str(line.get_linestyle()), str(line.get_marker())
 
 
-def _series(ax: Axes, known: Mapping[tuple[str, ...], str]) -> Iterator[tuple[str, Iterator[Cells]]]:
+def _series(ax: Axes, labels: Mapping[tuple[str, ...], str]) -> Iterator[tuple[str, Iterator[Cells]]]:
     """Yield the name and the points of everything that shows numbers in a panel."""
     names = _Quantity(_name(ax, "x"), *_ticks(ax.xaxis)), _Quantity(_name(ax, "y"), *_ticks(ax.yaxis))
-    bars = [one for one in ax.containers if isinstance(one, BarContainer)]
-    in_bars = {id(patch) for one in bars for patch in one.patches}
+    bars = [bar_container for bar_container in ax.containers if isinstance(bar_container, BarContainer)]
+    in_bars = {id(patch) for bar_container in bars for patch in bar_container.patches}
     for i, line in enumerate(ax.lines, start=1):
-        yield _called(line.get_label(), known.get(_look(line), f"line {i}")), _of_line(ax, line, names)
+        yield _series_name(line.get_label(), labels.get(_line_style(line), f"line {i}")), _of_line(ax, line, names)
     for i, container in enumerate(bars, start=1):
-        yield _called(container.get_label(), f"bars {i}"), _of_bars(container, names)
+        yield _series_name(container.get_label(), f"bars {i}"), _of_bars(container, names)
     for i, collection in enumerate(ax.collections, start=1):
-        yield _called(collection.get_label(), f"collection {i}"), _of_collection(ax, collection, names)
+        yield _series_name(collection.get_label(), f"collection {i}"), _of_collection(ax, collection, names)
     for i, image in enumerate(ax.images, start=1):
-        yield _called(image.get_label(), f"field {i}"), _of_image(image, names)
+        yield _series_name(image.get_label(), f"field {i}"), _of_image(image, names)
     for i, patch in enumerate(ax.patches, start=1):
         if id(patch) not in in_bars and patch.get_data_transform() == ax.transData:
-            yield _called(patch.get_label(), f"outline {i}"), _of_patch(patch, names)
+            yield _series_name(patch.get_label(), f"outline {i}"), _of_patch(patch, names)
 
 
 def _of_line(ax: Axes, line: Line2D, names: _Quantities) -> Iterator[Cells]:
+    """Yield the points of a line; of a line across the panel its one coordinate."""
     if line.get_transform() == ax.get_xaxis_transform(which="grid"):  # a vertical line over the whole height
         yield _cells(names, (float(np.asarray(line.get_xdata(orig=False))[0]), None))
     elif line.get_transform() == ax.get_yaxis_transform(which="grid"):
@@ -152,6 +154,7 @@ def _of_line(ax: Axes, line: Line2D, names: _Quantities) -> Iterator[Cells]:
 
 
 def _of_bars(bars: BarContainer, names: _Quantities) -> Iterator[Cells]:
+    """Yield the position and length of each bar."""
     for bar in bars.patches:
         if bars.orientation == "horizontal":
             yield _cells(names, (bar.get_width(), bar.get_y() + bar.get_height() / 2))
@@ -159,29 +162,31 @@ def _of_bars(bars: BarContainer, names: _Quantities) -> Iterator[Cells]:
             yield _cells(names, (bar.get_x() + bar.get_width() / 2, bar.get_height()))
 
 
-def _of_collection(ax: Axes, drawn: Collection, names: _Quantities) -> Iterator[Cells]:
-    carried = getattr(drawn, _CARRIED, None)
-    if carried is not None:
-        yield from _of_field(carried.x, carried.y, carried.values, names, _colour(drawn))
-    elif isinstance(drawn, QuadMesh):
-        corners = np.asarray(drawn.get_coordinates(), dtype=float)
-        middle: np.ndarray = 0.25 * (corners[1:, 1:] + corners[1:, :-1] + corners[:-1, 1:] + corners[:-1, :-1])
-        values = field_of(drawn).reshape(middle.shape[:2])
-        yield from _of_field(middle[0, :, 0], middle[:, 0, 1], values, names, _colour(drawn))
-    elif isinstance(drawn, PathCollection):
-        coloured: Any = drawn.get_array()
-        for i, (x, y) in enumerate(np.ma.filled(np.ma.asarray(drawn.get_offsets(), dtype=float), np.nan)):
-            extra = {} if coloured is None else {_colour(drawn): _text(coloured[i])}
+def _of_collection(ax: Axes, collection: Collection, names: _Quantities) -> Iterator[Cells]:
+    """Yield the points of a collection: cells of a field, coloured points, or corners of lines and areas."""
+    field = getattr(collection, _FIELD_ATTRIBUTE, None)
+    if field is not None:
+        yield from _of_field(field.x, field.y, field.values, names, _colour(collection))
+    elif isinstance(collection, QuadMesh):
+        corners = np.asarray(collection.get_coordinates(), dtype=float)
+        centers: np.ndarray = 0.25 * (corners[1:, 1:] + corners[1:, :-1] + corners[:-1, 1:] + corners[:-1, :-1])
+        values = field_of(collection).reshape(centers.shape[:2])
+        yield from _of_field(centers[0, :, 0], centers[:, 0, 1], values, names, _colour(collection))
+    elif isinstance(collection, PathCollection):
+        coloured: Any = collection.get_array()
+        for i, (x, y) in enumerate(np.ma.filled(np.ma.asarray(collection.get_offsets(), dtype=float), np.nan)):
+            extra = {} if coloured is None else {_colour(collection): _text(coloured[i])}
             yield _cells(names, (x, y)) | extra
-    elif isinstance(drawn, (LineCollection, PolyCollection)) and drawn.get_transform() == ax.transData:
-        for path in drawn.get_paths():
+    elif isinstance(collection, (LineCollection, PolyCollection)) and collection.get_transform() == ax.transData:
+        for path in collection.get_paths():
             for x, y in np.asarray(path.vertices, dtype=float):
                 yield _cells(names, (x, y))
 
 
 def _of_image(image: AxesImage, names: _Quantities) -> Iterator[Cells]:
+    """Yield the cells of a picture that shows a field."""
     values = field_of(image)
-    if values.ndim > 2:  # colours, which are no numbers of anything
+    if values.ndim > 2:  # RGB colours are no field
         return
     x0, x1, y0, y1 = image.get_extent()
     ny, nx = values.shape[:2]
@@ -190,13 +195,14 @@ def _of_image(image: AxesImage, names: _Quantities) -> Iterator[Cells]:
 
 
 def _of_patch(patch: Patch, names: _Quantities) -> Iterator[Cells]:
+    """Yield the corners of a patch; of a circle its centre, of a histogram its edges."""
     if isinstance(patch, Circle):
         yield _cells(names, patch.center)
     elif isinstance(patch, StepPatch):
         values, edges, _ = patch.get_data()
-        for value, low, high in zip(values, edges[:-1], edges[1:], strict=True):
-            yield _cells(names, (low, value))
-            yield _cells(names, (high, value))
+        for value, lower_edge, upper_edge in zip(values, edges[:-1], edges[1:], strict=True):
+            yield _cells(names, (lower_edge, value))
+            yield _cells(names, (upper_edge, value))
     elif isinstance(patch, Rectangle):
         yield _cells(names, patch.get_xy())
         yield _cells(names, (patch.get_x() + patch.get_width(), patch.get_y() + patch.get_height()))
@@ -217,66 +223,68 @@ def _cells(names: _Quantities, point: tuple[float | None, float | None]) -> Cell
     return {quantity.name: quantity.word(value) or _text(value) for quantity, value in pairs if value is not None}
 
 
-def _name(ax: Axes, which: str) -> str:
+def _name(ax: Axes, axis_name: str) -> str:
     """Return the quantity and unit of an axis; inner panels have the label of the panel whose axis they share.
 
     A panel without axes is a drawing to scale, in metres.
     """
-    group = ax.get_shared_x_axes() if which == "x" else ax.get_shared_y_axes()
-    for one in (ax, *group.get_siblings(ax)):
-        label = _plain(one.get_xlabel() if which == "x" else one.get_ylabel())
+    group = ax.get_shared_x_axes() if axis_name == "x" else ax.get_shared_y_axes()
+    for panel in (ax, *group.get_siblings(ax)):
+        label = _plain(panel.get_xlabel() if axis_name == "x" else panel.get_ylabel())
         if label:
-            other = _plain(one.get_ylabel() if which == "x" else one.get_xlabel())
-            return f"{which}: {label}" if label == other else label
+            other_label = _plain(panel.get_ylabel() if axis_name == "x" else panel.get_xlabel())
+            return f"{axis_name}: {label}" if label == other_label else label
     if not ax.axison:
-        return f"{which} [m]"
-    return "category" if _ticks(ax.xaxis if which == "x" else ax.yaxis)[1] else which
+        return f"{axis_name} [m]"
+    return "category" if _ticks(ax.xaxis if axis_name == "x" else ax.yaxis)[1] else axis_name
 
 
-def _colour(drawn: Any) -> str:
+def _colour(artist: Any) -> str:
     """Return the label of the colour bar of a field, or of one in another panel with the same colours and range."""
-    panels = drawn.figure.axes
-    others = [one for ax in panels for one in (*ax.collections, *ax.images) if _scale(one) == _scale(drawn)]
-    bars = [one.colorbar for one in (drawn, *others) if one.colorbar is not None]
+    panels = artist.figure.axes
+    same_scale = [
+        mappable for ax in panels for mappable in (*ax.collections, *ax.images) if _scale(mappable) == _scale(artist)
+    ]
+    bars = [mappable.colorbar for mappable in (artist, *same_scale) if mappable.colorbar is not None]
     label = _plain(bars[0].ax.get_ylabel() or bars[0].ax.get_xlabel()) if bars else ""
     return label or "value"
 
 
-def _scale(drawn: Any) -> tuple[str, float | None, float | None]:
-    return drawn.get_cmap().name, drawn.norm.vmin, drawn.norm.vmax
+def _scale(artist: Any) -> tuple[str, float | None, float | None]:
+    return artist.get_cmap().name, artist.norm.vmin, artist.norm.vmax
 
 
 def _ticks(axis: Axis) -> tuple[np.ndarray, list[str]]:
     """Return the places and the words at the ticks of an axis; no words where the places themselves stand there."""
     locator = axis.get_major_locator()
-    places: np.ndarray = np.array(locator() if isinstance(locator, FixedLocator) else [], dtype=float)
-    if not places.size:
-        return places, []
-    words = [_plain(word) for word in axis.get_major_formatter().format_ticks(places.tolist())]
-    told = any(word and not _says(word, place) for word, place in zip(words, places, strict=True))
-    return places, words if told else []
+    positions: np.ndarray = np.array(locator() if isinstance(locator, FixedLocator) else [], dtype=float)
+    if not positions.size:
+        return positions, []
+    words = [_plain(word) for word in axis.get_major_formatter().format_ticks(positions.tolist())]
+    has_words = any(word and not _says(word, position) for word, position in zip(words, positions, strict=True))
+    return positions, words if has_words else []
 
 
-def _says(word: str, place: float) -> bool:
-    """Return whether a word beside an axis is the number of its place, as it was rounded."""
+def _says(word: str, position: float) -> bool:
+    """Return whether a tick label is the rounded number of its position."""
     number = word.replace("\N{MINUS SIGN}", "-")
     digits = number.lower().partition("e")[0].partition(".")[2]
     try:
-        return abs(float(number) - place) <= 0.5000001 * 10.0 ** -len(digits)
+        return abs(float(number) - position) <= 0.5000001 * 10.0 ** -len(digits)
     except ValueError:
         return False
 
 
-def _called(label: object, otherwise: str) -> str:
+def _series_name(label: object, default: str) -> str:
     """Return the name of a series: its label, or what follows the ``_`` that keeps a label out of the legend."""
     text = _plain(str(label))
     if not hidden(label):
         return text
-    return otherwise if label is None or not text or text.startswith(("_child", "_nolegend")) else text[1:]
+    return default if label is None or not text or text.startswith(("_child", "_nolegend")) else text[1:]
 
 
 def hidden(label: object) -> bool:
-    """Return whether a label is none that a legend shows."""
+    """Return whether a legend leaves out a label."""
     return label is None or not str(label) or str(label).startswith("_")
 
 

@@ -27,26 +27,28 @@ def span(values: np.ndarray, share: float) -> float:
     return float(max(np.quantile(np.abs(values), share), 1e-9))
 
 
-def draw_field(ax: Axes, record: xr.Dataset, name: str, what: str, index: int, limit: float, cmap: str) -> AxesImage:
+def draw_field(
+    ax: Axes, record: xr.Dataset, name: str, field_name: str, index: int, limit: float, cmap: str
+) -> AxesImage:
     """Draw one instant of a field as a picture in even steps of colour, which stays small in an SVG.
 
     Args:
         ax: where.
         record: of the experiment ``swimming``.
         name: prefix of the swim in the record.
-        what: which field.
+        field_name: which field.
         index: which instant.
         limit: end of the scale to both sides.
         cmap: colour map.
     """
     x, y = record[f"{name}_x"].values, record[f"{name}_y"].values
-    half = 0.5 * (x[1] - x[0])
-    values = record[f"{name}_{what}"].values[index]
+    half_cell = 0.5 * (x[1] - x[0])
+    values = record[f"{name}_{field_name}"].values[index]
     ax.grid(visible=False)
     image = ax.imshow(
         smooth(values),
         origin="lower",
-        extent=(x[0] - half, x[-1] + half, y[0] - half, y[-1] + half),
+        extent=(x[0] - half_cell, x[-1] + half_cell, y[0] - half_cell, y[-1] + half_cell),
         cmap=colormaps[cmap].resampled(_STEPS),
         vmin=-limit,
         vmax=limit,
@@ -63,37 +65,46 @@ def smooth(values: np.ndarray, pixels: int = _PIXELS) -> np.ndarray:
 
 
 def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the outline and the midline of a body at one instant, each of shape (point, 2) [m]."""
-    x, y, heading, half = (
-        record[f"{name}_midline_{what}"].values[index] for what in ("x", "y", "heading", "half_width")
+    """Return the outline and the midline of a body at one instant, each of shape (point, 2) [m].
+
+    Args:
+        record: of the experiment ``swimming``.
+        name: prefix of the swim in the record.
+        index: which instant.
+    """
+    x, y, heading, half_width = (
+        record[f"{name}_midline_{quantity}"].values[index] for quantity in ("x", "y", "heading", "half_width")
     )
-    across = np.column_stack([-np.sin(heading), np.cos(heading)]) * half[:, None]
+    half_width_vector = np.column_stack([-np.sin(heading), np.cos(heading)]) * half_width[:, None]
     line = np.column_stack([x, y])
-    return np.vstack([line + across, (line - across)[::-1]]), line
+    return np.vstack([line + half_width_vector, (line - half_width_vector)[::-1]]), line
 
 
 def draw_body(ax: Axes, record: xr.Dataset, name: str, index: int) -> tuple[Polygon, Line2D]:
-    """Draw a body and its midline; return both, to be moved in a film."""
+    """Draw a body and its midline; return both artists, which a film moves."""
     edge, line = outline(record, name, index)
     body = Polygon(edge, facecolor=SKIN, edgecolor=EDGE, linewidth=1.0, zorder=3)
     ax.add_patch(body)
-    (middle,) = ax.plot(*line.T, color=EDGE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
-    return body, middle
+    (midline,) = ax.plot(*line.T, color=EDGE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
+    return body, midline
 
 
-def move_body(drawn: tuple[Polygon, Line2D], record: xr.Dataset, name: str, index: int) -> None:
-    """Move what ``draw_body`` drew to another instant."""
+def move_body(artists: tuple[Polygon, Line2D], record: xr.Dataset, name: str, index: int) -> None:
+    """Move the artists of ``draw_body`` to another instant."""
     edge, line = outline(record, name, index)
-    drawn[0].set_xy(edge)
-    drawn[1].set_data(line[:, 0], line[:, 1])
+    artists[0].set_xy(edge)
+    artists[1].set_data(line[:, 0], line[:, 1])
 
 
 def draw_streamlines(ax: Axes, record: xr.Dataset, name: str, index: int) -> None:
-    """Draw where the water goes at one instant."""
+    """Draw the streamlines of the water at one instant."""
     x, y = record[f"{name}_x"].values, record[f"{name}_y"].values
-    even = np.linspace(x[0], x[-1], x.size), np.linspace(y[0], y[-1], y.size)  # streamplot wants exactly even steps
+    even_axes = (
+        np.linspace(x[0], x[-1], x.size),
+        np.linspace(y[0], y[-1], y.size),
+    )  # streamplot wants exactly even steps
     ax.streamplot(
-        *even,
+        *even_axes,
         record[f"{name}_u"].values[index],
         record[f"{name}_v"].values[index],
         density=(0.9, 0.45),

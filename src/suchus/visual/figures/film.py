@@ -27,7 +27,7 @@ def film(figure: Figure, show: Callable[[int], None], count: int, *, seconds: fl
     for i in range(count):
         show(i)
         canvas.draw()  # type: ignore[no-untyped-call]
-        figure.set_layout_engine("none")  # the layout of the first frame is that of all
+        figure.set_layout_engine("none")  # all frames keep the layout of the first
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[no-untyped-call]
         palette = frames[0] if frames else None
         if palette is None:
@@ -49,7 +49,7 @@ def film(figure: Figure, show: Callable[[int], None], count: int, *, seconds: fl
 
 
 def film_caption(data: bytes) -> str:
-    """Return what a film says of itself, empty if nothing."""
-    with Image.open(io.BytesIO(data)) as first:
-        said = first.info.get("comment", b"")
-    return said.decode(errors="replace") if isinstance(said, bytes) else str(said)
+    """Return the caption that a film's file holds; empty without one."""
+    with Image.open(io.BytesIO(data)) as image:
+        comment = image.info.get("comment", b"")
+    return comment.decode(errors="replace") if isinstance(comment, bytes) else str(comment)

@@ -39,15 +39,15 @@ def _panel(width: float, height: float) -> tuple[Figure, Axes]:
 
 
 class _Picture:
-    """A field of a plane flow and the bodies in it, which can be moved on in time; a patch lies on what is around."""
+    """Picture of a plane flow's field and bodies, which can show other instants; a fine patch lies on the domain."""
 
     def __init__(
         self, sim: Simulation, fields: list[np.ndarray], limit: float, label: str, cmap: str, shift: float
     ) -> None:
         self._images = []
-        wide, high = sim.domain.water.grid.size
+        width, height = sim.domain.water.grid.size
         with styled(axes__grid=False):
-            self.figure, self._axes = _panel(WIDTH, 1.2 + 0.76 * WIDTH * high / wide)
+            self.figure, self._axes = _panel(WIDTH, 1.2 + 0.76 * WIDTH * height / width)
             for view, values in zip(_views(sim), fields, strict=True):
                 grid = view.water.grid
                 (x0, y0), (rows, columns) = np.array(grid.origin) + shift * grid.cell, values.shape
@@ -63,7 +63,7 @@ class _Picture:
                         )
                     )
             x0, y0 = sim.domain.water.grid.origin
-            self._axes.set(xlim=(x0, x0 + wide), ylim=(y0, y0 + high))
+            self._axes.set(xlim=(x0, x0 + width), ylim=(y0, y0 + height))
             self._bodies = [
                 Polygon(edge, facecolor=SKIN, edgecolor=EDGE, label=body.name)
                 for body, edge in zip(sim.setup.bodies, _edges(sim), strict=True)
@@ -77,7 +77,7 @@ class _Picture:
             self.figure.colorbar(self._images[-1], ax=self._axes, label=label, shrink=0.85, extend="both")
 
     def move_on(self, time: float, fields: list[np.ndarray], edges: list[np.ndarray]) -> None:
-        """Show another instant."""
+        """Show another instant: its time [s], fields and outlines of the bodies."""
         for image, values in zip(self._images, fields, strict=True):
             image.set_data(smooth(values, _PIXELS))
         self._axes.set_title(f"t = {time:.3g} s", loc="left")
@@ -97,27 +97,27 @@ _FIELDS: Mapping[FieldName, tuple[str, str, float]] = MappingProxyType(
 
 
 def _views(sim: Simulation) -> list[Fields]:
-    """Return what is drawn one upon the other: the whole domain, and on it a patch if there is one."""
+    """Return the fields in drawing order: the whole domain, then the fine patch if there is one."""
     return [sim] if sim.domain is sim else [sim.domain, sim]
 
 
-def _of(sim: Simulation, what: FieldName) -> list[np.ndarray]:
-    return [view.vorticity if what == "vorticity" else view.pressure for view in _views(sim)]
+def _field_values(sim: Simulation, field_name: FieldName) -> list[np.ndarray]:
+    return [view.vorticity if field_name == "vorticity" else view.pressure for view in _views(sim)]
 
 
 def vorticity(sim: Simulation, *, limit: float | None = None) -> Figure:
     """Return a picture of the vorticity, red counter-clockwise; ``limit`` is the end of the scale [1/s]."""
-    return _shown(sim, "vorticity", limit)
+    return _field_figure(sim, "vorticity", limit)
 
 
 def pressure(sim: Simulation, *, limit: float | None = None) -> Figure:
     """Return a picture of the pressure; ``limit`` is the end of the scale [Pa]."""
-    return _shown(sim, "pressure", limit)
+    return _field_figure(sim, "pressure", limit)
 
 
-def _shown(sim: Simulation, what: FieldName, limit: float | None) -> Figure:
-    fields = _of(sim, what)
-    return _Picture(sim, fields, span(fields[-1], 0.99) if limit is None else limit, *_FIELDS[what]).figure
+def _field_figure(sim: Simulation, field_name: FieldName, limit: float | None) -> Figure:
+    fields = _field_values(sim, field_name)
+    return _Picture(sim, fields, span(fields[-1], 0.99) if limit is None else limit, *_FIELDS[field_name]).figure
 
 
 @dataclass(slots=True)
@@ -130,7 +130,7 @@ class FieldFilm:
     every: float
     """Interval of the frames [s]."""
     what: FieldName = "vorticity"
-    """Which field."""
+    """Name of the field."""
     limit: float | None = None
     """End of the scale [1/s, Pa]; None takes what 99 % of the values stay below."""
     speed: float = 1.0
@@ -147,7 +147,7 @@ class FieldFilm:
             raise UnknownName("field", str(self.what), tuple(_FIELDS))
 
     def __call__(self, sim: Simulation) -> None:
-        """Keep the field and the outlines, if it is time.
+        """Store the field and the outlines, if a frame is due.
 
         Raises:
             InvalidDesign: in space.
@@ -156,7 +156,7 @@ class FieldFilm:
             raise InvalidDesign("this film is of plane flows, and this one has three axes; see suchus view swim.")
         if sim.time >= self._due:
             self._due, self._sim = due_after(sim.time, self.every), sim
-            fields = [values.astype(np.float32) for values in _of(sim, self.what)]
+            fields = [values.astype(np.float32) for values in _field_values(sim, self.what)]
             self._frames.append((sim.time, fields, _edges(sim)))
 
     def save(self, path: Path | str) -> Path:
@@ -166,20 +166,22 @@ class FieldFilm:
             InvalidDesign: another ending than .gif, or no run has been watched.
             Unwritable: it cannot be written.
         """
-        where = Path(path)
-        if where.suffix.lower() != ".gif":
-            raise InvalidDesign(f"a film is a GIF; give {where.name!r} the ending .gif.")
+        target_path = Path(path)
+        if target_path.suffix.lower() != ".gif":
+            raise InvalidDesign(f"a film is a GIF; give {target_path.name!r} the ending .gif.")
         if self._sim is None:
             raise InvalidDesign("the film holds no frame; give it to a run first: sim.run(until, watch=film).")
         limit = self.limit if self.limit is not None else span(np.stack([f[-1] for _, f, _ in self._frames]), 0.99)
-        shown = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.what])
-        shown.figure.set_dpi(_FILM_DPI)
+        picture = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.what])
+        picture.figure.set_dpi(_FILM_DPI)
         times = [time for time, _, _ in self._frames]
         seconds = max(times[-1] - times[0] + self.every, self.every) / self.speed
         caption = f"{self.what} of a flow from {times[0]:.3g} to {times[-1]:.3g} s"
         frames = self._frames
-        data = film(shown.figure, lambda i: shown.move_on(*frames[i]), len(frames), seconds=seconds, caption=caption)
-        return write(where, data)
+        data = film(
+            picture.figure, lambda i: picture.move_on(*frames[i]), len(frames), seconds=seconds, caption=caption
+        )
+        return write(target_path, data)
 
 
 def forces(record: Record, body: str | int = 0) -> Figure:
@@ -193,10 +195,10 @@ def forces(record: Record, body: str | int = 0) -> Figure:
             (force[:, 1], "along y", "limbs_only", (0, (5, 2))),
         ):
             axes.plot(record.time, values, label=label, color=COLOURS[role], linestyle=dashes, linewidth=1.4)
-        late = force[len(force) // 20 :]
-        low, high = float(late.min()), float(late.max())
-        margin = 0.1 * max(high - low, 1e-12)
-        axes.set_ylim(low - margin, high + margin)
+        settled_force = force[len(force) // 20 :]
+        lower_bound, upper_bound = float(settled_force.min()), float(settled_force.max())
+        margin = 0.1 * max(upper_bound - lower_bound, 1e-12)
+        axes.set_ylim(lower_bound - margin, upper_bound + margin)
         axes.set_xlabel("time [s]")
         axes.set_ylabel("force per depth [N/m]")
         axes.legend()
@@ -215,40 +217,47 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
 
 
 def _along_the_outline(surface: Surface) -> Figure:
+    """Draw pressure and friction over the arc length of a plane body's outline."""
     m = surface.markers
-    place = np.cumsum(m.share) - m.share / 2
+    arc_length = np.cumsum(m.share) - m.share / 2
     friction = surface.shear[1] * m.normals[0] - surface.shear[0] * m.normals[1]
     figure, grid = panels(1, 2, width=WIDTH, height=3.8)
     for axes, values, label in zip(
         grid[0], (surface.pressure, friction), ("pressure [Pa]", "friction, counter-clockwise [Pa]"), strict=True
     ):
-        axes.plot(place, values, color=COLOURS["coordinated"], linewidth=1.4)
+        axes.plot(arc_length, values, color=COLOURS["coordinated"], linewidth=1.4)
         axes.set(xlabel="along the outline, counter-clockwise [m]", ylabel=label)
     return figure
 
 
 def _over_the_skin(surface: Surface) -> Figure:
-    """Draw both as one looks along y, and from above, each point where it faces who looks."""
+    """Draw pressure and friction seen along y and from above, on the points that face the viewer."""
     m, friction = surface.markers, speeds(surface.shear)
-    most = max(float(np.abs(surface.pressure).max()), 1e-12)
+    max_pressure = max(float(np.abs(surface.pressure).max()), 1e-12)
     views = (("seen along y", 2, 1, -1.0), ("from above", 1, 2, 1.0))
-    wide, *across = np.ptp(m.points, axis=1)
-    side = _COVERING * np.sqrt(m.share.max()) / wide * 0.4 * WIDTH * 72.0  # of a dot, in points of the page
-    figure, grid = panels(2, 2, width=WIDTH, height=2.4 + min(2 * 0.4 * WIDTH * max(across) / wide, 6.0))
-    for row, (values, label, cmap, low, high) in zip(
+    length, *extents = np.ptp(m.points, axis=1)
+    side = _COVERING * np.sqrt(m.share.max()) / length * 0.4 * WIDTH * 72.0  # side of a dot, in points of the page
+    figure, grid = panels(2, 2, width=WIDTH, height=2.4 + min(2 * 0.4 * WIDTH * max(extents) / length, 6.0))
+    for row, (values, label, cmap, lower_bound, upper_bound) in zip(
         grid,
         (
-            (surface.pressure, "pressure [Pa]", PRESSURE, -most, most),
+            (surface.pressure, "pressure [Pa]", PRESSURE, -max_pressure, max_pressure),
             (friction, "friction [Pa]", "viridis", 0.0, max(float(friction.max()), 1e-12)),
         ),
         strict=True,
     ):
-        for axes, (view, up, depth, way) in zip(row, views, strict=True):
-            seen = (way * m.normals[depth] > 0) & (m.share > 0)
-            order = np.argsort(way * m.points[depth, seen])
-            x, y, shown = m.points[0, seen][order], m.points[up, seen][order], values[seen][order]
-            points = axes.scatter(x, y, c=shown, cmap=cmap, vmin=low, vmax=high, s=side**2, linewidths=0.0)
+        for axes, (view, vertical_axis, depth, view_sign) in zip(row, views, strict=True):
+            is_visible = (view_sign * m.normals[depth] > 0) & (m.share > 0)
+            order = np.argsort(view_sign * m.points[depth, is_visible])
+            x, y, visible_values = (
+                m.points[0, is_visible][order],
+                m.points[vertical_axis, is_visible][order],
+                values[is_visible][order],
+            )
+            points = axes.scatter(
+                x, y, c=visible_values, cmap=cmap, vmin=lower_bound, vmax=upper_bound, s=side**2, linewidths=0.0
+            )
             axes.locator_params(axis="y", nbins=3)
-            axes.set(xlabel="x [m]", ylabel=f"{'xyz'[up]} [m]", title=view, aspect="equal")
+            axes.set(xlabel="x [m]", ylabel=f"{'xyz'[vertical_axis]} [m]", title=view, aspect="equal")
         figure.colorbar(points, ax=list(row), label=label, shrink=0.85)
     return figure

@@ -35,9 +35,9 @@ def ground_forces_figure(data: xr.Dataset) -> Figure:
             -(-len(legs) // 2), 2, width=10.0, height=1.6 + 2.5 * -(-len(legs) // 2), sharex=True, sharey=True
         )
         for ax, leg in zip(axes.flat, legs, strict=True):
-            one = data.sel(leg=leg)
+            foot_data = data.sel(leg=leg)
             for name, label, role, dashes in _PARTS:
-                _banded(ax, data.phase.values, one, f"{name}_bw", COLOURS[role], dashes, label)
+                _banded(ax, data.phase.values, foot_data, f"{name}_bw", COLOURS[role], dashes, label)
             pair = "fore" if leg.endswith("F") else "hind"
             _mark(ax, data.sel(quantity=f"foot_force_net_{pair}"))
             ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
@@ -55,8 +55,9 @@ def ground_forces_figure(data: xr.Dataset) -> Figure:
     )
 
 
-def _mark(ax: Axes, one: xr.Dataset) -> None:
-    animal, spread = float(one.animals), float(one.animals_spread)
+def _mark(ax: Axes, animal_data: xr.Dataset) -> None:
+    """Shade the animals' greatest net force, two standard deviations to either side."""
+    animal, spread = float(animal_data.animals), float(animal_data.animals_spread)
     ax.axhspan(
         animal - 2 * spread, animal + 2 * spread, color=COLOURS["neutral"], alpha=0.15, linewidth=0.0,
         label="salamanders, net",
@@ -88,6 +89,6 @@ def water_forces_figure(data: xr.Dataset) -> Figure:
     )
 
 
-def _banded(ax: Axes, phase: np.ndarray, one: xr.Dataset, name: str, colour: str, dashes: Any, label: str) -> None:
-    ax.fill_between(phase, one[f"{name}_low"], one[f"{name}_high"], color=colour, alpha=0.18, linewidth=0.0)
-    ax.plot(phase, one[name], color=colour, linestyle=dashes, label=label)
+def _banded(ax: Axes, phase: np.ndarray, data: xr.Dataset, name: str, colour: str, dashes: Any, label: str) -> None:
+    ax.fill_between(phase, data[f"{name}_low"], data[f"{name}_high"], color=colour, alpha=0.18, linewidth=0.0)
+    ax.plot(phase, data[name], color=colour, linestyle=dashes, label=label)

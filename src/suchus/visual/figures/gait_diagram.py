@@ -32,22 +32,22 @@ GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     }
 )
 """Colour, marker, dashes and label of each gait or arm."""
-_MORE = ("#56B4E9", "#F0E442", "#B0558A")
+_EXTRA_COLOURS = ("#56B4E9", "#F0E442", "#B0558A")
 
 
 def gait_lines(names: Iterable[Any]) -> Mapping[str, Mapping[str, Any]]:
     """Return ``GAIT_LINES`` with lines for further gaits, which are called by their names."""
-    others = [str(name) for name in names if str(name) not in GAIT_LINES]
+    extra_names = [str(name) for name in names if str(name) not in GAIT_LINES]
     return {
         **GAIT_LINES,
         **{
             name: {
-                "color": COLOURS["coordinated"] if i == 0 else _MORE[i % len(_MORE)],
+                "color": COLOURS["coordinated"] if i == 0 else _EXTRA_COLOURS[i % len(_EXTRA_COLOURS)],
                 "marker": "o",
                 "linestyle": "-",
                 "label": name.replace("_", " "),
             }
-            for i, name in enumerate(others)
+            for i, name in enumerate(extra_names)
         },
     }
 
@@ -56,8 +56,8 @@ _BLACK, _GREY, _EDGE = "#111111", "#9A9A9A", "#333333"
 _SHADES = (_BLACK, _GREY)
 _DASHES: tuple[Any, ...] = ("-", (0, (4, 2)))
 _BENDS = ("spine", "tail")
-_STRAIGHT = 0.05  # share of the largest bend that counts as straight
-_STILL = np.radians(1.0)  # a bend that never exceeds this has no sign
+_STRAIGHT = 0.05  # fraction of the largest bend below which a body counts as straight
+_MAX_STILL_BEND = np.radians(1.0)  # a bend that never exceeds this has no sign
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -89,17 +89,17 @@ class GaitTrack:
         n = len(self.time)
         verticals = [name for name in ("spine_vertical", "tail_vertical") if getattr(self, name) is not None]
         shapes = {"stance": (len(self.legs), n), **dict.fromkeys((*self.bends, *verticals), (n,))}
-        for name, wanted in shapes.items():
-            found = np.shape(getattr(self, name))
-            if found != wanted:
-                raise InvalidDesign(f"gait track {self.label!r}: {name} has shape {found}; {wanted} is needed.")
+        for name, expected_shape in shapes.items():
+            shape = np.shape(getattr(self, name))
+            if shape != expected_shape:
+                raise InvalidDesign(f"gait track {self.label!r}: {name} has shape {shape}; {expected_shape} is needed.")
         if n < 2 or not np.all(np.diff(self.time) > 0):
             raise InvalidDesign(f"gait track {self.label!r}: time needs two samples or more that increase.")
 
     @property
     def bends(self) -> tuple[str, ...]:
         """The parts of the body that bend."""
-        return tuple(part for part in _BENDS if getattr(self, part) is not None)
+        return tuple(region for region in _BENDS if getattr(self, region) is not None)
 
 
 def gait_diagram(
@@ -125,8 +125,8 @@ def gait_diagram(
         if vertical:
             draw_vertical(axes[2, 0], tracks)
         for ax in axes[:, 0]:
-            for at in cycles:
-                ax.axvline(at, color=COLOURS["neutral"], linewidth=0.9, linestyle=(0, (1, 2)), zorder=0)
+            for cycle_time in cycles:
+                ax.axvline(cycle_time, color=COLOURS["neutral"], linewidth=0.9, linestyle=(0, (1, 2)), zorder=0)
         axes[-1, 0].set_xlabel(f"time [{unit}]")
     return figure
 
@@ -143,19 +143,19 @@ def draw_bars(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
     """
     if not 1 <= len(tracks) <= len(_SHADES):
         raise InvalidDesign(f"a gait diagram shows 1 or {len(_SHADES)} tracks; {len(tracks)} were given.")
-    height, legs, parts = 0.66 / len(tracks), tracks[0].legs, tracks[0].bends
+    height, legs, regions = 0.66 / len(tracks), tracks[0].legs, tracks[0].bends
     for i, (track, shade) in enumerate(zip(tracks, _SHADES, strict=False)):
         top = -0.33 + i * height
         for row, stands in enumerate(track.stance):
             _bars(ax, track.time, stands, (row + top, 0.92 * height), shade, shade)
-        for row, part in enumerate(track.bends, start=len(legs)):
-            signs = bend_sign(getattr(track, part))
-            place = (row + top + 0.25, 0.92 * height)  # a gap sets the two signs apart from the four legs
-            _bars(ax, track.time, signs > 0, place, shade, shade, "+" if len(tracks) == 1 else "")
-            _bars(ax, track.time, signs < 0, place, "white", shade, "\N{MINUS SIGN}" if len(tracks) == 1 else "")
-    places = [*range(len(legs)), *(len(legs) + 0.25 + i for i in range(len(parts)))]
-    ax.set_yticks(places, [*legs, *parts])
-    ax.set_ylim(places[-1] + 0.5, -0.5)
+        for row, region in enumerate(track.bends, start=len(legs)):
+            signs = bend_sign(getattr(track, region))
+            row_span = (row + top + 0.25, 0.92 * height)  # a gap sets the two signs apart from the four legs
+            _bars(ax, track.time, signs > 0, row_span, shade, shade, "+" if len(tracks) == 1 else "")
+            _bars(ax, track.time, signs < 0, row_span, "white", shade, "\N{MINUS SIGN}" if len(tracks) == 1 else "")
+    tick_positions = [*range(len(legs)), *(len(legs) + 0.25 + i for i in range(len(regions)))]
+    ax.set_yticks(tick_positions, [*legs, *regions])
+    ax.set_ylim(tick_positions[-1] + 0.5, -0.5)
     ax.set_xlim(min(t.time[0] for t in tracks), max(t.time[-1] for t in tracks))
     ax.tick_params(axis="y", length=0)
     ax.grid(False)
@@ -218,10 +218,10 @@ def bend_sign(angle: np.ndarray) -> np.ndarray:
     Args:
         angle: shape (time,) [rad].
     """
-    largest = float(np.nanmax(np.abs(angle), initial=0.0))
-    if largest < _STILL:
+    max_bend = float(np.nanmax(np.abs(angle), initial=0.0))
+    if max_bend < _MAX_STILL_BEND:
         return np.zeros(len(angle), dtype=int)
-    return np.where(np.abs(angle) > _STRAIGHT * largest, np.sign(angle), 0).astype(int)
+    return np.where(np.abs(angle) > _STRAIGHT * max_bend, np.sign(angle), 0).astype(int)
 
 
 def stretches(time: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
@@ -237,9 +237,20 @@ def stretches(time: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
 
 
 def _bars(
-    ax: Axes, time: np.ndarray, holds: np.ndarray, place: tuple[float, float], fill: str, edge: str, sign: str = ""
+    ax: Axes, time: np.ndarray, holds: np.ndarray, row_span: tuple[float, float], fill: str, edge: str, sign: str = ""
 ) -> None:
-    top, height = place
+    """Draw a bar over every interval in which a condition holds.
+
+    Args:
+        ax: to draw on.
+        time: shape (time,).
+        holds: the condition, shape (time,).
+        row_span: top and height of the bar.
+        fill: colour of the bar.
+        edge: colour of its edge.
+        sign: text on bars that are long enough for it.
+    """
+    top, height = row_span
     span = float(time[-1] - time[0])
     for start, end in stretches(time, holds):
         ax.add_patch(
@@ -247,11 +258,12 @@ def _bars(
         )
         if sign and end - start > 0.03 * span:
             colour = "white" if fill == _BLACK else edge
-            middle = ((start + end) / 2, top + height / 2)
-            ax.text(*middle, sign, color=colour, ha="center", va="center_baseline", fontsize=13, zorder=4)
+            center = ((start + end) / 2, top + height / 2)
+            ax.text(*center, sign, color=colour, ha="center", va="center_baseline", fontsize=13, zorder=4)
 
 
 def _bar_legend(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
+    """Add the legend of the bars: standing feet and the two signs of a bend."""
     handles = [Patch(facecolor=shade, edgecolor=shade) for _, shade in zip(tracks, _SHADES, strict=False)]
     labels = [track.label for track in tracks]
     ax.legend(

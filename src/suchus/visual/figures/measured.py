@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from suchus.visual.figures.style import COLOURS, DIVERGING, captioned, panels, styled
 
 _MARKERS = {"LF": "o", "RF": "s", "LH": "^", "RH": "D"}
-_APART = 0.08  # [stride]; by which the feet's marks stand beside each other
+_MARK_SPACING = 0.08  # [stride]; by which the feet's marks stand beside each other
 
 
 def strides_figure(data: xr.Dataset) -> Figure:
@@ -25,13 +25,13 @@ def strides_figure(data: xr.Dataset) -> Figure:
         figure, axes = panels(len(rows) + len(feet), 1, height=1.6 + 1.75 * (len(rows) + len(feet)), sharex=True)
         for ax, name in zip(axes[:, 0], rows, strict=False):
             _marks(ax, data, name, data[name].values, "", COLOURS["ours"], "o", 0.0)
-            ax.set_ylabel(_labelled(data, name))
+            ax.set_ylabel(_axis_label(data, name))
         for ax, name in zip(axes[len(rows) :, 0], feet, strict=True):
             for j, leg in enumerate(data.leg.values):
-                aside = (j - (data.sizes["leg"] - 1) / 2) * _APART
+                mark_offset = (j - (data.sizes["leg"] - 1) / 2) * _MARK_SPACING
                 _marks(ax, data.sel(leg=leg), name, data[name].sel(leg=leg).values, str(leg), COLOURS[str(leg)],
-                       _MARKERS[str(leg)], aside)  # fmt: skip
-            ax.set_ylabel(_labelled(data, name))
+                       _MARKERS[str(leg)], mark_offset)  # fmt: skip
+            ax.set_ylabel(_axis_label(data, name))
         if feet:
             axes[len(rows), 0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, frameon=False)
         axes[-1, 0].set_xlabel("stride")
@@ -54,14 +54,16 @@ def curvature_figure(data: xr.Dataset) -> Figure:
         figure, axes = panels(1, 1, height=4.4)
         ax = axes[0, 0]
         cells = (data.phase.values, data.place.values, data.curvature.values)
-        drawn = ax.pcolormesh(*cells, cmap=DIVERGING, vmin=-size, vmax=size, shading="nearest")
-        places = zip(data.keypoint.values, data.place.values, strict=True)
-        ax.set_yticks(data.place.values, [f"{name}  {at:.2f}" for name, at in places], fontsize=9)
+        mesh = ax.pcolormesh(*cells, cmap=DIVERGING, vmin=-size, vmax=size, shading="nearest")
+        keypoint_positions = zip(data.keypoint.values, data.place.values, strict=True)
+        ax.set_yticks(
+            data.place.values, [f"{name}  {position:.2f}" for name, position in keypoint_positions], fontsize=9
+        )
         ax.set_ylabel("place along the midline, 0 in front")
         ax.set_xlabel("phase [cycle]")
         ax.invert_yaxis()
         ax.grid(False)
-        figure.colorbar(drawn, ax=ax, label=_labelled(data, "curvature"))
+        figure.colorbar(mesh, ax=ax, label=_axis_label(data, "curvature"))
     return captioned(
         figure,
         f"{data.attrs['title']}: curvature at each keypoint of the midline over the mean of {data.attrs['cycles']:.1f} "
@@ -69,16 +71,29 @@ def curvature_figure(data: xr.Dataset) -> Figure:
     )
 
 
-def _labelled(data: xr.Dataset, name: str) -> str:
+def _axis_label(data: xr.Dataset, name: str) -> str:
     unit = str(data[name].attrs.get("units", "1"))
-    said = {"duty": "duty factor", "limb_phase": "limb phase"}.get(name, name.replace("_", " "))
-    return f"{said}\n[{'-' if unit == '1' else unit}]"
+    title = {"duty": "duty factor", "limb_phase": "limb phase"}.get(name, name.replace("_", " "))
+    return f"{title}\n[{'-' if unit == '1' else unit}]"
 
 
 def _marks(
-    ax: Axes, data: xr.Dataset, name: str, value: np.ndarray, label: str, colour: str, marker: str, aside: float
+    ax: Axes, data: xr.Dataset, name: str, value: np.ndarray, label: str, colour: str, marker: str, offset: float
 ) -> None:
-    """Draw the values of strides with their intervals."""
-    low, high = data[f"{name}_low"].values, data[f"{name}_high"].values
-    look: dict[str, Any] = {"color": colour, "marker": marker, "linestyle": "none", "markersize": 4, "elinewidth": 1.1}
-    ax.errorbar(data.stride.values + aside, value, [value - low, high - value], label=label or None, **look)
+    """Draw the values of strides with their intervals.
+
+    Args:
+        ax: to draw on.
+        data: holds the ends of the intervals, ``NAME_low`` and ``NAME_high``.
+        name: of the quantity.
+        value: one for each stride, (stride,).
+        label: in the legend; empty: none.
+        colour: of marks and bars.
+        marker: shape of the marks.
+        offset: of the marks along the axis of strides [stride].
+    """
+    lower_bound, upper_bound = data[f"{name}_low"].values, data[f"{name}_high"].values
+    style: dict[str, Any] = {"color": colour, "marker": marker, "linestyle": "none", "markersize": 4, "elinewidth": 1.1}
+    ax.errorbar(
+        data.stride.values + offset, value, [value - lower_bound, upper_bound - value], label=label or None, **style
+    )

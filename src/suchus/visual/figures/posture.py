@@ -21,7 +21,7 @@ from suchus.visual.figures.style import COLOURS
 from suchus.visual.skin import poses, skin
 
 View = Literal["above", "side"]
-_BODY, _EDGE, _FAR, _PALE, _PLATE = "#C9DCCB", "#4D6B57", "#E3EBE3", "#E6EEE2", "#A8C6AE"
+_BODY, _EDGE, _FAR_COLOUR, _PALE_COLOUR, _PLATE = "#C9DCCB", "#4D6B57", "#E3EBE3", "#E6EEE2", "#A8C6AE"
 
 
 class Skeleton(NamedTuple):
@@ -46,32 +46,32 @@ def skeleton(robot: Robot, record: xr.Dataset, time: float) -> Skeleton:
         record: of one run.
         time: [s].
     """
-    now, place = record.sel(time=time, method="nearest"), layout(robot)
-    angles = now.joint_angle.values.astype(float)
-    R, at = rotation.matrix(now.orientation.values.astype(float)), now.position.values.astype(float)
-    found, marks = frames(robot, angles), landmarks(robot, angles)
-    names = [body.name for body in place.bodies]
-    ahead = found.places[[names.index(name) for name in place.trunk[1:]]].reshape(-1, 3)
-    behind = found.places[[names.index(name) for name in place.tail]].reshape(-1, 3)
-    legs = [_leg(place, limb, found, marks.feet[i]) for i, limb in enumerate(place.limbs)]
+    state, robot_layout = record.sel(time=time, method="nearest"), layout(robot)
+    angles = state.joint_angle.values.astype(float)
+    R, root_position = rotation.matrix(state.orientation.values.astype(float)), state.position.values.astype(float)
+    body_frames, marks = frames(robot, angles), landmarks(robot, angles)
+    names = [body.name for body in robot_layout.bodies]
+    front_joints = body_frames.places[[names.index(name) for name in robot_layout.trunk[1:]]].reshape(-1, 3)
+    tail_joints = body_frames.places[[names.index(name) for name in robot_layout.tail]].reshape(-1, 3)
+    legs = [_leg(robot_layout, limb, body_frames, marks.feet[i]) for i, limb in enumerate(robot_layout.limbs)]
     shoulders = [leg[0] for leg in legs[:1]]
-    trunk = np.array([*behind[:1], np.zeros(3), *ahead, *shoulders, marks.snout])
-    tail = np.array([*behind, marks.tail])
+    trunk = np.array([*tail_joints[:1], np.zeros(3), *front_joints, *shoulders, marks.snout])
+    tail = np.array([*tail_joints, marks.tail])
     return Skeleton(
-        trunk=at + trunk @ R.T,
-        joints=at + ahead @ R.T,
-        tail=at + tail @ R.T,
-        legs=tuple(at + points @ R.T for points in legs),
+        trunk=root_position + trunk @ R.T,
+        joints=root_position + front_joints @ R.T,
+        tail=root_position + tail @ R.T,
+        legs=tuple(root_position + points @ R.T for points in legs),
     )
 
 
-def _leg(place: Layout, limb: LimbPlace, found: BodyFrames, foot: np.ndarray) -> np.ndarray:
+def _leg(robot_layout: Layout, limb: LimbPlace, body_frames: BodyFrames, foot: np.ndarray) -> np.ndarray:
     """Return midline, hip, joints and foot of a limb in the frame of the root, (point, 3) [m]."""
-    first = limb.tip - len(limb.girdle.limb.links) + 1
-    parent = place.bodies[first].parent
-    x, _, z = place.bodies[first].offset
-    midline = found.places[parent] + found.turns[parent] @ np.array([x, 0.0, z])
-    return np.array([midline, *found.places[first : limb.tip + 1], foot])
+    first_body = limb.tip - len(limb.girdle.limb.links) + 1
+    parent = robot_layout.bodies[first_body].parent
+    x, _, z = robot_layout.bodies[first_body].offset
+    midline = body_frames.places[parent] + body_frames.turns[parent] @ np.array([x, 0.0, z])
+    return np.array([midline, *body_frames.places[first_body : limb.tip + 1], foot])
 
 
 def silhouette_at(robot: Robot, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:
@@ -83,9 +83,9 @@ def silhouette_at(robot: Robot, record: xr.Dataset, time: float, axes: tuple[int
         time: [s].
         axes: which two coordinates are drawn: (0, 1) from above, (0, 2) from the side.
     """
-    now = record.sel(time=time, method="nearest")
-    at = (now[name].values.astype(float) for name in ("position", "orientation", "joint_angle"))
-    return silhouette(robot, skin(robot).posed(*poses(robot, *at)), axes)
+    state = record.sel(time=time, method="nearest")
+    pose = (state[name].values.astype(float) for name in ("position", "orientation", "joint_angle"))
+    return silhouette(robot, skin(robot).posed(*poses(robot, *pose)), axes)
 
 
 def draw_posture(
@@ -113,19 +113,19 @@ def draw_posture(
     """
     rows = [0, 1] if view == "above" else [0, 2]
     bones = skeleton(robot, record, time)
-    least = LOADED_SHARE * robot.mass * GRAVITY
-    stands = loaded(record.sel(time=time, method="nearest"), least).values
+    load_threshold = LOADED_SHARE * robot.mass * GRAVITY
+    stands = loaded(record.sel(time=time, method="nearest"), load_threshold).values
     if view == "side" and ground:
         ax.axhline(0.0, color=COLOURS["ground"], linewidth=1.2, zorder=0)
     if support and view == "above":
-        _support(ax, record, time, least)
+        _support(ax, record, time, load_threshold)
     for limb, points, standing in zip(layout(robot).limbs, bones.legs, stands, strict=True):
-        far = view == "side" and limb.side > 0
+        is_far = view == "side" and limb.side > 0
         edge, radius = _paler(_EDGE, strength), limb.girdle.limb.foot.radius
         foot = Circle(tuple(points[-1, rows]), radius, facecolor=edge if standing else "white", edgecolor=edge)
-        foot.set_zorder(0.9 if far else 4)
+        foot.set_zorder(0.9 if is_far else 4)
         ax.add_patch(foot)
-    _flesh(ax, layout(robot), silhouette_at(robot, record, time, (rows[0], rows[1])), view, strength)
+    _draw_skin(ax, layout(robot), silhouette_at(robot, record, time, (rows[0], rows[1])), view, strength)
     joints = bones.joints[:, rows]
     ax.plot(
         *joints.T,
@@ -155,45 +155,57 @@ def draw_strip(
         role: of ``style.COLOURS``, for the track.
         aside: how far to the left of its place it is drawn [m].
     """
-    moved = record.assign(
-        {name: record[name] + _aside(record, aside) for name in ("position", "centre_of_mass", "foot_position")}
+    shifted_record = record.assign(
+        {name: record[name] + _lateral_shift(record, aside) for name in ("position", "centre_of_mass", "foot_position")}
     )
     for i, time in enumerate(times):
-        before = set(ax.get_children())
+        earlier_artists = set(ax.get_children())
         fade = 0.25 + 0.75 * (i / max(len(times) - 1, 1)) ** 3 if len(times) > 1 else 1.0
-        draw_posture(ax, robot, moved, time, support=False, strength=fade)
-        for artist in set(ax.get_children()) - before:
+        draw_posture(ax, robot, shifted_record, time, support=False, strength=fade)
+        for artist in set(ax.get_children()) - earlier_artists:
             artist.set_zorder(artist.get_zorder() + 10 * i)
-    part = moved.centre_of_mass.sel(time=slice(times[0], times[-1]))
-    x, y = (part.sel(xyz=axis).values for axis in "xy")
+    track = shifted_record.centre_of_mass.sel(time=slice(times[0], times[-1]))
+    x, y = (track.sel(xyz=axis).values for axis in "xy")
     ax.plot(x, y, color=COLOURS[role], linewidth=2.4, zorder=10 * len(times) + 9)
     ax.plot(x[[0, -1]], y[[0, -1]], "o", color=COLOURS[role], markersize=7, zorder=10 * len(times) + 9)
 
 
-def _aside(record: xr.Dataset, aside: float) -> xr.DataArray:
-    return xr.DataArray([0.0, aside, 0.0], dims="xyz", coords={"xyz": record.xyz})
+def _lateral_shift(record: xr.Dataset, lateral_offset: float) -> xr.DataArray:
+    return xr.DataArray([0.0, lateral_offset, 0.0], dims="xyz", coords={"xyz": record.xyz})
 
 
-def _flesh(ax: Axes, place: Layout, seen: Silhouette, view: View, strength: float) -> None:
-    """Draw the skin: from the side the far legs lie behind the body and the near ones, the right, before it."""
-    edge, body, far_leg, pale, plate = (_paler(c, strength) for c in (_EDGE, _BODY, _FAR, _PALE, _PLATE))
-    for limb, pieces in zip(place.limbs, seen.legs, strict=True):
-        near = view == "side" and limb.side < 0
-        far = view == "side" and not near
-        face, order = (far_leg, 0.8) if far else (body, 2.6) if near else (body, 1.0)
-        # strokes of all pieces first, then their fillings: what is left is the outline of them all
-        whole = united(pieces)
-        ax.add_artist(PathPatch(whole, facecolor=edge, edgecolor=edge, linewidth=1.8, joinstyle="round", zorder=order))
-        ax.add_artist(PathPatch(whole, facecolor=face, edgecolor=face, linewidth=0.2, zorder=order + 0.01))
-        ax.update_datalim(whole.vertices)  # add_patch would look for the extremes of every edge, which takes long
-    for piece, face, order in ((seen.jaw, pale, 1.9), (seen.body, body, 2.0)):
+def _draw_skin(ax: Axes, robot_layout: Layout, outline: Silhouette, view: View, strength: float) -> None:
+    """Draw the skin; from the side the left legs lie behind the body and the right legs in front of it.
+
+    Args:
+        ax: to draw on.
+        robot_layout: layout of the robot.
+        outline: silhouette in the view.
+        view: from above or from the side.
+        strength: of the colours; below one they fade to white.
+    """
+    edge, body, far_leg, pale_face, plate = (
+        _paler(c, strength) for c in (_EDGE, _BODY, _FAR_COLOUR, _PALE_COLOUR, _PLATE)
+    )
+    for limb, pieces in zip(robot_layout.limbs, outline.legs, strict=True):
+        is_near = view == "side" and limb.side < 0
+        is_far = view == "side" and not is_near
+        face, order = (far_leg, 0.8) if is_far else (body, 2.6) if is_near else (body, 1.0)
+        # strokes first, then fillings: only the common outline of all pieces remains
+        leg_path = united(pieces)
+        ax.add_artist(
+            PathPatch(leg_path, facecolor=edge, edgecolor=edge, linewidth=1.8, joinstyle="round", zorder=order)
+        )
+        ax.add_artist(PathPatch(leg_path, facecolor=face, edgecolor=face, linewidth=0.2, zorder=order + 0.01))
+        ax.update_datalim(leg_path.vertices)  # faster than add_patch, which searches the extremes of every edge
+    for piece, face, order in ((outline.jaw, pale_face, 1.9), (outline.body, body, 2.0)):
         if not len(piece):
             continue
         ax.add_patch(Polygon(piece, facecolor=face, edgecolor=edge, linewidth=0.9, joinstyle="round", zorder=order))
-    for eye in seen.eyes if view == "above" else seen.eyes[1:]:
+    for eye in outline.eyes if view == "above" else outline.eyes[1:]:
         ax.add_patch(Polygon(eye, facecolor=edge, edgecolor="none", zorder=2.4))
-    if strength == 1.0 and seen.scutes:
-        plates = united(seen.scutes)
+    if strength == 1.0 and outline.scutes:
+        plates = united(outline.scutes)
         ax.add_artist(PathPatch(plates, facecolor=plate, edgecolor=edge, linewidth=0.35, zorder=2.2))
         ax.update_datalim(plates.vertices)
 
@@ -204,12 +216,13 @@ def united(pieces: Sequence[np.ndarray]) -> Path:
 
 
 def _paler(colour: str, strength: float) -> str:
-    red, green, blue = (1.0 - strength * (1.0 - part) for part in to_rgb(colour))
+    red, green, blue = (1.0 - strength * (1.0 - component) for component in to_rgb(colour))
     return to_hex((red, green, blue))
 
 
-def _support(ax: Axes, record: xr.Dataset, time: float, least: float) -> None:
-    corners = support_polygon(record, time, least)
+def _support(ax: Axes, record: xr.Dataset, time: float, load_threshold: float) -> None:
+    """Draw the support polygon, or the line between two standing feet."""
+    corners = support_polygon(record, time, load_threshold)
     if len(corners) >= 3:
         ax.add_patch(Polygon(corners, facecolor="#F2C46D", alpha=0.45, edgecolor="#B8860B", linewidth=1.4, zorder=0.5))
     elif len(corners) == 2:
@@ -217,6 +230,7 @@ def _support(ax: Axes, record: xr.Dataset, time: float, least: float) -> None:
 
 
 def _mark_mass(ax: Axes, com: np.ndarray, view: View) -> None:
+    """Mark the projected centre of mass; from the side with a line down to the ground."""
     style: dict[str, Any] = {"color": COLOURS["alarm"], "zorder": 5}
     ax.plot(com[0], com[1], "o", markersize=7, markerfacecolor="white", markeredgewidth=1.8, **style)
     ax.plot(com[0], com[1], "+", markersize=7, markeredgewidth=1.4, **style)

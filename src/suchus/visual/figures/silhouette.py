@@ -26,7 +26,7 @@ class Silhouette(NamedTuple):
     eyes: list[np.ndarray]
     """Left and right."""
     legs: list[list[np.ndarray]]
-    """In the order of the robot's limbs: convex pieces from haunch to claws that overlap; together they are the leg."""
+    """Legs in the order of the robot's limbs, each as overlapping convex pieces from haunch to claws."""
 
 
 def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Silhouette:
@@ -39,39 +39,39 @@ def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Sil
     """
     surface, flat = skin(robot), vertices[:, list(axes)]
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
-    parts = np.split(flat, starts[1:])
-    sizes = np.array([len(part) for part in parts])
+    part_points = np.split(flat, starts[1:])
+    sizes = np.array([len(points) for points in part_points])
     if surface.plain:
-        return _plain(layout(robot), surface, starts, parts)
+        return _plain(layout(robot), surface, starts, part_points)
     legs: list[list[np.ndarray]] = [[], [], [], []]
     names = _owners(surface, starts)
-    for part, owner in zip(parts, names, strict=True):
+    for points, owner in zip(part_points, names, strict=True):
         if owner >= 0:
-            legs[owner] += [_hull(part)] if legs[owner] else _bands(part, LEG_AROUND, bare=axes == (0, 2))
-    axial = [part for part, owner in zip(parts, names, strict=True) if owner < 0]
-    spikes = [part for part in axial[2:] if len(part) == _SCUTE]
+            legs[owner] += [_hull(points)] if legs[owner] else _bands(points, LEG_AROUND, skip_root=axes == (0, 2))
+    axial = [points for points, owner in zip(part_points, names, strict=True) if owner < 0]
+    spikes = [points for points in axial[2:] if len(points) == _SCUTE]
     eyes = [axial[i] for i in np.flatnonzero(sizes[: len(axial)] == _EYE)[:2]]
     return Silhouette(
         body=_sides(axial[0], SKIN.around),
         jaw=_sides(axial[1], JAW_AROUND),
-        scutes=[_hull(part[[0, 2, 4, 6, 8]]) for part in spikes],  # every other corner, and the apex
-        eyes=[_hull(part) for part in eyes],
+        scutes=[_hull(points[[0, 2, 4, 6, 8]]) for points in spikes],  # every other corner, and the apex
+        eyes=[_hull(points) for points in eyes],
         legs=legs,
     )
 
 
-def _plain(place: Layout, surface: Skin, starts: np.ndarray, parts: list[np.ndarray]) -> Silhouette:
+def _plain(robot_layout: Layout, surface: Skin, starts: np.ndarray, part_points: list[np.ndarray]) -> Silhouette:
     """Return the silhouette of a plain body: its hide, its eyes, and the hulls of its limbs' links and feet."""
-    legs: list[list[np.ndarray]] = [[] for _ in place.limbs]
-    for start, part in zip(starts[3:], parts[3:], strict=True):
+    legs: list[list[np.ndarray]] = [[] for _ in robot_layout.limbs]
+    for start, points in zip(starts[3:], part_points[3:], strict=True):
         bone = int(surface.indices[start, 0])
-        owner = next(i for i, limb in enumerate(place.limbs) if limb.tip >= bone)
-        legs[owner].append(_hull(part))
+        owner = next(i for i, limb in enumerate(robot_layout.limbs) if limb.tip >= bone)
+        legs[owner].append(_hull(points))
     return Silhouette(
-        body=_sides(parts[0], AROUND),
+        body=_sides(part_points[0], AROUND),
         jaw=np.empty((0, 2)),
         scutes=[],
-        eyes=[_hull(part) for part in parts[1:3]],
+        eyes=[_hull(points) for points in part_points[1:3]],
         legs=legs,
     )
 
@@ -82,34 +82,37 @@ _SCUTE, _EYE = 10, 98  # vertices of a scute and of an eye
 def _owners(surface: Skin, starts: np.ndarray) -> list[int]:
     """Return for each part the leg that it belongs to, -1 for head, trunk and tail."""
     shins = {surface.bones.index(f"{leg}_{bone}"): i for i, leg in enumerate(LEGS) for bone in ("femur", "tibia")}
-    last = [*(starts[1:] - 1), len(surface.part) - 1]  # a limb ends at its foot
-    return [shins.get(int(surface.indices[at, 0]), -1) for at in last]
+    last_vertices = [*(starts[1:] - 1), len(surface.part) - 1]  # a limb ends at its foot
+    return [shins.get(int(surface.indices[vertex, 0]), -1) for vertex in last_vertices]
 
 
-def _sides(part: np.ndarray, around: int) -> np.ndarray:
+def _sides(points: np.ndarray, ring_size: int) -> np.ndarray:
     """Return the outline of a loft: on each ring the two points farthest across its axis, and both ends."""
-    rings, first, last = part[:-2].reshape(-1, around, 2)[::2], part[-2], part[-1]
-    middle = rings.mean(axis=1)
-    ahead = np.gradient(middle, axis=0)
-    across = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
-    aside = np.einsum("rpi,ri->rp", rings - middle[:, None], across)
-    each = np.arange(len(rings))
-    left, right = rings[each, aside.argmax(axis=1)], rings[each, aside.argmin(axis=1)]
-    return np.concatenate([first[None], left, last[None], right[::-1]])
+    rings, start_point, end_point = points[:-2].reshape(-1, ring_size, 2)[::2], points[-2], points[-1]
+    centers = rings.mean(axis=1)
+    direction = np.gradient(centers, axis=0)
+    normal = np.stack([-direction[:, 1], direction[:, 0]], axis=-1)
+    lateral_offset = np.einsum("rpi,ri->rp", rings - centers[:, None], normal)
+    ring_index = np.arange(len(rings))
+    left_side, right_side = (
+        rings[ring_index, lateral_offset.argmax(axis=1)],
+        rings[ring_index, lateral_offset.argmin(axis=1)],
+    )
+    return np.concatenate([start_point[None], left_side, end_point[None], right_side[::-1]])
 
 
-def _bands(part: np.ndarray, around: int, *, bare: bool) -> list[np.ndarray]:
+def _bands(points: np.ndarray, ring_size: int, *, skip_root: bool) -> list[np.ndarray]:
     """Return the pieces of a limb, which may point at the viewer: hulls of neighbouring rings.
 
     Args:
-        part: the limb.
-        around: points of a ring.
-        bare: whether to leave out its root, which is inside the body.
+        points: the limb.
+        ring_size: points of a ring.
+        skip_root: whether to leave out its root, which is inside the body.
     """
-    rings = part[:-2].reshape(-1, around, 2)[:, ::2]
-    kept = rings[np.unique(np.linspace(len(rings) // 4 if bare else 0, len(rings) - 1, 11).astype(int))]
-    return [_hull(np.concatenate(pair)) for pair in pairwise(kept)]
+    rings = points[:-2].reshape(-1, ring_size, 2)[:, ::2]
+    used_rings = rings[np.unique(np.linspace(len(rings) // 4 if skip_root else 0, len(rings) - 1, 11).astype(int))]
+    return [_hull(np.concatenate(pair)) for pair in pairwise(used_rings)]
 
 
-def _hull(part: np.ndarray) -> np.ndarray:
-    return part[ConvexHull(part, qhull_options="QJ").vertices]
+def _hull(points: np.ndarray) -> np.ndarray:
+    return points[ConvexHull(points, qhull_options="QJ").vertices]

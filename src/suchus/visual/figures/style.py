@@ -46,13 +46,13 @@ COLOURS: Final[Mapping[str, str]] = MappingProxyType(
 )
 """Colour of each role: the four arms, ours and the article's, the legs, spine and tail."""
 
-_MORE: Final = ("#009E73", "#B0558A", "#56B4E9", "#E69F00", "#767676", "#333333")
+_EXTRA_COLOURS: Final = ("#009E73", "#B0558A", "#56B4E9", "#E69F00", "#767676", "#333333")
 
 
 def limb_colours(robot: Robot) -> list[tuple[str, str]]:
     """Return each limb of a robot with its colour: those of the article's legs, then others in turn."""
     names = layout(robot).limb_names
-    spare = iter(_MORE * (len(names) // len(_MORE) + 1))
+    spare = iter(_EXTRA_COLOURS * (len(names) // len(_EXTRA_COLOURS) + 1))
     return [(name, COLOURS[name] if name in LEGS else next(spare)) for name in names]
 
 
@@ -118,7 +118,7 @@ STYLE: Final[Mapping[Any, Any]] = MappingProxyType(
 
 
 DATA: Final = ".data.csv"
-"""How the name of the table that stands beside a figure ends, in the place of ``.svg``."""
+"""Ending of the file name of a figure's table, in place of ``.svg``."""
 
 
 def styled(**settings: Any) -> AbstractContextManager[None]:
@@ -185,15 +185,15 @@ def save(figure: Figure, folder: str | Path, stem: str) -> tuple[Path, Path]:
         Unwritable: the place cannot be written to.
     """
     svg, png, data = places(folder, stem)
-    about = {"Date": None, "Creator": None, "Description": caption(figure)}
+    svg_metadata = {"Date": None, "Creator": None, "Description": caption(figure)}
     layout = figure.get_layout_engine()
     with styled(svg__hashsalt=stem, figure__constrained_layout__use=False):
-        for path, kind, metadata in ((svg, "svg", about), (png, "png", {"Software": None})):
-            drawn = BytesIO()
-            figure.savefig(drawn, format=kind, metadata=metadata)
-            figure.set_layout_engine(None)  # the axes stand where the first file has them, and are not placed again
-            write(path, drawn.getvalue())
+        for path, kind, metadata in ((svg, "svg", svg_metadata), (png, "png", {"Software": None})):
+            buffer = BytesIO()
+            figure.savefig(buffer, format=kind, metadata=metadata)
+            figure.set_layout_engine(None)  # the second file keeps the layout of the first
+            write(path, buffer.getvalue())
     figure.set_layout_engine(layout)
-    if numbers := table(figure):
-        write(data, numbers)
+    if csv_text := table(figure):
+        write(data, csv_text)
     return svg, png

@@ -15,13 +15,13 @@ from matplotlib.transforms import Bbox, ScaledTranslation
 
 from suchus.visual.figures.data import field_of, hidden
 
-_INSIDE: Final = (
+_INNER_LOCATIONS: Final = (
     "upper left", "upper right", "lower right", "lower left",
     "upper center", "lower center", "center left", "center right", "center",
 )  # fmt: skip
 """Places inside the axes, in the order in which they are tried."""
 _GAP: Final = 0.06
-"""Between the axis and a legend below it [inch]."""
+"""Gap between the axis and a legend below it [inch]."""
 
 
 class Uncovering(ConstrainedLayoutEngine):
@@ -30,11 +30,11 @@ class Uncovering(ConstrainedLayoutEngine):
     def execute(self, fig: Figure) -> None:
         """Place axes and legends of a figure."""
         super().execute(fig)
-        for inside in (True, False):  # what fits inside before others moved may not fit afterwards
+        for try_inside in (True, False):  # a legend that fitted inside may not fit after others moved
             if not (lying := list(covering(fig))):
                 return
             for ax, legend in lying:
-                if not (inside and _moved_inside(fig, ax, legend)):
+                if not (try_inside and _move_inside(fig, ax, legend)):
                     _move_below(fig, ax, legend)
             super().execute(fig)
 
@@ -52,94 +52,107 @@ def covering(figure: Figure) -> Iterator[tuple[Axes, Legend]]:
 
 def _lies_on_data(figure: Figure, legend: Legend) -> bool:
     box = legend.get_window_extent()
-    return any(_meets(one, ax, box) for ax in figure.axes if ax.get_visible() for one in _shown(ax))
+    return any(_meets(artist, ax, box) for ax in figure.axes if ax.get_visible() for artist in _visible_artists(ax))
 
 
-def _shown(ax: Axes) -> Iterator[Artist]:
-    """Yield what shows data or words in some axes, and axes that are colour bars as a whole."""
+def _visible_artists(ax: Axes) -> Iterator[Artist]:
+    """Yield the artists that show data or text in axes; of a colour bar its whole area."""
     if ax.get_label() == "<colorbar>":
         yield ax.patch
         return
-    for one in (*ax.lines, *ax.patches, *ax.collections, *ax.images, *ax.texts):
+    for artist in (*ax.lines, *ax.patches, *ax.collections, *ax.images, *ax.texts):
         ground = (*ax.lines, *ax.patches)
-        across = one in ground and not all(one.get_transform().contains_branch_seperately(ax.transData))
-        if one.get_visible() and not (across and hidden(one.get_label())):
-            yield one
+        spans_axes = artist in ground and not all(artist.get_transform().contains_branch_seperately(ax.transData))
+        if artist.get_visible() and not (spans_axes and hidden(artist.get_label())):
+            yield artist
 
 
-def _meets(one: Artist, ax: Axes, box: Bbox) -> bool:
-    """Return whether something that is drawn in some axes lies within a box of the picture [pixel]."""
-    seen = Bbox.intersection(box, ax.bbox) if one.get_clip_on() and one is not ax.patch else box
-    if seen is None:
+def _meets(artist: Artist, ax: Axes, box: Bbox) -> bool:
+    """Return whether an artist shows something within a box of the picture.
+
+    Args:
+        artist: drawn in the axes.
+        ax: the axes, which may clip the artist.
+        box: of a legend [pixel].
+    """
+    visible_box = Bbox.intersection(box, ax.bbox) if artist.get_clip_on() and artist is not ax.patch else box
+    if visible_box is None:
         return False
-    if isinstance(one, Line2D):
-        path = one.get_transform().transform_path(one.get_path())
-        half = 0.5 * one.get_markersize() * ax.figure.dpi / 72 if one.get_marker() not in ("None", "", " ", None) else 0
-        return (half > 0 and _holds(seen.padded(half), path.vertices)) or (
-            one.get_linestyle() not in ("None", "", " ") and path.intersects_bbox(seen, filled=False)
+    if isinstance(artist, Line2D):
+        path = artist.get_transform().transform_path(artist.get_path())
+        radius = (
+            0.5 * artist.get_markersize() * ax.figure.dpi / 72
+            if artist.get_marker() not in ("None", "", " ", None)
+            else 0
         )
-    if isinstance(one, Collection):
-        return _collection_meets(one, ax, seen)
-    if hasattr(one, "get_path") and hasattr(one, "get_facecolor"):  # a patch
-        path = one.get_transform().transform_path(one.get_path())
-        return bool(path.intersects_bbox(seen, filled=one.get_facecolor()[3] > 0))
-    return bool(one.get_window_extent().overlaps(seen))  # a picture, words
+        return (radius > 0 and _holds(visible_box.padded(radius), path.vertices)) or (
+            artist.get_linestyle() not in ("None", "", " ") and path.intersects_bbox(visible_box, filled=False)
+        )
+    if isinstance(artist, Collection):
+        return _collection_meets(artist, ax, visible_box)
+    if hasattr(artist, "get_path") and hasattr(artist, "get_facecolor"):  # a patch
+        path = artist.get_transform().transform_path(artist.get_path())
+        return bool(path.intersects_bbox(visible_box, filled=artist.get_facecolor()[3] > 0))
+    return bool(artist.get_window_extent().overlaps(visible_box))  # a picture or a text
 
 
-def _collection_meets(one: Collection, ax: Axes, seen: Bbox) -> bool:
-    if isinstance(one, QuadMesh):
-        corners = np.asarray(one.get_coordinates(), dtype=float)
+def _collection_meets(collection: Collection, ax: Axes, visible_box: Bbox) -> bool:
+    """Return whether a field, points, lines or areas show something within a box of the picture [pixel]."""
+    if isinstance(collection, QuadMesh):
+        corners = np.asarray(collection.get_coordinates(), dtype=float)
         grid = ax.transData.transform(corners.reshape(-1, 2)).reshape(corners.shape)
-        each = np.stack([grid[1:, 1:], grid[1:, :-1], grid[:-1, 1:], grid[:-1, :-1]])
-        low, high = each.min(axis=0), each.max(axis=0)
-        has = np.isfinite(field_of(one)).reshape(low.shape[:2])
-        return bool((has & ((low < seen.max) & (high > seen.min)).all(axis=-1)).any())
-    offsets: Any = one.get_offsets()
-    if isinstance(one, PathCollection):
-        half = 0.5 * float(np.sqrt(np.max(one.get_sizes(), initial=0.0))) * ax.figure.dpi / 72
-        return _holds(seen.padded(half), one.get_offset_transform().transform(np.ma.filled(offsets, np.nan)))
-    filled = bool(np.size(one.get_facecolor()))
+        cell_corners = np.stack([grid[1:, 1:], grid[1:, :-1], grid[:-1, 1:], grid[:-1, :-1]])
+        cell_min, cell_max = cell_corners.min(axis=0), cell_corners.max(axis=0)
+        has_value = np.isfinite(field_of(collection)).reshape(cell_min.shape[:2])
+        return bool((has_value & ((cell_min < visible_box.max) & (cell_max > visible_box.min)).all(axis=-1)).any())
+    offsets: Any = collection.get_offsets()
+    if isinstance(collection, PathCollection):
+        radius = 0.5 * float(np.sqrt(np.max(collection.get_sizes(), initial=0.0))) * ax.figure.dpi / 72
+        return _holds(
+            visible_box.padded(radius), collection.get_offset_transform().transform(np.ma.filled(offsets, np.nan))
+        )
+    is_filled = bool(np.size(collection.get_facecolor()))
     return any(
-        one.get_transform().transform_path(path).intersects_bbox(seen, filled=filled)
-        for path in one.get_paths()
+        collection.get_transform().transform_path(path).intersects_bbox(visible_box, filled=is_filled)
+        for path in collection.get_paths()
         if np.size(path.vertices)
     )
 
 
 def _holds(box: Bbox, points: Any) -> bool:
-    places = np.asarray(points, dtype=float).reshape(-1, 2)
-    return bool(((places > box.min) & (places < box.max)).all(axis=1).any())
+    positions = np.asarray(points, dtype=float).reshape(-1, 2)
+    return bool(((positions > box.min) & (positions < box.max)).all(axis=1).any())
 
 
-def _moved_inside(figure: Figure, ax: Axes, legend: Legend) -> bool:
+def _move_inside(figure: Figure, ax: Axes, legend: Legend) -> bool:
     """Move a legend to the first place inside its axes where it covers nothing; False where there is none."""
     legend.set_bbox_to_anchor(None)
-    for place in _INSIDE:
-        legend.set_loc(place)
+    for location in _INNER_LOCATIONS:
+        legend.set_loc(location)
         box = legend.get_window_extent()
-        within = ax.bbox.contains(*box.min) and ax.bbox.contains(*box.max)
-        if within and not _lies_on_data(figure, legend):
+        is_inside = ax.bbox.contains(*box.min) and ax.bbox.contains(*box.max)
+        if is_inside and not _lies_on_data(figure, legend):
             return True
     return False
 
 
 def _move_below(figure: Figure, ax: Axes, legend: Legend) -> None:
     """Make a legend anew below its axes, their numbers and their label, in as many columns as they are wide."""
-    words = legend.get_texts()
-    boxes = [text.get_window_extent() for text in words]
-    wide = boxes[0].x0 - legend.get_window_extent().x0 + max(box.width for box in boxes)
+    texts = legend.get_texts()
+    boxes = [text.get_window_extent() for text in texts]
+    entry_width = boxes[0].x0 - legend.get_window_extent().x0 + max(box.width for box in boxes)
     legend.set_in_layout(False)
-    drawn = ax.get_tightbbox()
-    assert drawn is not None
-    below = (ax.bbox.y0 - drawn.y0) / figure.dpi + _GAP
+    tight_box = ax.get_tightbbox()
+    assert tight_box is not None
+    offset = (ax.bbox.y0 - tight_box.y0) / figure.dpi + _GAP
     ax.legend(
         [handle for handle in legend.legend_handles if handle is not None],
-        [text.get_text() for text in words],
+        [text.get_text() for text in texts],
         loc="upper left",
         bbox_to_anchor=(0.0, 0.0),
-        bbox_transform=ax.transAxes + ScaledTranslation(0.0, -below, figure.dpi_scale_trans),
+        bbox_transform=ax.transAxes + ScaledTranslation(0.0, -offset, figure.dpi_scale_trans),
         borderaxespad=0.0,
-        ncols=min(max(1, int(ax.bbox.width / wide)), len(words)),
-        fontsize=words[0].get_fontsize(),
+        ncols=min(max(1, int(ax.bbox.width / entry_width)), len(texts)),
+        fontsize=texts[0].get_fontsize(),
         title=legend.get_title().get_text() or None,
     )

@@ -22,7 +22,7 @@ from suchus.visual.figures.style import captioned, panels, styled
 from suchus.visual.skin.mesh import Mesh, joined, loft, normals
 
 _LIGHT = np.array([-0.35, 0.75, 0.56])  # to the right, up, towards the camera; of length 1
-_FINER = 2  # pixels along each side of one that is shown
+_SUPERSAMPLING = 2  # computed pixels along each side of a shown pixel
 
 
 class Viewpoint(NamedTuple):
@@ -42,20 +42,26 @@ class Viewpoint(NamedTuple):
     @property
     def axes(self) -> np.ndarray:
         """To the right, up, and towards the camera, as rows; shape (3, 3) [-]."""
-        (c, s), (up, flat) = (
+        (c, s), (vertical, horizontal) = (
             (np.cos(self.azimuth), np.sin(self.azimuth)),
             (np.sin(self.elevation), np.cos(self.elevation)),
         )
-        return np.array([[-s, c, 0.0], [-c * up, -s * up, flat], [c * flat, s * flat, up]])
+        return np.array(
+            [[-s, c, 0.0], [-c * vertical, -s * vertical, horizontal], [c * horizontal, s * horizontal, vertical]]
+        )
 
     def seen(self, points: np.ndarray, size: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
         """Return where points are in a picture, from its lower left corner (point, 2) [pixel], and how far off [m]."""
-        right, up, near = self.axes @ (points - np.array(self.target)).T
-        scale = size[0] / self.width * self.distance / (self.distance - near)
-        return np.stack([0.5 * size[0] + scale * right, 0.5 * size[1] + scale * up], axis=1), self.distance - near
+        right, upward, toward_camera = self.axes @ (points - np.array(self.target)).T
+        scale = size[0] / self.width * self.distance / (self.distance - toward_camera)
+        return np.stack(
+            [0.5 * size[0] + scale * right, 0.5 * size[1] + scale * upward], axis=1
+        ), self.distance - toward_camera
 
 
-def picture(solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], *, share: float = 0.8) -> np.ndarray:
+def picture(
+    solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], *, clear_fraction: float = 0.8
+) -> np.ndarray:
     """Return a picture on white of a solid and of surfaces that it is seen through, (row, column, 3) uint8.
 
     Args:
@@ -63,44 +69,52 @@ def picture(solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], 
         clear: surfaces of which the nearest lets through what is solid behind it.
         camera: where it is taken from.
         size: columns and rows [pixel].
-        share: of the light that comes from the clear surfaces [-].
+        clear_fraction: of the light that comes from the clear surfaces [-].
     """
-    alone, both = (_drawn(meshes, camera, size) for meshes in ([solid], [solid, clear]))
-    return np.round(share * both + (1.0 - share) * alone).astype(np.uint8)
+    solid_only, combined = (_render(meshes, camera, size) for meshes in ([solid], [solid, clear]))
+    return np.round(clear_fraction * combined + (1.0 - clear_fraction) * solid_only).astype(np.uint8)
 
 
-def _drawn(meshes: Sequence[Mesh], camera: Viewpoint, size: tuple[int, int]) -> np.ndarray:
-    """Return the picture of surfaces that hide what is behind them, (row, column, 3) [0 to 255]."""
-    whole = joined(meshes)
-    fine = (_FINER * size[0], _FINER * size[1])
-    at, depth = camera.seen(whole.vertices, fine)
-    corner = at[whole.faces]
-    order = np.argsort(-depth[whole.faces].mean(axis=1), kind="stable")
-    colours = np.column_stack([_lit(whole, camera), np.ones(len(whole.vertices))])
+def _render(meshes: Sequence[Mesh], camera: Viewpoint, size: tuple[int, int]) -> np.ndarray:
+    """Return the picture of surfaces that hide what is behind them, (row, column, 3) [0 to 255].
+
+    Args:
+        meshes: the surfaces.
+        camera: where the picture is taken from.
+        size: columns and rows [pixel].
+    """
+    mesh = joined(meshes)
+    fine = (_SUPERSAMPLING * size[0], _SUPERSAMPLING * size[1])
+    positions, depth = camera.seen(mesh.vertices, fine)
+    corner = positions[mesh.faces]
+    order = np.argsort(-depth[mesh.faces].mean(axis=1), kind="stable")
+    colours = np.column_stack([_lit_colours(mesh, camera), np.ones(len(mesh.vertices))])
     renderer = RendererAgg(fine[0], fine[1], 72.0)  # type: ignore[no-untyped-call]
     gc = renderer.new_gc()
     gc.set_antialiased(False)
     if len(order):
-        shades = colours[whole.faces[order]]
+        shades = colours[mesh.faces[order]]
         renderer.draw_gouraud_triangles(gc, corner[order], shades, IdentityTransform())
-    found = np.asarray(renderer.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]  # white where nothing is
-    first_rows, *rest = (found[i::_FINER, j::_FINER] for i in range(_FINER) for j in range(_FINER))
-    total = sum((part.astype(np.float32) for part in rest), first_rows.astype(np.float32))
-    return total / _FINER**2
+    pixels = np.asarray(renderer.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]  # white where nothing is
+    first_rows, *other_samples = (
+        pixels[i::_SUPERSAMPLING, j::_SUPERSAMPLING] for i in range(_SUPERSAMPLING) for j in range(_SUPERSAMPLING)
+    )
+    total = sum((sample.astype(np.float32) for sample in other_samples), first_rows.astype(np.float32))
+    return total / _SUPERSAMPLING**2
 
 
-def _lit(mesh: Mesh, camera: Viewpoint) -> np.ndarray:
+def _lit_colours(mesh: Mesh, camera: Viewpoint) -> np.ndarray:
     """Return the colours of a mesh under a high light from behind the camera's left shoulder, (n, 3) [0 to 1]."""
     axes = camera.axes
     normal, light = normals(mesh), axes.T @ _LIGHT
-    normal *= np.where(normal @ axes[2] < 0, -1.0, 1.0)[:, None]  # where a surface is open its other side is seen
+    normal *= np.where(normal @ axes[2] < 0, -1.0, 1.0)[:, None]  # an open surface may show its inner side
     half = light + axes[2]
     half /= np.linalg.norm(half)
     straight = np.clip(normal @ light, 0.0, 1.0)[:, None]
     glint = np.clip(normal @ half, 0.0, 1.0)[:, None] ** 40
     facing = (normal @ axes[2])[:, None]
-    shown = mesh.colours * (0.45 + 0.45 * straight + 0.2 * facing) + 0.2 * glint
-    return np.clip(shown, 0.0, 1.0)
+    vertex_colours = mesh.colours * (0.45 + 0.45 * straight + 0.2 * facing) + 0.2 * glint
+    return np.clip(vertex_colours, 0.0, 1.0)
 
 
 SKIN = (0.42, 0.44, 0.36)
@@ -108,18 +122,18 @@ SKIN = (0.42, 0.44, 0.36)
 AROUND = 32
 """Points around a section of the body [-]."""
 LINES = tuple(f"film_{name}" for name in ("x", "y", "heading", "half_width"))
-"""What a record holds of the body in each frame, as (frame, station)."""
+"""Variables of the body in a record, each (frame, station)."""
 _FIELDS, _UNITS = ("vortices", "spin"), ("vortex_level", "vortex_unit", "spin_unit")
 _DARKEST = 0.92  # share of the colour map that is used; its ends are nearly black
-_SECONDS = 4.0  # in which the film shows a cycle
+_SECONDS = 4.0  # [s]; duration of the cycle in the film
 
 
-def check_filmed(record: xr.Dataset, whose: str = "the record") -> None:
+def check_filmed(record: xr.Dataset, subject: str = "the record") -> None:
     """Refuse a record without the vortices of a swim in three dimensions over a cycle.
 
     Args:
         record: in question.
-        whose: how a sentence begins.
+        subject: how a sentence begins.
 
     Raises:
         IncompatibleRecord: something is missing, or is no number, or the sizes do not go together.
@@ -127,21 +141,25 @@ def check_filmed(record: xr.Dataset, whose: str = "the record") -> None:
     missing = [name for name in (*_FIELDS, *_UNITS, "half_height", *LINES) if name not in record]
     if missing or record.sizes.get("frame", 0) < 1:
         raise IncompatibleRecord(
-            f"{whose} has no {', '.join(missing) or 'frame'}: only swims in three dimensions whose vortices were kept "
-            "can be shown so, as the record.nc of suchus run swim_3d."
+            f"{subject} has no {', '.join(missing) or 'frame'}: only swims in three dimensions whose vortices were "
+            "kept can be shown so, as the record.nc of suchus run swim_3d."
         )
-    asked: dict[str, tuple[str, ...]] = {"half_height": ("station",)}
-    asked |= dict.fromkeys(_FIELDS, ("frame", "z", "y", "x"))
-    asked |= dict.fromkeys(_UNITS, ())
-    asked |= dict.fromkeys(LINES, ("frame", "station"))
+    expected_dims: dict[str, tuple[str, ...]] = {"half_height": ("station",)}
+    expected_dims |= dict.fromkeys(_FIELDS, ("frame", "z", "y", "x"))
+    expected_dims |= dict.fromkeys(_UNITS, ())
+    expected_dims |= dict.fromkeys(LINES, ("frame", "station"))
     axes = [axis for axis in ("frame", "z", "y", "x") if axis in record.coords]
-    named = [*asked, *axes]
-    wrong = [name for name in named if record[name].dims != asked.get(name, (name,)) or not _numbers(record[name])]
-    wrong += [name for name in _UNITS if name not in wrong and not float(record[name]) > 0.0]
-    if wrong or len(axes) < 4 or min(record.sizes[axis] for axis in ("z", "y", "x", "station")) < 2:
+    variable_names = [*expected_dims, *axes]
+    invalid_names = [
+        name
+        for name in variable_names
+        if record[name].dims != expected_dims.get(name, (name,)) or not _numbers(record[name])
+    ]
+    invalid_names += [name for name in _UNITS if name not in invalid_names and not float(record[name]) > 0.0]
+    if invalid_names or len(axes) < 4 or min(record.sizes[axis] for axis in ("z", "y", "x", "station")) < 2:
         raise IncompatibleRecord(
-            f"{whose} holds {', '.join(wrong) or 'places or sizes'} in another form than swims in three dimensions do, "
-            "as the record.nc of suchus run swim_3d."
+            f"{subject} holds {', '.join(invalid_names) or 'places or sizes'} in another form than swims in three "
+            "dimensions do, as the record.nc of suchus run swim_3d."
         )
 
 
@@ -163,27 +181,27 @@ def surface(
     q, spin = (_blocks(record[name].values[frame].astype(float), coarse) for name in ("vortices", "spin"))
     h = coarse * float(record.x[1] - record.x[0])
     start = [float(record[axis][0]) + 0.5 * (h - h / coarse) for axis in "xyz"]
-    q, spin = (np.concatenate([part[:1], part]) for part in (q, spin))  # the image below the plane of symmetry
-    at = float((record.vortex_level if level is None else level) / record.vortex_unit)
-    found = isosurface(q, at, (start[0], start[1], start[2] - h), h)
-    turning = map_coordinates(spin, found.places.T, order=1, mode="nearest") * float(record.spin_unit)
-    return found, turning
+    q, spin = (np.concatenate([values[:1], values]) for values in (q, spin))  # the image below the plane of symmetry
+    threshold = float((record.vortex_level if level is None else level) / record.vortex_unit)
+    iso_surface = isosurface(q, threshold, (start[0], start[1], start[2] - h), h)
+    turning = map_coordinates(spin, iso_surface.places.T, order=1, mode="nearest") * float(record.spin_unit)
+    return iso_surface, turning
 
 
 def _blocks(values: np.ndarray, coarse: int) -> np.ndarray:
     nz, ny, nx = (n // coarse for n in values.shape)
-    cut = values[: nz * coarse, : ny * coarse, : nx * coarse]
-    means: np.ndarray = cut.reshape(nz, coarse, ny, coarse, nx, coarse).mean(axis=(1, 3, 5))
+    trimmed = values[: nz * coarse, : ny * coarse, : nx * coarse]
+    means: np.ndarray = trimmed.reshape(nz, coarse, ny, coarse, nx, coarse).mean(axis=(1, 3, 5))
     return means
 
 
 def body(record: xr.Dataset, frame: int) -> Mesh:
     """Return the body, elliptic sections along its midline."""
-    x, y, heading, wide = (record[f"film_{name}"].values[frame].astype(float)[:, None]
+    x, y, heading, half_width = (record[f"film_{name}"].values[frame].astype(float)[:, None]
                            for name in ("x", "y", "heading", "half_width"))  # fmt: skip
     turn = 2 * np.pi * np.arange(AROUND) / AROUND
-    aside, up = wide * np.cos(turn), record.half_height.values[:, None] * np.sin(turn)
-    return loft(np.stack([x - aside * np.sin(heading), y + aside * np.cos(heading), up], axis=-1)).painted(
+    lateral, vertical = half_width * np.cos(turn), record.half_height.values[:, None] * np.sin(turn)
+    return loft(np.stack([x - lateral * np.sin(heading), y + lateral * np.cos(heading), vertical], axis=-1)).painted(
         np.array(SKIN)
     )
 
@@ -200,16 +218,16 @@ def around(
         level: second invariant on them [1/s2].
         lower: whether only the half below the plane of symmetry is returned.
     """
-    found, spin = surface(record, frame, coarse=coarse, level=level)
-    half = Mesh(found.points, found.faces, colours(spin, colour_limit(record)))
-    below = Mesh(found.points * np.array([1.0, 1.0, -1.0]), found.faces[:, ::-1], half.colours)
-    return below if lower else joined([half, below])
+    iso_surface, spin = surface(record, frame, coarse=coarse, level=level)
+    half = Mesh(iso_surface.points, iso_surface.faces, colours(spin, colour_limit(record)))
+    lower_half = Mesh(iso_surface.points * np.array([1.0, 1.0, -1.0]), iso_surface.faces[:, ::-1], half.colours)
+    return lower_half if lower else joined([half, lower_half])
 
 
 def colours(spin: np.ndarray, limit: float) -> np.ndarray:
     """Return the colours of a vorticity about z, (n, 3) [0 to 1]: red counter-clockwise as seen from above."""
-    share = 0.5 + 0.5 * _DARKEST * np.clip(spin / limit, -1.0, 1.0)
-    return np.asarray(colormaps[VORTICITY](share)[:, :3])
+    fraction = 0.5 + 0.5 * _DARKEST * np.clip(spin / limit, -1.0, 1.0)
+    return np.asarray(colormaps[VORTICITY](fraction)[:, :3])
 
 
 def colour_limit(record: xr.Dataset) -> float:
@@ -220,14 +238,14 @@ def colour_limit(record: xr.Dataset) -> float:
 def camera(record: xr.Dataset) -> Viewpoint:
     """Return where pictures of a record are taken from: obliquely from above, beside the body."""
     x, y = record.film_x.values, record.y.values
-    length, middle = float(np.ptp(x[0])), 0.5 * float(x.min() + x.max())
-    target, width = (middle + 0.26 * length, -0.14 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
+    length, center = float(np.ptp(x[0])), 0.5 * float(x.min() + x.max())
+    target, width = (center + 0.26 * length, -0.14 * length, 0.0), 1.2 * length + 0.25 * float(np.ptp(y))
     return Viewpoint(azimuth=-1.05, elevation=0.62, distance=3.2 * length, target=target, width=width)
 
 
-def hexed(share: float) -> str:
+def hexed(relative_value: float) -> str:
     """Return the colour of a vorticity as #rrggbb, from its share of the one at which the colours end [-1 to 1]."""
-    return to_hex(colours(np.array([share]), 1.0)[0])
+    return to_hex(colours(np.array([relative_value]), 1.0)[0])
 
 
 def still(record: xr.Dataset, frame: int, size: tuple[int, int] = (720, 400)) -> np.ndarray:
@@ -241,16 +259,16 @@ def draw_vortices(record: xr.Dataset) -> Figure:
     Args:
         record: of the experiment ``swim_3d``.
     """
-    last = record.sizes["frame"] - 1
+    last_frame = record.sizes["frame"] - 1
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=9.0, height=5.6)
         ax = axes[0, 0]
-        ax.imshow(still(record, last, (1440, 800)), interpolation="none")
+        ax.imshow(still(record, last_frame, (1440, 800)), interpolation="none")
         ax.set_axis_off()
         limit = colour_limit(record)
-        shown = colormaps[VORTICITY](np.linspace(0.5 - 0.5 * _DARKEST, 0.5 + 0.5 * _DARKEST, 256))
-        bar = ScalarMappable(Normalize(-limit, limit), cmap=LinearSegmentedColormap.from_list("spin", shown))
-        figure.colorbar(bar, ax=ax, orientation="horizontal", shrink=0.45, pad=0.02, aspect=32, extend="both",
+        ramp = colormaps[VORTICITY](np.linspace(0.5 - 0.5 * _DARKEST, 0.5 + 0.5 * _DARKEST, 256))
+        mappable = ScalarMappable(Normalize(-limit, limit), cmap=LinearSegmentedColormap.from_list("spin", ramp))
+        figure.colorbar(mappable, ax=ax, orientation="horizontal", shrink=0.45, pad=0.02, aspect=32, extend="both",
                         label="vorticity about the vertical [1/s]")  # fmt: skip
     return captioned(figure, _caption(record))
 
@@ -278,6 +296,7 @@ def film_vortices(record: xr.Dataset, progress: Progress = silent) -> bytes:
 
 
 def _caption(record: xr.Dataset) -> str:
+    """Return the caption of a picture or film of a record's vortices."""
     return (
         f"The robot's body swims to the left, on {int(record.cells[-1])} cells a length at f L² / ν = "
         f"{float(record.reynolds):.0f}. The surfaces lie where the second invariant of the velocity's gradient is Q = "

@@ -14,7 +14,7 @@ RATE = 30.0
 """Frames kept for each second [1/s]; the player moves smoothly between them."""
 MOST = 2700
 """Frames kept at most [-]: a minute and a half at the full rate, 1 MB; longer runs get fewer per second."""
-_NEEDED = (
+_VARIABLES = (
     *("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force"),
     *("tail_force", "tail_tip"),
 )
@@ -34,7 +34,7 @@ class Frames(NamedTuple):
     feet: np.ndarray
     """Centres of the feet, (frame, limb, 3) [m]."""
     forces: np.ndarray
-    """Of the ground on the feet, (frame, limb, 3) [N]."""
+    """Forces of the ground on the feet, (frame, limb, 3) [N]."""
     tail: np.ndarray
     """Tip of the tail [m] and the normal force of the ground on the tail [N], (frame, 4)."""
     level: np.ndarray | None
@@ -42,12 +42,12 @@ class Frames(NamedTuple):
 
 
 def checked(record: xr.Dataset, robot: Robot) -> xr.Dataset:
-    """Return one run of a robot, with what a replay needs of it.
+    """Check a record and return its one run with the variables that a replay needs.
 
     Raises:
         IncompatibleRecord: it is no run on land, several runs, of another robot, or without a frame.
     """
-    check_land(record, _NEEDED, "what a replay is to be made from")
+    check_land(record, _VARIABLES, "what a replay is to be made from")
     if "run" in record.dims:
         count = record.sizes["run"]
         if count != 1:
@@ -69,12 +69,12 @@ def checked(record: xr.Dataset, robot: Robot) -> xr.Dataset:
         raise IncompatibleRecord(
             f"the record's legs are {', '.join(map(str, record.leg.values))}, not {', '.join(limbs) or 'none'}."
         )
-    needed = record[[*_NEEDED, *(name for name in ("water_level",) if name in record)]]
-    values = np.concatenate([_rows(needed[name]) for name in _NEEDED], axis=1)
+    run_variables = record[[*_VARIABLES, *(name for name in ("water_level",) if name in record)]]
+    values = np.concatenate([_rows(run_variables[name]) for name in _VARIABLES], axis=1)
     count = int(np.logical_and.accumulate(np.isfinite(values).all(axis=1)).sum())
     if count == 0:
         raise IncompatibleRecord("the record has no frame to show: run for longer than one sample.")
-    return needed.isel(time=slice(0, count))
+    return run_variables.isel(time=slice(0, count))
 
 
 def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frames:
@@ -89,14 +89,14 @@ def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frame
     span = float(time[-1] - time[0])
     if rate is None:
         step = span / max(len(time) - 1, 1)
-        every = max(1, round(1.0 / RATE / step), int(np.ceil(len(time) / MOST))) if step > 0 else 1
-        rate = 1.0 / (every * step) if step > 0 else RATE
-    wanted = time[0] + np.arange(int(span * rate + 1e-6) + 1) / rate
-    nearest = np.clip(
-        np.searchsorted(time, wanted - 0.5 * np.median(np.diff(time, append=time[-1] + 1))), 0, len(time) - 1
+        stride = max(1, round(1.0 / RATE / step), int(np.ceil(len(time) / MOST))) if step > 0 else 1
+        rate = 1.0 / (stride * step) if step > 0 else RATE
+    frame_times = time[0] + np.arange(int(span * rate + 1e-6) + 1) / rate
+    samples = np.clip(
+        np.searchsorted(time, frame_times - 0.5 * np.median(np.diff(time, append=time[-1] + 1))), 0, len(time) - 1
     )
-    sampled = record.isel(time=nearest)
-    values = {name: sampled[name].values.astype(float) for name in _NEEDED}
+    sampled = record.isel(time=samples)
+    values = {name: sampled[name].values.astype(float) for name in _VARIABLES}
     return Frames(
         start=float(time[0]),
         rate=float(rate),

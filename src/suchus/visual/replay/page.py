@@ -69,7 +69,7 @@ def rendered(
     title: str = "",
     caption: str = "",
     overlaid: bool = False,
-    **more: Any,
+    **template_values: Any,
 ) -> str:
     """Return a template that extends ``replay.html``, filled with runs; see ``replay``.
 
@@ -84,7 +84,7 @@ def rendered(
         title: heading; by default robot and gait.
         caption: one or two sentences.
         overlaid: whether run and ghost begin in the same place.
-        **more: what else the template names.
+        **template_values: further values that the template names.
 
     Raises:
         IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
@@ -93,18 +93,18 @@ def rendered(
     records = [record, *others, *([] if ghost is None else [ghost])]
     if len(labels) < len(records):
         raise InvalidDesign(f"a replay of {len(records)} runs has {len(labels)} labels; give each run a name.")
-    runs = [checked(given, robot) for given in records]
-    grounds = [ground_of(given) or Ground() for given in records]
-    first = frames(runs[0], robot)
-    moving = [first, *(frames(run, robot, first.rate) for run in runs[1:])]
+    runs = [checked(run_record, robot) for run_record in records]
+    grounds = [ground_of(run_record) or Ground() for run_record in records]
+    first_frames = frames(runs[0], robot)
+    moving = [first_frames, *(frames(run, robot, first_frames.rate) for run in runs[1:])]
     overlaid = overlaid or grounds[0].relief is not None
     meta, data = scene(robot, moving, labels, grounds[0], overlaid=overlaid)
-    still, still_time = _still(robot, runs[0])
+    still_picture, still_time = _still_picture(robot, runs[0])
     return environment().get_template(template).render(
         title=title or f"{robot.name}: {_text(record, 'gait', 'a run on land').replace('_', ' ')}",
-        caption=" ".join(f"{caption} {_on(grounds)}".split()),
+        caption=" ".join(f"{caption} {_ground_text(grounds)}".split()),
         alt=_in_words(robot, moving, labels),
-        still=Markup(still),
+        still=Markup(still_picture),
         still_time=still_time,
         ghost=labels[1] if ghost is not None else "",
         choice=choice,
@@ -116,7 +116,7 @@ def rendered(
         version=versions()["suchus"],
         meta=_script(meta | {"chosen": bool(choice)}),
         data=data,
-        **more,
+        **template_values,
     )  # fmt: skip
 
 
@@ -147,34 +147,34 @@ def environment() -> Environment:
 
 
 def _script(meta: Mapping[str, Any]) -> Markup:
-    """Return values as JSON that stands in a page: it begins no tag and no comment."""
+    """Return values as JSON that is safe inside a page's script."""
     return Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c"))
 
 
-def _on(grounds: Sequence[Ground]) -> str:
-    """Return in words how the ground slopes, and whether the second run's is another one."""
-    said = [
+def _ground_text(grounds: Sequence[Ground]) -> str:
+    """Return a sentence on the slope of the ground, and on a second run's other ground."""
+    slopes = [
         f"{'rises' if angle > 0 else 'falls'} by {abs(degrees(angle)):.3g}° {direction}"
         for angle, direction in ((grounds[0].uphill, "ahead"), (grounds[0].sideways, "to the left"))
         if angle
     ]
-    text = f"The ground {' and '.join(said)}." if said else ""
-    if not all(other.looks_like(grounds[0]) for other in grounds[1:]):
+    text = f"The ground {' and '.join(slopes)}." if slopes else ""
+    if not all(ground.looks_like(grounds[0]) for ground in grounds[1:]):
         text += " The half transparent one went on other ground, which is not shown."
     return text
 
 
 def _in_words(robot: Robot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
-    """Return the replay in words, for those who cannot see it."""
+    """Return a text alternative to the replay."""
     paths = [
         f"{label}: {run.mass[-1, 0] - run.mass[0, 0]:.2f} m forward in {(len(run.mass) - 1) / run.rate:.1f} s"
         for run, label in zip(moving, labels, strict=False)
     ]
-    where = "on the ground" if moving[0].level is None else "in water"
-    return f"Three-dimensional replay of the robot {robot.name} {where}. {'; '.join(paths)}."
+    medium = "on the ground" if moving[0].level is None else "in water"
+    return f"Three-dimensional replay of the robot {robot.name} {medium}. {'; '.join(paths)}."
 
 
-def _still(robot: Robot, record: xr.Dataset) -> tuple[str, str]:
+def _still_picture(robot: Robot, record: xr.Dataset) -> tuple[str, str]:
     """Return a still picture as SVG, and its time."""
     time = float(record.time[record.sizes["time"] // 2])
     with styled(svg__hashsalt="replay"):
@@ -191,13 +191,13 @@ def _still(robot: Robot, record: xr.Dataset) -> tuple[str, str]:
     return label + svg[svg.index("<svg") + 5 :], f"{time:.1f} s"
 
 
-def _text(record: xr.Dataset, name: str, otherwise: str) -> str:
-    return str(record[name].values.ravel()[0]) if name in record.coords else otherwise
+def _text(record: xr.Dataset, name: str, default: str) -> str:
+    return str(record[name].values.ravel()[0]) if name in record.coords else default
 
 
 LARGEST = 3_500_000
 """Bytes of arrays from which the surfaces are taken of blocks of cells [-]; as text they take a third more."""
-_COARSEST = 4
+_MAX_BLOCK = 4
 
 
 def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> str:
@@ -213,10 +213,10 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
     """
     vortices.check_filmed(record)
     meta, data = _swim_scene(record)
-    still = vortices.still(record, record.sizes["frame"] - 1)
-    drawn = BytesIO()
-    Image.fromarray(still).save(drawn, format="PNG", optimize=True)
-    picture = base64.b64encode(drawn.getvalue()).decode("ascii")
+    still_picture = vortices.still(record, record.sizes["frame"] - 1)
+    png = BytesIO()
+    Image.fromarray(still_picture).save(png, format="PNG", optimize=True)
+    picture = base64.b64encode(png.getvalue()).decode("ascii")
     return environment().get_template("wake.html").render(
         title=title or "A swim in three dimensions",
         caption=" ".join(caption.split()),
@@ -232,34 +232,41 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
 
 
 def _swim_scene(record: xr.Dataset) -> tuple[dict[str, Any], str]:
-    """Return what the player gets, on the finest blocks whose surfaces are small enough."""
-    for coarse in range(1, _COARSEST + 1):
+    """Return the player's metadata and arrays, on the finest blocks whose surfaces are small enough."""
+    for coarse in range(1, _MAX_BLOCK + 1):
         pack = PackedArrays()
         meta = _packed_swim(record, pack, coarse)
-        if pack.size <= LARGEST or coarse == _COARSEST:
+        if pack.size <= LARGEST or coarse == _MAX_BLOCK:
             break
     return meta, pack.text()
 
 
 def _packed_swim(record: xr.Dataset, pack: PackedArrays, coarse: int) -> dict[str, Any]:
+    """Pack the surfaces and the body of every frame and return the metadata that the player reads.
+
+    Args:
+        record: of a swim in space with frames.
+        pack: takes the arrays.
+        coarse: cells along each side of a block of which surfaces are taken [-].
+    """
     limit = vortices.colour_limit(record)
     surfaces = [vortices.surface(record, i, coarse=coarse) for i in range(record.sizes["frame"])]
-    middle = np.array([0.5 * float(record[axis].min() + record[axis].max()) for axis in "xy"] + [0.0])
-    scale = max(float(np.abs(mesh.points - middle).max(initial=0.0)) for mesh, _ in surfaces) or 1.0
+    center = np.array([0.5 * float(record[axis].min() + record[axis].max()) for axis in "xy"] + [0.0])
+    scale = max(float(np.abs(mesh.points - center).max(initial=0.0)) for mesh, _ in surfaces) or 1.0
     frames = []
     for mesh, spin in surfaces:
-        whole = np.round((mesh.points - middle) / scale * np.iinfo(np.int16).max).astype(np.int16)
+        points = np.round((mesh.points - center) / scale * np.iinfo(np.int16).max).astype(np.int16)
         shades = np.round(127.0 * np.clip(spin / limit, -1.0, 1.0)).astype(np.int8)
-        small = len(whole) <= np.iinfo(np.uint16).max
+        small = len(points) <= np.iinfo(np.uint16).max
         faces = pack.add(mesh.faces.astype(np.uint16 if small else np.uint32))
-        frames.append({"points": pack.add(whole), "spin": pack.add(shades), "faces": faces})
+        frames.append({"points": pack.add(points), "spin": pack.add(shades), "faces": faces})
     lines = {
         name.removeprefix("film_"): quantised(record[name].values, np.int16) for name in vortices.LINES
     }  # fmt: skip
     return {
         "frames": frames,
         "phase": np.round(record.frame.values.astype(float), 4).tolist(),
-        "middle": np.round(middle, 6).tolist(),
+        "middle": np.round(center, 6).tolist(),
         "scale": scale,
         "limit": limit,
         "coarse": coarse,

@@ -30,11 +30,11 @@ class PackedArrays:
         """Append an array and return where it lies: its ``kind``, its ``start`` [byte], its ``count`` of numbers."""
         assert array.dtype.name in _KINDS
         raw = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).tobytes()
-        place = {"kind": array.dtype.name, "start": self.size, "count": int(array.size)}
+        location = {"kind": array.dtype.name, "start": self.size, "count": int(array.size)}
         raw += bytes(-len(raw) % 4)
         self._parts.append(raw)
         self.size += len(raw)
-        return place
+        return location
 
     def text(self) -> str:
         """Return everything as base64."""
@@ -43,8 +43,8 @@ class PackedArrays:
 
 def quantised(values: np.ndarray, kind: type[np.signedinteger[Any]]) -> tuple[np.ndarray, float]:
     """Return whole numbers and the size of the largest value, which the greatest whole number stands for."""
-    largest = float(np.abs(values).max(initial=0.0)) or 1.0
-    return np.round(values / largest * np.iinfo(kind).max).astype(kind), largest
+    max_value = float(np.abs(values).max(initial=0.0)) or 1.0
+    return np.round(values / max_value * np.iinfo(kind).max).astype(kind), max_value
 
 
 ARROW = 0.35
@@ -58,13 +58,13 @@ KEYS = {
     "water": COLOURS["water"],
 }
 """Colours of what is not the robot."""
-_BESIDE = 0.62  # how far a second robot walks beside the first, over the robot's length
+_LATERAL_DISTANCE = 0.62  # lateral distance between two robots, over the robot's length
 
 
 def scene(
     robot: Robot, moving: Sequence[Frames], labels: Sequence[str], ground: Ground, *, overlaid: bool
 ) -> tuple[dict[str, Any], str]:
-    """Return what there is to be shown, and its arrays as base64.
+    """Return the metadata of the scene, and its arrays as base64.
 
     Args:
         robot: who moves.
@@ -81,13 +81,15 @@ def scene(
         "bones": len(surface.bones),
         "length": robot.length,
         "size": max([robot.length, *(2 * girdle.limb.reach for girdle in robot.girdles)]),
-        "aside": _BESIDE * robot.length,
+        "aside": _LATERAL_DISTANCE * robot.length,
         "radii": [limb.girdle.limb.foot.radius for limb in layout(robot).limbs],
         "loaded": LOADED_SHARE * robot.mass * GRAVITY,
         "overlaid": overlaid,
         "slope": np.round(slope(ground.uphill, ground.sideways), 9).tolist(),
         "water": _packed_water(moving[0], ground, pack),
-        "floor": float(field(relief).min()) if isinstance(relief, Bumps) else 0.0,  # as deep as the field, as in model
+        "floor": float(field(relief).min())
+        if isinstance(relief, Bumps)
+        else 0.0,  # depth of the field, as in the physics model
         "metres_per_newton": ARROW * robot.length / (robot.mass * GRAVITY),
         "marks": [max(floor(x.min()) - 1, -50), min(ceil(x.max()) + 1, 50)],
         "mark_side": -0.4 * robot.length,
@@ -101,6 +103,7 @@ def scene(
 
 
 def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
+    """Pack the skin: vertices, normals, colours, faces, and two bones with weights for each vertex."""
     vertices, scale = quantised(surface.vertices, np.int16)
     assert (surface.weights[:, 2:] == 0).all()  # joints are so far apart that no vertex hangs on three bones
     return {
@@ -115,52 +118,62 @@ def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
     }
 
 
-def _packed(robot: Robot, one: Frames, label: str, relief: Relief | None, pack: PackedArrays) -> dict[str, Any]:
-    bones = ankles(robot, one.bones, one.feet, relief)
-    places = bones.positions
-    origin = (places.max(axis=(0, 1)) + places.min(axis=(0, 1))) / 2
-    whole, reach = quantised(places - origin, np.int16)
+def _packed(robot: Robot, run: Frames, label: str, relief: Relief | None, pack: PackedArrays) -> dict[str, Any]:
+    """Pack one run: poses of the bones, centre of mass, feet, forces and tail in every frame.
+
+    Args:
+        robot: who moves.
+        run: frames of the run.
+        label: name of the run.
+        relief: what stands up from the ground; None where it is even.
+        pack: takes the arrays.
+    """
+    bones = ankles(robot, run.bones, run.feet, relief)
+    bone_positions = bones.positions
+    origin = (bone_positions.max(axis=(0, 1)) + bone_positions.min(axis=(0, 1))) / 2
+    positions, reach = quantised(bone_positions - origin, np.int16)
     return {
         "label": label,
-        "frames": len(one.mass),
+        "frames": len(run.mass),
         "origin": np.round(origin, 6).tolist(),
         "reach": reach,
         "arrays": {
-            "places": pack.add(whole),
+            "places": pack.add(positions),
             "turns": pack.add(np.round(32767 * bones.quaternions).astype(np.int16)),
-            "mass": pack.add(one.mass.astype(np.float32)),
-            "feet": pack.add(one.feet.astype(np.float32)),
-            "forces": pack.add(one.forces.astype(np.float32)),
-            "tail": pack.add(one.tail.astype(np.float32)),
+            "mass": pack.add(run.mass.astype(np.float32)),
+            "feet": pack.add(run.feet.astype(np.float32)),
+            "forces": pack.add(run.forces.astype(np.float32)),
+            "tail": pack.add(run.tail.astype(np.float32)),
         },
     }
 
 
-def _packed_water(one: Frames, ground: Ground, pack: PackedArrays) -> dict[str, Any] | None:
+def _packed_water(run: Frames, ground: Ground, pack: PackedArrays) -> dict[str, Any] | None:
     """Return the level of the water in each frame, and the direction against gravity in the frame of the ground."""
-    if one.level is None:
+    if run.level is None:
         return None
     back = slope(ground.uphill, ground.sideways) * np.array([1.0, -1.0, -1.0, -1.0])
-    up = rotate(back, np.array([0.0, 0.0, 1.0]))
-    return {"levels": pack.add(one.level.astype(np.float32)), "up": np.round(up, 9).tolist()}
+    upward = rotate(back, np.array([0.0, 0.0, 1.0]))
+    return {"levels": pack.add(run.level.astype(np.float32)), "up": np.round(upward, 9).tolist()}
 
 
 def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:
+    """Pack the heights of bumps, or return the block that a step or a stone is."""
     if isinstance(relief, Bumps):
         heights = field(relief)
-        whole, largest = quantised(heights, np.int16)
+        height_values, max_height = quantised(heights, np.int16)
         return {
-            "heights": pack.add(whole),
+            "heights": pack.add(height_values),
             "shape": list(heights.shape),
-            "scale": largest / np.iinfo(np.int16).max,
+            "scale": max_height / np.iinfo(np.int16).max,
             "x0": relief.reach[0],
             "y0": -relief.aside,
             "cell": relief.cell,
         }
     if isinstance(relief, Step):
         return {"block": [relief.at, REACH[1], -ASIDE, ASIDE, relief.height]}
-    half, wide = relief.length / 2, relief.width / 2
-    x, y = (relief.at - half, relief.at + half), (relief.aside - wide, relief.aside + wide)
+    half_length, half_width = relief.length / 2, relief.width / 2
+    x, y = (relief.at - half_length, relief.at + half_length), (relief.aside - half_width, relief.aside + half_width)
     return {"block": [*x, *y, relief.height]}
 
 

@@ -18,7 +18,7 @@ from suchus.visual.skin.surface import Skin, skin
 ANKLES = tuple(f"{leg}_ankle" for leg in LEGS)
 """Names of the bones, which come after those of the bodies."""
 REACH = 0.9
-"""How far an ankle turns [rad]; a crocodile's turns about as far in the step of a high walk."""
+"""Greatest angle of an ankle [rad], about that of a crocodile's high walk."""
 NEAR = (0.012, 0.06)
 """Heights of the ball over the ground between which a foot ceases to lie flat [m]."""
 
@@ -29,16 +29,16 @@ def footed(robot: Robot) -> Skin:
     surface = skin(robot)
     if surface.plain:
         return surface
-    indices, rest = surface.indices.copy(), [*surface.rest]
+    indices, origins = surface.indices.copy(), [*surface.rest]
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
-    least = np.minimum.reduceat(surface.weights[:, 0], starts)
+    min_weights = np.minimum.reduceat(surface.weights[:, 0], starts)
     for i, leg in enumerate(LEGS):
         bone = surface.bones.index(f"{leg}_tibia")
-        own = (np.maximum.reduceat(surface.indices[:, 0], starts) == bone) & (least > 0.999)
-        own &= np.minimum.reduceat(surface.indices[:, 0], starts) == bone  # palm, toes and claws, not the limb
-        indices[own[surface.part]] = len(surface.bones) + i
-        rest.append(surface.rest[bone] + [0.0, _side(leg) * robot.leg(leg).tibia, 0.0])
-    return replace(surface, bones=(*surface.bones, *ANKLES), rest=np.array(rest), indices=indices)
+        is_foot_part = (np.maximum.reduceat(surface.indices[:, 0], starts) == bone) & (min_weights > 0.999)
+        is_foot_part &= np.minimum.reduceat(surface.indices[:, 0], starts) == bone  # palm, toes and claws, not the limb
+        indices[is_foot_part[surface.part]] = len(surface.bones) + i
+        origins.append(surface.rest[bone] + [0.0, _side(leg) * robot.leg(leg).tibia, 0.0])
+    return replace(surface, bones=(*surface.bones, *ANKLES), rest=np.array(origins), indices=indices)
 
 
 def ankles(robot: Robot, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:
@@ -52,16 +52,16 @@ def ankles(robot: Robot, bones: Poses, feet: np.ndarray, relief: Relief | None =
     """
     if skin(robot).plain:
         return bones
-    names, turned = bone_names(robot), []
-    above = feet[..., 2] - heights(relief, feet[..., 0], feet[..., 1])
+    names, ankle_quaternions = bone_names(robot), []
+    foot_heights = feet[..., 2] - heights(relief, feet[..., 0], feet[..., 1])
     for i, leg in enumerate(LEGS):
         shank = bones.quaternions[:, names.index(f"{leg}_tibia")]
-        out = rotate(shank, np.array([0.0, _side(leg), 0.0]))
-        flat = np.clip((NEAR[1] - (above[:, i] - robot.leg(leg).foot_radius)) / (NEAR[1] - NEAR[0]), 0.0, 1.0)
-        turned.append(multiply(_downward(out, flat * flat * (3 - 2 * flat)), shank))
+        shank_axis = rotate(shank, np.array([0.0, _side(leg), 0.0]))
+        flat = np.clip((NEAR[1] - (foot_heights[:, i] - robot.leg(leg).foot_radius)) / (NEAR[1] - NEAR[0]), 0.0, 1.0)
+        ankle_quaternions.append(multiply(_downward(shank_axis, flat * flat * (3 - 2 * flat)), shank))
     return Poses(
         np.concatenate([bones.positions, feet], axis=1),
-        np.concatenate([bones.quaternions, np.stack(turned, axis=1)], axis=1),
+        np.concatenate([bones.quaternions, np.stack(ankle_quaternions, axis=1)], axis=1),
     )
 
 
@@ -69,10 +69,10 @@ def _side(leg: str) -> float:
     return 1.0 if leg.startswith("L") else -1.0
 
 
-def _downward(direction: np.ndarray, share: np.ndarray) -> np.ndarray:
+def _downward(direction: np.ndarray, fraction: np.ndarray) -> np.ndarray:
     """Return the smallest turns that bring directions to -z, by a share and no farther than ``REACH``: (frame, 4)."""
     axis = np.cross(direction, [0.0, 0.0, -1.0])
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
-    angle = np.minimum(np.arctan2(sine[:, 0], -direction[:, 2]), REACH) * share
+    angle = np.minimum(np.arctan2(sine[:, 0], -direction[:, 2]), REACH) * fraction
     axis = np.divide(axis, sine, out=np.zeros_like(axis), where=sine > 1e-9)
     return about(axis, angle)

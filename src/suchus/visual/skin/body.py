@@ -28,40 +28,48 @@ class BodyShape:
     """Depth below the axis over x."""
 
 
-def shape(robot: Robot, look: Look) -> BodyShape:
+def shape(robot: Robot, proportions: Look) -> BodyShape:
     """Return the outline of a robot's body; on the head it is that of the skull without the lower jaw."""
-    knots = [*_tail_knots(robot, look), *_trunk_knots(robot, look), *head_knots(robot, look)]
+    knots = [*_tail_knots(robot, proportions), *_trunk_knots(robot, proportions), *head_knots(robot, proportions)]
     knots = [knot for i, knot in enumerate(knots) if i == 0 or knot[0] > max(k[0] for k in knots[:i]) + 1e-6]
     x = [knot[0] for knot in knots]
     width, top, bottom = (curve([(knot[0], knot[i]) for knot in knots]) for i in (1, 2, 3))
     return BodyShape(x[0], x[-1], width, top, bottom)
 
 
-def _tail_knots(robot: Robot, look: Look) -> list[Knot]:
+def _tail_knots(robot: Robot, proportions: Look) -> list[Knot]:
     """Return (x, half width, top, bottom) from the tip to the root; it encloses the segments beneath."""
     tail = robot.tail
     tip = -tail.length
     lengths, radii = tail.lengths, tail.radii
     starts = -tail.offset - np.cumsum([0.0, *lengths[:-1]])
-    at = curve(sorted((float(x), float(r)) for x, r in zip(starts, radii, strict=True)))
-    blade = curve([(0.0, look.fin), (0.12, look.fin), (0.45, 1.6), (0.8, 1.15), (1.0, look.margin)])
-    thick = curve([(0.0, 1.0), (0.5, look.margin), (0.85, 1.15), (1.0, 1.3)])
+    tail_radius = curve(sorted((float(x), float(r)) for x, r in zip(starts, radii, strict=True)))
+    height_factor = curve(
+        [(0.0, proportions.fin), (0.12, proportions.fin), (0.45, 1.6), (0.8, 1.15), (1.0, proportions.margin)]
+    )
+    width_factor = curve([(0.0, 1.0), (0.5, proportions.margin), (0.85, 1.15), (1.0, 1.3)])
     knots = []
-    for share in (0.0, 0.004, 0.015, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.9, 0.96):
-        x = tip + share * (-tail.offset - tip)
-        r = float(at(np.array(x))) * look.margin
-        point = min(1.0, float(np.sqrt(share / 0.12)) + 0.02)
+    for fraction in (0.0, 0.004, 0.015, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.9, 0.96):
+        x = tip + fraction * (-tail.offset - tip)
+        r = float(tail_radius(np.array(x))) * proportions.margin
+        point = min(1.0, float(np.sqrt(fraction / 0.12)) + 0.02)
         knots.append(
-            (x, r * point * float(thick(np.array(share))), r * point * float(blade(np.array(share))), r * point)
+            (
+                x,
+                r * point * float(width_factor(np.array(fraction))),
+                r * point * float(height_factor(np.array(fraction))),
+                r * point,
+            )
         )
     return knots
 
 
-def _trunk_knots(robot: Robot, look: Look) -> list[Knot]:
+def _trunk_knots(robot: Robot, proportions: Look) -> list[Knot]:
+    """Return (x, half width, top, bottom) of the trunk from the pelvis to the shoulders [m]."""
     pelvis, thorax, spine, tail = robot.pelvis, robot.thorax, robot.spine, robot.tail
-    m = look.margin
+    m = proportions.margin
     radius = m * spine.radius
-    flank = max(look.flank * (pelvis.width + thorax.width) / 4, radius)
+    flank = max(proportions.flank * (pelvis.width + thorax.width) / 4, radius)
     mean = max((pelvis.height + thorax.height) / 4 * m, radius)
     rump = max(0.62 * pelvis.width / 2, 1.25 * m * tail.radius_root)
     half = pelvis.length / 2
@@ -78,15 +86,15 @@ def _trunk_knots(robot: Robot, look: Look) -> list[Knot]:
     ]
 
 
-def body(robot: Robot, look: Look) -> Mesh:
+def body(robot: Robot, proportions: Look) -> Mesh:
     """Return snout to tail tip in one piece, without the lower jaw."""
-    outline = shape(robot, look)
+    outline = shape(robot, proportions)
     length = outline.front - outline.back
-    count = int(np.clip(length / (look.step * max(length, 1.0)), 40, 400))
+    count = int(np.clip(length / (proportions.step * max(length, 1.0)), 40, 400))
     # finer at both ends, where it closes, and on the head, where there is more to see
-    even = np.linspace(0.0, 1.0, count)
-    x = outline.back + length * curve([(0.0, 0.0), (0.02, 0.006), (0.72, 0.78), (0.985, 0.997), (1.0, 1.0)])(even)
-    c, s = ring(look.around, look.roundness)
+    uniform = np.linspace(0.0, 1.0, count)
+    x = outline.back + length * curve([(0.0, 0.0), (0.02, 0.006), (0.72, 0.78), (0.985, 0.997), (1.0, 1.0)])(uniform)
+    c, s = ring(proportions.around, proportions.roundness)
     y = outline.width(x)[:, None] * c
     z = np.where(s >= 0, outline.top(x)[:, None] * s, outline.bottom(x)[:, None] * s)
     mesh = loft(np.stack([np.broadcast_to(x[:, None], y.shape), y, z], axis=-1))

@@ -29,10 +29,10 @@ def bone_names(robot: Robot) -> tuple[str, ...]:
 
 def bone_rest(robot: Robot) -> np.ndarray:
     """Return the origins of the bones at zero posture in the frame of the root, (bone, 3) [m]."""
-    rest: list[np.ndarray] = []
+    origins: list[np.ndarray] = []
     for body in layout(robot).bodies:
-        rest.append((rest[body.parent] if body.parent >= 0 else np.zeros(3)) + np.array(body.offset))
-    return np.array(rest)
+        origins.append((origins[body.parent] if body.parent >= 0 else np.zeros(3)) + np.array(body.offset))
+    return np.array(origins)
 
 
 def poses(robot: Robot, position: np.ndarray, orientation: np.ndarray, angles: np.ndarray) -> Poses:
@@ -52,13 +52,15 @@ def poses(robot: Robot, position: np.ndarray, orientation: np.ndarray, angles: n
         raise InvalidDesign(
             f"{angles.shape[-1]} angles were given; {robot.name} has {len(names)} hinges: give one for each."
         )
-    where = {name: i for i, name in enumerate(names)}
-    at: list[np.ndarray] = []
-    turned: list[np.ndarray] = []
+    joint_index = {name: i for i, name in enumerate(names)}
+    positions: list[np.ndarray] = []
+    quaternions: list[np.ndarray] = []
     for bone in layout(robot).bodies:
-        here, turn = (position, orientation) if bone.parent < 0 else (at[bone.parent], turned[bone.parent])
-        at.append(here + rotate(turn, np.array(bone.offset)))
+        origin, turn = (
+            (position, orientation) if bone.parent < 0 else (positions[bone.parent], quaternions[bone.parent])
+        )
+        positions.append(origin + rotate(turn, np.array(bone.offset)))
         for _, hinge, axis in bone.hinges:
-            turn = multiply(turn, about(np.array(axis), angles[..., where[hinge]]))
-        turned.append(turn)
-    return Poses(np.stack(at, axis=-2), np.stack(turned, axis=-2))
+            turn = multiply(turn, about(np.array(axis), angles[..., joint_index[hinge]]))
+        quaternions.append(turn)
+    return Poses(np.stack(positions, axis=-2), np.stack(quaternions, axis=-2))

@@ -56,44 +56,44 @@ class Frame(NamedTuple):
     """Half height [m]."""
 
 
-def frame(robot: Robot, look: Look) -> Frame:
+def frame(robot: Robot, proportions: Look) -> Frame:
     """Return where the head is and how large."""
     length, start = robot.head.snout - robot.thorax.shoulder, robot.spine.length + robot.thorax.shoulder
-    neck = look.skull * length
+    neck = proportions.skull * length
     return Frame(start + neck, length - neck, neck, robot.head.width / 2, robot.head.height / 2)
 
 
-def head_knots(robot: Robot, look: Look) -> list[Knot]:
+def head_knots(robot: Robot, proportions: Look) -> list[Knot]:
     """Return the outline from shoulders to snout, without the lower jaw."""
-    f = frame(robot, look)
+    f = frame(robot, proportions)
     rows = [(u * f.neck, *sizes) for u, *sizes in _NECK] + [(u * f.reach, *sizes) for u, *sizes in _SKULL]
     return [(f.joint + x, a * f.w, b * f.h, c * f.h) for x, a, b, c in rows]
 
 
-def jaw(robot: Robot, look: Look) -> Mesh:
+def jaw(robot: Robot, proportions: Look) -> Mesh:
     """Return the lower jaw, a little open."""
-    f = frame(robot, look)
+    f = frame(robot, proportions)
     u = np.concatenate([[-0.06], np.linspace(0.0, 0.94, 24), [0.965, 0.98, 0.988]])
     c, s = ring(JAW_AROUND, 2.3)
-    top, deep = -f.h * _JAW_TOP(u), -f.h * _JAW_DEPTH(u)
-    z = (top + deep)[:, None] / 2 + (top - deep)[:, None] / 2 * s
+    top, bottom = -f.h * _JAW_TOP(u), -f.h * _JAW_DEPTH(u)
+    z = (top + bottom)[:, None] / 2 + (top - bottom)[:, None] / 2 * s
     x = np.broadcast_to((f.reach * u)[:, None], z.shape)
     y = f.w * _JAW_WIDTH(u)[:, None] * c
-    mesh = loft(_opened(np.stack([x, y, z], axis=-1), f, look))
+    mesh = loft(_opened(np.stack([x, y, z], axis=-1), f, proportions))
     level = np.concatenate([np.broadcast_to(s, z.shape).ravel(), [0.0, 0.0]])
     return mesh.painted(jaw_paint(level))
 
 
-def _opened(points: np.ndarray, f: Frame, look: Look) -> np.ndarray:
+def _opened(points: np.ndarray, f: Frame, proportions: Look) -> np.ndarray:
     """Turn points of the lower jaw about its joint, which is the origin, and put them in their place."""
-    c, s = np.cos(look.gape), np.sin(look.gape)
+    c, s = np.cos(proportions.gape), np.sin(proportions.gape)
     x, y, z = np.moveaxis(points, -1, 0)
     return np.stack([f.joint + c * x + s * z, y, c * z - s * x], axis=-1)
 
 
-def eyes(robot: Robot, look: Look) -> list[Mesh]:
+def eyes(robot: Robot, proportions: Look) -> list[Mesh]:
     """Return the left eye, its pupil and its brow, and the left nostril."""
-    f = frame(robot, look)
+    f = frame(robot, proportions)
     x, y, z = f.joint + 0.27 * f.reach, 0.60 * f.w, 0.98 * f.h
     size = 0.135 * f.w
     brows = (x - 0.2 * size, y - 0.45 * size, z + 0.45 * size)
@@ -107,22 +107,22 @@ def eyes(robot: Robot, look: Look) -> list[Mesh]:
     ]
 
 
-def teeth(robot: Robot, look: Look) -> list[Mesh]:
+def teeth(robot: Robot, proportions: Look) -> list[Mesh]:
     """Return the left teeth of both jaws; every fourth is long."""
-    f = frame(robot, look)
-    found = []
-    for i, u in enumerate(np.linspace(0.30, 0.955, look.teeth)):
+    f = frame(robot, proportions)
+    meshes = []
+    for i, u in enumerate(np.linspace(0.30, 0.955, proportions.teeth)):
         size = f.h * (0.30 if i % 4 == 2 else 0.19)
         gum = (f.joint + f.reach * u, 0.90 * f.w * float(_SKULL_WIDTH(u)), -f.h * (float(_MOUTH(u)) - 0.06))
-        found.append(_tooth(np.array(gum), -size, 0.055 * f.h))
-        v = u - 0.5 * 0.655 / look.teeth
-        low = np.array([f.reach * v, 0.86 * f.w * float(_JAW_WIDTH(v)), -f.h * (float(_JAW_TOP(v)) + 0.06)])
-        found.append(_tooth(_opened(low, f, look), 0.75 * size, 0.055 * f.h))
-    return [tooth.painted(TOOTH) for tooth in found]
+        meshes.append(_tooth(np.array(gum), -size, 0.055 * f.h))
+        v = u - 0.5 * 0.655 / proportions.teeth
+        lower_gum = np.array([f.reach * v, 0.86 * f.w * float(_JAW_WIDTH(v)), -f.h * (float(_JAW_TOP(v)) + 0.06)])
+        meshes.append(_tooth(_opened(lower_gum, f, proportions), 0.75 * size, 0.055 * f.h))
+    return [tooth.painted(TOOTH) for tooth in meshes]
 
 
-def _tooth(gum: np.ndarray, tall: float, radius: float) -> Mesh:
+def _tooth(gum: np.ndarray, height: float, radius: float) -> Mesh:
     c, s = ring(4)
-    wide = 1.4 * radius
-    base = gum + np.stack([wide * c, wide * s * np.sign(tall), 0.0 * c], axis=-1)
-    return spike(base, gum + np.array([0.0, 0.1 * abs(tall), tall]))
+    half_width = 1.4 * radius
+    base = gum + np.stack([half_width * c, half_width * s * np.sign(height), 0.0 * c], axis=-1)
+    return spike(base, gum + np.array([0.0, 0.1 * abs(height), height]))

@@ -1,4 +1,4 @@
-"""Proportions that make it look like the animal."""
+"""Proportions of the skin that make a robot look like a crocodile."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ class Look:
     roundness: float = 2.3
     """Exponent of the trunk's section [-]: crocodilians are flatter on back and belly than an ellipse."""
     margin: float = 1.04
-    """How far the skin stands off the shapes beneath [-]."""
+    """Size of the skin over that of the shapes beneath [-]."""
     flank: float = 0.93
     """Width of the trunk between the girdles over the mean of theirs [-]: it narrows but slightly in the animal."""
     fin: float = 2.3
@@ -22,9 +22,9 @@ class Look:
     gape: float = 0.075
     """Angle by which the lower jaw hangs open [rad]: enough to see the teeth."""
     skull: float = 0.30
-    """Where the jaw joint lies from shoulders to snout [-]; ahead of it is head, behind it neck."""
+    """Place of the jaw joint between shoulders (0) and snout (1) [-]; the neck ends there."""
     teeth: int = 13
-    """On each side of each jaw that shows [-]; crocodiles have 14 to 19."""
+    """Number of visible teeth on each side of each jaw [-]; crocodiles have 14 to 19."""
 
 
 SKIN = Look()

@@ -37,16 +37,17 @@ def curve(knots: Sequence[tuple[float, float]]) -> Callable[[np.ndarray], np.nda
     """
     x, y = np.array(knots, dtype=float).T
     slopes = np.diff(y) / np.diff(x)
-    both = slopes[:-1] * slopes[1:]
-    total = np.where(both > 0, slopes[:-1] + slopes[1:], 1.0)
-    inner = np.where(both > 0, 2 * both / total, 0.0)
+    slope_products = slopes[:-1] * slopes[1:]
+    total = np.where(slope_products > 0, slopes[:-1] + slopes[1:], 1.0)
+    inner = np.where(slope_products > 0, 2 * slope_products / total, 0.0)
     tangents = np.concatenate([[0.0], inner, [0.0]])
 
-    def value(at: np.ndarray) -> np.ndarray:
-        at = np.clip(at, x[0], x[-1])
-        i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    def value(positions: np.ndarray) -> np.ndarray:
+        """Return the curve at positions along x."""
+        positions = np.clip(positions, x[0], x[-1])
+        i = np.clip(np.searchsorted(x, positions, side="right") - 1, 0, len(x) - 2)
         h = x[i + 1] - x[i]
-        t = (at - x[i]) / h
+        t = (positions - x[i]) / h
         rise = y[i] * (1 + 2 * t) * (1 - t) ** 2 + y[i + 1] * t**2 * (3 - 2 * t)
         return rise + h * (tangents[i] * t * (1 - t) ** 2 - tangents[i + 1] * t**2 * (1 - t))
 
@@ -59,28 +60,28 @@ def loft(rings: np.ndarray) -> Mesh:
     Args:
         rings: (ring, point, 3); the points run counterclockwise as seen from the side of the last ring.
     """
-    count, around = rings.shape[:2]
+    count, point_count = rings.shape[:2]
     ends = rings[[0, -1]].mean(axis=1)
     vertices = np.concatenate([rings.reshape(-1, 3), ends])
-    i, j = np.meshgrid(np.arange(count - 1), np.arange(around), indexing="ij")
-    a, b = i * around + j, i * around + (j + 1) % around
-    side = np.stack([a, b, b + around, a, b + around, a + around], axis=-1).reshape(-1, 3)
-    k = np.arange(around)
-    first = np.stack([(k + 1) % around, k, np.full(around, count * around)], axis=-1)
-    top = (count - 1) * around
-    last = np.stack([top + k, top + (k + 1) % around, np.full(around, count * around + 1)], axis=-1)
-    faces = np.concatenate([side, first, last])
+    i, j = np.meshgrid(np.arange(count - 1), np.arange(point_count), indexing="ij")
+    a, b = i * point_count + j, i * point_count + (j + 1) % point_count
+    side = np.stack([a, b, b + point_count, a, b + point_count, a + point_count], axis=-1).reshape(-1, 3)
+    k = np.arange(point_count)
+    start_cap = np.stack([(k + 1) % point_count, k, np.full(point_count, count * point_count)], axis=-1)
+    top = (count - 1) * point_count
+    end_cap = np.stack([top + k, top + (k + 1) % point_count, np.full(point_count, count * point_count + 1)], axis=-1)
+    faces = np.concatenate([side, start_cap, end_cap])
     return Mesh(vertices, faces.astype(np.int32), np.ones_like(vertices))
 
 
-def ring(around: int, roundness: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
+def ring(point_count: int, roundness: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
     """Return the points (cosine-like, sine-like) of a superellipse, left and right exactly alike.
 
     Args:
-        around: number of points, a multiple of four.
+        point_count: number of points, a multiple of four.
         roundness: exponent: 2 an ellipse, more a rounded box.
     """
-    quarter = np.pi / 2 * np.arange(around // 4) / (around // 4)
+    quarter = np.pi / 2 * np.arange(point_count // 4) / (point_count // 4)
     c, s = np.cos(quarter) ** (2 / roundness), np.sin(quarter) ** (2 / roundness)
     s[0] = 0.0
     cosine, sine = np.concatenate([c, -s, -c, s]), np.concatenate([s, c, -s, -c])
@@ -96,10 +97,10 @@ def ellipsoid(centre: Sequence[float], half: Sequence[float], *, around: int = 8
         around: number of points around its x axis, a multiple of four.
         rings: number of rings along it.
     """
-    along = -np.cos(np.pi * (np.arange(rings) + 0.7) / (rings + 0.4))
-    radius, (c, s) = np.sqrt(1 - along**2), ring(around)
+    axial = -np.cos(np.pi * (np.arange(rings) + 0.7) / (rings + 0.4))
+    radius, (c, s) = np.sqrt(1 - axial**2), ring(around)
     points = np.stack(
-        [np.broadcast_to(along[:, None], (rings, around)), radius[:, None] * c, radius[:, None] * s], axis=-1
+        [np.broadcast_to(axial[:, None], (rings, around)), radius[:, None] * c, radius[:, None] * s], axis=-1
     )
     return loft(np.array(centre) + points * np.array(half))
 
@@ -111,12 +112,12 @@ def spike(base: np.ndarray, apex: np.ndarray) -> Mesh:
         base: (point, 3), counterclockwise as seen from the apex.
         apex: (3,) [m].
     """
-    around = len(base)
-    k = np.arange(around)
-    up = np.stack([k, (k + 1) % around, np.full(around, around)], axis=-1)
-    under = np.stack([(k + 1) % around, k, np.full(around, around + 1)], axis=-1)
+    point_count = len(base)
+    k = np.arange(point_count)
+    side_faces = np.stack([k, (k + 1) % point_count, np.full(point_count, point_count)], axis=-1)
+    base_faces = np.stack([(k + 1) % point_count, k, np.full(point_count, point_count + 1)], axis=-1)
     vertices = np.concatenate([base, [apex], [base.mean(axis=0)]])
-    return Mesh(vertices, np.concatenate([up, under]).astype(np.int32), np.ones_like(vertices))
+    return Mesh(vertices, np.concatenate([side_faces, base_faces]).astype(np.int32), np.ones_like(vertices))
 
 
 def joined(meshes: Sequence[Mesh]) -> Mesh:
@@ -133,7 +134,7 @@ def normals(mesh: Mesh) -> np.ndarray:
     """Return the unit normal at each vertex, the mean of its faces' weighted by their areas, (n, 3)."""
     corners = mesh.vertices[mesh.faces]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    found = np.zeros_like(mesh.vertices)
+    vertex_normals = np.zeros_like(mesh.vertices)
     for i in range(3):
-        np.add.at(found, mesh.faces[:, i], areas)
-    return found / np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-30)
+        np.add.at(vertex_normals, mesh.faces[:, i], areas)
+    return vertex_normals / np.maximum(np.linalg.norm(vertex_normals, axis=1, keepdims=True), 1e-30)

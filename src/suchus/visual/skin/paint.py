@@ -17,30 +17,32 @@ CLAW = np.array([0.130, 0.120, 0.095])
 SOLE = np.array([0.370, 0.365, 0.250])
 
 
-def smooth(value: np.ndarray, low: float, high: float) -> np.ndarray:
+def smooth(value: np.ndarray, lower_bound: float, upper_bound: float) -> np.ndarray:
     """Return a smooth step from 0 at ``low`` to 1 at ``high``."""
-    t = np.clip((value - low) / (high - low), 0.0, 1.0)
+    t = np.clip((value - lower_bound) / (upper_bound - lower_bound), 0.0, 1.0)
     return t * t * (3 - 2 * t)
 
 
-def mixed(a: np.ndarray, b: np.ndarray, share: np.ndarray) -> np.ndarray:
+def mixed(a: np.ndarray, b: np.ndarray, fraction: np.ndarray) -> np.ndarray:
     """Return colours between two, (n, 3)."""
-    return a + share[:, None] * (b - a)
+    return a + fraction[:, None] * (b - a)
 
 
-def shaded(level: np.ndarray, along: np.ndarray, aside: np.ndarray) -> np.ndarray:
+def shaded(level: np.ndarray, axial_position: np.ndarray, lateral_distance: np.ndarray) -> np.ndarray:
     """Return the hide's colours.
 
     Args:
         level: height on the body's section, from -1 at the belly to 1 on the back.
-        along: place along the body over its length.
-        aside: distance from the midline over the length; left and right are alike.
+        axial_position: place along the body over its length.
+        lateral_distance: distance from the midline over the length; left and right are alike.
     """
     colour = mixed(BELLY, FLANK, smooth(level, -0.55, -0.05))
     colour = mixed(colour, BACK, smooth(level, 0.10, 0.85))
-    wave = np.sin(2 * np.pi * 19 * along + 0.8 * np.sin(41 * along) + 3.0 * level)
+    wave = np.sin(2 * np.pi * 19 * axial_position + 0.8 * np.sin(41 * axial_position) + 3.0 * level)
     colour = mixed(colour, BAND, 0.62 * smooth(wave, 0.15, 0.75) * smooth(level, -0.35, 0.15))
-    spots = np.sin(173 * along) * np.cos(191 * aside) + 0.6 * np.sin(117 * along + 143 * aside)
+    spots = np.sin(173 * axial_position) * np.cos(191 * lateral_distance) + 0.6 * np.sin(
+        117 * axial_position + 143 * lateral_distance
+    )
     return np.clip(colour * (1 + 0.055 * spots[:, None]), 0.0, 1.0)
 
 
@@ -53,9 +55,9 @@ def jaw_paint(level: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Return the paint of the lower jaw: mouth inside, hide at the rim, pale below."""
 
     def paint(points: np.ndarray) -> np.ndarray:
-        outside = mixed(BELLY, FLANK, smooth(level, -0.5, 0.35))
+        hide_colour = mixed(BELLY, FLANK, smooth(level, -0.5, 0.35))
         del points
-        return mixed(outside, MOUTH, smooth(level, 0.55, 0.8))
+        return mixed(hide_colour, MOUTH, smooth(level, 0.55, 0.8))
 
     return paint
 

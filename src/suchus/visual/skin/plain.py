@@ -18,78 +18,94 @@ _RINGS, _MARGIN = 120, 1.04
 _CAP = np.array([0.0, 0.3, 0.6, 0.85, 0.97])  # places of the rings of a rod's round end
 
 
-def axis_mesh(place: Layout) -> Mesh:
+def axis_mesh(robot_layout: Layout) -> Mesh:
     """Return the hide from the snout to the tip of the tail."""
     knots: list[tuple[float, float, float]] = []
-    for segment, start in zip(place.robot.axis, segment_places(place), strict=True):
+    for segment, start in zip(robot_layout.robot.axis, segment_places(robot_layout), strict=True):
         for shape in segment.shapes:
-            x, (wide, high) = start + shape.centre[0], _section(shape)
-            there = next((i for i, knot in enumerate(knots) if abs(knot[0] - x) < 1e-9), None)
-            if there is None:
-                knots.append((x, wide, high))
+            x, (half_width, half_height) = start + shape.centre[0], _section(shape)
+            index = next((i for i, knot in enumerate(knots) if abs(knot[0] - x) < 1e-9), None)
+            if index is None:
+                knots.append((x, half_width, half_height))
             else:
-                knots[there] = x, max(wide, knots[there][1]), max(high, knots[there][2])
-    front, back = ends(place)
+                knots[index] = x, max(half_width, knots[index][1]), max(half_height, knots[index][2])
+    front, back = ends(robot_layout)
     knots.sort()
-    kept = [knots[0]] + [b for a, b in pairwise(knots) if b[0] - a[0] > 1e-4 * (front - back)]
-    width, height = (_outline([(k[0], k[i]) for k in kept], back, front) for i in (1, 2))
-    share = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.002, 0.998, _RINGS))  # finer at both ends, where it closes
-    along = back + (front - back) * share
+    distinct_knots = [knots[0]] + [b for a, b in pairwise(knots) if b[0] - a[0] > 1e-4 * (front - back)]
+    width, height = (_outline([(k[0], k[i]) for k in distinct_knots], back, front) for i in (1, 2))
+    fractions = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.002, 0.998, _RINGS))  # finer at both ends, where it closes
+    axial_positions = back + (front - back) * fractions
     c, s = ring(AROUND, 2.2)
-    points = [np.broadcast_to(along[:, None], (_RINGS, AROUND)), width(along)[:, None] * c, height(along)[:, None] * s]
+    points = [
+        np.broadcast_to(axial_positions[:, None], (_RINGS, AROUND)),
+        width(axial_positions)[:, None] * c,
+        height(axial_positions)[:, None] * s,
+    ]
     mesh = loft(np.stack(points, axis=-1))
     level = np.concatenate([np.broadcast_to(s, (_RINGS, AROUND)).ravel(), [0.0, 0.0]])
-    return mesh.painted(hide(level, place.robot.length))
+    return mesh.painted(hide(level, robot_layout.robot.length))
 
 
-def eyes(place: Layout) -> list[Mesh]:
-    """Return both eyes, for whom it is easier to see where the front is."""
-    front, _ = ends(place)
-    shape = place.robot.axis[0].shapes[-1]
-    wide, high = _section(shape)
-    size = 0.22 * min(wide, high)
-    at = front - 0.75 * max(wide, 0.4 * (place.robot.axis[0].front + place.robot.axis[0].rear))
-    return [ellipsoid((at, side * 0.75 * wide, 0.62 * high), (size, size, size)).painted(EYE) for side in (1.0, -1.0)]
+def eyes(robot_layout: Layout) -> list[Mesh]:
+    """Return both eyes, which show where the front is."""
+    front, _ = ends(robot_layout)
+    shape = robot_layout.robot.axis[0].shapes[-1]
+    half_width, half_height = _section(shape)
+    size = 0.22 * min(half_width, half_height)
+    x = front - 0.75 * max(half_width, 0.4 * (robot_layout.robot.axis[0].front + robot_layout.robot.axis[0].rear))
+    return [
+        ellipsoid((x, side * 0.75 * half_width, 0.62 * half_height), (size, size, size)).painted(EYE)
+        for side in (1.0, -1.0)
+    ]
 
 
-def limb_meshes(place: Layout, limb: LimbPlace) -> list[tuple[Mesh, int]]:
+def limb_meshes(robot_layout: Layout, limb: LimbPlace) -> list[tuple[Mesh, int]]:
     """Return the links and the foot of a limb, each with the bone that it hangs on."""
-    rest, design = bone_rest(place.robot), limb.girdle.limb
-    first = limb.tip - len(design.links) + 1
-    found = []
+    origins, design = bone_rest(robot_layout.robot), limb.girdle.limb
+    first_bone = limb.tip - len(design.links) + 1
+    meshes = []
     for number, link in enumerate(design.links):
-        start = rest[first + number]
+        start = origins[first_bone + number]
         end = start + np.array([link.end[0], limb.side * link.end[1], link.end[2]])
-        found.append((rod(start, end, link.radius).painted(FLANK), first + number))
+        meshes.append((rod(start, end, link.radius).painted(FLANK), first_bone + number))
     radius = design.foot.radius
-    found.append((ellipsoid(end, (radius,) * 3, around=LIMB_AROUND, rings=8).painted(SOLE), limb.tip))
-    return found
+    meshes.append((ellipsoid(end, (radius,) * 3, around=LIMB_AROUND, rings=8).painted(SOLE), limb.tip))
+    return meshes
 
 
 def rod(start: np.ndarray, end: np.ndarray, radius: float) -> Mesh:
-    """Return a rod with round ends."""
+    """Return a rod with round ends.
+
+    Args:
+        start: of its axis, (3,) [m].
+        end: of its axis, (3,) [m].
+        radius: [m].
+    """
     length = float(np.linalg.norm(end - start))
-    ahead = (end - start) / length
-    aside = np.cross(ahead, [0.0, 0.0, 1.0] if abs(ahead[2]) < 0.9 else [1.0, 0.0, 0.0])
-    aside /= np.linalg.norm(aside)
-    up = np.cross(ahead, aside)
-    along = np.concatenate([-radius * _CAP[::-1], length + radius * _CAP])
-    wide = radius * np.sqrt(1.0 - np.concatenate([_CAP[::-1], _CAP]) ** 2)
+    axis = (end - start) / length
+    lateral = np.cross(axis, [0.0, 0.0, 1.0] if abs(axis[2]) < 0.9 else [1.0, 0.0, 0.0])
+    lateral /= np.linalg.norm(lateral)
+    normal = np.cross(axis, lateral)
+    axial_positions = np.concatenate([-radius * _CAP[::-1], length + radius * _CAP])
+    ring_radii = radius * np.sqrt(1.0 - np.concatenate([_CAP[::-1], _CAP]) ** 2)
     c, s = ring(LIMB_AROUND)
-    around = c[:, None] * aside + s[:, None] * up
-    return loft(start + along[:, None, None] * ahead + wide[:, None, None] * around)
+    directions = c[:, None] * lateral + s[:, None] * normal
+    return loft(start + axial_positions[:, None, None] * axis + ring_radii[:, None, None] * directions)
 
 
-def segment_places(place: Layout) -> list[float]:
+def segment_places(robot_layout: Layout) -> list[float]:
     """Return where the origin of each segment of the axis lies ahead of the root's at zero posture [m]."""
-    rest = {body.name: (at, body.shift) for body, at in zip(place.bodies, bone_rest(place.robot), strict=True)}
-    return [float(rest[s.name][0][0] + rest[s.name][1]) for s in place.robot.axis]
+    placements = {
+        body.name: (origin, body.shift)
+        for body, origin in zip(robot_layout.bodies, bone_rest(robot_layout.robot), strict=True)
+    }
+    return [float(placements[s.name][0][0] + placements[s.name][1]) for s in robot_layout.robot.axis]
 
 
-def ends(place: Layout) -> tuple[float, float]:
+def ends(robot_layout: Layout) -> tuple[float, float]:
     """Return where the snout and the tip of the tail lie ahead of the root at zero posture [m]."""
-    at, axis = segment_places(place), place.robot.axis
-    return at[0] + axis[0].front, at[-1] - axis[-1].rear
+    positions, axis = segment_places(robot_layout), robot_layout.robot.axis
+    return positions[0] + axis[0].front, positions[-1] - axis[-1].rear
 
 
 def _section(shape: Rod | Shell) -> tuple[float, float]:
@@ -98,9 +114,20 @@ def _section(shape: Rod | Shell) -> tuple[float, float]:
 
 
 def _outline(knots: list[tuple[float, float]], back: float, front: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Return half widths along the axis, closed at both ends."""
-    first, last = knots[0][1], knots[-1][1]
-    closed = [(back, 0.15 * first), *knots, (front - 0.35 * last, 0.8 * last), (front, 0.15 * last)]
+    """Return half widths along the axis, closed at both ends.
+
+    Args:
+        knots: pairs of place x and half width, x increasing [m].
+        back: x of the tail's tip [m].
+        front: x of the snout's tip [m].
+    """
+    tail_width, snout_width = knots[0][1], knots[-1][1]
+    closed = [
+        (back, 0.15 * tail_width),
+        *knots,
+        (front - 0.35 * snout_width, 0.8 * snout_width),
+        (front, 0.15 * snout_width),
+    ]
     closed.sort()
     rising = [closed[0]] + [b for a, b in pairwise(closed) if b[0] > a[0]]
     return curve([(a, _MARGIN * b) for a, b in rising])

@@ -44,9 +44,9 @@ class Skin:
     indices: np.ndarray
     """Bones that each vertex hangs on, (n, 4) int32."""
     weights: np.ndarray
-    """How much of each, (n, 4) [-]; they sum to one."""
+    """Weights of these bones, (n, 4) [-]; each row sums to one."""
     plain: bool
-    """Whether it is a plain hide with rods for limbs and balls for feet, and not the skin of a crocodile."""
+    """Whether the skin is a plain hide with rods for limbs and balls for feet, not a crocodile's."""
 
     def posed(self, positions: np.ndarray, quaternions: np.ndarray) -> np.ndarray:
         """Return the vertices in a posture, (n, 3) [m], by linear blend skinning.
@@ -64,34 +64,34 @@ class Skin:
                 f"poses of shape {positions.shape} and {quaternions.shape} were given; this skin has {count} bones: "
                 f"give ({count}, 3) positions and ({count}, 4) quaternions."
             )
-        found = np.zeros_like(self.vertices)
+        posed_vertices = np.zeros_like(self.vertices)
         for i in range(_HANGS):
             if not self.weights[:, i].any():
                 continue
             bone = self.indices[:, i]
             arm = self.vertices - self.rest[bone]
-            found += self.weights[:, i, None] * (positions[bone] + rotate(quaternions[bone], arm))
-        return found
+            posed_vertices += self.weights[:, i, None] * (positions[bone] + rotate(quaternions[bone], arm))
+        return posed_vertices
 
 
 @lru_cache(maxsize=16)
-def skin(robot: Robot, look: Look = SKIN) -> Skin:
+def skin(robot: Robot, proportions: Look = SKIN) -> Skin:
     """Return the skin of a robot; the same robot gives the same skin again.
 
     Args:
         robot: any robot; one with the chains of ``design.MEASURED`` is a crocodile, any other a plain hide with
             rods for limbs.
-        look: proportions of the animal where the robot has none.
+        proportions: proportions of the animal where the robot has none.
     """
     plain = bool(lacking(robot, MEASURED))
-    parts = _plain(layout(robot)) if plain else _crocodile(robot, look)
-    hung = [_hung(robot, mesh.vertices, on) for mesh, on in parts]
-    whole = joined([mesh for mesh, _ in parts])
-    found = Skin(
-        vertices=whole.vertices,
-        normals=normals(whole),
-        faces=whole.faces,
-        colours=np.round(255 * np.clip(whole.colours, 0.0, 1.0)).astype(np.uint8),
+    parts = _plain(layout(robot)) if plain else _crocodile(robot, proportions)
+    hung = [_attach(robot, mesh.vertices, attachment) for mesh, attachment in parts]
+    full_mesh = joined([mesh for mesh, _ in parts])
+    surface = Skin(
+        vertices=full_mesh.vertices,
+        normals=normals(full_mesh),
+        faces=full_mesh.faces,
+        colours=np.round(255 * np.clip(full_mesh.colours, 0.0, 1.0)).astype(np.uint8),
         part=np.repeat(np.arange(len(parts), dtype=np.int32), [len(mesh.vertices) for mesh, _ in parts]),
         bones=bone_names(robot),
         rest=bone_rest(robot),
@@ -99,57 +99,66 @@ def skin(robot: Robot, look: Look = SKIN) -> Skin:
         weights=np.concatenate([weights for _, weights in hung]),
         plain=plain,
     )
-    for array in (found.vertices, found.normals, found.faces, found.colours, found.part, found.rest, found.indices,
-                  found.weights):  # fmt: skip
+    for array in (surface.vertices, surface.normals, surface.faces, surface.colours, surface.part, surface.rest,
+                  surface.indices, surface.weights):  # fmt: skip
         array.flags.writeable = False
-    return found
+    return surface
 
 
-def _crocodile(robot: Robot, look: Look) -> list[tuple[Mesh, str | int]]:
+def _crocodile(robot: Robot, proportions: Look) -> list[tuple[Mesh, str | int]]:
     """Return the parts of a crocodile, each with the limb that it hangs on, or nothing for the axis."""
     limbs = [(mesh, girdle) for girdle in "FH" for mesh in left_leg(robot, girdle)]
-    parts: list[tuple[Mesh, str | int]] = [(mesh, "") for mesh in _axial(robot, look)]
+    parts: list[tuple[Mesh, str | int]] = [(mesh, "") for mesh in _axial(robot, proportions)]
     return parts + [(m.mirrored() if side == "R" else m, side + girdle) for m, girdle in limbs for side in "LR"]
 
 
-def _plain(place: Layout) -> list[tuple[Mesh, str | int]]:
+def _plain(robot_layout: Layout) -> list[tuple[Mesh, str | int]]:
     """Return the parts of any body, each with the bone that it hangs on, or nothing for the axis."""
-    parts: list[tuple[Mesh, str | int]] = [(axis_mesh(place), "")]
-    parts += [(mesh, "") for mesh in plain_eyes(place)]
-    return parts + [part for limb in place.limbs for part in limb_meshes(place, limb)]
+    parts: list[tuple[Mesh, str | int]] = [(axis_mesh(robot_layout), "")]
+    parts += [(mesh, "") for mesh in plain_eyes(robot_layout)]
+    return parts + [limb_mesh for limb in robot_layout.limbs for limb_mesh in limb_meshes(robot_layout, limb)]
 
 
-def _hung(robot: Robot, vertices: np.ndarray, on: str | int) -> tuple[np.ndarray, np.ndarray]:
-    """Hang vertices on a bone, on the axis or on a leg of that name: return bones and weights."""
-    if isinstance(on, int):
-        indices, weights = np.full((len(vertices), _HANGS), on, dtype=np.int32), np.zeros((len(vertices), _HANGS))
+def _attach(robot: Robot, vertices: np.ndarray, attachment: str | int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the bones on which vertices hang, (n, 4), and their weights, (n, 4).
+
+    Args:
+        robot: the robot.
+        vertices: at zero posture, (n, 3) [m].
+        attachment: number of a bone, name of a leg, or empty for the axis.
+    """
+    if isinstance(attachment, int):
+        indices, weights = (
+            np.full((len(vertices), _HANGS), attachment, dtype=np.int32),
+            np.zeros((len(vertices), _HANGS)),
+        )
         weights[:, 0] = 1.0
         return indices, weights
-    return _on_leg(robot, vertices, on) if on else _on_axis(robot, vertices)
+    return _on_leg(robot, vertices, attachment) if attachment else _on_axis(robot, vertices)
 
 
-def _axial(robot: Robot, look: Look) -> list[Mesh]:
+def _axial(robot: Robot, proportions: Look) -> list[Mesh]:
     """Return the parts of head, trunk and tail."""
-    outline = shape(robot, look)
-    left = [*eyes(robot, look), *teeth(robot, look), *left_scutes(robot, outline, look)]
-    both = [side for mesh in left for side in (mesh, mesh.mirrored())]
-    return [body(robot, look), jaw(robot, look), *middle_scutes(robot, outline), *both]
+    outline = shape(robot, proportions)
+    left_meshes = [*eyes(robot, proportions), *teeth(robot, proportions), *left_scutes(robot, outline, proportions)]
+    paired_meshes = [side for mesh in left_meshes for side in (mesh, mesh.mirrored())]
+    return [body(robot, proportions), jaw(robot, proportions), *middle_scutes(robot, outline), *paired_meshes]
 
 
 def _on_axis(robot: Robot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Hang vertices on the bodies of the axis by their place along the straight body."""
-    place, rest = layout(robot), bone_rest(robot)
-    names = [body.name for body in place.bodies]
-    order = [names.index(name) for name in (*reversed(place.tail), *place.trunk)]
+    """Return bones and weights of vertices on the axis, by their place along the straight body."""
+    robot_layout, origins = layout(robot), bone_rest(robot)
+    names = [body.name for body in robot_layout.bodies]
+    order = [names.index(name) for name in (*reversed(robot_layout.tail), *robot_layout.trunk)]
     # a segment behind the root ends at its own joint, one ahead of it begins there
-    behind = len(place.tail)
-    joints = [float(rest[bone, 0]) for i, bone in enumerate(order) if i != behind]
-    front, back = ends(place)
+    tail_count = len(robot_layout.tail)
+    joints = [float(origins[bone, 0]) for i, bone in enumerate(order) if i != tail_count]
+    front, back = ends(robot_layout)
     return _blended(vertices[:, 0], joints, np.diff([back, *joints, front]), order)
 
 
 def _on_leg(robot: Robot, vertices: np.ndarray, leg: str) -> tuple[np.ndarray, np.ndarray]:
-    """Hang vertices on girdle, femur and tibia by their distance from the midline."""
+    """Return bones and weights of vertices on a leg, by their distance from the midline."""
     names, links = bone_names(robot), robot.leg(leg)
     order = [names.index("thorax" if leg.endswith("F") else "pelvis"), names.index(f"{leg}_femur")]
     order.append(names.index(f"{leg}_tibia"))
@@ -159,18 +168,27 @@ def _on_leg(robot: Robot, vertices: np.ndarray, leg: str) -> tuple[np.ndarray, n
 
 
 def _blended(
-    along: np.ndarray, joints: list[float], lengths: np.ndarray, order: list[int]
+    distances: np.ndarray, joints: list[float], lengths: np.ndarray, order: list[int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return bones and weights: half and half at a joint, whole half a segment away from it."""
-    shares = np.ones((len(along), len(order)))
-    for i, (joint, (before, after)) in enumerate(zip(joints, pairwise(lengths), strict=True)):
-        half = 0.5 * min(before, after)
-        beyond = smooth(along, joint - half, joint + half)
-        shares[:, : i + 1] *= 1 - beyond[:, None]
-        shares[:, i + 1 :] *= beyond[:, None]
-    largest = np.argsort(-shares, axis=1, kind="stable")[:, :_HANGS]
-    if largest.shape[1] < _HANGS:
-        largest = np.pad(largest, ((0, 0), (0, _HANGS - largest.shape[1])))
-    weights = np.take_along_axis(shares, largest, axis=1)
+    """Return bones and weights of vertices along a chain of bones.
+
+    A vertex at a joint hangs half on either bone; half a segment away from the joint it hangs on one bone alone.
+
+    Args:
+        distances: of the vertices along the chain, (n,) [m].
+        joints: places of the joints along the chain, increasing [m].
+        lengths: of the segments, one more than joints [m].
+        order: numbers of the bones along the chain.
+    """
+    fractions = np.ones((len(distances), len(order)))
+    for i, (joint, (previous_length, next_length)) in enumerate(zip(joints, pairwise(lengths), strict=True)):
+        half = 0.5 * min(previous_length, next_length)
+        next_fraction = smooth(distances, joint - half, joint + half)
+        fractions[:, : i + 1] *= 1 - next_fraction[:, None]
+        fractions[:, i + 1 :] *= next_fraction[:, None]
+    bone_order = np.argsort(-fractions, axis=1, kind="stable")[:, :_HANGS]
+    if bone_order.shape[1] < _HANGS:
+        bone_order = np.pad(bone_order, ((0, 0), (0, _HANGS - bone_order.shape[1])))
+    weights = np.take_along_axis(fractions, bone_order, axis=1)
     weights[:, len(order) :] = 0.0
-    return np.array(order, dtype=np.int32)[largest], weights / weights.sum(axis=1, keepdims=True)
+    return np.array(order, dtype=np.int32)[bone_order], weights / weights.sum(axis=1, keepdims=True)
