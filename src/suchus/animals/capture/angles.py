@@ -15,17 +15,17 @@ from suchus.animals.capture.tracks import Tracks
 from suchus.article.paper import BendAngles, JointSums, to_bend_angles
 
 
-def azimuth(tracks: Tracks, ahead: str, behind: str) -> Float[np.ndarray, " frame"]:
+def azimuth(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " frame"]:
     """Return the direction of a segment in the ground plane, a quarter turn from x to y [rad]."""
-    d = tracks.at(ahead) - tracks.at(behind)
+    d = tracks.at(front) - tracks.at(rear)
     return np.arctan2(d[:, 1], d[:, 0])
 
 
-def elevation(tracks: Tracks, ahead: str, behind: str) -> Float[np.ndarray, " frame"]:
+def elevation(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " frame"]:
     """Return how far a segment looks up [rad]; NaN where no heights were seen."""
     if not tracks.upright:
         return np.full(len(tracks.time), np.nan)
-    d = tracks.at(ahead) - tracks.at(behind)
+    d = tracks.at(front) - tracks.at(rear)
     return np.arctan2(d[:, 2], np.hypot(d[:, 0], d[:, 1]))
 
 
@@ -42,37 +42,41 @@ def bend_angles(tracks: Tracks, tail_share: float = 1.0) -> BendAngles:
         tracks: the keypoints.
         tail_share: where along the tail its direction is taken, 1 at the tip [-].
     """
-    nothing = np.full(len(tracks.time), np.nan)
+    nan_angles = np.full(len(tracks.time), np.nan)
     thorax, pelvis, root = tracks.thorax, tracks.pelvis, tracks.tail_chain[1:3]
-    aside = tracks.view == "top"
-    rises = elevation if aside else azimuth  # from the side, what lies in the picture is up and down
+    is_top_view = tracks.view == "top"
+    rises = elevation if is_top_view else azimuth  # from the side, what lies in the picture is up and down
     return to_bend_angles(
         JointSums(
             spine_yaw=wrapped(azimuth(tracks, *thorax) - azimuth(tracks, *pelvis))
-            if aside and thorax and pelvis
-            else nothing,
-            spine_pitch=rises(tracks, *pelvis) - rises(tracks, *thorax) if thorax and pelvis else nothing,
-            tail_yaw=_tail_yaw(tracks, tail_share) if aside and pelvis and tracks.has("tail_tip") else nothing,
-            tail_pitch=rises(tracks, *root) - rises(tracks, *pelvis) if pelvis and len(root) > 1 else nothing,
+            if is_top_view and thorax and pelvis
+            else nan_angles,
+            spine_pitch=rises(tracks, *pelvis) - rises(tracks, *thorax) if thorax and pelvis else nan_angles,
+            tail_yaw=_tail_yaw(tracks, tail_share) if is_top_view and pelvis and tracks.has("tail_tip") else nan_angles,
+            tail_pitch=rises(tracks, *root) - rises(tracks, *pelvis) if pelvis and len(root) > 1 else nan_angles,
         )
     )
 
 
-def _tail_yaw(tracks: Tracks, share: float) -> Float[np.ndarray, " frame"]:
+def _tail_yaw(tracks: Tracks, fraction: float) -> Float[np.ndarray, " frame"]:
     """Return how far the tail looks left of the girdle, drawn through between the middles of its segments [rad]."""
     segments = list(pairwise(tracks.tail_chain[1:]))
-    apart = [np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1) for a, b in segments]
-    if not all(np.isfinite(size).any() for size in apart):  # a segment was never seen whole
+    frame_lengths = [np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1) for a, b in segments]
+    if not all(np.isfinite(size).any() for size in frame_lengths):  # a segment was never seen whole
         return np.full(len(tracks.time), np.nan)
-    lengths = np.array([np.nanmedian(size) for size in apart])
+    lengths = np.array([np.nanmedian(size) for size in frame_lengths])
     middles = np.cumsum(lengths) - lengths / 2
-    distance = share * lengths.sum()
+    distance = fraction * lengths.sum()
     pelvis = azimuth(tracks, "hip", "tail_base")
-    right = int(np.clip(np.searchsorted(middles, distance), 0, len(segments) - 1))
-    left = right if distance >= middles[-1] or right == 0 else right - 1
-    before, after = (wrapped(azimuth(tracks, *segments[i]) - pelvis) for i in (left, right))
-    weight = 0.0 if left == right else (distance - middles[left]) / (middles[right] - middles[left])
-    return wrapped(before + weight * wrapped(after - before))
+    rear_index = int(np.clip(np.searchsorted(middles, distance), 0, len(segments) - 1))
+    front_index = rear_index if distance >= middles[-1] or rear_index == 0 else rear_index - 1
+    front_yaw, rear_yaw = (wrapped(azimuth(tracks, *segments[i]) - pelvis) for i in (front_index, rear_index))
+    weight = (
+        0.0
+        if front_index == rear_index
+        else (distance - middles[front_index]) / (middles[rear_index] - middles[front_index])
+    )
+    return wrapped(front_yaw + weight * wrapped(rear_yaw - front_yaw))
 
 
 def joint_bends(tracks: Tracks, chain: tuple[str, ...]) -> Float[np.ndarray, "joint frame"]:
@@ -82,8 +86,10 @@ def joint_bends(tracks: Tracks, chain: tuple[str, ...]) -> Float[np.ndarray, "jo
         tracks: the keypoints.
         chain: points of the midline from front to back.
     """
-    looks = [azimuth(tracks, ahead, behind) for ahead, behind in pairwise(chain)]
-    return np.array([wrapped(front - back) for front, back in pairwise(looks)]).reshape(-1, len(tracks.time))
+    azimuths = [azimuth(tracks, front, rear) for front, rear in pairwise(chain)]
+    return np.array(
+        [wrapped(front_azimuth - rear_azimuth) for front_azimuth, rear_azimuth in pairwise(azimuths)]
+    ).reshape(-1, len(tracks.time))
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:

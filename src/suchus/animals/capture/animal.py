@@ -93,46 +93,46 @@ def _midline(animal: SyntheticAnimal, time: np.ndarray) -> dict[str, np.ndarray]
     pelvis = spine / 2  # the girdles counter-rotate, so that the trunk looks straight on
     link, height = animal.trunk / (_JOINTS + 1), np.full_like(time, animal.lift)
     hip = np.stack([animal.stride * phase, np.zeros_like(time), height], axis=1)
-    points, at = {"hip": hip}, hip
+    points, position = {"hip": hip}, hip
     for i in range(1, _JOINTS + 2):
-        at = at + link * _direction(pelvis - spine * (i - 1) / _JOINTS)
-        points["shoulder" if i > _JOINTS else f"spine_{i}"] = at
-    points["neck"] = at + link * _direction(pelvis - spine)
-    points["tail_base"] = at = hip - link * _direction(pelvis)
+        position = position + link * _direction(pelvis - spine * (i - 1) / _JOINTS)
+        points["shoulder" if i > _JOINTS else f"spine_{i}"] = position
+    points["neck"] = position + link * _direction(pelvis - spine)
+    points["tail_base"] = position = hip - link * _direction(pelvis)
     for i in range(1, _TAIL + 1):
         bend = np.zeros_like(time)
         for j in range(i):
             lag = animal.spine_rightmost + animal.tail_lag + animal.tail_wave * j / (_TAIL - 1)
             bend += animal.tail_bend / _TAIL * np.cos(2 * np.pi * (phase - lag))
-        at = at - animal.tail / _TAIL * _direction(pelvis + bend)
-        points["tail_tip" if i == _TAIL else f"tail_{i}"] = at
+        position = position - animal.tail / _TAIL * _direction(pelvis + bend)
+        points["tail_tip" if i == _TAIL else f"tail_{i}"] = position
     return points
 
 
 def _foot(animal: SyntheticAnimal, leg: str, time: np.ndarray) -> np.ndarray:
     """A foot that stands still, then goes on by a stride, without a jerk at either end."""
     phase = time / animal.period + animal.limb_phases[LEGS.index(leg)]
-    number, within = np.floor(phase), np.mod(phase, 1.0)
-    swing = np.clip(within / (1.0 - animal.duty_factor), 0.0, 1.0)
+    number, cycle_phase = np.floor(phase), np.mod(phase, 1.0)
+    swing = np.clip(cycle_phase / (1.0 - animal.duty_factor), 0.0, 1.0)
     # in the middle of its stance a foot is beside its girdle
-    middle = number - animal.duty_factor / 2 - animal.limb_phases[LEGS.index(leg)]
+    mid_stance = number - animal.duty_factor / 2 - animal.limb_phases[LEGS.index(leg)]
     girdle = animal.trunk if leg.endswith("F") else 0.0
-    x = girdle + animal.stride * (middle + _gone(animal.swing, swing))
+    x = girdle + animal.stride * (mid_stance + _swing_progress(animal.swing, swing))
     y = np.full_like(time, animal.outward if leg.startswith("L") else -animal.outward)
     return np.stack([x, y, animal.lift * np.sin(np.pi * swing) ** 2], axis=1)
 
 
-def _gone(swing: Swing, share: np.ndarray) -> np.ndarray:
+def _swing_progress(swing: Swing, fraction: np.ndarray) -> np.ndarray:
     """Share of its path that a foot has covered after a share of its swing."""
     if swing == "cosine":
-        return np.asarray((1 - np.cos(np.pi * share)) / 2)
+        return np.asarray((1 - np.cos(np.pi * fraction)) / 2)
     if swing == "jerk_free":
-        return np.asarray(share**3 * (10 - 15 * share + 6 * share**2))
+        return np.asarray(fraction**3 * (10 - 15 * fraction + 6 * fraction**2))
     if swing == "hasty":
-        return np.asarray(share**2 * (6 - 8 * share + 3 * share**2))
+        return np.asarray(fraction**2 * (6 - 8 * fraction + 3 * fraction**2))
     edge, top = 0.25, 1 / 0.75
-    start, end = np.minimum(share, edge), np.maximum(share - (1 - edge), 0.0)
-    return np.asarray(top * (start**2 / (2 * edge) + np.maximum(share - edge, 0.0) - end**2 / (2 * edge)))
+    start, end = np.minimum(fraction, edge), np.maximum(fraction - (1 - edge), 0.0)
+    return np.asarray(top * (start**2 / (2 * edge) + np.maximum(fraction - edge, 0.0) - end**2 / (2 * edge)))
 
 
 def _direction(azimuth: np.ndarray) -> np.ndarray:

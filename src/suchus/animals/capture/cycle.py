@@ -39,8 +39,8 @@ class PeriodicFit:
     @property
     def noise(self) -> float:
         """Standard deviation of what is left."""
-        seen = self.residual[np.isfinite(self.residual)]
-        return float(np.sqrt(np.sum(seen**2) / max(1, len(seen) - self._parameters)))
+        residual = self.residual[np.isfinite(self.residual)]
+        return float(np.sqrt(np.sum(residual**2) / max(1, len(residual) - self._parameters)))
 
     @property
     def error(self) -> float:
@@ -88,16 +88,21 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
     X = np.hstack([np.power.outer(t, np.arange(drift + 1)), np.cos(angle), np.sin(angle)])
     use = np.isfinite(values)
     if not use.any():
-        lost = np.full(harmonics, np.nan + 0j)
+        nan_harmonics = np.full(harmonics, np.nan + 0j)
         return PeriodicFit(
-            period=period, mean=np.nan, drift=np.full(drift, np.nan), middle=middle, harmonics=lost, residual=values
+            period=period,
+            mean=np.nan,
+            drift=np.full(drift, np.nan),
+            middle=middle,
+            harmonics=nan_harmonics,
+            residual=values,
         )
     solution = np.zeros(X.shape[1])
     for _ in range(_ROUNDS):
         solution = np.linalg.lstsq(X[use].T @ X[use], X[use].T @ values[use], rcond=None)[0]
-        left = np.abs(values - X @ solution)
-        usual = 1.4826 * np.median(left[use]) + 1e-12
-        keep = np.isfinite(values) & (left <= _JUMP * usual + 1e-9)
+        abs_residual = np.abs(values - X @ solution)
+        residual_scale = 1.4826 * np.median(abs_residual[use]) + 1e-12
+        keep = np.isfinite(values) & (abs_residual <= _JUMP * residual_scale + 1e-9)
         if keep.sum() == use.sum() or keep.sum() < 2 * X.shape[1]:
             break
         use = keep
@@ -140,20 +145,26 @@ def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], so
     spread = np.nanstd(scaled, axis=1, keepdims=True)
     weight = np.isfinite(scaled)
     y = np.where(weight, scaled / np.where(spread > 0, spread, 1.0), 0.0)
-    best, most = _coarse(time - time[0], y, weight.astype(float), trials)
-    if most < _REPEATS:
+    best_frequency, best_fraction = _coarse(time - time[0], y, weight.astype(float), trials)
+    if best_fraction < _REPEATS:
         raise UnusableTracks(
-            f"nothing in {source} repeats: the best cycle explains {100 * most:.0f} % of what trunk, tail and feet do, "
+            f"nothing in {source} repeats: the best cycle explains {100 * best_fraction:.0f} % of what trunk, tail "
+            "and feet do, "
             f"at least {100 * _REPEATS:.0f} % is needed; cut out the part in which the animal walks, with --start and "
             "--end."
         )
 
-    def missed(frequency: float) -> float:
+    def squared_residual(frequency: float) -> float:
         fits = [fit(time, row, 1.0 / frequency, harmonics=3) for row in np.where(weight, y, np.nan)]
-        return sum(float(np.nansum(one.residual**2)) for one in fits)
+        return sum(float(np.nansum(signal_fit.residual**2)) for signal_fit in fits)
 
-    width = min(0.3 / duration, 0.3 * best)
-    refined = minimize_scalar(missed, bounds=(best - width, best + width), method="bounded", options={"xatol": 1e-5})
+    width = min(0.3 / duration, 0.3 * best_frequency)
+    refined = minimize_scalar(
+        squared_residual,
+        bounds=(best_frequency - width, best_frequency + width),
+        method="bounded",
+        options={"xatol": 1e-5},
+    )
     period = 1.0 / float(refined.x)
     _check_period(period, duration, rate, source)
     return period
@@ -178,8 +189,11 @@ def _coarse(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.ndar
     pieces = int(time[-1] * trials[np.argmax(explained)] / _PIECE)
     if pieces > 1:
         parts = np.array_split(np.arange(len(time)), pieces)
-        shares = [_explained(time[part], y[:, part], weight[:, part], trials) for part in parts]
-        explained = np.mean(shares, axis=0)
+        fractions = [
+            _explained(time[frame_indices], y[:, frame_indices], weight[:, frame_indices], trials)
+            for frame_indices in parts
+        ]
+        explained = np.mean(fractions, axis=0)
     return float(trials[np.argmax(explained)]), float(explained.max())
 
 
@@ -187,8 +201,8 @@ def _explained(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.n
     """Return the share of the variance that mean and one harmonic explain, over all signals, shape (trial,)."""
     angle = 2 * np.pi * np.multiply.outer(trials, time)
     c, s = np.cos(angle), np.sin(angle)
-    one = np.ones_like(c)
-    base = (one, c, s)
+    constant = np.ones_like(c)
+    base = (constant, c, s)
     G = np.stack(
         [np.stack([(a * b) @ weight.T for b in base], axis=-1) for a in base], axis=-1
     )  # (trial, signal, 3, 3)
