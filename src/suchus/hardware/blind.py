@@ -38,8 +38,10 @@ class BlindRig:
         self._slope = np.array([line.pulse_per_radian for line in self._lines])
         self._offset = np.array([line.offset for line in self._lines])
         ends = np.array([[line.pulse_min, line.pulse_max] for line in self._lines])
-        reached = self._sign[:, None] * ((ends - self._centre[:, None]) / self._slope[:, None] - self._offset[:, None])
-        self.low, self.high = reached.min(axis=1), reached.max(axis=1)
+        angle_limits = self._sign[:, None] * (
+            (ends - self._centre[:, None]) / self._slope[:, None] - self._offset[:, None]
+        )
+        self.low, self.high = angle_limits.min(axis=1), angle_limits.max(axis=1)
         self.speed = np.array([robot.servo(name).speed for name in self.names])
         self.period = 1.0 / servo_map.rate
         self.asked = np.zeros(len(self.names), dtype=bool)
@@ -47,10 +49,10 @@ class BlindRig:
         self.text = f"servo map {servo_map.name}"
         count = len(self.names)
         unknown = np.full((6, count), np.nan)
-        never = np.zeros((3, count), dtype=int)
+        zero_counts = np.zeros((3, count), dtype=int)
         self.now = RigReading(
             angle=unknown[0], velocity=unknown[1], torque=unknown[2], current=unknown[3], voltage=unknown[4],
-            temperature=unknown[5], error=never[0], heard=never[1], age=never[2],
+            temperature=unknown[5], error=zero_counts[0], heard=zero_counts[1], age=zero_counts[2],
         )  # fmt: skip
         self.jumps = np.zeros(count, dtype=int)
 
@@ -88,18 +90,18 @@ class BlindRig:
         """Send all servos to angles, and return those that their pulses mean, shape (servo,) [rad]."""
         widths = self._centre + self._slope * (self._sign * angles + self._offset)
         step = 1e6 / self._pulses.rate / 4096
-        whole = np.rint(widths / step) * step
-        self._pulses.send(dict(zip(self._places, whole.tolist(), strict=True)))
-        meant: np.ndarray = self._sign * ((whole - self._centre) / self._slope - self._offset)
-        return meant
+        rounded_widths = np.rint(widths / step) * step
+        self._pulses.send(dict(zip(self._places, rounded_widths.tolist(), strict=True)))
+        sent_angles: np.ndarray = self._sign * ((rounded_widths - self._centre) / self._slope - self._offset)
+        return sent_angles
 
     def ready(self, goals: np.ndarray) -> np.ndarray:
         """Let all servos pulse, which gives them their torque."""
         return self.aim(goals)
 
-    def torque(self, on: bool) -> None:
+    def torque(self, enable: bool) -> None:
         """Take all pulses away; they come with the next goals."""
-        if not on:
+        if not enable:
             self._pulses.off()
 
     def limit(self, share: float) -> None:
@@ -110,7 +112,7 @@ class BlindRig:
         """No servo watches whether we are there [s]."""
         return float("inf")
 
-    def watch(self, on: bool) -> None:
+    def watch(self, enable: bool) -> None:
         """Do nothing: these servos watch nobody."""
 
     def close(self) -> None:

@@ -95,21 +95,21 @@ def cases(
     Raises:
         UnsuitedRobot: it cannot stand up, or swim.
     """
-    found = [LoadCase(name=gait.name, gait=gait) for gait in gaits]
+    load_cases = [LoadCase(name=gait.name, gait=gait) for gait in gaits]
     for gait in gaits:
         for slope in slopes:
             name = f"{gait.name}, {degrees(slope):.3g} degrees uphill"
-            found.append(LoadCase(name=name, gait=gait, ground=Ground(uphill=slope)))
-        found += [LoadCase(name=f"{gait.name}, {fault.name}", gait=gait, faults=(fault,)) for fault in faults]
+            load_cases.append(LoadCase(name=name, gait=gait, ground=Ground(uphill=slope)))
+        load_cases += [LoadCase(name=f"{gait.name}, {fault.name}", gait=gait, faults=(fault,)) for fault in faults]
     if standing:
         check_needs(robot, STANDING, "suchus size --standing")
         control = Standing(at=START, hold=_HOLD)
         seconds = control.down_from(robot) - START
-        found.append(LoadCase(name="standing up", gait=gaits[0], control=control, seconds=seconds))
+        load_cases.append(LoadCase(name="standing up", gait=gaits[0], control=control, seconds=seconds))
     if water:
         swim = swim_of(check_needs(robot, ["axis"], "suchus size --water"))
-        found.append(LoadCase(name="swimming", gait=swim, control=Swimming(), lake=Lake(level=robot.length)))
-    return tuple(found)
+        load_cases.append(LoadCase(name="swimming", gait=swim, control=Swimming(), lake=Lake(level=robot.length)))
+    return tuple(load_cases)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -166,18 +166,18 @@ def loads(robot: Robot, gait: Gait, *, progress: Progress = silent) -> Mapping[s
         Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow the gait.
     """
-    (borne,) = loads_of_each(robot, cases(robot, (gait,)), progress=progress)
-    return borne
+    (load_by_servo,) = loads_of_each(robot, cases(robot, (gait,)), progress=progress)
+    return load_by_servo
 
 
 def loads_of_each(
-    robot: Robot, asked: Sequence[LoadCase], *, timestep: float | None = None, progress: Progress = silent
+    robot: Robot, load_cases: Sequence[LoadCase], *, timestep: float | None = None, progress: Progress = silent
 ) -> list[Mapping[str, ServoLoad]]:
     """Return what each servo bears in each of several cases, and what four times as strong ones would give.
 
     Args:
         robot: who.
-        asked: what it does.
+        load_cases: what it does.
         timestep: of the physics [s]; that of the robot's size if None.
         progress: told the share that is done.
 
@@ -185,9 +185,11 @@ def loads_of_each(
         Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow a gait.
     """
-    pairs = [(one, case) for case in asked for one in (cold(robot), strong(robot))]
+    pairs = [(body, case) for case in load_cases for body in (cold(robot), strong(robot))]
     records = records_of_each(pairs, timestep=timestep, progress=progress)
-    return [borne(robot, own, needed) for own, needed in zip(records[::2], records[1::2], strict=True)]
+    return [
+        borne(robot, record, strong_record) for record, strong_record in zip(records[::2], records[1::2], strict=True)
+    ]
 
 
 def records_of_each(
@@ -200,15 +202,15 @@ def records_of_each(
         OutsideLimits: the joints cannot follow a gait.
     """
     ends = sorted({case.end for _, case in pairs})
-    found: dict[int, xr.Dataset] = {}
+    record_by_case: dict[int, xr.Dataset] = {}
     for number, end in enumerate(ends):
         members = [i for i, (_, case) in enumerate(pairs) if case.end == end]
         runs = [pairs[i][1].run(pairs[i][0]) for i in members]
         share = portion(progress, number, len(ends))
         record = whole(simulate(runs, duration=end, timestep=timestep, progress=share))
         for i, member in enumerate(members):
-            found[member] = between(record.isel(run=i)).assign_attrs(step=record.timestep)
-    return [found[i] for i in range(len(pairs))]
+            record_by_case[member] = between(record.isel(run=i)).assign_attrs(step=record.timestep)
+    return [record_by_case[i] for i in range(len(pairs))]
 
 
 def strong(robot: Robot) -> Robot:
@@ -225,39 +227,39 @@ def cold(robot: Robot) -> Robot:
     return with_servos(robot, cooled)
 
 
-def borne(robot: Robot, walk: xr.Dataset, needed: xr.Dataset | None = None) -> Mapping[str, ServoLoad]:
+def borne(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None = None) -> Mapping[str, ServoLoad]:
     """Return what each servo bears in a record.
 
     Args:
         robot: whose record it is, with its windings.
         walk: the part that counts.
-        needed: the same of ``strong`` servos; that of the robot itself if None.
+        strong_walk: the same of ``strong`` servos; that of the robot itself if None.
     """
-    used, first = use_of_each(robot, walk), walk.time.values - START
-    asked = np.abs((walk if needed is None else needed).servo_torque)
-    off = np.abs(walk.servo_target - walk.servo_angle)
-    found = {}
+    use, elapsed_time = use_of_each(robot, walk), walk.time.values - START
+    required_torque = np.abs((walk if strong_walk is None else strong_walk).servo_torque)
+    tracking_error = np.abs(walk.servo_target - walk.servo_angle)
+    load_by_servo = {}
     for name in layout(robot).servos:
-        servo, one = robot.servo(name), walk.sel(servo=name)
-        torque, speed = one.servo_torque.values, one.servo_velocity.values
-        full = used.sel(servo=name).values >= full_from(servo)
-        pulled = [cable for cable in robot.cables if cable.name == name]
-        found[name] = ServoLoad(
+        servo, servo_record = robot.servo(name), walk.sel(servo=name)
+        torque, speed = servo_record.servo_torque.values, servo_record.servo_velocity.values
+        full = use.sel(servo=name).values >= full_from(servo)
+        cables = [cable for cable in robot.cables if cable.name == name]
+        load_by_servo[name] = ServoLoad(
             torque=float(np.abs(torque).max()),
             limit=servo.torque,
             at_limit=float(full.mean()),
-            first=float(first[np.argmax(full)]) if full.any() else nan,
-            off=float(np.quantile(off.sel(servo=name), 1.0 - AT_LIMIT)),
-            needed=float(np.quantile(asked.sel(servo=name), 1.0 - AT_LIMIT)),
+            first=float(elapsed_time[np.argmax(full)]) if full.any() else nan,
+            off=float(np.quantile(tracking_error.sel(servo=name), 1.0 - AT_LIMIT)),
+            needed=float(np.quantile(required_torque.sel(servo=name), 1.0 - AT_LIMIT)),
             rms=float(np.sqrt((torque**2).mean())),
             speed=float(np.abs(speed).max()),
             power=float(max((torque * speed).max(), 0.0)),
-            line=float(np.quantile(used.sel(servo=name), 1.0 - AT_LIMIT)),
-            tension=float(np.abs(torque).max() / pulled[0].pulley) if pulled else nan,
-            radius=pulled[0].pulley if pulled and pulled[0].linear is not None else nan,
+            line=float(np.quantile(use.sel(servo=name), 1.0 - AT_LIMIT)),
+            tension=float(np.abs(torque).max() / cables[0].pulley) if cables else nan,
+            radius=cables[0].pulley if cables and cables[0].linear is not None else nan,
         )
-        found[name] = replace(found[name], **_electric(servo, torque, speed))
-    return found
+        load_by_servo[name] = replace(load_by_servo[name], **_electric(servo, torque, speed))
+    return load_by_servo
 
 
 def _electric(servo: Servo, torque: np.ndarray, speed: np.ndarray) -> dict[str, Any]:
@@ -265,15 +267,17 @@ def _electric(servo: Servo, torque: np.ndarray, speed: np.ndarray) -> dict[str, 
     winding = servo.winding
     if winding is None:
         return {}
-    part = torque / servo.torque
-    drawn = winding.stall_current * np.maximum(part**2 + part * speed / servo.ideal_speed, 0.0)
-    currents = winding.idle_current + drawn
-    found = {"current": float(currents.mean()), "peak_current": float(currents.max())}
+    torque_fraction = torque / servo.torque
+    load_current = winding.stall_current * np.maximum(
+        torque_fraction**2 + torque_fraction * speed / servo.ideal_speed, 0.0
+    )
+    currents = winding.idle_current + load_current
+    electric_loads = {"current": float(currents.mean()), "peak_current": float(currents.max())}
     heat = winding.heat
     if heat is None:
-        return found
+        return electric_loads
     loss = winding.volts * winding.stall_current * float((torque**2).mean()) / servo.torque**2
-    return {**found, "steady": heat.steady(loss), "warm_after": heat.reached_after(loss)}
+    return {**electric_loads, "steady": heat.steady(loss), "warm_after": heat.reached_after(loss)}
 
 
 def full_from(servo: Servo) -> float:
@@ -290,14 +294,17 @@ def use_of_each(robot: Robot, record: xr.Dataset) -> xr.DataArray:
     dims = record.servo_torque.dims
     torque, speed = record.servo_torque, record.servo_velocity
     step = record.attrs.get("step", record.attrs.get("timestep", 0.0)) / float(record.time[1] - record.time[0])
-    before = speed.shift(time=1).fillna(speed)
-    along = np.sign(torque) * (speed - step * (speed - before))
+    previous_speed = speed.shift(time=1).fillna(speed)
+    speed_along_torque = np.sign(torque) * (speed - step * (speed - previous_speed))
     limits = [
-        xr.DataArray(robot.servo(str(name)).given(along.sel(servo=name).values), dims=[d for d in dims if d != "servo"])
+        xr.DataArray(
+            robot.servo(str(name)).given(speed_along_torque.sel(servo=name).values),
+            dims=[d for d in dims if d != "servo"],
+        )
         for name in record.servo.values
     ]
-    given = xr.concat(limits, "servo").assign_coords(servo=record.servo).transpose(*dims)
-    return np.abs(torque) / np.maximum(given, 1e-9)
+    available_torque = xr.concat(limits, "servo").assign_coords(servo=record.servo).transpose(*dims)
+    return np.abs(torque) / np.maximum(available_torque, 1e-9)
 
 
 def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
@@ -319,5 +326,5 @@ def given_in(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np.n
         torque: that a movement asks for [N m].
         speed: of the shaft [rad/s].
     """
-    given = servo.given(np.sign(torque) * speed)
-    return float(np.quantile(np.abs(torque) / np.maximum(given, 1e-9), 1.0 - AT_LIMIT))
+    available_torque = servo.given(np.sign(torque) * speed)
+    return float(np.quantile(np.abs(torque) / np.maximum(available_torque, 1e-9), 1.0 - AT_LIMIT))

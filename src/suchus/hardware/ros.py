@@ -23,11 +23,12 @@ NOTE = (
 
 def unfit(robot: Robot) -> str:
     """Return in a sentence why a robot has no such description; empty for one that has."""
-    moved = [cable.name for cable in robot.cables if cable.linear is not None]
-    if not moved:
+    linear_cables = [cable.name for cable in robot.cables if cable.linear is not None]
+    if not linear_cables:
         return ""
     return (
-        f"Robot {robot.name!r} moves {', '.join(moved)} by a linear actuator, which has no place among the servos of "
+        f"Robot {robot.name!r} moves {', '.join(linear_cables)} by a linear actuator, which has no place among the "
+        "servos of "
         f"{PLUGIN}: take the plain URDF (suchus export), or let a servo pull the cords by a pulley (tail.drive = "
         "'cable')."
     )
@@ -45,8 +46,8 @@ def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_00
     Raises:
         UnsuitedRobot: a linear actuator moves a cable.
     """
-    if said := unfit(robot):
-        raise UnsuitedRobot(said)
+    if reason := unfit(robot):
+        raise UnsuitedRobot(reason)
     place = layout(robot)
     root = ElementTree.fromstring(urdf(robot))
     for i in place.cables:

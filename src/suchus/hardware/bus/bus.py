@@ -49,8 +49,8 @@ class Bus:
         self.counts = Counts()
         self._decoder = framing.replies()
         self._quiet_from = 0.0
-        self._asked: dict[int, int] = {}  # whom ``begin`` asked for how many bytes
-        self._kept: dict[int, Packet] = {}  # replies to that which came too late
+        self._requested_lengths: dict[int, int] = {}  # whom ``begin`` asked for how many bytes
+        self._late_replies: dict[int, Packet] = {}  # replies to that which came too late
         self.late: frozenset[int] = frozenset()
         """Whose replies of the last ``end`` were late ones to the question before."""
 
@@ -95,19 +95,19 @@ class Bus:
         """
         self.settle()
         self.send(request)
-        found = self._collect((servo,), length, self.wait if wait is None else wait)
-        if servo not in found:
+        replies = self._collect((servo,), length, self.wait if wait is None else wait)
+        if servo not in replies:
             raise NoAnswer(f"number {servo} on {self.port.name} does not answer.")
-        return found[servo]
+        return replies[servo]
 
     def begin(self, servos: Collection[int], address: int, length: int) -> None:
         """Ask several servos for the same bytes; ``end`` returns what they say."""
         if not self.clocked:
             for packet in self._decoder.feed(self.port.receive(0.0)):
                 self._keep(packet)
-        self._asked |= dict.fromkeys(servos, length)
-        asked = [*servos, CLOCK] if self.clocked else [*servos]
-        self.send(self.framing.sync_read(asked, address, length))
+        self._requested_lengths |= dict.fromkeys(servos, length)
+        servo_ids = [*servos, CLOCK] if self.clocked else [*servos]
+        self.send(self.framing.sync_read(servo_ids, address, length))
 
     def end(self, servos: Collection[int], length: int, wait: float | None = None) -> dict[int, Packet]:
         """Return the replies to ``begin`` that come in time, by servo.
@@ -120,40 +120,40 @@ class Bus:
             wait: for them; that of the bus if None [s].
         """
         wait = self.wait if wait is None else wait
-        found = self._collect(servos, length, _STEPPING if self.clocked else wait, told=self.clocked)
-        late = {servo: self._kept.pop(servo) for servo in servos if servo in self._kept}
-        self.late = frozenset(late) - frozenset(found)
-        return late | found
+        replies = self._collect(servos, length, _STEPPING if self.clocked else wait, has_end_marker=self.clocked)
+        late_replies = {servo: self._late_replies.pop(servo) for servo in servos if servo in self._late_replies}
+        self.late = frozenset(late_replies) - frozenset(replies)
+        return late_replies | replies
 
     def _keep(self, packet: Packet) -> None:
         """Keep a reply that was not waited for any more, if it can only be one to ``begin``."""
-        if self._asked.get(packet.id) == len(packet.data):
-            self._kept[packet.id] = packet
+        if self._requested_lengths.get(packet.id) == len(packet.data):
+            self._late_replies[packet.id] = packet
         else:
             self.counts.stale += 1
 
     def _collect(
-        self, servos: Collection[int], length: int | None, wait: float, *, told: bool = False
+        self, servos: Collection[int], length: int | None, wait: float, *, has_end_marker: bool = False
     ) -> dict[int, Packet]:
         """Return replies by servo; where the end of the answers is told, until then."""
-        found: dict[int, Packet] = {}
+        replies: dict[int, Packet] = {}
         end = monotonic() + wait
-        while told or len(found) < len(servos):
+        while has_end_marker or len(replies) < len(servos):
             data = self.port.receive(max(end - monotonic(), 0.0))
             for packet in self._decoder.feed(data):
-                if told and packet.id == CLOCK:
-                    self.counts.missing += len(servos) - len(found)
-                    return found
+                if has_end_marker and packet.id == CLOCK:
+                    self.counts.missing += len(servos) - len(replies)
+                    return replies
                 if packet.id in servos and length in (None, len(packet.data)):
-                    found[packet.id] = packet
+                    replies[packet.id] = packet
                 else:
                     self._keep(packet)
             if not data:
                 break
-        if len(found) < len(servos):
-            self.counts.missing += len(servos) - len(found)
+        if len(replies) < len(servos):
+            self.counts.missing += len(servos) - len(replies)
             self._quiet_from = monotonic() + 2 * self.wait
-        return found
+        return replies
 
     def ping(self, servo: int) -> Packet | None:
         """Return the reply of a servo to the question whether it is there; None if none comes."""
@@ -179,15 +179,17 @@ class Bus:
             BusFailure: the servo refused it.
         """
         reply = self.ask(self.framing.write(servo, register.address, register.encode(value)), servo)
-        why = self.framing.refusal(reply.code)
-        if why:
-            raise BusFailure(f"number {servo} on {self.port.name} refused {register.name} = {value}: {why}.")
+        refusal = self.framing.refusal(reply.code)
+        if refusal:
+            raise BusFailure(f"number {servo} on {self.port.name} refused {register.name} = {value}: {refusal}.")
         return reply
 
     def write_all(self, register: Register, values: Mapping[int, int]) -> None:
         """Write a register of several servos at once; none answers."""
         if values:
-            self.send(self.framing.sync_write(register.address, {one: register.encode(v) for one, v in values.items()}))
+            self.send(
+                self.framing.sync_write(register.address, {servo: register.encode(v) for servo, v in values.items()})
+            )
 
     def pass_until(self, tick: int) -> None:
         """Let an emulator's robot move until a tick, counted from when the emulator began.

@@ -53,12 +53,12 @@ class Decoder(ABC):
         self._buffer += data
         packets: list[Packet] = []
         while (step := self._next(bytes(self._buffer))) is not None:
-            used, packet = step
+            length, packet = step
             if packet is None:
-                self.dropped += used
+                self.dropped += length
             else:
                 packets.append(packet)
-            del self._buffer[:used]
+            del self._buffer[:length]
         return packets
 
     def clear(self) -> None:
