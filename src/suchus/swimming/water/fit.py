@@ -79,36 +79,42 @@ def fit(
     _check_amplitudes(robot, name, amplitudes)
     lags = [round(-float(np.angle(bend)) / (2 * np.pi), 12) for bend in bends]
     # a servo behind the root turns the tip right where its angle is positive, and a gait's bends are to the left
-    left = [
+    left_lags = [
         lag if servo.ahead else lag - 0.5 if lag > 0.0 else lag + 0.5
         for servo, lag in zip(outline.servos, lags, strict=True)
     ]
-    gait = swimming_gait(robot, name=name, frequency=1.0 / wave.period, amplitude=amplitudes, lag=left, limbs=limbs)
-    misfit, asked = _misfit(outline, gait, head, time, x, y), _asked(outline, heading)
+    gait = swimming_gait(
+        robot, name=name, frequency=1.0 / wave.period, amplitude=amplitudes, lag=left_lags, limbs=limbs
+    )
+    misfit, requested_bends = _misfit(outline, gait, head, time, x, y), _requested_bends(outline, heading)
     if not misfit <= most:
         limits = _limits(outline)
-        worst = int(np.argmax(asked / limits))
+        worst_joint = int(np.argmax(requested_bends / limits))
         raise OutsideLimits(
             f"the joints of robot {robot.name!r} cannot make {name!r}: the nearest motion is off by {100 * misfit:.0f} "
-            f"% of the tail's swing, and {100 * most:.0f} % is allowed. Where {outline.joints[worst]} stands the wave "
-            f"bends by {asked[worst]:.2f} rad and the joint by {limits[worst]:.2f} rad at most: take a longer "
-            "or a flatter wave."
+            f"% of the tail's swing, and {100 * most:.0f} % is allowed. Where {outline.joints[worst_joint]} stands "
+            "the wave "
+            f"bends by {requested_bends[worst_joint]:.2f} rad and the joint by {limits[worst_joint]:.2f} rad at "
+            "most: take a longer or a flatter wave."
         )
-    return Fit(gait=gait, head=head, misfit=misfit, asked=tuple(asked.tolist()))
+    return Fit(gait=gait, head=head, misfit=misfit, asked=tuple(requested_bends.tolist()))
 
 
 def _misfit(outline: Outline, gait: Gait, head: complex, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
     """Return the rms distance over the tail's swing; at every instant the curves lie over each other on the average."""
     curve = undulation(outline, gait).held(turn=head).curve(time)
-    apart = [a - b - (a - b).mean(axis=-1, keepdims=True) for a, b in ((curve.x, x), (curve.y, y))]
+    differences = [a - b - (a - b).mean(axis=-1, keepdims=True) for a, b in ((curve.x, x), (curve.y, y))]
     swing = float(np.abs(y[:, -1]).max())
-    return float(np.sqrt(np.mean(apart[0] ** 2 + apart[1] ** 2)) / swing) if swing > 0 else 0.0
+    return float(np.sqrt(np.mean(differences[0] ** 2 + differences[1] ** 2)) / swing) if swing > 0 else 0.0
 
 
-def _asked(outline: Outline, heading: np.ndarray) -> np.ndarray:
+def _requested_bends(outline: Outline, heading: np.ndarray) -> np.ndarray:
     """Return the greatest bend of a wave over the length that each joint stands for [rad]."""
     half = 0.5 * outline.spacings
-    ends = [np.array([np.interp(outline.places + side * half, outline.s, now) for now in heading]) for side in (-1, 1)]
+    ends = [
+        np.array([np.interp(outline.places + side * half, outline.s, instant_heading) for instant_heading in heading])
+        for side in (-1, 1)
+    ]
     return np.asarray(np.abs(ends[1] - ends[0]).max(axis=0))
 
 
@@ -120,8 +126,8 @@ def _limits(outline: Outline) -> np.ndarray:
     return np.array([_either_side(*limits[name]) for name in outline.joints])
 
 
-def _either_side(low: float, high: float) -> float:
-    return min(-low, high) if low < 0.0 else high
+def _either_side(lower_bound: float, upper_bound: float) -> float:
+    return min(-lower_bound, upper_bound) if lower_bound < 0.0 else upper_bound
 
 
 def _check_amplitudes(robot: Robot, name: str, amplitudes: Sequence[float]) -> None:
@@ -160,9 +166,9 @@ def swim_of(
         UnsuitedRobot: no servo bends the robot sideways.
         OutsideLimits: its joints cannot make the wave.
     """
-    bare = with_values(check_needs(robot, ["axis"], "a swim"), {"hull": None})
+    hull_free_robot = with_values(check_needs(robot, ["axis"], "a swim"), {"hull": None})
     cycles = frequency or _FREQUENCY * _PERIOD / control_period(robot)
-    return fit(bare, printed_wave(bare, reading, frequency=cycles, sign=-1), limbs=limbs).gait
+    return fit(hull_free_robot, printed_wave(hull_free_robot, reading, frequency=cycles, sign=-1), limbs=limbs).gait
 
 
 class Attempt(NamedTuple):
@@ -184,26 +190,26 @@ def attempts(robot: Robot, *, frequency: float, sign: int = -1) -> list[Attempt]
         frequency: which the article does not give [Hz].
         sign: -1 runs from head to tail; 1 as printed.
     """
-    found = []
+    results = []
     for letter in READINGS:
         wave = printed_wave(robot, letter, frequency=frequency, sign=sign)
         try:
-            found.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
+            results.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
         except OutsideLimits as refused:
-            found.append(Attempt(letter, None, str(refused)))
-    return found
+            results.append(Attempt(letter, None, str(refused)))
+    return results
 
 
-def readings_table(tried: Iterable[Attempt], thrust: Mapping[str, str]) -> str:
+def readings_table(readings: Iterable[Attempt], thrust: Mapping[str, str]) -> str:
     """Return a Markdown table of readings: units, misfit, what the joints make of it, thrust.
 
     Args:
-        tried: the readings.
+        readings: the readings.
         thrust: what was measured of some of them, by letter.
     """
     lines = ["| reading of (20) | units | misfit | joints | thrust |", "|---|---|---|---|---|"]
-    for letter, fitted, refusal in tried:
-        misfit = "" if fitted is None else f"{100 * fitted.misfit:.1f} %"
+    for letter, nearest_fit, refusal in readings:
+        misfit = "" if nearest_fit is None else f"{100 * nearest_fit.misfit:.1f} %"
         joints = refusal or READINGS[letter].verdict
         lines.append(f"| {letter} | {READINGS[letter].meaning} | {misfit} | {joints} | {thrust.get(letter, '')} |")
     return "\n".join(lines) + "\n"

@@ -33,24 +33,24 @@ def immersed(
         grow: time over which the motion grows from nothing [s].
         least: half-width below which the body is thickened, its ends made round [m].
     """
-    bent = undulation(outline, motion).held(sway, turn)
+    body_motion = undulation(outline, motion).held(sway, turn)
     half_width = outline.silhouette.half_width
 
     @lru_cache(maxsize=2)  # the flow asks up to ten times for the same two instants of a step
     def spine(time: float) -> flow.MidlineState:
-        curve = bent.curve(np.asarray(time), *_grown(time, grow))
-        bare = flow.MidlineState(**curve._asdict(), half_width=half_width)
-        return bare.thickened(least) if least > 0.0 else bare
+        curve = body_motion.curve(np.asarray(time), *_growth(time, grow))
+        state = flow.MidlineState(**curve._asdict(), half_width=half_width)
+        return state.thickened(least) if least > 0.0 else state
 
     return flow.Midline(spine=spine)
 
 
-def _grown(time: float, over: float) -> tuple[float, float]:
+def _growth(time: float, duration: float) -> tuple[float, float]:
     """Return the share of a motion that has grown, smooth at both ends, and its rate."""
-    if over <= 0.0 or time >= over:
+    if duration <= 0.0 or time >= duration:
         return 1.0, 0.0
-    part = time / over
-    return part**3 * (10 - 15 * part + 6 * part**2), 30 * part**2 * (1 - part) ** 2 / over
+    fraction = time / duration
+    return fraction**3 * (10 - 15 * fraction + 6 * fraction**2), 30 * fraction**2 * (1 - fraction) ** 2 / duration
 
 
 def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
@@ -72,19 +72,26 @@ def folded(robot: Robot) -> tuple[flow.Capsule, ...]:
 
     Each link is a capsule and each foot a ball, rigid with the body at the hip.
     """
-    place, found = layout(robot), []
+    place, capsules = layout(robot), []
     names = [segment.name for segment in place.robot.axis]
     for limb in place.limbs:
         girdle = limb.girdle
-        at = stations(place.robot)[names.index(girdle.segment)][0]
-        at += place.robot.axis[names.index(girdle.segment)].front - girdle.at
-        aside, behind = -limb.side * girdle.aside, 0.0  # the body's y points to the robot's right
+        hip_position = stations(place.robot)[names.index(girdle.segment)][0]
+        hip_position += place.robot.axis[names.index(girdle.segment)].front - girdle.at
+        lateral_offset, rear_offset = -limb.side * girdle.aside, 0.0  # the body's y points to the robot's right
         for link in girdle.limb.links:
-            ends = (behind, aside), (behind + link.length, aside)
-            found.append(flow.Capsule(at=at, start=ends[0], end=ends[1], radius=link.radius))
-            behind += link.length
-        found.append(flow.Capsule(at=at, start=(behind, aside), end=(behind, aside), radius=girdle.limb.foot.radius))
-    return tuple(found)
+            ends = (rear_offset, lateral_offset), (rear_offset + link.length, lateral_offset)
+            capsules.append(flow.Capsule(at=hip_position, start=ends[0], end=ends[1], radius=link.radius))
+            rear_offset += link.length
+        capsules.append(
+            flow.Capsule(
+                at=hip_position,
+                start=(rear_offset, lateral_offset),
+                end=(rear_offset, lateral_offset),
+                radius=girdle.limb.foot.radius,
+            )
+        )
+    return tuple(capsules)
 
 
 def trunk(
@@ -109,7 +116,7 @@ def trunk(
         turn: harmonic of the head's direction [rad].
     """
     spine = immersed(outline, motion, sway=sway, turn=turn, grow=grow).spine
-    cuts, high = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
+    cuts, half_height = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
     if limbs:
-        return flow.Limbed(spine=spine, half_height=high, cuts=cuts, limbs=folded(outline.robot))
-    return flow.Trunk(spine=spine, half_height=high, cuts=cuts)
+        return flow.Limbed(spine=spine, half_height=half_height, cuts=cuts, limbs=folded(outline.robot))
+    return flow.Trunk(spine=spine, half_height=half_height, cuts=cuts)

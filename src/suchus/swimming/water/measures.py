@@ -21,10 +21,10 @@ class Quarters(NamedTuple):
     """Force to the right [N/m]."""
 
     @classmethod
-    def each(cls, held: xr.Dataset) -> "list[Quarters]":
+    def each(cls, record: xr.Dataset) -> "list[Quarters]":
         """Read every cycle but the first from a record of a tethered slice; the last one comes last."""
-        cycles = [held.isel(settled=i) for i in range(held.sizes["settled"])]
-        return [cls(*(one[f"quarter_{name}"].values.tolist() for name in cls._fields)) for one in cycles]
+        cycles = [record.isel(settled=i) for i in range(record.sizes["settled"])]
+        return [cls(*(cycle[f"quarter_{name}"].values.tolist() for name in cls._fields)) for cycle in cycles]
 
     @property
     def moves(self) -> float:
@@ -32,9 +32,9 @@ class Quarters(NamedTuple):
         return self.place[2] - self.place[0]
 
 
-def convex_higher(held: xr.Dataset) -> float:
+def convex_higher(record: xr.Dataset) -> float:
     """Return in which share of the cycle the convex side of the tail has the higher pressure [-]."""
-    return float((held.difference > 0).mean())
+    return float((record.difference > 0).mean())
 
 
 def level(track: np.ndarray) -> np.ndarray:
@@ -58,16 +58,16 @@ class LateralSwing(NamedTuple):
     """Fraction of the variance about the mean line that the sine has [-]."""
 
 
-def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> LateralSwing:
+def swing(lateral_positions: Float[np.ndarray, "sample station"], cycles: int = 2) -> LateralSwing:
     """Return how far each station swings to either side as a sine, and which share of its swing that sine is.
 
     Args:
-        across: places to the side over whole cycles, first and last instant included [m].
+        lateral_positions: places to the side over whole cycles, first and last instant included [m].
         cycles: how many [-].
     """
-    swung = np.column_stack([level(track) for track in across.T])[:-1]
-    harmonic = 2.0 * np.fft.rfft(swung, axis=0)[cycles] / len(swung)
-    variance = np.maximum(np.mean(swung**2, axis=0), np.finfo(float).tiny)
+    deviations = np.column_stack([level(track) for track in lateral_positions.T])[:-1]
+    harmonic = 2.0 * np.fft.rfft(deviations, axis=0)[cycles] / len(deviations)
+    variance = np.maximum(np.mean(deviations**2, axis=0), np.finfo(float).tiny)
     lag = np.mod(-np.angle(harmonic) / (2.0 * np.pi), 1.0)
     return LateralSwing(np.abs(harmonic), lag, 0.5 * np.abs(harmonic) ** 2 / variance)
 
@@ -90,8 +90,8 @@ class Sway(NamedTuple):
         if (track.size - 1) % cycles:
             raise ValueError(f"{track.size} samples are no whole number for each of {cycles} cycles.")
         amplitude, _, share = (float(values[0]) for values in swing(track[:, None], cycles))
-        left = np.sqrt(max(np.var(level(track)[:-1]) * (1.0 - share), 0.0))
-        return cls(amplitude, 2.0 * float(left))
+        residual = np.sqrt(max(np.var(level(track)[:-1]) * (1.0 - share), 0.0))
+        return cls(amplitude, 2.0 * float(residual))
 
 
 def wave_form(
@@ -110,17 +110,19 @@ def wave_form(
 
     Paper: Eq. (20).
     """
-    swung = amplitude * np.exp(-2j * np.pi * lag)
+    harmonics = amplitude * np.exp(-2j * np.pi * lag)
 
-    def left(guess: np.ndarray) -> np.ndarray:
-        apart = (guess[0] * s + guess[1] * s**2) * np.exp(-2j * np.pi * (guess[2] * s + guess[3])) - swung
-        return np.concatenate([apart.real, apart.imag])
+    def residuals(guess: np.ndarray) -> np.ndarray:
+        difference = (guess[0] * s + guess[1] * s**2) * np.exp(-2j * np.pi * (guess[2] * s + guess[3])) - harmonics
+        return np.concatenate([difference.real, difference.imag])
 
     size = float(amplitude[-1])
     starts = [(0.1 * size, size, waves, lag) for waves in (-1.0, 0.2, 1.0) for lag in (0.0, 0.25, 0.5, 0.75)]
-    found = min((least_squares(left, start, x_scale=(size, size, 1.0, 1.0)) for start in starts), key=lambda f: f.cost)
-    whole = float(np.sum(np.abs(swung) ** 2))
-    return float(found.x[0]), float(found.x[1]), float(found.x[2]), 1.0 - 2.0 * float(found.cost) / whole
+    best = min(
+        (least_squares(residuals, start, x_scale=(size, size, 1.0, 1.0)) for start in starts), key=lambda f: f.cost
+    )
+    total_power = float(np.sum(np.abs(harmonics) ** 2))
+    return float(best.x[0]), float(best.x[1]), float(best.x[2]), 1.0 - 2.0 * float(best.cost) / total_power
 
 
 class Swum(NamedTuple):

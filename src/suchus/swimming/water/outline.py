@@ -116,10 +116,10 @@ class Outline:
         """What bends the midline at a command, in the order of ``motion.lateral_servos``."""
         place, order = layout(self.robot), {name: i for i, name in enumerate(self.joints)}
         hinges = {name: place.cable(place.servos.index(name)).hinges for name in self._cables}
-        moved = {
+        joints_by_servo = {
             name: tuple(order[joint] for joint in hinges.get(name, (name,))) for name in lateral_servos(self.robot)
         }
-        return tuple(LateralServo(name, joints, joints[0] < self.ahead) for name, joints in moved.items())
+        return tuple(LateralServo(name, joints, joints[0] < self.ahead) for name, joints in joints_by_servo.items())
 
     def at_servos(self, moments: Float[np.ndarray, "*b joint"]) -> Float[np.ndarray, "*b servo"]:
         """Return what moments about ``joints`` ask of ``servos``, each at its own shaft [N m].
@@ -136,8 +136,8 @@ class Outline:
     @cached_property
     def passive(self) -> tuple[int, ...]:
         """Those of ``joints`` that no servo moves."""
-        driven = {joint for servo in self.servos for joint in servo.joints}
-        return tuple(i for i in range(len(self.joints)) if i not in driven)
+        driven_joints = {joint for servo in self.servos for joint in servo.joints}
+        return tuple(i for i in range(len(self.joints)) if i not in driven_joints)
 
     @property
     def tail_root(self) -> float:
@@ -152,8 +152,10 @@ class Outline:
     def places(self) -> Float[np.ndarray, " joint"]:
         """Where the joints are, from the snout [m]."""
         ends = np.cumsum([segment.front + segment.rear for segment in self.robot.axis])
-        at = {h.name: end for segment, end in zip(self.robot.axis, ends, strict=True) for h in segment.hinges}
-        return np.array([at[name] for name in self.joints])
+        hinge_positions = {
+            h.name: end for segment, end in zip(self.robot.axis, ends, strict=True) for h in segment.hinges
+        }
+        return np.array([hinge_positions[name] for name in self.joints])
 
     @cached_property
     def spacings(self) -> Float[np.ndarray, " joint"]:
@@ -164,12 +166,16 @@ class Outline:
         """
         cables = {joint: servo.name for servo in self.servos if servo.name in self._cables for joint in servo.joints}
         drive = ["" if i in self.passive else cables.get(i, "servo") for i in range(len(self.joints))]
-        apart = np.abs(self.places[:, None] - self.places)
-        np.fill_diagonal(apart, np.inf)
-        alike = np.where(np.array(drive)[:, None] == np.array(drive), apart, np.inf).min(axis=1, initial=np.inf)
-        nearest = np.where(np.isfinite(alike), alike, apart.min(axis=1, initial=np.inf))
+        distances = np.abs(self.places[:, None] - self.places)
+        np.fill_diagonal(distances, np.inf)
+        same_drive_distances = np.where(np.array(drive)[:, None] == np.array(drive), distances, np.inf).min(
+            axis=1, initial=np.inf
+        )
+        nearest_distances = np.where(
+            np.isfinite(same_drive_distances), same_drive_distances, distances.min(axis=1, initial=np.inf)
+        )
         ends = np.minimum(self.places, self.robot.length - self.places)
-        return np.asarray(np.where(np.isfinite(nearest), nearest, ends))
+        return np.asarray(np.where(np.isfinite(nearest_distances), nearest_distances, ends))
 
     @cached_property
     def reaches(self) -> Float[np.ndarray, " joint"]:
@@ -186,8 +192,8 @@ class Outline:
 
     def bending_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point servo"]:
         """Return how the heading at points grows with the bend of each of ``servos``, its own sense positive [-]."""
-        each = self.joints_at(s)
-        shares = [each[:, list(servo.joints)].mean(axis=1) for servo in self.servos]
+        joint_bends = self.joints_at(s)
+        shares = [joint_bends[:, list(servo.joints)].mean(axis=1) for servo in self.servos]
         return np.array(shares).reshape(len(self.servos), len(s)).T
 
     def passive_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point passive"]:
@@ -200,8 +206,8 @@ class Outline:
         It is the share of the joint's bend that lies ahead of the point; that of a joint ahead of the root, which turns
         the front end left, counts to the right behind it.
         """
-        along = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
-        shares = np.asarray(0.5 * (1.0 + along + np.sin(np.pi * along) / np.pi))
+        reach_fraction = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
+        shares = np.asarray(0.5 * (1.0 + reach_fraction + np.sin(np.pi * reach_fraction) / np.pi))
         shares[:, : self.ahead] *= -1.0
         return shares
 
@@ -211,7 +217,9 @@ def tail_root(robot: Robot) -> float:
     return sum(segment.front + segment.rear for segment in robot.axis[: robot.root_place + 1])
 
 
-def summed(first: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]) -> Float[np.ndarray, "*b station"]:
+def summed(
+    start_value: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]
+) -> Float[np.ndarray, "*b station"]:
     """Return where steps lead from a start."""
-    start = np.asarray(first)[..., None]
+    start = np.asarray(start_value)[..., None]
     return np.concatenate([start, start + np.cumsum(steps, axis=-1)], axis=-1)

@@ -96,7 +96,7 @@ def resolved_swim(
     swim = ResolvedSwim(robot=robot, motion=motion, setting=setting, sway=sway, turn=turn)
     sim, observer = flow.Simulation(swim.setup), _OBSERVERS[setting.axes, setting.tethered](swim)
     samples = run_on(
-        sim, swim.end, swim.period / 4, observer.sample, about=swim.key, checkpoint=checkpoint, progress=progress
+        sim, swim.end, swim.period / 4, observer.sample, description=swim.key, checkpoint=checkpoint, progress=progress
     )
     return observer.record(sim, samples)
 
@@ -125,11 +125,11 @@ def towed_drag(robot: Robot, speed: float, setting: SwimSetting, *, lengths: flo
     _check_tow("speed", speed, *SPEEDS, "m/s")
     _check_tow("lengths", lengths, *LENGTHS, "body lengths")
     length, outline = robot.length, Outline(robot, setting.cells + 1)
-    over = _RAMP * length / speed
+    ramp_time = _RAMP * length / speed
 
     def stream(time: float) -> tuple[float, float]:
-        part = min(time / over, 1.0)
-        return speed * part * part * (3 - 2 * part), 0.0
+        fraction = min(time / ramp_time, 1.0)
+        return speed * fraction * fraction * (3 - 2 * fraction), 0.0
 
     sim = flow.Simulation(
         flow.Setup(
@@ -142,6 +142,8 @@ def towed_drag(robot: Robot, speed: float, setting: SwimSetting, *, lengths: flo
     return float(np.average(series.force()[:, 0], weights=series.step))
 
 
-def _check_tow(name: str, value: float, low: float, high: float, unit: str) -> None:
-    if not low <= value <= high:
-        raise OutsideLimits(f"{name} of the tow is {value:.4g} {unit}; {low:g} to {high:g} {unit} is allowed.")
+def _check_tow(name: str, value: float, lower_bound: float, upper_bound: float, unit: str) -> None:
+    if not lower_bound <= value <= upper_bound:
+        raise OutsideLimits(
+            f"{name} of the tow is {value:.4g} {unit}; {lower_bound:g} to {upper_bound:g} {unit} is allowed."
+        )

@@ -57,11 +57,11 @@ def points() -> dict[str, tuple[float, float, int]]:
     """Return aspect, Keulegan number and cells a height of every flow of the table by its name, nodes first."""
     cells = {case.name: case.full.cells for case in sections.cases()}
     nodes = [(aspect, keulegan) for aspect in sections.ASPECTS for keulegan in sections.KEULEGANS]
-    found = {sections.name_of(*point): point for point in (*nodes, *sections.HELD_OUT)}
-    finer = {
+    points_by_name = {sections.name_of(*point): point for point in (*nodes, *sections.HELD_OUT)}
+    fine_points = {
         name: point for point in sections.FINER for name in cells if name.startswith(f"{sections.name_of(*point)}_")
     }
-    return {name: (*point, cells[name]) for name, point in (found | finer).items()}
+    return {name: (*point, cells[name]) for name, point in (points_by_name | fine_points).items()}
 
 
 def attached(keulegan: float, stokes: float = sections.STOKES) -> tuple[float, float]:
@@ -73,9 +73,9 @@ def attached(keulegan: float, stokes: float = sections.STOKES) -> tuple[float, f
 
     Source: Stokes 1851; Wang 1968, J. Fluid Mech. 32, 55-68.
     """
-    thin = 1.0 / sqrt(pi * stokes)
-    drag = 1.5 * pi**3 / keulegan * (thin + thin**2 - 0.25 * thin**3)
-    return drag, 1.0 + 4.0 * thin + thin**3
+    layer = 1.0 / sqrt(pi * stokes)
+    drag = 1.5 * pi**3 / keulegan * (layer + layer**2 - 0.25 * layer**3)
+    return drag, 1.0 + 4.0 * layer + layer**3
 
 
 def likely(
@@ -99,11 +99,14 @@ def likely(
     half_width, half_height, amplitude = half_width[solid], half_height[solid], amplitude[solid]
     aspect = np.clip(half_height / half_width, sections.ASPECTS[0], sections.ASPECTS[-1])
     keulegan = np.clip(pi * amplitude / half_height, sections.KEULEGANS[0], sections.KEULEGANS[-1])
-    found = np.array([coefficients(float(a), float(k)) for a, k in zip(aspect, keulegan, strict=True)])
+    table_coefficients = np.array([coefficients(float(a), float(k)) for a, k in zip(aspect, keulegan, strict=True)])
     layer = np.array([attached(float(k)) for k in keulegan])
-    drag, added = np.maximum(found[:, 0] - layer[:, 0], 0.0), found[:, 1] - layer[:, 1] + 1.0
+    drag, added_mass = (
+        np.maximum(table_coefficients[:, 0] - layer[:, 0], 0.0),
+        table_coefficients[:, 1] - layer[:, 1] + 1.0,
+    )
     power, energy = half_height * amplitude**3, (half_height * amplitude) ** 2
-    return float(np.average(drag, weights=power)) / Water().cross_drag, float(np.average(added, weights=energy))
+    return float(np.average(drag, weights=power)) / Water().cross_drag, float(np.average(added_mass, weights=energy))
 
 
 def measured(instants: int = 200) -> tuple[float, float]:
@@ -130,23 +133,25 @@ def write_table(outcomes: Mapping[str, FlowOutcome], path: Path = TABLE) -> str:
         InvalidDesign: a flow failed or is missing.
         Unwritable: the place cannot be written to.
     """
-    out = StringIO()
+    stream = StringIO()
     print(
         f"# Oscillating ellipses in water at rest, beta {sections.STOKES:g}; made by tools/sections.py from "
         "suchus.atlas.sections. Points between the nodes are held out.",
-        file=out,
+        file=stream,
     )
-    writer = csv.writer(out, lineterminator="\n")
+    writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(_COLUMNS)
     for name, (aspect, keulegan, cells) in points().items():
         if name not in outcomes or outcomes[name].failed:
-            why = outcomes[name].failed if name in outcomes else "it was not computed"
-            raise InvalidDesign(f"the table of sections lacks the flow {name}: {why}; compute it first.")
-        found = outcomes[name].curves
-        before, last = ([float(found[part][1][i]) for part in ("drag", "added", "left")] for i in (-2, -1))
-        numbers = (*last[:2], *before[:2], last[2])
+            reason = outcomes[name].failed if name in outcomes else "it was not computed"
+            raise InvalidDesign(f"the table of sections lacks the flow {name}: {reason}; compute it first.")
+        curves = outcomes[name].curves
+        previous_values, last_values = (
+            [float(curves[quantity][1][i]) for quantity in ("drag", "added", "left")] for i in (-2, -1)
+        )
+        numbers = (*last_values[:2], *previous_values[:2], last_values[2])
         writer.writerow([aspect, keulegan, cells, *(f"{value:.5g}" for value in numbers), outcomes[name].digest])
-    write(path, out.getvalue())
+    write(path, stream.getvalue())
     errors = held_out(path)
     return f"{len(points())} flows; held-out points are off by {errors.max():.1%} at most"
 
@@ -187,25 +192,33 @@ def coefficients(aspect: float, keulegan: float, path: Path = TABLE) -> tuple[fl
     for name, value, nodes in (("aspect", aspect, sections.ASPECTS), ("keulegan", keulegan, sections.KEULEGANS)):
         if not nodes[0] <= value <= nodes[-1]:
             raise InvalidDesign(f"{name} is {value:g}; the table of sections holds {nodes[0]:g} to {nodes[-1]:g}.")
-    drag, added = _interpolators(path)
-    at = np.log([[aspect, keulegan]])
-    return float(np.exp(drag(at)[0])), float(np.exp(added(at)[0]))
+    drag, added_interpolator = _interpolators(path)
+    log_point = np.log([[aspect, keulegan]])
+    return float(np.exp(drag(log_point)[0])), float(np.exp(added_interpolator(log_point)[0]))
 
 
 def held_out(path: Path = TABLE) -> Float[np.ndarray, "point 2"]:
     """Return by how much interpolated Cd and Ca are off at the points that are not among the nodes [-]."""
-    found = {(one.aspect, one.keulegan): one for one in table(path) if (one.aspect, one.keulegan) in sections.HELD_OUT}
-    pairs = [(coefficients(*point, path), (found[point].drag, found[point].added)) for point in sections.HELD_OUT]
-    return np.array([[abs(ours / theirs - 1.0) for ours, theirs in zip(*pair, strict=True)] for pair in pairs])
+    flows = {
+        (section_flow.aspect, section_flow.keulegan): section_flow
+        for section_flow in table(path)
+        if (section_flow.aspect, section_flow.keulegan) in sections.HELD_OUT
+    }
+    pairs = [(coefficients(*point, path), (flows[point].drag, flows[point].added)) for point in sections.HELD_OUT]
+    return np.array(
+        [[abs(estimate / reference - 1.0) for estimate, reference in zip(*pair, strict=True)] for pair in pairs]
+    )
 
 
 @lru_cache(maxsize=4)
 def _interpolators(path: Path) -> tuple[RegularGridInterpolator, RegularGridInterpolator]:
-    nodes = {(one.aspect, one.keulegan): one for one in reversed(table(path))}  # the coarser grid comes first
+    nodes = {
+        (section_flow.aspect, section_flow.keulegan): section_flow for section_flow in reversed(table(path))
+    }  # the coarser grid comes first
     axes = np.log(sections.ASPECTS), np.log(sections.KEULEGANS)
     values = np.array(
         [[nodes[a, k][3:5] for k in sections.KEULEGANS] for a in sections.ASPECTS],
         dtype=float,
     )  # fmt: skip
-    drag, added = (RegularGridInterpolator(axes, np.log(values[..., i])) for i in (0, 1))
-    return drag, added
+    drag, added_mass = (RegularGridInterpolator(axes, np.log(values[..., i])) for i in (0, 1))
+    return drag, added_mass

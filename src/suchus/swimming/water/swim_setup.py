@@ -82,8 +82,8 @@ class ResolvedSwim:
             self.outline, self.motion, self.setting, sway=self.sway, turn=self.turn, grow=GROWS / self.motion.frequency
         )
         start = (0.5 * length, 0.0, 0.0) if self.setting.in_space else (0.5 * length, 0.0)
-        held = flow.Body(shape=shape, name=name)
-        body = flow.FreeBody(shape=shape, name=name, start=start, free=self.setting.free) if free else held
+        fixed_body = flow.Body(shape=shape, name=name)
+        body = flow.FreeBody(shape=shape, name=name, start=start, free=self.setting.free) if free else fixed_body
         swing = float(np.abs(cycle(self.outline, self.motion, *self.head).y).max()) if self.setting.in_space else 0.0
         return flow.Setup(
             grid=box_grid(self.outline, self.setting, swing), viscosity=self.setting.viscosity, density=DENSITY,
@@ -148,8 +148,8 @@ def body_shape(
         return trunk(
             outline, motion, grow=grow, tail_height=setting.tail_height, limbs=setting.limbs, sway=sway, turn=turn
         )
-    least = setting.least_half_width(outline.robot.length)
-    return immersed(outline, motion, sway=sway, turn=turn, grow=grow, least=least)
+    min_half_width = setting.least_half_width(outline.robot.length)
+    return immersed(outline, motion, sway=sway, turn=turn, grow=grow, least=min_half_width)
 
 
 def box_grid(outline: Outline, setting: SwimSetting, swing: float) -> flow.Grid:
@@ -165,8 +165,8 @@ def box_sides(setting: SwimSetting) -> flow.Sides:
 
 def straight_body(outline: Outline, setting: SwimSetting) -> flow.Body:
     """Return the straight body at rest, its limbs left out."""
-    bare = replace(setting, limbs=False)
-    shape = body_shape(outline, still(outline), bare, sway=0j, turn=0j, grow=0.0)
+    limbless_setting = replace(setting, limbs=False)
+    shape = body_shape(outline, still(outline), limbless_setting, sway=0j, turn=0j, grow=0.0)
     return flow.Body(shape=replace(shape, deforms=False))
 
 
@@ -181,9 +181,9 @@ def cycle_means(
         cycles: how many [-].
         names: columns of the record.
     """
-    out = np.empty((len(names), cycles))
+    means = np.empty((len(names), cycles))
     for i in range(cycles):
-        part = (series.time > i * period * (1 + SLACK)) & (series.time <= (i + 1) * period * (1 + SLACK))
+        is_in_cycle = (series.time > i * period * (1 + SLACK)) & (series.time <= (i + 1) * period * (1 + SLACK))
         for row, name in enumerate(names):
-            out[row, i] = np.average(series.column(name)[part], weights=series.step[part])
-    return out
+            means[row, i] = np.average(series.column(name)[is_in_cycle], weights=series.step[is_in_cycle])
+    return means

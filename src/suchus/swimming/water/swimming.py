@@ -43,23 +43,23 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
         OutsideLimits: the joints or servos cannot follow the motion.
         NotConverged: thrust and drag never balance.
     """
-    swimmer, around = ROBOTS.resolve(robot), water or Water()
+    swimmer, medium = ROBOTS.resolve(robot), water or Water()
     if isinstance(motion, Gait):
         check_limits(swimmer, motion)
         check_speeds(swimmer, motion)
     outline = Outline(swimmer, stations)
-    bent = undulation(outline, motion)
-    held = cycle(outline, bent, *recoil(outline, bent, 0.0, around))
+    body_motion = undulation(outline, motion)
+    fixed_curve = cycle(outline, body_motion, *recoil(outline, body_motion, 0.0, medium))
     per_model: dict[str, list[float]] = {name: [] for name in _PER_MODEL}
     curves = []
     for model in MODELS.values():
-        free = cruise(outline, bent, model, around)
-        curve = cycle(outline, bent, free.sway, free.turn)
+        free = cruise(outline, body_motion, model, medium)
+        curve = cycle(outline, body_motion, free.sway, free.turn)
         curves.append(curve)
-        values = _numbers(swimmer, motion, outline, curve, free.speed, free.power, around)
-        for name, value in {"thrust_held": model(outline, held, 0.0, around).thrust, **values}.items():
+        values = _numbers(swimmer, motion, outline, curve, free.speed, free.power, medium)
+        for name, value in {"thrust_held": model(outline, fixed_curve, 0.0, medium).thrust, **values}.items():
             per_model[name].append(value)
-    return _record(outline, motion, around, curves, per_model)
+    return _record(outline, motion, medium, curves, per_model)
 
 
 _PER_MODEL = {
@@ -96,8 +96,8 @@ def _numbers(
 
 def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
     """Return the mass of the water that the body displaces, its sections taken as ellipses [kg]."""
-    wide, high = outline.silhouette
-    return float(density * np.pi * np.trapezoid(wide * high, outline.s))
+    half_width, half_height = outline.silhouette
+    return float(density * np.pi * np.trapezoid(half_width * half_height, outline.s))
 
 
 def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
@@ -129,8 +129,8 @@ def _record(
             "station": ("station", outline.s, {"units": "m", "long_name": "along the midline from the snout"}),
         }
     )
-    for name, (unit, what) in _PER_MODEL.items():
-        data[name] = ("model", per_model[name], {"units": unit, "long_name": what})
+    for name, (unit, meaning) in _PER_MODEL.items():
+        data[name] = ("model", per_model[name], {"units": unit, "long_name": meaning})
     for field, unit in (("x", "m"), ("y", "m"), ("heading", "rad"), ("x_rate", "m/s"), ("y_rate", "m/s")):
         values = np.stack([getattr(curve, field) for curve in curves])
         data[field] = (("model", "time", "station"), values, {"units": unit})
@@ -153,9 +153,11 @@ def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None,
     Returns:
         ``VALUES`` along ``model`` and ``motion``, and ``possible`` along ``motion``: joints and servos can follow it.
     """
-    outline, around = Outline(robot, stations), water or Water()
-    found = np.array([[_one(outline, motion, model, around) for motion in motions] for model in MODELS.values()])
-    data = {name: (("model", "motion"), found[:, :, i], {"units": VALUES[name]}) for i, name in enumerate(VALUES)}
+    outline, medium = Outline(robot, stations), water or Water()
+    values = np.array(
+        [[_evaluate_motion(outline, motion, model, medium) for motion in motions] for model in MODELS.values()]
+    )
+    data = {name: (("model", "motion"), values[:, :, i], {"units": VALUES[name]}) for i, name in enumerate(VALUES)}
     possible = [_possible(robot, motion) for motion in motions]
     return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
 
@@ -168,19 +170,19 @@ def greatest(robot: Robot, motion: Gait, *, most: float = 4.0) -> float:
         motion: how.
         most: factor that is not gone beyond [-].
     """
-    low, high = 0.0, most
-    if _possible(robot, motion.bent(high)):
-        return high
-    while high - low > 1e-4:
-        middle = 0.5 * (low + high)
+    lower_bound, upper_bound = 0.0, most
+    if _possible(robot, motion.bent(upper_bound)):
+        return upper_bound
+    while upper_bound - lower_bound > 1e-4:
+        middle = 0.5 * (lower_bound + upper_bound)
         if _possible(robot, motion.bent(middle)):
-            low = middle
+            lower_bound = middle
         else:
-            high = middle
-    return low
+            upper_bound = middle
+    return lower_bound
 
 
-def _one(outline: Outline, motion: Gait, model: Model, water: Water) -> tuple[float, ...]:
+def _evaluate_motion(outline: Outline, motion: Gait, model: Model, water: Water) -> tuple[float, ...]:
     """Return ``VALUES`` of one motion by one model."""
     free = cruise(outline, motion, model, water)
     if free.speed == 0.0:

@@ -71,22 +71,26 @@ class Undulation:
         snout[1] += sway
         return replace(self, middles=middles, stations=stations, sway=snout)
 
-    def curve(self, time: Float[np.ndarray, "*b"], grown: float = 1.0, growing: float = 0.0) -> MidlineCurve:
+    def curve(self, time: Float[np.ndarray, "*b"], growth: float = 1.0, growth_rate: float = 0.0) -> MidlineCurve:
         """Return the midline at times.
 
         Args:
             time: [s].
-            grown: share of the motion that has grown [-].
-            growing: rate of that share [1/s].
+            growth: share of the motion that has grown [-].
+            growth_rate: rate of that share [1/s].
         """
         turning, spinning = self._phases(time)
-        mixed = grown * spinning + growing * turning
-        turning = grown * turning
+        mixed = growth * spinning + growth_rate * turning
+        turning = growth * turning
 
-        def at(harmonics: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        def evaluate(harmonics: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             return (turning @ harmonics).real, (mixed @ harmonics).real
 
-        (middle, spin), (heading, rate), (y, y_rate) = at(self.middles), at(self.stations), at(self.sway[:, None])
+        (middle, spin), (heading, rate), (y, y_rate) = (
+            evaluate(self.middles),
+            evaluate(self.stations),
+            evaluate(self.sway[:, None]),
+        )
         step = self.outline.robot.length / (self.outline.stations - 1)
         zero = np.zeros_like(y[..., 0])
         return MidlineCurve(
@@ -152,7 +156,7 @@ def _of_joints(outline: Outline, name: str, frequency: float, harmonics: np.ndar
 
 def _commanded(outline: Outline, gait: Gait) -> Complex[np.ndarray, "harmonic joint"]:
     """Return the harmonics of the joints in a gait, a cable's bend shared evenly, without their means [rad]."""
-    here, place = movement(outline.robot, gait), layout(outline.robot)
+    plan, place = movement(outline.robot, gait), layout(outline.robot)
     harmonics = np.zeros((HARMONICS if gait.curves else 2, len(outline.joints)), complex)
     if gait.curves:
         angles = cycle_targets(outline.robot, gait, np.arange(_INSTANTS) / _INSTANTS)
@@ -163,16 +167,16 @@ def _commanded(outline: Outline, gait: Gait) -> Complex[np.ndarray, "harmonic jo
                 bend = tail_kinematics.bend_of_servo(place.cable(number), bend) / len(servo.joints)
             harmonics[1:, list(servo.joints)] = _harmonics(bend)[1:HARMONICS, None]
         return harmonics
-    hinges = here.yaw.hinges
+    hinges = plan.yaw.hinges
     order = [outline.joints.index(name) for name in hinges.names]
-    harmonics[1, order] = np.array(hinges.signs) * here.harmonics()[0]
+    harmonics[1, order] = np.array(hinges.signs) * plan.harmonics()[0]
     return harmonics
 
 
 def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
     time = motion.wave.period * np.arange(_INSTANTS) / _INSTANTS
-    both = np.sort(np.concatenate([outline.s, 0.5 * (outline.s[1:] + outline.s[:-1])]))
-    heading, _, across = along(motion.wave, both, time)
+    points = np.sort(np.concatenate([outline.s, 0.5 * (outline.s[1:] + outline.s[:-1])]))
+    heading, _, lateral = along(motion.wave, points, time)
     harmonics = _harmonics(heading)
     return Undulation(
         name=motion.name,
@@ -180,15 +184,15 @@ def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
         outline=outline,
         middles=harmonics[:, 1::2],
         stations=harmonics[:, ::2],
-        sway=_harmonics(across[:, :1])[:, 0],
+        sway=_harmonics(lateral[:, :1])[:, 0],
     )
 
 
 def _harmonics(values: np.ndarray) -> np.ndarray:
     """Return the harmonics of values over one cycle, shape (time, ...), as ``Undulation`` wants them."""
-    found = 2.0 * np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
-    found[0] *= 0.5
-    return np.asarray(found)
+    harmonics = 2.0 * np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
+    harmonics[0] *= 0.5
+    return np.asarray(harmonics)
 
 
 def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int, name: str = "as taken") -> Undulation:
@@ -218,16 +222,19 @@ def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int
         raise InvalidDesign(
             f"a cycle of {period:.3g} s has {period / step:.3g} samples; {2 * HARMONICS} are needed: keep more samples."
         )
-    last = time > time[-1] - cycles * period + 0.5 * step
-    angles = record.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values[last]
-    turning = np.exp(-2j * np.pi * frequency * np.outer(np.arange(HARMONICS), time[last]))
-    harmonics = 2.0 * turning @ angles / last.sum()
+    is_in_last_cycles = time > time[-1] - cycles * period + 0.5 * step
+    angles = record.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values[is_in_last_cycles]
+    turning = np.exp(-2j * np.pi * frequency * np.outer(np.arange(HARMONICS), time[is_in_last_cycles]))
+    harmonics = 2.0 * turning @ angles / is_in_last_cycles.sum()
     harmonics[0] = 0.0
     return _of_joints(outline, name, frequency, harmonics)
 
 
-def unevenness(motion: Undulation, meant: Undulation) -> float:
+def unevenness(motion: Undulation, reference: Undulation) -> float:
     """Return how far a midline is from another of the same outline, the head alike: rms angle over the other's [-]."""
-    count = max(len(motion.middles), len(meant.middles))
-    one, other = (np.pad(each.middles, ((0, count - len(each.middles)), (0, 0))) for each in (motion, meant))
-    return float(np.sqrt((np.abs(one - other) ** 2).sum() / (np.abs(other) ** 2).sum()))
+    count = max(len(motion.middles), len(reference.middles))
+    middles, reference_middles = (
+        np.pad(compared_motion.middles, ((0, count - len(compared_motion.middles)), (0, 0)))
+        for compared_motion in (motion, reference)
+    )
+    return float(np.sqrt((np.abs(middles - reference_middles) ** 2).sum() / (np.abs(reference_middles) ** 2).sum()))
