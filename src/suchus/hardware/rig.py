@@ -36,7 +36,7 @@ TRIED = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
 """Bit rates at which servos are looked for that do not answer at the one that the file names [1/s]."""
 PATIENT = 0.1
 """How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
-_AGAIN = 8  # times that a question is asked before the robot moves: a tenth of all packets may be lost
+_MAX_ATTEMPTS = 8  # times that a question is asked before the robot moves: a tenth of all packets may be lost
 _MIN_TICK_FRACTION = (
     0.25  # share of the wait that must be left of a tick, or a board be given, to ask more than the servos
 )
@@ -278,7 +278,7 @@ class Rig:
         answering_ids: set[int] = set()
         for servo in names_by_id:
             broken = bus.broken + bus.dropped
-            for _ in range(_AGAIN):
+            for _ in range(_MAX_ATTEMPTS):
                 if bus.ping(servo) is not None:
                     answering_ids.add(servo)
                     break
@@ -387,7 +387,7 @@ class Rig:
 
     def _read_register(self, bus: Bus, i: int, register: str) -> int:
         servo = self.servos[i]
-        for _ in range(_AGAIN - 1):
+        for _ in range(_MAX_ATTEMPTS - 1):
             with suppress(NoAnswer):
                 return bus.read(servo.id, servo.table[register])
         return bus.read(servo.id, servo.table[register])
@@ -565,7 +565,7 @@ class Rig:
             servo = self.servos[i]
             if not self.asked[i] or register not in servo.table:
                 continue
-            for attempts_left in reversed(range(_AGAIN)):
+            for attempts_left in reversed(range(_MAX_ATTEMPTS)):
                 try:
                     self.buses[servo.bus].write(servo.id, servo.table[register], value)
                     break

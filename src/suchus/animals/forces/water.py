@@ -210,12 +210,12 @@ class _Bends:
         phases, self._body, self._period = walk.phases, body, walk.numbers["period"]
         turn = np.exp(-2j * np.pi * phases.phase.values)
         bend = np.nan_to_num(phases.bend.values)
-        self._first: Complex[np.ndarray, " place"] = -2.0 * (bend * turn).mean(axis=1)  # left positive
+        self._first_harmonic: Complex[np.ndarray, " place"] = -2.0 * (bend * turn).mean(axis=1)  # left positive
         curvature_error = np.nan_to_num(phases.curvature_high.values - phases.curvature_low.values) / 2
         self._error = np.sqrt(np.mean(curvature_error**2, axis=1)) * np.nan_to_num(_arms(walk))
         self._places, self._names = phases.place.values, [str(name) for name in phases.keypoint.values]
         self.unsure = ("period", *(f"{component} {name}" for name in self._names for component in ("cosine", "sine")))
-        residual = bend + (self._first[:, None] * np.conj(turn)).real
+        residual = bend + (self._first_harmonic[:, None] * np.conj(turn)).real
         overtone_ratio = float(
             np.sqrt((residual - residual.mean(axis=1, keepdims=True)).var() / max(bend.var(), 1e-300))
         )
@@ -229,7 +229,7 @@ class _Bends:
         deviation = np.array([
             errors(shares[f"cosine {name}"]) - 1j * errors(shares[f"sine {name}"]) for name in self._names
         ])  # fmt: skip
-        first_harmonic = self._first + self._error * deviation
+        first_harmonic = self._first_harmonic + self._error * deviation
         hinges, servos = yaw_hinges(self._body), layout(self._body).servos
         hinge_harmonics = _shared(first_harmonic, self._places, hinges.places)
         lateral = lateral_servos(self._body)

@@ -59,7 +59,7 @@ class _DynamixelFrames(Decoder):
         super().__init__()
         self._replies = replies
 
-    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
+    def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
         start = data.find(_HEADER)
         if start < 0:
             header_length = next((n for n in (3, 2, 1) if data.endswith(_HEADER[:n])), 0)

@@ -17,7 +17,7 @@ def checksum(data: bytes) -> int:
 class _FeetechFrames(Decoder):
     """Takes frames of either direction, which look alike."""
 
-    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
+    def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
         start = data.find(_HEADER)
         if start < 0:
             header_length = int(data.endswith(b"\xff"))

@@ -106,7 +106,7 @@ class _Lines(Decoder):
         super().__init__()
         self._replies = replies
 
-    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
+    def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
         end = data.find(b"\n")
         if end < 0:
             return (len(data), None) if len(data) > _MAX_LINE_LENGTH else None

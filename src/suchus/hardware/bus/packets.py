@@ -52,7 +52,7 @@ class Decoder(ABC):
         """Take bytes and return the packets that they complete, in their order."""
         self._buffer += data
         packets: list[Packet] = []
-        while (step := self._next(bytes(self._buffer))) is not None:
+        while (step := self._next_packet(bytes(self._buffer))) is not None:
             length, packet = step
             if packet is None:
                 self.dropped += length
@@ -67,7 +67,7 @@ class Decoder(ABC):
         self._buffer.clear()
 
     @abstractmethod
-    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
+    def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
         """Return how many bytes are used up and the packet that they are, None for noise; None if more must come."""
 
 
