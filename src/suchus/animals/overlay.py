@@ -73,6 +73,15 @@ def _drawing(
     stands: dict[str, np.ndarray],
     faulty_keypoints: Sequence[str],
 ) -> tuple[Figure, Any]:
+    """Return a figure of the first frame, and the function that draws frame i into it.
+
+    Args:
+        tracks: the keypoints.
+        pictures: frames of the video, shape (height, width, 3) each.
+        place: positions of the keypoints, shape (frame, point, 2) [px].
+        stands: by foot, 1 in stance, 0 in swing, NaN where it is not known.
+        faulty_keypoints: keypoints that are drawn as crosses.
+    """
     height, width = pictures[0].shape[:2]
     figure = Figure(figsize=(width / 100, height / 100), dpi=100)
     ax = figure.add_axes((0, 0, 1, 1))
@@ -102,6 +111,7 @@ def _drawing(
         ax.plot(0.03 + 0.08 * len(feet), 0.04, color=COLOURS["alarm"], **(key | {"marker": "x"}))
 
     def show(i: int) -> None:
+        """Draw the picture, the midline and the feet of frame i."""
         background.set_data(pictures[i])
         for artist in (spine, line):
             artist.set_data(place[i, chain, 0], place[i, chain, 1])

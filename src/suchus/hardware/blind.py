@@ -29,6 +29,7 @@ class BlindRig:
     """None that tell their heat."""
 
     def __init__(self, robot: Robot, servo_map: ServoMap, pulses: Pulses) -> None:
+        """Take pulse widths, directions and angle limits of all servos from the servo map."""
         self.robot, self._pulses = robot, pulses
         self.names = layout(robot).servos
         self._lines = servo_map.ordered(robot)

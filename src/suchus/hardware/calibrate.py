@@ -24,9 +24,9 @@ positive sense, -1 where not."""
 
 
 def find_wiring(rig: Rig, clock: TickClock, answer: Answer) -> Wiring:
-    """Move each servo alone, there and back, and return the wiring by what moved.
+    """Move each servo alone, forward and back, and return the wiring by the joint that moved.
 
-    All others are without torque meanwhile, and it too in the end.
+    All other servos have no torque meanwhile. In the end no servo has torque.
 
     Args:
         rig: the open robot, wired as is believed; its names are not.
@@ -81,7 +81,7 @@ def find_wiring(rig: Rig, clock: TickClock, answer: Answer) -> Wiring:
 
 
 def _move_through(rig: Rig, clock: TickClock, tick: int, i: int, steps: list[int]) -> int:
-    """Send one servo through steps, one a tick, and return the tick that comes next."""
+    """Send a servo through positions, one for each tick, and return the number of the next tick."""
     for step in steps:
         rig.write("goal_position", {i: step})
         tick = max(clock.wait(tick + 1), tick + 1)
@@ -90,7 +90,7 @@ def _move_through(rig: Rig, clock: TickClock, tick: int, i: int, steps: list[int
 
 
 def find_zeros(rig: Rig, posture: np.ndarray, *, times: int = 10) -> tuple[Wiring, np.ndarray]:
-    """Return the wiring with the zeros by where the servos are now, limp, and by how much each zero changed [rad].
+    """Return the wiring with new zeros, and the change of each zero [rad]: the robot is limp in a known posture.
 
     Args:
         rig: the open robot, which somebody holds in a posture.
@@ -150,12 +150,14 @@ class ServoFit:
 
 
 def fit_log(record: xr.Dataset) -> Mapping[str, ServoFit]:
-    """Return what a log says of each servo, by least squares; those that hardly moved are left out.
+    """Return the parameters of each servo that a log shows, by least squares; servos that hardly moved are left out.
 
-    How far a servo is off its goal is its torque over its stiffness, plus half of its play in the sense of the torque,
-    plus what damping takes: linear in all that is looked for. Its friction is what of the torque changes sign with its
-    motion, beside a constant, a part with the angle, with the speed and with the acceleration: move joints to and fro,
-    one at a time and without load, else it is blurred. Torques are told by currents, and are as good as those.
+    The error of a servo is its torque over its stiffness, plus half of its play in the sense of the torque, plus a term
+    for damping. The error is linear in all of these parameters. The friction is the part of the torque that changes its
+    sign with the speed, besides a constant and parts in proportion to angle, speed and acceleration.
+
+    Move the joints to and fro, one at a time and without load: other motions blur the friction. Torques are computed
+    from currents, and are as accurate as those.
 
     Args:
         record: of one run; its goals act after the sample in which they stand.
@@ -200,7 +202,7 @@ def fit_log(record: xr.Dataset) -> Mapping[str, ServoFit]:
 
 
 def _least_squares(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the coefficients and half of the width of their intervals, residuals that follow one another counted once.
+    """Return coefficients and half widths of their 95 % intervals, with the correlation of residuals in time.
 
     Args:
         columns: shape (sample, coefficient).

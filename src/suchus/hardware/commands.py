@@ -33,9 +33,9 @@ class Commands(NamedTuple):
 
 
 def commands(robot: Robot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
-    """Return the commands of some cycles, so that they can be repeated without a jump.
+    """Return the commands of some cycles, which can be repeated without a jump.
 
-    A cycle is divided into the whole number of intervals that is nearest to the map's rate.
+    A cycle has the whole number of intervals that is nearest to the map's rate.
 
     Args:
         robot: who walks.
@@ -72,7 +72,7 @@ def commands(robot: Robot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> 
 
 
 def _cranks(robot: Robot) -> np.ndarray:
-    """Return by how much each servo's angle has grown after a cycle: a turn of a crank, nothing of others [rad]."""
+    """Return by how much each servo's angle changes in a cycle: by a turn for a crank, by nothing for others [rad]."""
     place, turn_per_cycle = layout(robot), np.zeros(len(layout(robot).servos))
     for limb in place.limbs:
         driven_hinges = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
@@ -83,6 +83,7 @@ def _cranks(robot: Robot) -> np.ndarray:
 
 
 def _pulses(lines: Sequence[ServoLine], angles: np.ndarray) -> np.ndarray:
+    """Return the pulse widths of servos at angles, shape (sample, servo) [us]."""
     direction = np.array([line.direction for line in lines])
     offset = np.array([line.offset for line in lines])
     centre = np.array([line.pulse_centre for line in lines])
@@ -112,7 +113,7 @@ def csv_text(samples: Commands) -> str:
 def trajectory_text(robot: Robot, samples: Commands, *, virtual: bool = False) -> str:
     """Return a ROS 2 ``trajectory_msgs/JointTrajectory`` as YAML, for the joints of the exported URDF.
 
-    That has no cable: the bend that the pulley gives the tail is shared evenly by the hinges that the cable bends.
+    The URDF has no cable: all hinges that a cable bends get an equal part of the bend that its pulley gives.
 
     Args:
         robot: who walks.

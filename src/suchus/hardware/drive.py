@@ -218,6 +218,7 @@ class _Drive:
         say: Callable[[str], None],
         progress: Progress,
     ) -> None:
+        """Take rig, gait, controller and settings; nothing moves yet."""
         self._rig, self._gait, self._controller = rig, gait, controller
         self._settings, self._clock, self._stop_request, self._say = settings, clock, stop_request, say
         self._progress = progress
@@ -230,7 +231,7 @@ class _Drive:
         self._limb = np.full(len(layout(rig.robot).limbs), np.nan)
 
     def run(self, ticks: int) -> xr.Dataset:
-        """Approach, drive, and end safely."""
+        """Approach the first posture, drive for some ticks, stop the robot safely and return the log."""
         cause, failed, is_complete = "", None, False
         try:
             self._approach()
@@ -255,7 +256,7 @@ class _Drive:
         return record
 
     def _approach(self) -> None:
-        """Bring the robot from where it is to where it begins, slowly."""
+        """Move the robot slowly from its present posture to the first posture of the gait."""
         rig = self._rig
         rig.torque(False)
         for _ in range(5):  # each may have holes
@@ -282,6 +283,7 @@ class _Drive:
             tick = max(self._clock.wait(tick + 1 - first_tick) + first_tick, tick + 1)
 
     def _go(self, ticks: int) -> None:
+        """Drive the gait from tick 0 to the last tick; ticks that the computer missed are skipped."""
         tick, stepped = 0, -1
         while tick <= ticks:
             command = None
@@ -304,7 +306,7 @@ class _Drive:
         self._progress("driving", 1.0)
 
     def _send(self, tick: int, targets: np.ndarray) -> None:
-        """Look whether all is well, send goals within the limits, and keep the tick."""
+        """Check the robot, send targets within the limits of the servos, and log the tick."""
         rig, reading = self._rig, self._rig.now
         lateness = self._clock.late(tick + self._offset)
         self._wake(lateness + (tick + self._offset) * rig.period)
@@ -346,7 +348,7 @@ class _Drive:
             raise _Halted(f"{ASKED}{request}")
 
     def _wake(self, time: float) -> None:
-        """Let servos take goals again that stood still, since they heard nothing for so long.
+        """Reset the watchdogs of the servos if they heard nothing for too long.
 
         Args:
             time: since the first tick [s].
@@ -362,7 +364,7 @@ class _Drive:
             )
 
     def _end(self, stop_mode: Stop) -> None:
-        """Leave the robot safe; whatever fails, its torque is taken away, three times."""
+        """Stop the robot safely; whatever fails, the torque is switched off three times."""
         rig = self._rig
         try:
             if stop_mode == "hold":
@@ -388,7 +390,7 @@ class _Drive:
                 self._rig.torque(False)
 
     def _pass(self, seconds: float) -> None:
-        """Let time pass while the servos keep hearing from us."""
+        """Hold the posture for some time, with goals in every tick."""
         rig = self._rig
         end_tick = self._tick + round(seconds / rig.period)
         while self._tick < end_tick:
@@ -397,6 +399,7 @@ class _Drive:
             self._tick = max(self._clock.wait(self._tick + 1 + self._offset) - self._offset, self._tick + 1)
 
     def _record(self, cause: str) -> xr.Dataset:
+        """Return the log as a record, with counts of the bus, warnings and digests of gait and robot."""
         rig = self._rig
         return self._log.record(
             cause,
@@ -421,7 +424,7 @@ ASKED = "asked to stop: "
 
 
 def about(record: xr.Dataset) -> dict[str, Any]:
-    """Return what a log says of the wire: jitter, holes, missed ticks, heat.
+    """Return statistics of the bus from a log: delays, missing replies, missed ticks, temperature.
 
     Returns:
         ``late_median``, ``late_p99``, ``late_most`` [s]; ``missed``, ``ticks``; ``holes`` and ``worst_holes`` [-], of

@@ -32,6 +32,7 @@ class DriveLimits:
     """Time after which such holes in a row stop the robot [s]."""
 
     def __post_init__(self) -> None:
+        """Refuse limits out of range."""
         with Checks("drive_limits", self) as check:
             check.number("warm", 0.0, 100.0, "K")
             check.number("hot", 0.0, 100.0, "K")
@@ -52,6 +53,7 @@ class Guard:
     """
 
     def __init__(self, rig: Rig | BlindRig, limits: DriveLimits) -> None:
+        """Take the limits of temperature and torque from the tables of the servos."""
         self._rig, self._limits = rig, limits
         self._square = np.zeros(len(rig.servos))
         self._deaf = 0.0
@@ -62,7 +64,7 @@ class Guard:
         self._limit = np.array([servo.table["temperature_limit"].initial for servo in rig.servos])
 
     def look(self, reading: RigReading) -> str:
-        """Return why the robot must be stopped, in a sentence; empty if it need not."""
+        """Return the reason why the robot must be stopped, a sentence; empty if it may go on."""
         rig, limits, is_asked = self._rig, self._limits, self._rig.asked
         if not is_asked.any():  # nobody tells anything
             return ""
@@ -97,6 +99,7 @@ class Guard:
         return ""
 
     def _warn(self, reading: RigReading) -> None:
+        """Note servos that become warm, or whose mean load exceeds their continuous torque."""
         limits, names = self._limits, self._rig.names
         keep = np.exp(-self._rig.period / limits.memory)
         square = np.nan_to_num(reading.torque) ** 2

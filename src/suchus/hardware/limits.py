@@ -51,7 +51,7 @@ def check_commands(robot: Robot, gait: Gait, servo_map: ServoMap, samples: Comma
 
 
 def _replacement_text(load: ServoLoad) -> str:
-    """Return the servo that would do, or that none does."""
+    """Return the name of a servo that is strong enough, or a text that there is none."""
     if not isnan(load.radius):
         return "a stronger linear actuator, of which suchus knows none by name,"
     return f"{load.other} ({load.other_torque:.3g} N m)" if load.other else "none of the servos that suchus knows"
@@ -75,7 +75,7 @@ def _limit(load: ServoLoad) -> str:
 
 
 def _tracking_error_text(load: ServoLoad) -> str:
-    """Return how far it is from where it is told to be, a linear actuator in millimetres."""
+    """Return the greatest error against the command, in degrees or, of a linear actuator, in millimetres."""
     if isnan(load.radius):
         return f"{np.degrees(load.off):.1f} degrees from its commanded angle"
     return f"{1000 * load.off * load.radius:.1f} mm from its commanded place"

@@ -82,7 +82,7 @@ def cases(
     standing: bool = False,
     water: bool = False,
 ) -> tuple[LoadCase, ...]:
-    """Return what a robot shall do: its gaits on level ground, up slopes and with each fault, standing up, a swim.
+    """Return the load cases of a robot: gaits on level ground, on slopes and with faults, standing up, a swim.
 
     Args:
         robot: who.
@@ -160,7 +160,7 @@ class ServoLoad:
 
 
 def loads(robot: Robot, gait: Gait, *, progress: Progress = silent) -> Mapping[str, ServoLoad]:
-    """Return what each servo bears in two cycles of a walk on level ground.
+    """Return the loads of each servo in two cycles of a walk on level ground.
 
     Raises:
         Diverged: the simulation diverged.
@@ -173,7 +173,7 @@ def loads(robot: Robot, gait: Gait, *, progress: Progress = silent) -> Mapping[s
 def loads_of_each(
     robot: Robot, load_cases: Sequence[LoadCase], *, timestep: float | None = None, progress: Progress = silent
 ) -> list[Mapping[str, ServoLoad]]:
-    """Return what each servo bears in each of several cases, and what four times as strong ones would give.
+    """Return the loads of each servo in several cases, with the torque that four times as strong servos would give.
 
     Args:
         robot: who.
@@ -214,7 +214,7 @@ def records_of_each(
 
 
 def strong(robot: Robot) -> Robot:
-    """Return a robot whose servos are four times as strong at any speed, which shows what a movement asks for."""
+    """Return a robot with servos four times as strong at any speed; they show the torque that a movement requires."""
     return with_servos(robot, lambda servo: replace(servo, torque=STRONG * servo.torque, winding=None))
 
 
@@ -228,7 +228,7 @@ def cold(robot: Robot) -> Robot:
 
 
 def borne(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None = None) -> Mapping[str, ServoLoad]:
-    """Return what each servo bears in a record.
+    """Return the loads of each servo in a record.
 
     Args:
         robot: whose record it is, with its windings.
@@ -263,7 +263,7 @@ def borne(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None = None)
 
 
 def _electric(servo: Servo, torque: np.ndarray, speed: np.ndarray) -> dict[str, Any]:
-    """Return currents and heat of a servo that gives these torques at these speeds; nothing without a winding."""
+    """Return currents and heat of a servo at these torques and speeds; empty without a winding."""
     winding = servo.winding
     if winding is None:
         return {}
@@ -286,10 +286,10 @@ def full_from(servo: Servo) -> float:
 
 
 def use_of_each(robot: Robot, record: xr.Dataset) -> xr.DataArray:
-    """Return the torque of each servo over what it can give at its speed [-], over whatever else a record has.
+    """Return the torque of each servo over the torque that it can give at its speed [-].
 
-    A servo with a winding gives less at speed in the direction of its torque. The speed is that at which the torque was
-    given, a physics step before the sample.
+    A servo with a winding gives less torque at speed in the direction of the torque. The torque was given one physics
+    step before the sample, at the speed of that instant.
     """
     dims = record.servo_torque.dims
     torque, speed = record.servo_torque, record.servo_velocity
@@ -319,7 +319,7 @@ def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
 
 
 def given_in(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np.ndarray, " time"]) -> float:
-    """Return torque over what a servo can give at its speed, but for the worst 2 % of the time [-].
+    """Return torque over the torque that a servo gives at its speed, exceeded in 2 % of the time [-].
 
     Args:
         servo: another servo than that of the record.

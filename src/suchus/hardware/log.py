@@ -79,6 +79,7 @@ class DriveLog:
         return drive_record
 
     def _column(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
+        """Return the values of a variable in all ticks; NaN in ticks without one."""
         column = np.full(shape, np.nan)
         for i, row in enumerate(self._rows):
             if name in row:
@@ -87,7 +88,7 @@ class DriveLog:
 
 
 def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
-    """Return the angles of all hinges at servo angles: a cable bends its hinges evenly, springs stay where they are.
+    """Return the angles of all hinges at servo angles: a cable bends its hinges evenly, springs stay at rest.
 
     Args:
         robot: the design.
@@ -110,7 +111,7 @@ def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
 
 
 def held(record: xr.Dataset, robot: Robot) -> xr.Dataset:
-    """Return a log for the eye: where nobody measured the robot's place, it is held above one, and feels nothing.
+    """Return a log that can be shown: a robot whose position was not measured is placed above the ground, without loads.
 
     Args:
         record: of one run; one that says where the robot was is returned as it is.

@@ -116,7 +116,7 @@ def top_dxf(sheet: Sheet) -> str:
 
 
 def _rod_azimuth(sheet: Sheet, body_part: BodyPart) -> float:
-    """Return the direction in which a rod lies from above: forward, or aside as the links of limbs do [rad]."""
+    """Return the direction of a rod seen from above [rad]: 0 along the body, sideways for the links of limbs."""
     robot = sheet.robot
     in_limb = any(body_part.name.startswith((f"L{girdle.name}_", f"R{girdle.name}_")) for girdle in robot.girdles)
     if not in_limb:
@@ -127,7 +127,7 @@ def _rod_azimuth(sheet: Sheet, body_part: BodyPart) -> float:
 
 
 def _stadium(x: float, y: float, length: float, width: float, azimuth: float) -> list[tuple[float, float]]:
-    """Return the outline of a rod with round ends from above."""
+    """Return the outline of a rod with round ends, seen from above [mm]."""
     reach, radius = max(length - width, 0.0) / 2, width / 2
     turns = np.linspace(-np.pi / 2, np.pi / 2, _SIDES // 2)
     half = np.column_stack([reach + radius * np.cos(turns), radius * np.sin(turns)])

@@ -264,6 +264,7 @@ def _point(values: np.ndarray | Sequence[float]) -> tuple[float, float, float]:
 
 
 def _shapes(robot: Robot) -> list[BodyPart]:
+    """Return the rods, shells and feet of a robot's bodies."""
     place = layout(robot)
     segments = {segment.name: segment for segment in place.robot.axis}
     shape_parts = []
@@ -302,6 +303,7 @@ def _shapes(robot: Robot) -> list[BodyPart]:
 
 
 def _foam(robot: Robot) -> list[BodyPart]:
+    """Return the blocks of foam of the hull, as cubes."""
     hull = robot.hull
     if hull is None:
         return []
@@ -318,7 +320,7 @@ def _foam(robot: Robot) -> list[BodyPart]:
 
 
 def _seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
-    """Return the body on which each servo sits and where: that ahead of its hinge in the chain from the root."""
+    """Return the body on which each servo sits, and its position: the body before its hinge in the chain from the root."""
     place = layout(robot)
     seats = {}
     for body in place.bodies:
@@ -336,6 +338,7 @@ def _seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
 def _servos(
     robot: Robot, motor_by_servo: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
 ) -> list[BodyPart]:
+    """Return the servos as parts, with size and mass where a servo that is sold is known."""
     servo_parts = []
     linear_drives = {cable.name: cable.linear for cable in robot.cables if cable.linear is not None}
     for name, servo in ((name, robot.servo(name)) for name in layout(robot).servos):
@@ -369,6 +372,15 @@ def _bodies(
     parts: Sequence[BodyPart],
     skin: float,
 ) -> tuple[MassBudget, ...]:
+    """Return the mass budget of each body: as simulated, of its servos, and of printed walls and foam.
+
+    Args:
+        robot: the design.
+        motor_by_servo: servos that are sold, by name.
+        seats: body and position of each servo.
+        parts: of all bodies.
+        skin: mass of a printed wall per area [kg/m2].
+    """
     masses, _ = body_masses(robot)
     budgets = []
     for body, mass in zip(layout(robot).bodies, masses, strict=True):
@@ -408,6 +420,7 @@ def _built_centre(robot: Robot, parts: Sequence[BodyPart], skin: float) -> tuple
 
 
 def _joints(robot: Robot) -> tuple[HingePlace, ...]:
+    """Return position, axis, range and actuator of each hinge, all joints at zero."""
     place = layout(robot)
     origins = frames(robot, np.zeros(len(place.hinges))).places
     cable_by_hinge = {hinge: cable.name for cable in place.robot.cables for hinge in cable.hinges}
@@ -445,6 +458,7 @@ def _links(robot: Robot) -> tuple[DHRow, ...]:
 
 
 def _plates(robot: Robot) -> tuple[TailPlate, ...]:
+    """Return the plates of a tail that cords bend; none for other tails."""
     tail = tail_of(robot)
     if tail is None or not tail.cabled:
         return ()
@@ -457,6 +471,7 @@ def _plates(robot: Robot) -> tuple[TailPlate, ...]:
 
 
 def _cord(robot: Robot, cable: Cable) -> Cord:
+    """Return the table of a cord pair: bend of the section, actuator travel, and the length changes of both cords."""
     tail, linear = tail_of(robot), cable.linear is not None
     output_factor = cable.pulley if linear else 1.0
     if tail is None or not tail.cabled or cable.hinges != tail.driven:
@@ -477,7 +492,7 @@ def _cord(robot: Robot, cable: Cable) -> Cord:
 def _wires(
     robot: Robot, motor_by_servo: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
 ) -> tuple[ServoWire, ...]:
-    """Return the chain of each bus from the root outward: every servo hangs on the nearest one wired already."""
+    """Return the chain of each bus from the root outward: each servo hangs on the nearest one that is wired already."""
     place = layout(robot)
     origins = frames(robot, np.zeros(len(place.hinges))).places
     origin_by_body = {body.name: origins[i] for i, body in enumerate(place.bodies)}
@@ -504,6 +519,7 @@ def _wires(
 
 
 def _floating(robot: Robot) -> Buoyancy:
+    """Return the volumes that carry a robot: its bodies, foam and air chambers."""
     hull = robot.hull
     total_volume = sum(volumes(robot).values())
     foam = (

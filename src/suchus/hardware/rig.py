@@ -116,6 +116,7 @@ class Rig:
         without: Sequence[str] = (),
         needed: Collection[str] | None = None,
     ) -> None:
+        """Open the buses of a robot; nothing moves."""
         self.robot, self.wiring, self.clocked = robot, wiring, clocked
         self.servos = wiring.ordered(robot)
         self.names = layout(robot).servos
@@ -226,6 +227,7 @@ class Rig:
         return len(framing.read(1, 0, 2)) + len(framing.reply(_typical(self.servos[device].table.block(health)[1])))
 
     def _check_time(self) -> None:
+        """Refuse buses that carry more bytes in a tick than their bit rate allows."""
         for number, place in enumerate(self.wiring.bus):
             total, _ = self.bytes_per_tick(number)
             seconds = total * BITS / place.baud
@@ -238,7 +240,7 @@ class Rig:
                 )
 
     def check(self) -> list[str]:
-        """Look whether all servos are there and set as they must be; return what is no reason not to drive.
+        """Check that all servos answer and are set as needed; return warnings that do not forbid a drive.
 
         Raises:
             BusFailure: a servo does not answer, or cannot be driven as it is set; nothing has moved.
@@ -270,7 +272,7 @@ class Rig:
         return remarks
 
     def _find(self, number: int, bus: Bus) -> None:
-        """Refuse a bus on which not all answer, each alone and twice."""
+        """Refuse a bus on which a servo or board does not answer, or two have one number."""
         members = self._members[number]
         names_by_id = {self.servos[i].id: self.servos[i].name for i in members}
         names_by_id |= {board.id: f"the board {board.kind!r}" for board in self.wiring.board if board.bus == number}
@@ -302,7 +304,7 @@ class Rig:
             )
 
     def _nobody(self, number: int, bus: Bus, servo: int) -> str:
-        """Return the sentence for a bus on which nobody answers, at which other rates too."""
+        """Return the sentence for a bus on which nobody answers, with the bit rate at which one does."""
         place = self.wiring.bus[number]
         if not place.port.startswith("socket://") and not self.clocked:
             bus.close()
@@ -326,6 +328,7 @@ class Rig:
         )
 
     def _settings(self, number: int, bus: Bus) -> list[str]:
+        """Refuse servos whose settings do not fit, and return warnings about servos without a watchdog."""
         unwatched_names = []
         delay = 0.0
         for i in self._members[number]:
@@ -386,6 +389,7 @@ class Rig:
             )
 
     def _read_register(self, bus: Bus, i: int, register: str) -> int:
+        """Return the value of a register of servo i, which is asked for several times."""
         servo = self.servos[i]
         for _ in range(_MAX_ATTEMPTS - 1):
             with suppress(NoAnswer):
@@ -395,7 +399,7 @@ class Rig:
     # --- while it moves -----------------------------------------------------------------------------------------------
 
     def read(self) -> RigReading:
-        """Ask all, take what comes in time, and keep what was said before of those that are silent."""
+        """Read all servos and boards; a servo that is silent keeps its last reading, which becomes older."""
         end = monotonic() + self._wait
         for number, bus in enumerate(self.buses):
             if self._members[number]:
@@ -426,6 +430,7 @@ class Rig:
         return table.block(table.felt)
 
     def _take(self, i: int, table: Table, data: bytes, *, alert: bool) -> None:
+        """Store the position, the speed and the torque of servo i from a reply; a position out of reach counts as a jump."""
         reading, servo = self.now, self.servos[i]
         values = table.unpack(table.felt, data)
         angle = servo.sign * (values["present_position"] - servo.zero) * self.steps.unit
@@ -448,6 +453,7 @@ class Rig:
             reading.error[i] = -1  # which alert, is asked when the bus has time for it
 
     def _health(self, i: int, table: Table, values: dict[str, int]) -> None:
+        """Store voltage, temperature and alerts of servo i, as far as a block of registers holds them."""
         reading = self.now
         if "present_voltage" in values:
             reading.voltage[i] = values["present_voltage"] * table["present_voltage"].unit
@@ -457,7 +463,7 @@ class Rig:
             reading.error[i] = values["hardware_error"]
 
     def _poll_health(self, number: int, bus: Bus) -> None:
-        """Ask a servo how it is, one with an alert first, or a board; never while a late reply may still come."""
+        """Read the state of one servo, one with an alert first, or a board, if the bus has time for it."""
         alarmed = [i for i in self._members[number] if self.now.error[i] == -1]
         turns = self._turns[number]
         if alarmed:
@@ -479,6 +485,7 @@ class Rig:
                 self._health(device, table, table.unpack(table.health, reply.data))
 
     def _feel(self, bus: Bus, board: BoardPlace, wait: float) -> None:
+        """Read a board, and store what its sensors measure."""
         table = self.wiring.tables(board, self.robot)
         address, length = table.block(table.felt)
         bus.begin((board.id,), address, length)
@@ -597,4 +604,5 @@ def _typical(length: int) -> Packet:
 
 
 def _listed(names_by_id: dict[int, str], servo_ids: Sequence[int]) -> str:
+    """Return the numbers of up to six servos with their names."""
     return " and ".join(f"number {servo_id} ({names_by_id[servo_id]})" for servo_id in servo_ids[:6])

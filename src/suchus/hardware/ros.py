@@ -69,6 +69,14 @@ def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_00
 
 
 def _control(robot: Robot, numbers: Sequence[int], baud: int, port: str) -> ElementTree.Element:
+    """Return the ``ros2_control`` block of a robot's servos.
+
+    Args:
+        robot: the design.
+        numbers: ids of the servos on their bus, in the order of the layout.
+        baud: bit rate of the bus [1/s].
+        port: device name of the bus.
+    """
     names = layout(robot).servos
     count = len(names)
     block = ElementTree.Element("ros2_control", name=f"{robot.name}_servos", type="system")

@@ -40,6 +40,7 @@ class ServoLine:
     """Which servo board, from 0; the usual ones have 16 channels [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse channels, angles and pulse widths out of range."""
         with Checks(f"servo {self.name!r}", self) as check:
             check.whole("channel", 0, 1023)
             check.whole("board", 0, 61)
@@ -67,6 +68,7 @@ class ServoMap:
     """One for each of the robot's servos, in any order."""
 
     def __post_init__(self) -> None:
+        """Refuse a rate out of range, and two servos on one channel."""
         with Checks("servo map", self) as check:
             check.number("rate", 1.0, 1000.0, "Hz")
         places = [(line.board, line.channel) for line in self.servos]

@@ -301,6 +301,7 @@ class _Search:
         return None
 
     def _lacks(self, names: Sequence[str], case: LoadCase, demand: xr.Dataset) -> str:
+        """Return a sentence: no servo of a family is strong enough for some servos in a case."""
         servo_demand = demand.sel(servo=list(names))
         torque, speed = float(np.abs(servo_demand.servo_torque).max()), float(np.abs(servo_demand.servo_velocity).max())
         rms = float(np.sqrt((servo_demand.servo_torque**2).mean("time")).max())

@@ -52,6 +52,7 @@ class SyntheticAnimal:
     """Course of a foot in swing."""
 
     def __post_init__(self) -> None:
+        """Refuse lengths, times and angles that no animal has."""
         with Checks("animal", self) as check:
             for field in ("trunk", "tail", "stride", "outward"):
                 check.number(field, 0.001, 10.0, "m")
@@ -87,7 +88,10 @@ def film_animal(animal: SyntheticAnimal, camera: Camera, *, cycles: float, pace:
 
 
 def _midline(animal: SyntheticAnimal, time: np.ndarray) -> dict[str, np.ndarray]:
-    """Points from neck to tail tip: a chain whose bends are shared evenly among its joints."""
+    """Return the positions of the points from neck to tail tip, each of shape (frame, 3) [m].
+
+    Every joint of the trunk bends by the same angle, and so does every joint of the tail.
+    """
     phase = time / animal.period
     spine = animal.spine_bend * np.cos(2 * np.pi * (phase - animal.spine_rightmost))
     pelvis = spine / 2  # the girdles counter-rotate, so that the trunk looks straight on
@@ -110,7 +114,7 @@ def _midline(animal: SyntheticAnimal, time: np.ndarray) -> dict[str, np.ndarray]
 
 
 def _foot(animal: SyntheticAnimal, leg: str, time: np.ndarray) -> np.ndarray:
-    """A foot that stands still, then goes on by a stride, without a jerk at either end."""
+    """Return the position of a foot, shape (frame, 3) [m]: it rests in stance and moves by one stride in swing."""
     phase = time / animal.period + animal.limb_phases[LEGS.index(leg)]
     number, cycle_phase = np.floor(phase), np.mod(phase, 1.0)
     swing = np.clip(cycle_phase / (1.0 - animal.duty_factor), 0.0, 1.0)
@@ -123,7 +127,12 @@ def _foot(animal: SyntheticAnimal, leg: str, time: np.ndarray) -> np.ndarray:
 
 
 def _swing_progress(swing: Swing, fraction: np.ndarray) -> np.ndarray:
-    """Share of its path that a foot has covered after a share of its swing."""
+    """Return the fraction of its path that a foot has covered, 0 to 1 [-].
+
+    Args:
+        swing: speed profile of the swing.
+        fraction: time since lift-off over the duration of the swing, 0 to 1 [-].
+    """
     if swing == "cosine":
         return np.asarray((1 - np.cos(np.pi * fraction)) / 2)
     if swing == "jerk_free":

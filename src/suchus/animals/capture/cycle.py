@@ -119,7 +119,7 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
 
 
 def harmonics_for(frames: int, frames_per_cycle: float, *, most: int) -> int:
-    """Return how many harmonics so many frames can carry: six frames for each, four per cycle."""
+    """Return how many harmonics a fit can have: at most one for six frames, and one for four frames a cycle."""
     return int(np.clip(min(frames // 6, frames_per_cycle // 4), 2, most))
 
 
@@ -171,6 +171,14 @@ def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], so
 
 
 def _check_period(period: float, duration: float, rate: float, source: str) -> None:
+    """Refuse tracks that show too little of a cycle, or too few frames in a cycle.
+
+    Args:
+        period: of the cycle [s].
+        duration: of the tracks [s].
+        rate: frames per second [1/s].
+        source: name of the tracks, for messages.
+    """
     if duration < LEAST_CYCLES * period:
         raise UnusableTracks(
             f"{source} lasts {duration:.2f} s, {duration / period:.1f} cycles of about {period:.2f} s; at least "
@@ -184,7 +192,10 @@ def _check_period(period: float, duration: float, rate: float, source: str) -> N
 
 
 def _coarse(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.ndarray) -> tuple[float, float]:
-    """Return the frequency that explains most, and the share; a long film in pieces, since pace does not stay."""
+    """Return the frequency whose first harmonic explains most of the variance, and the fraction that it explains.
+
+    A long film is divided into pieces, because the pace varies over a film.
+    """
     explained = _explained(time, y, weight, trials)
     pieces = int(time[-1] * trials[np.argmax(explained)] / _PIECE)
     if pieces > 1:
@@ -198,7 +209,7 @@ def _coarse(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.ndar
 
 
 def _explained(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.ndarray) -> np.ndarray:
-    """Return the share of the variance that mean and one harmonic explain, over all signals, shape (trial,)."""
+    """Return the fraction of the variance that the mean and one harmonic explain, over all signals, shape (trial,)."""
     angle = 2 * np.pi * np.multiply.outer(trials, time)
     c, s = np.cos(angle), np.sin(angle)
     constant = np.ones_like(c)

@@ -36,6 +36,7 @@ class Camera:
     """Seed of noise and losses."""
 
     def __post_init__(self) -> None:
+        """Refuse rates, noise, losses and scales out of range."""
         with Checks("camera", self) as check:
             check.number("rate", 1.0, 10000.0, "1/s")
             check.number("noise", 0.0, 0.1, "m")
@@ -113,7 +114,14 @@ def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def _midline_point(body_frames: BodyFrames, place: Layout, segment: str, forward_offset: float) -> np.ndarray:
-    """Return a point on the midline of a segment, so far ahead of its origin, in the frame of the root [m]."""
+    """Return the position of a point on the midline of a segment, in the frame of the root, shape (frame, 3) [m].
+
+    Args:
+        body_frames: of all bodies of the robot.
+        place: layout of the robot.
+        segment: name of the body that carries the point.
+        forward_offset: distance of the point ahead of the segment's origin [m].
+    """
     body = [segment_body.name for segment_body in place.bodies].index(segment)
     return np.asarray(
         body_frames.places[:, body] + (place.bodies[body].shift + forward_offset) * body_frames.turns[:, body, :, 0]
@@ -121,7 +129,7 @@ def _midline_point(body_frames: BodyFrames, place: Layout, segment: str, forward
 
 
 def _body_of_hinge(place: Layout, hinge: str) -> int:
-    """Return which body a hinge turns; its frame stands at the hinge."""
+    """Return the index of the body that a hinge turns; the body's frame lies at the hinge."""
     return next(i for i, body in enumerate(place.bodies) if any(name == hinge for _, name, _ in body.hinges))
 
 

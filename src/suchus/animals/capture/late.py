@@ -116,6 +116,13 @@ class _Lags:
     """By how much one point of a link runs behind the other, by their courses over the mean cycle."""
 
     def __init__(self, tracks: Tracks, clock: Clock, time: np.ndarray) -> None:
+        """Fit the path of every keypoint of the midline, and tabulate the lags that are tried.
+
+        Args:
+            tracks: the keypoints, by the clock.
+            clock: on which all strides have the same duration.
+            time: of the film, in each frame [s].
+        """
         self._tracks, period = tracks, clock.period
         cycles = (tracks.time[-1] - tracks.time[0]) / period
         turns = min(_BENDS, 1 + int(cycles / 2))  # of the path
@@ -160,6 +167,13 @@ class _Lags:
         return {pair: self._link(pair, mean[j], varies[j]) for j, pair in enumerate(pairs)}
 
     def _link(self, pair: tuple[str, str], mean: np.ndarray, varies: np.ndarray) -> _LaggedLink:
+        """Return how the distance of a pair varies with the lag, in units of the variance that noise explains.
+
+        Args:
+            pair: names of the keypoints.
+            mean: mean distance for each lag [m or px].
+            varies: variance of the distance for each lag.
+        """
         residual = [course.residual for name in pair for course in self._courses[name]]
         mean_square_bend = np.mean(
             [self._mean_square_bends[name] for name in pair if name in self._mean_square_bends] or [0.0]
@@ -170,7 +184,7 @@ class _Lags:
         return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, _GAIN, _EXPLAINS)[0])
 
     def _surely(self, varies: np.ndarray, chord: float, gain: float, explains: float) -> tuple[float, float]:
-        """Return the lag with which a distance varies least, 0 where that is not sure [s], and what is gained."""
+        """Return the lag at which a distance varies least [s], 0 if it is not significant, and the gain."""
         best = int(np.argmin(varies))
         variance_drop = float(varies[self._zero_index] - varies[best])
         gained = len(self._tracks.time) * variance_drop

@@ -52,7 +52,7 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
 
 
 def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray:
-    """Return the places with the axis that is up last, right-handed."""
+    """Return the positions with the vertical axis last, right-handed; the trunk is above the feet."""
     trunk = [points.index(point) for point in _TRUNK if point in points]
     feet = [points.index(leg) for leg in LEGS if leg in points]
     if not trunk or not feet:
@@ -71,6 +71,10 @@ def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray
 
 
 def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
+    """Return keypoints, positions, frame rate and unit of length of a TRC file.
+
+    Positions have the shape (frame, point, 3) and are NaN where a marker is missing.
+    """
     lines = read_text(path).splitlines()
     if len(lines) < _HEADER or not lines[0].startswith("PathFileType"):
         raise UnreadableFile(f"{path} is no TRC file: its first line is not 'PathFileType 4 (X/Y/Z) ...'.")
@@ -94,6 +98,10 @@ def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
 
 
 def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
+    """Return keypoints, positions, frame rate and unit of length of a C3D file.
+
+    Positions have the shape (frame, point, 3) and are NaN where a marker is missing.
+    """
     try:
         import c3d  # noqa: PLC0415  an optional extra
     except ImportError as error:

@@ -81,6 +81,7 @@ def read_poses(
 
 
 def _load(path: Path, software: str, rate: float | None) -> Any:
+    """Return the data set that the ``movement`` library reads from a file of a pose estimator."""
     try:
         from movement.io import load_dataset  # noqa: PLC0415  an optional extra
     except ImportError as error:
@@ -102,6 +103,7 @@ def _load(path: Path, software: str, rate: float | None) -> Any:
 
 
 def _guess(path: Path) -> str:
+    """Return the software that wrote a file, by the ending of its name and its content."""
     suffix = path.suffix.lower()
     if suffix == ".slp":
         return "SLEAP"
@@ -126,6 +128,7 @@ def _is_anipose(path: Path) -> bool:
 
 
 def _select_individual(data: Any, individual: str | None, name: str) -> Any:
+    """Return the data of one individual; without a name, of the only one."""
     dim = next((d for d in data.position.dims if str(d).startswith("individual")), None)
     if dim is None:
         return data
@@ -189,6 +192,7 @@ def read_tracks(path: str | Path, options: ReadingOptions | None = None) -> Trac
 
 
 def _read_by_format(path: Path, options: ReadingOptions) -> Tracks:
+    """Read tracks with the reader for the file's format."""
     if options.software is None and path.suffix.lower() in SUFFIXES:
         return read_markers(path, names=options.names)
     if options.software is None and is_table(path):
@@ -224,6 +228,7 @@ def summary(walk: Walk) -> list[str]:
     """Return what was seen, in lines that people read."""
 
     def format_number(name: str, digits: int = 2, scale: float = 1.0) -> str:
+        """Return a number of the walk with half of its interval, or why it has none."""
         if name not in walk.numbers:
             return "(it does not bend)" if name.startswith(("spine", "tail")) and not walk.lacks else "(not seen)"
         value, _, error, _ = walk.numbers[name]

@@ -136,9 +136,9 @@ def to_gait(
 
 
 def driven_share(robot: Robot) -> float:
-    """Return where along its tail, from its first joint, a robot's last driven segment has its middle [-].
+    """Return the position of the middle of the last driven tail segment, as a fraction of the tail's length [-].
 
-    The end beyond it is passive: it follows by itself, and no command holds it. It is 1 without such an end.
+    The segments behind it are passive: no command holds them. The fraction is 1 if all segments are driven.
     """
     place = layout(robot)
     driven_names = {place.servos[i] for i in place.tail_yaw}
@@ -160,9 +160,9 @@ def mean_of(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
 
 
 def time_scale(walk: Walk, robot: Robot, time: Time, trunk: float | None) -> tuple[float, str]:
-    """Return by what the robot's period is longer than the animal's, and a sentence that says why [-].
+    """Return the period of the robot over that of the animal [-], and a sentence that gives the reason.
 
-    Bodies of different size walk alike at equal Froude number, where time goes with the square root of length.
+    Bodies of different size walk alike at equal Froude number: time is proportional to the square root of length.
 
     Args:
         walk: the measured walk.
@@ -202,6 +202,15 @@ def time_scale(walk: Walk, robot: Robot, time: Time, trunk: float | None) -> tup
 
 
 def _with_timing(walk: Walk, gait: Gait, duty: Duty, factor: float, notes: list[str]) -> Gait:
+    """Return the gait with the period, the duty factor and the limb phases of the walk.
+
+    Args:
+        walk: the measured walk.
+        gait: whose other fields are kept.
+        duty: fraction that becomes the duty factor, see ``Duty``.
+        factor: period of the robot over that of the animal [-].
+        notes: sentences for the user, to which this function appends.
+    """
     stem = "duty" if duty == "contact" else "retraction"
     duty_fraction = mean_of(walk, stem)
     other_duty = mean_of(walk, "retraction" if duty == "contact" else "duty")
@@ -221,7 +230,7 @@ def _with_timing(walk: Walk, gait: Gait, duty: Duty, factor: float, notes: list[
 
 
 def _with_bends(walk: Walk, robot: Robot, gait: Gait, notes: list[str]) -> Gait:
-    """Give trunk and tail the first harmonics that were measured; steady bends up and down stay the base's."""
+    """Return the gait with the first harmonics of the measured bends; vertical bends stay those of the base."""
     # both clocks have LF's mid-stance in common: the gait's begins half the difference of the duty factors off
     clock = np.exp(1j * np.pi * (gait.duty_factor - mean_of(walk, "duty")))
     touch_down = 0.75 - gait.duty_factor / 2
@@ -264,7 +273,10 @@ def _bend_limits(robot: Robot, region: Literal["trunk", "tail"]) -> list[float]:
 
 
 def _with_steps(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]) -> Gait:
-    """Give the feet the measured paths in proportion to the trunk; what the limbs cannot follow becomes the base's."""
+    """Return the gait with the measured foot paths, scaled by the length of the trunk.
+
+    Paths that the limbs cannot follow are replaced by those of the base gait, with strokes as long as possible.
+    """
     reaches = [girdle.limb.reach for girdle in robot.girdles]
     base_feet = [_feet_of(limb, reach) for limb, reach in zip(base.limbs, reaches, strict=True)]
     feet = _feet(walk, robot, base_feet, girdles, notes)
@@ -330,7 +342,7 @@ def _feet_of(limb: object, reach: float) -> _Feet:
 
 
 def _with_feet(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
-    """Return the gait with these paths of the feet; None where the robot cannot follow it."""
+    """Return the gait with these foot paths, or None where the robot cannot follow it."""
     reaches = [girdle.limb.reach for girdle in robot.girdles]
     try:
         limbs = tuple(
@@ -344,7 +356,7 @@ def _with_feet(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
 
 
 def _with_feasible_period(robot: Robot, gait: Gait, notes: list[str]) -> Gait:
-    """Return the gait with a period in which no servo has to turn faster than it can."""
+    """Return the gait with a period in which no servo exceeds its speed."""
     min_period, slowest_joint = shortest_period(robot, gait)
     if min_period <= gait.period:
         return gait
@@ -356,7 +368,7 @@ def _with_feasible_period(robot: Robot, gait: Gait, notes: list[str]) -> Gait:
 
 
 def _unrepresented_notes(walk: Walk) -> list[str]:
-    """Note what was measured and is not in the gait."""
+    """Return a sentence for each measured quantity that the gait cannot represent."""
     notes = []
     for region in ("trunk", "tail"):
         index = walk.value(f"standing_{region}")

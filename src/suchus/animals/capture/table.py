@@ -110,6 +110,7 @@ def write_table(tracks: Tracks, path: str | Path) -> Path:
 
 
 def _rows(path: Path) -> list[list[str]]:
+    """Return the non-empty rows of a CSV table, header included."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
@@ -127,6 +128,7 @@ def _rows(path: Path) -> list[list[str]]:
 
 
 def _columns(header: list[str], name: str) -> tuple[list[_Column], str]:
+    """Return the columns of a table by its header, and the unit of length that all of them share."""
     first_heading = header[0].strip().lower()
     if first_heading != "time [s]" and not _FRAME.fullmatch(first_heading):
         raise UnreadableFile(
@@ -177,6 +179,7 @@ def _numbers(rows: list[list[str]], name: str) -> np.ndarray:
 
 
 def _is_number(cell: str) -> bool:
+    """Return whether a cell holds a number or is empty."""
     try:
         float(cell or "nan")
     except ValueError:

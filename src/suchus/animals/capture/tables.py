@@ -97,6 +97,7 @@ def angle_tables(cycle: AngleCycle) -> xr.Dataset:
 
 
 def _meaning(name: str) -> str:
+    """Return what a number of a walk is, for tables; empty for a name without an entry."""
     stem = name.partition("_")[0]
     if name in _MEANINGS:
         return _MEANINGS[name]

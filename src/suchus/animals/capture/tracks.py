@@ -254,6 +254,7 @@ def lacking(points: Collection[str]) -> tuple[str, ...]:
 
 
 def _check_time(tracks: Tracks) -> None:
+    """Refuse times that do not increase, frame rates out of range, and a gap longer than the rest of the film."""
     n = len(tracks.time)
     if n < 2:
         raise UnusableTracks(f"{tracks.source} holds {n} frame{'s' * (n != 1)}; at least one cycle is needed.")

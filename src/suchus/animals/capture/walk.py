@@ -410,6 +410,13 @@ def _swinging(tracks: Tracks) -> dict[str, np.ndarray]:
 
 
 def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
+    """Fit the angles, the advance and the foot paths of tracks over their mean cycle.
+
+    Args:
+        tracks: the keypoints, by the clock.
+        period: of the cycle [s].
+        tail_share: fraction of the tail's length at which its lateral angle is taken [-].
+    """
     angles = bend_angles(tracks, tail_share)._asdict()
     fits = {}
     for name, series in angles.items():
@@ -434,6 +441,12 @@ def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
 
 
 def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
+    """Return the numbers of a reading by name: lengths over the trunk's [-], angles [rad], phases [cycle].
+
+    Args:
+        reading: fits over the mean cycle.
+        zero: phase of the tracks' clock at which the gait begins [cycle].
+    """
     bends = {name: _first_harmonic(reading.angles[name], zero) for name in reading.angles}
     spine, tail = (bends.get(name, 0j) for name in ("spine_lateral", "tail_lateral"))
     numbers = {"stride": reading.advance / reading.trunk}
@@ -456,9 +469,10 @@ def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
 
 
 def _zero(feet: Mapping[str, FootContact]) -> float:
-    """Phase of the tracks' clock at which the gait begins: LF's mid-stance, back by swing and half of stance.
+    """Return the phase of the tracks' clock at which the gait begins [cycle].
 
-    Without LF it is the same of the first foot that there is; without feet it is where the clock begins.
+    It is the mid-stance of LF minus the swing and half of the stance. Without LF the first tracked foot takes its
+    place. Without feet it is 0.
     """
     if not feet:
         return 0.0
@@ -483,6 +497,7 @@ def _deviations(name: str, value: float, cycle_numbers: Sequence[Mapping[str, fl
 
 
 def _unit(name: str) -> str:
+    """Return the unit of a number of ``_numbers``."""
     stem = name.partition("_")[0]
     if stem in ("phase",) or name in ("spine_rightmost", "tail_lag"):
         return "cycle"
@@ -521,6 +536,14 @@ def _check_advance(reading: _Reading, source: str) -> None:
 
 
 def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
+    """Return angles, foot speeds and stance over the phase of the mean cycle, with the scatter of the frames.
+
+    Args:
+        tracks: the keypoints, by the clock.
+        reading: fits over the mean cycle.
+        feet: contact of each foot.
+        zero: phase of the tracks' clock at which the gait begins [cycle].
+    """
     phase = np.arange(GRID) / GRID
     time = (phase + zero) * reading.period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(feet)})
@@ -544,7 +567,7 @@ def _positive(name: str) -> str:
 
 
 def _residual_spread(tracks: Tracks, angle_fit: PeriodicFit, phase: np.ndarray, zero: float) -> np.ndarray:
-    """Standard deviation of the frames about the mean cycle, in bins of phase, drawn through [rad]."""
+    """Return the standard deviation of the frames about the mean cycle, over the phase [rad]."""
     phases = np.mod(tracks.time / angle_fit.period - zero, 1.0)
     bins = np.minimum((phases * _BINS).astype(int), _BINS - 1)
     use = np.isfinite(angle_fit.residual)

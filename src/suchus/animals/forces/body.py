@@ -56,6 +56,7 @@ class Unknown:
     """Choices beside the most likely one [-]; see ``DRAWS``."""
 
     def __post_init__(self) -> None:
+        """Refuse ranges out of bounds or in the wrong order."""
         with Checks("unknown", self) as check:
             check.whole("draws", 3, 10_000)
             for name, lower_bound, upper_bound in (
@@ -147,6 +148,13 @@ def _change(walk: Walk, numbers: Mapping[str, Seen], name: str) -> float:
 
 
 def _deviate(name: str, measurement: Seen, deviation: float) -> float:
+    """Return a number at some standard errors from its mean, within the range that is possible for it.
+
+    Args:
+        name: of the number.
+        measurement: the measured number.
+        deviation: from the mean [standard error].
+    """
     value, stem = measurement.value + deviation * measurement.error, name.partition("_")[0]
     if stem in _SHARES:
         return float(np.clip(value, 0.05, 0.95))
@@ -184,6 +192,8 @@ def widened(robot: Robot, volume: float) -> Robot:
 
 
 def _wider(segment: Segment, factor: float) -> Segment:
+    """Return a segment whose sections are larger by a factor and whose length is the same."""
+
     def scale_section(place: tuple[float, float, float]) -> tuple[float, float, float]:
         return place[0], factor * place[1], factor * place[2]
 

@@ -134,6 +134,7 @@ def walked_forces(
 
 
 def _trunk(walk: Walk) -> float:
+    """Return the length of the animal's trunk from hip to shoulder [m]."""
     trunk_length = walk.numbers.get("trunk_length")
     if trunk_length is None or trunk_length.unit != "m":
         raise UnusableTracks(
@@ -144,9 +145,9 @@ def _trunk(walk: Walk) -> float:
 
 
 def _fit_body(body: Robot, walk: Walk, base: Gait, trunk: float) -> tuple[Robot, list[str]]:
-    """Return the body with limbs as long and joints as strong and fast as what it was seen to do asks, and notes.
+    """Return the body with limbs long enough and joints strong enough for the filmed walk, and notes.
 
-    A robot's limbs and servos are those of its own task. An animal's do what is on the film.
+    A robot's limbs and servos are made for its own task; the animal's do what the film shows.
     """
     strong_body = with_servos(body, _stronger)
     for limb_factor in _LIMB_FACTORS:
@@ -276,7 +277,7 @@ def _waved(curve: Curve, size: float, shares: Mapping[str, float]) -> Curve:
 
 
 def _simulate_trials(body: Robot, trials: Sequence[_Try], progress: Progress) -> list[_GroundResponse]:
-    """Let the body walk every choice, and return what the ground did."""
+    """Simulate the walk of every choice, and return the response of the ground."""
     foot_friction = body.contact.foot_friction
     runs = [
         Run(robot=body, gait=trial.gait, ground=Ground(friction_scale=trial.friction / foot_friction))
@@ -290,6 +291,7 @@ def _simulate_trials(body: Robot, trials: Sequence[_Try], progress: Progress) ->
 
 
 def _ground_response(record: xr.Dataset, trial: _Try) -> _GroundResponse:
+    """Return contact forces over the phase of the walk's tables, steps, speed and joint error of a choice."""
     period = trial.gait.period
     window = Window(START + SETTLE * period, period, CYCLES)
     force = stance_forces(record, window)
@@ -400,7 +402,7 @@ def _peaks(table: Quantities, body: Robot, responses: Sequence[_GroundResponse])
 
 
 def _sustained_force(foot: Float[np.ndarray, "part phase"]) -> float:
-    """Return the greatest net force on a foot that lasts for ``_HELD`` of the cycle [body weight]."""
+    """Return the greatest net force on a foot that lasts for ``_HOLD_TIME`` of the cycle [body weight]."""
     net = np.linalg.norm(foot, axis=0)
     return float(np.min([np.roll(net, -i) for i in range(round(_HOLD_TIME * len(net)))], axis=0).max())
 

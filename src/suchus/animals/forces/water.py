@@ -206,6 +206,7 @@ class _Bends:
     """The bends of a midline as those of a body's joints."""
 
     def __init__(self, walk: Walk, body: Robot) -> None:
+        """Take the first harmonic of the bend at every keypoint from the walk, and its standard error."""
         _check_bends(walk)
         phases, self._body, self._period = walk.phases, body, walk.numbers["period"]
         turn = np.exp(-2j * np.pi * phases.phase.values)
@@ -268,6 +269,7 @@ def _shared(
 
 
 def _lake(body: Robot, unknown: Unknown, shares: Mapping[str, float]) -> Lake:
+    """Return the lake with the coefficients of the water at fractions of their ranges."""
     coefficients = {name: even(getattr(unknown, name), shares[name])
               for name in ("cross_drag", "thickening", "added_mass", "shedding", "viscosity")}  # fmt: skip
     water = Water(
@@ -333,7 +335,14 @@ def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, p
 
 
 def _spread(swims: Sequence[_Swum], sections: Sequence[_Swum]) -> list[_Swum]:
-    """Return answers that span the interval of a rung: its own, or the sections' in proportion to its size."""
+    """Return swims that span the interval of a model of the water.
+
+    A model that was run once gets the relative interval of the section model, scaled by the size of its forces.
+
+    Args:
+        swims: of the model, one or one for each choice.
+        sections: the same choices by the section model.
+    """
     if len(swims) > 1:
         return list(swims)
     (swim,) = swims

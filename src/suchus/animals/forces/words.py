@@ -32,6 +32,7 @@ def _interval_text(value: float, lower_bound: float, upper_bound: float, unit: s
 
 
 def _on_land(data: xr.Dataset) -> list[str]:
+    """Return the lines for a walk: body, peak forces of the feet, loads of belly and tail, speed."""
     lines = [f"body: {data.attrs['body']}'s, {_interval(data, 'length')} long, {_interval(data, 'mass')}"]
     for pair in ("fore", "hind"):
         net_force = data.sel(quantity=f"foot_force_net_{pair}")
@@ -52,6 +53,7 @@ def _on_land(data: xr.Dataset) -> list[str]:
 
 
 def _in_water(data: xr.Dataset) -> list[str]:
+    """Return the lines for a swim: body, forces and speed by each model of the water."""
     length, displacement = _interval(data, "length"), _interval(data, "displaced")
     lines = [f"body: {data.attrs['body']}'s, {length} long, displaces {displacement} of water"]
     for rung in data.rung.values:

@@ -25,6 +25,7 @@ _MAX_FRAME_LENGTH = 1024
 
 
 def _table() -> tuple[int, ...]:
+    """Return the 256 values of the table by which the CRC-16 of the protocol is computed."""
     rows = []
     for byte in range(256):
         value = byte << 8
@@ -60,6 +61,7 @@ class _DynamixelFrames(Decoder):
         self._replies = replies
 
     def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
+        """Return the number of bytes used and their packet, None for noise; None if a frame is not complete."""
         start = data.find(_HEADER)
         if start < 0:
             header_length = next((n for n in (3, 2, 1) if data.endswith(_HEADER[:n])), 0)

@@ -18,6 +18,7 @@ class _FeetechFrames(Decoder):
     """Takes frames of either direction, which look alike."""
 
     def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
+        """Return the number of bytes used and their packet, None for noise; None if a frame is not complete."""
         start = data.find(_HEADER)
         if start < 0:
             header_length = int(data.endswith(b"\xff"))

@@ -27,6 +27,7 @@ _SEVERAL = {Instruction.READ: Instruction.SYNC_READ, Instruction.WRITE: Instruct
 
 
 def _line(text: str) -> bytes:
+    """Return a text with its checksum and a line feed, as bytes."""
     payload = text.encode("ascii")
     return payload + f"*{crc(payload):04X}\n".encode("ascii")
 
@@ -107,6 +108,7 @@ class _Lines(Decoder):
         self._replies = replies
 
     def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
+        """Return the number of bytes used and their packet, None for noise; None if a line is not complete."""
         end = data.find(b"\n")
         if end < 0:
             return (len(data), None) if len(data) > _MAX_LINE_LENGTH else None

@@ -42,6 +42,7 @@ class Decoder(ABC):
     """Finds packets in bytes that come in any portions, with noise before, between and within them."""
 
     def __init__(self) -> None:
+        """Begin with an empty buffer and counters at zero."""
         self._buffer = bytearray()
         self.dropped = 0
         """Bytes that belonged to no packet [-]."""
@@ -68,7 +69,7 @@ class Decoder(ABC):
 
     @abstractmethod
     def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
-        """Return how many bytes are used up and the packet that they are, None for noise; None if more must come."""
+        """Return the number of bytes used and their packet, None for noise; None if more bytes must come."""
 
 
 class Framing(ABC):

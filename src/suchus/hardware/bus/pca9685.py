@@ -69,6 +69,13 @@ class Pulses:
     """
 
     def __init__(self, wires: Wires, boards: Sequence[int], rate: float) -> None:
+        """Set the rate of pulses on all boards.
+
+        Args:
+            wires: the I2C bus.
+            boards: numbers of the boards on it.
+            rate: pulses per second [Hz].
+        """
         if not LEAST <= rate <= MOST:
             raise InvalidDesign(f"the rate of pulses is {rate:g} Hz; {LEAST:g} to {MOST:g} Hz is what the boards give.")
         self._wires, self.boards, self.rate = wires, tuple(boards), rate
@@ -113,6 +120,7 @@ class Pulses:
         self._wires.close()
 
     def _write(self, board: int, register: int, data: Sequence[int]) -> None:
+        """Write successive registers of a board, and refuse a board that does not answer."""
         try:
             self._wires.write_i2c_block_data(ADDRESS + board, register, list(data))
         except OSError as error:

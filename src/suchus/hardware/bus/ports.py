@@ -102,6 +102,7 @@ class FilePort:
 
     @contextmanager
     def _noticing(self) -> Iterator[None]:
+        """Turn the errors of a port that is gone into ``BusGone``."""
         try:
             yield
         except (OSError, ValueError) as error:  # a descriptor that was closed is -1
@@ -128,6 +129,7 @@ def open_port(name: str, baud: int) -> Port:
 
 
 def _socket(name: str) -> Port:
+    """Return a port that is a socket of an emulator on this computer."""
     address = urlsplit(name)
     try:
         port = address.port
@@ -149,6 +151,7 @@ def _socket(name: str) -> Port:
 
 
 def _serial(name: str, baud: int) -> Port:
+    """Return a serial port, open for this process alone."""
     try:
         import serial  # noqa: PLC0415  an optional extra, needed here only
     except ModuleNotFoundError as error:
@@ -176,13 +179,13 @@ def _serial(name: str, baud: int) -> Port:
 
 
 def _ports_text() -> str:
-    """Return which ports there are, as a sentence."""
+    """Return a sentence that names the serial ports of this computer."""
     adapters = sorted(Path("/dev/serial/by-id").glob("*")) or sorted(Path("/dev").glob("tty[UA][SC][BM]*"))
     return f"there is {', '.join(map(str, adapters))}." if adapters else "no adapter is plugged in."
 
 
 def _lower_latency(device: Any) -> None:
-    """Ask an adapter to hand bytes on at once, where it can be asked."""
+    """Set an adapter to pass bytes on without delay, where its driver allows it."""
     with suppress(OSError, ValueError, AttributeError, NotImplementedError):
         device.set_low_latency_mode(True)
 

@@ -68,6 +68,7 @@ class ServoPlace:
     """Greatest angle of the joint that it may be sent to [rad]."""
 
     def __post_init__(self) -> None:
+        """Refuse ids, models and ranges that no servo has."""
         with Checks(f"servo {self.name!r}", self) as check:
             check.whole("id", 0, LAST_ID)
             check.that(self.id != CLOCK, f"id is {CLOCK}, which stands for the emulator's clock; take another one")
@@ -99,6 +100,7 @@ class BoardPlace:
     """Force of a step, where it feels forces [N]."""
 
     def __post_init__(self) -> None:
+        """Refuse ids and units out of range."""
         with Checks(f"board {self.kind!r}", self) as check:
             check.whole("id", 0, LAST_ID)
             check.that(self.id != CLOCK, f"id is {CLOCK}, which stands for the emulator's clock; take another one")
@@ -122,6 +124,7 @@ class Wiring:
     """Boards for sensors; none where the robot feels nothing but its servos."""
 
     def __post_init__(self) -> None:
+        """Refuse ids that occur twice on a bus, buses that do not exist, and mixed protocols on one bus."""
         with Checks("hardware", self) as check:
             check.that(len(self.bus) > 0, "bus is empty; one at least is needed")
             devices: list[ServoPlace | BoardPlace] = [*self.servo, *self.board]
@@ -224,6 +227,7 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
 
 
 def _refuse_cranks(robot: Robot) -> None:
+    """Refuse robots with joints that turn without end."""
     cranks = [
         f"{limb.name}_{hinge.name}"
         for limb in layout(robot).limbs
@@ -238,6 +242,7 @@ def _refuse_cranks(robot: Robot) -> None:
 
 
 def _refuse_linear(robot: Robot) -> None:
+    """Refuse robots with linear actuators."""
     linear_cables = [cable.name for cable in robot.cables if cable.linear is not None]
     if linear_cables:
         raise UnsuitedRobot(
@@ -249,7 +254,7 @@ def _refuse_linear(robot: Robot) -> None:
 
 
 def check_names(owner: str, names: Sequence[str], robot: Robot) -> None:
-    """Refuse names that are not those of a robot's servos, each once.
+    """Refuse names that differ from those of a robot's servos.
 
     Args:
         owner: what names them, for the message.

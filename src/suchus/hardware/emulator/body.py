@@ -86,6 +86,17 @@ class EmulatedBody:
         latency: float = 0.0,
         timestep: float | None = None,
     ) -> None:
+        """Set up the simulation of the robot at rest in the first posture of its gait.
+
+        Args:
+            robot: the design.
+            gait: that gives the first posture.
+            ground: level ground if None.
+            lake: no water if None.
+            faults: of the robot.
+            latency: time from a goal to its effect, rounded to steps of the physics [s].
+            timestep: of the physics [s]; that of the robot's size if None.
+        """
         timestep = physics_step(robot) if timestep is None else timestep
         check_step(robot, timestep)
         check_faults(faults, robot, _MAX_DURATION)
@@ -135,7 +146,7 @@ class EmulatedBody:
         return self._probe.sample(0, 0)
 
     def aim(self, goals: Mapping[int, float]) -> None:
-        """Send goals on their way.
+        """Give the servos goals, which act after the latency.
 
         Args:
             goals: angles by the place of the servo in the layout [rad].
@@ -187,7 +198,7 @@ class EmulatedBody:
             raise Diverged(f"the emulated robot diverged at {time:.2f} s: {cause}.", time=time)
 
     def record(self) -> xr.Dataset:
-        """Return what truly happened until now, as ``land.crawl`` does, this instant included."""
+        """Return the true motion until now, as ``land.crawl`` does, with the present instant."""
         if self._stored_samples == _BLOCK_SAMPLES:
             self._turn_over()
         self._recorder.store(self._stored_samples, self._loop.command.phase, self._loop.command.targets)

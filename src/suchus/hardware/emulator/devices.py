@@ -66,6 +66,13 @@ class EmulatedServo(Device):
     """
 
     def __init__(self, place: ServoPlace, baud: int, number: int) -> None:
+        """Set the registers of a servo that is wired at a place.
+
+        Args:
+            place: of the servo in the wiring.
+            baud: bit rate of its bus [1/s].
+            number: index of the servo in the robot's layout.
+        """
         super().__init__(place.table)
         self.place, self.number = place, number
         codes = {rate: code for code, rate in self.table.bauds.items()}
@@ -103,7 +110,7 @@ class EmulatedServo(Device):
         return error if self.table.protocol == "feetech" else (ALERT if error else 0)
 
     def write(self, address: int, data: bytes) -> int:
-        """Take bytes by the rules of the servo."""
+        """Write bytes by the rules of the servo, and return the error code."""
         registers = [
             r for r in self.table.registers if address < r.address + r.size and r.address < address + len(data)
         ]
@@ -123,6 +130,7 @@ class EmulatedServo(Device):
         return register.address < address or register.address + register.size > address + len(data)
 
     def _write_error(self, register: Register, value: int) -> int:
+        """Return the error code for a write of a value to a register; ``OK`` if it is allowed."""
         if not register.writable:
             return ACCESS
         if register.address < self.table.persistent and (
@@ -157,7 +165,7 @@ class EmulatedServo(Device):
         self._tell("present_temperature", self.temperature)
 
     def age(self, seconds: float, heating: float, voltage: float, time: float) -> None:
-        """Let time pass: it warms up, watches its limits, and whether its host is there.
+        """Let time pass: the servo warms up, and checks its limits and its watchdog.
 
         Args:
             seconds: how much [s].
@@ -184,14 +192,14 @@ class EmulatedServo(Device):
                 self.put("goal_position", self.get("present_position"))
 
     def fail(self, alert: str) -> None:
-        """Raise an alert, and switch off where the maker has it so."""
+        """Raise an alert, and switch the servo off if its maker has it so."""
         bits = {text: bit for bit, text in self.table.alerts}
         if alert in bits:
             self.put("hardware_error", self.get("hardware_error") | 1 << bits[alert])
         self.off = self.off or SWITCHES_OFF[alert]
 
     def reboot(self) -> None:
-        """Begin anew: no torque, no alert."""
+        """Reboot the servo: torque and alerts are off."""
         self.off = False
         self.put("hardware_error", 0)
         self.put("torque_enable", 0)

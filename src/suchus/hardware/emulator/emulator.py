@@ -42,6 +42,14 @@ class Emulator:
     def __init__(
         self, wiring: Wiring, body: EmulatedBody, trouble: Trouble | None = None, *, clocked: bool = False
     ) -> None:
+        """Connect emulated servos and boards to the buses of a wiring.
+
+        Args:
+            wiring: of the robot.
+            body: the simulated robot.
+            trouble: faults of buses, servos and battery; none if None.
+            clocked: whether the host steps the robot's time over the bus.
+        """
         self.body, self.clocked, self.trouble = body, clocked, trouble or Trouble()
         self.wiring = wiring
         self.diverged: Diverged | None = None
@@ -143,6 +151,7 @@ class Emulator:
         return Packet(CLOCK, OK, self.body.tick.to_bytes(4, "little"))
 
     def _device_answers(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
+        """Return the reply of the device that a packet names; empty if it does not answer."""
         device, word = self._listening(line, packet.id), line.framing.word
         if device is None:
             return []
@@ -161,7 +170,7 @@ class Emulator:
         return [(device, Packet(packet.id, error | device.alert, answer))]
 
     def _ping_reply(self, device: Device) -> bytes:
-        """Return what an answer to a ping tells: Dynamixel the model and the firmware, the others nothing."""
+        """Return the data of a reply to a ping: model and firmware for Dynamixel, nothing for other protocols."""
         if device.table.protocol != "dynamixel":
             return b""
         firmware = device.get("firmware") if "firmware" in device.table else 0
@@ -182,6 +191,7 @@ class Emulator:
         return device
 
     def _write(self, device: Device, address: int, data: bytes) -> int:
+        """Write registers of a device, pass new goals and torque limits to the robot, and return the error code."""
         error = device.write(address, data)
         if isinstance(device, EmulatedServo) and error == OK:
             goal = device.table["goal_position"]
@@ -215,7 +225,7 @@ class Emulator:
             self.body.power(servo.number, servo.share)
 
     def _happen(self) -> None:
-        """Let servos age by a control period, and trouble take its course."""
+        """Age the servos by a control period, with the faults of ``Trouble``."""
         trouble, time, period = self.trouble, self.body.time, self.body.period
         has_trouble = time >= trouble.at
         if has_trouble:
@@ -260,6 +270,7 @@ class MemoryPort:
     """
 
     def __init__(self, emulator: Emulator, number: int = 0) -> None:
+        """Connect to a bus of an emulator in the same process."""
         self.name = f"emulated bus {number}"
         self._emulator, self._number, self._coming = emulator, number, bytearray()
         self.gone = False

@@ -41,6 +41,13 @@ class Server:
     """
 
     def __init__(self, emulator: Emulator, links: Sequence[str | Path] = (), *, sockets: bool = False) -> None:
+        """Open a port for each bus of an emulator.
+
+        Args:
+            emulator: the emulated robot.
+            links: paths under which the ports appear; the names of the system if empty.
+            sockets: whether the ports are sockets and not pseudo-terminals.
+        """
         self._emulator = emulator
         sockets = sockets or pty is None
         self._ends: list[Any] = []
@@ -95,6 +102,7 @@ class Server:
             end.close()
 
     def _listen(self, wait: float) -> None:
+        """Receive requests for at most some time [s], and pass them to the emulator or queue them."""
         by_file = {file: number for number, end in enumerate(self._ends) for file in end.files}
         ready, _, _ = select.select(list(by_file), (), (), wait)
         clock_time, latency = monotonic(), self._emulator.trouble.latency
@@ -119,6 +127,7 @@ class Server:
                 self._ends[number].send(data)
 
     def _hear(self, number: int, data: bytes, arrival_time: float) -> None:
+        """Pass a request to the emulator, and queue its replies with the delays of the bus."""
         emulator = self._emulator
         for delay, reply in emulator.hear(number, data, self._ends[number].baud):
             if emulator.clocked:
@@ -128,6 +137,7 @@ class Server:
                 heapq.heappush(self._due, (arrives, next(self._order), number, reply, False))
 
     def _link(self, path: Path, name: str) -> None:
+        """Make a symbolic link to a port, in place of one that a killed emulator left."""
         try:
             if path.is_symlink() and not path.exists() and str(path.readlink()).startswith("/dev/"):
                 path.unlink()  # of an emulator that was killed
@@ -146,6 +156,7 @@ class _Terminal:
     """A pseudo-terminal: whoever opens its name is the host."""
 
     def __init__(self) -> None:
+        """Open a pseudo-terminal, whose name hosts open as a serial port."""
         self._controller_fd, self._terminal_fd = pty.openpty()
         tty.setraw(self._terminal_fd)  # it stays open, else a host that leaves would end it for all
         os.set_blocking(self._controller_fd, False)

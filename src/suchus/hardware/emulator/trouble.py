@@ -39,6 +39,7 @@ class Trouble:
     """Seed of what is random [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse rates, delays and fractions out of range."""
         with Checks("trouble", self) as check:
             check.number("latency", 0.0, 1.0, "s")
             check.number("noise", 0.0, 1.0, "rad")
