@@ -111,7 +111,7 @@ def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
 
 
 def held(record: xr.Dataset, robot: Robot) -> xr.Dataset:
-    """Return a log that can be shown: a robot whose position was not measured is placed above the ground, without loads.
+    """Return a log that can be shown: a robot without a measured position is fixed above the ground, without loads.
 
     Args:
         record: of one run; one that says where the robot was is returned as it is.

@@ -320,7 +320,7 @@ def _foam(robot: Robot) -> list[BodyPart]:
 
 
 def _seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
-    """Return the body on which each servo sits, and its position: the body before its hinge in the chain from the root."""
+    """Return the body on which each servo sits and its position: the body before its hinge, from the root."""
     place = layout(robot)
     seats = {}
     for body in place.bodies:

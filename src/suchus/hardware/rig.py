@@ -430,7 +430,7 @@ class Rig:
         return table.block(table.felt)
 
     def _take(self, i: int, table: Table, data: bytes, *, alert: bool) -> None:
-        """Store the position, the speed and the torque of servo i from a reply; a position out of reach counts as a jump."""
+        """Store position, speed and torque of servo i from a reply; an impossible position counts as a jump."""
         reading, servo = self.now, self.servos[i]
         values = table.unpack(table.felt, data)
         angle = servo.sign * (values["present_position"] - servo.zero) * self.steps.unit

@@ -15,6 +15,7 @@ LENGTH_READING = 0.005
 
 
 def _count(key: str, location: str, quantity: str, value: int, sense: str, quote: str) -> Claim:
+    """Return a claim about a number of things."""
     return Claim(
         key=key,
         where=location,

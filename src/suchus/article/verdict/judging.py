@@ -1,6 +1,6 @@
-"""From a rule and measures to a verdict, and in how many plausible designs the claim holds.
+"""From a rule and measures to a verdict, and the fraction of plausible designs in which the claim holds.
 
-The latter is the table that a run of ``suchus study claims`` left.
+The fractions are those of the table that ``suchus study claims`` wrote.
 """
 
 import hashlib
@@ -62,7 +62,7 @@ class Share:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TooFew:
-    """What plausible designs say of a claim that too few of them could judge to know a share."""
+    """Answers of plausible designs to a claim that too few of them can judge to give a fraction."""
 
     claim: str
     """Its key."""
@@ -74,7 +74,7 @@ class TooFew:
     """Digest of the rule that judged the designs, ``Rule.asked``."""
 
     def robust(self, is_held: bool) -> bool:
-        """Return whether enough of those few designs that have a word agree with a verdict.
+        """Return whether enough of the designs that can judge the claim agree with a verdict.
 
         Args:
             is_held: whether the statement held in the run that was judged.
@@ -85,7 +85,7 @@ class TooFew:
         return sum(count for agrees, count in answers if agrees) >= ROBUST * sum(count for _, count in answers)
 
     def __str__(self) -> str:
-        """Return it as a sentence."""
+        """Return the counts of the answers as a sentence."""
         counts_text = listed([f"{self.words[word]} {word}" for word in WORDS if word in self.words])
         number = sum(self.words.values())
         return f"Asked of {number} plausible designs, too few of which could judge it to know a share: {counts_text}."
@@ -95,7 +95,7 @@ _Row = TypeVar("_Row", Share, TooFew)
 
 
 def _shipped() -> Mapping[str, Mapping[str, Any]]:
-    """Return the rows of the table that stands beside this module, none where it was not made yet."""
+    """Return the rows of the table beside this module; none if it does not exist yet."""
     file = resources.files("suchus.article.verdict") / _FILE
     if not file.is_file():
         return MappingProxyType({})
@@ -139,7 +139,7 @@ Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What became of one claim of the article."""
+    """Result of one claim of the article."""
 
     claim: Claim
     """The article's statement."""
@@ -172,7 +172,7 @@ class Verdict:
 
 
 def fragile(rule: Rule, word: str, designs: Share | TooFew | None) -> bool:
-    """Return whether other plausible designs give another answer too often to rely on a word.
+    """Return whether too many other plausible designs give another answer than a verdict.
 
     Args:
         rule: the claim's.
@@ -232,7 +232,7 @@ def judge(
 
 
 def word_of(rule: Rule, measures: Mapping[str, float]) -> Word:
-    """Return the word of a rule on measures, those that it needs alone.
+    """Return the verdict's word for measures, without any others than the rule needs.
 
     Args:
         rule: the claim's.
@@ -243,11 +243,10 @@ def word_of(rule: Rule, measures: Mapping[str, float]) -> Word:
 
 
 def _is_printed_value(printed_value: float, rounding: float, value: float) -> bool:
-    """Return whether a measured number is the printed one, as rounded.
+    """Return whether a measured number equals the printed one within its rounding.
 
-    Asked is the middle alone, of an ensemble or of models. A wide interval would reach more printed numbers, so that
-    little knowledge would make a word kinder; of a narrow one that shrinks to the printed number the same could be said
-    of much.
+    Only the middle of an ensemble or of several models counts, not its interval. With the interval, less knowledge
+    would agree with more printed numbers.
     """
     slack = 1e-9 * max(1.0, abs(printed_value))  # a value on the edge of its own rounding is inside
     return abs(value - printed_value) <= rounding + slack
@@ -258,13 +257,14 @@ def _value(rule: Rule, measures: Mapping[str, float], model_voices: Sequence[lad
 
 
 def _of_rule(rule: Rule, row: _Row | None) -> _Row | None:
-    """Return a row if it is of this rule; one that another rule made says nothing of it."""
+    """Return a row if it was made with this rule, otherwise None."""
     return None if row is None or row.rule not in ("", rule.asked) else row
 
 
 def _word(
     rule: Rule, claim: Claim, value: float, measures: Mapping[str, float], model_voices: Sequence[ladder.Voice]
 ) -> Word:
+    """Return the word of a verdict, such as ``reproduced``, ``contradicted`` or ``undecided``."""
     testable = rule.testable(measures)
     if not isfinite(value) or testable is False:
         return "not testable"

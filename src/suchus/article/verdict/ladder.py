@@ -59,6 +59,7 @@ def voices(rule: Rule, measures: Mapping[str, float], unable: Mapping[str, str] 
 
 
 def _voice(rule: Rule, rung: Rung, measures: Mapping[str, float], unable: str) -> Voice:
+    """Return the answer of one model to a claim, with its number and interval."""
     value, lower_bound, upper_bound = (
         measures.get(f"{rule.measure}_{rung.name}{end}", nan) for end in ("", "_low", "_high")
     )
@@ -70,6 +71,7 @@ def _voice(rule: Rule, rung: Rung, measures: Mapping[str, float], unable: str) -
 
 
 def _answer(rule: Rule, rung: Rung, measures: Mapping[str, float]) -> tuple[Says, bool | None, str]:
+    """Return the answer of a model, whether the statement holds in it, and the reason."""
     measure_names = [
         f"{name}_{rung.name}" for name in dict.fromkeys((rule.measure, *(clause.measure for clause in rule.holds)))
     ]
@@ -87,7 +89,7 @@ def _answer(rule: Rule, rung: Rung, measures: Mapping[str, float]) -> tuple[Says
 
 
 def _clause_for_rung(clause: Clause, rung: Rung) -> Clause:
-    """Return a clause that asks a rung's measures."""
+    """Return a clause with the measures of one model."""
     bound = f"{clause.bound}_{rung.name}" if isinstance(clause.bound, str) else clause.bound
     return replace(clause, measure=f"{clause.measure}_{rung.name}", bound=bound)
 
@@ -97,15 +99,15 @@ def _answers(model_voices: Sequence[Voice]) -> set[Says]:
 
 
 def disagree(model_voices: Sequence[Voice]) -> bool:
-    """Return whether the statement holds in one rung and not in another."""
+    """Return whether the statement holds in one model and fails in another."""
     return len(_answers(model_voices)) > 1
 
 
 def contested(model_voices: Sequence[Voice]) -> bool:
-    """Return whether one rung alone has an answer, and one that is not settled says otherwise in all of its spread.
+    """Return whether one model alone has an answer, and an unsettled model contradicts it in all of its spread.
 
-    No word rests on one model where another stands beside it. This was added after a first result had been seen; it
-    can only take a word away.
+    One model alone does not decide if another one contradicts it. This rule was added after a first result had been
+    seen; it can only take a word away.
     """
     answering_voices = [voice for voice in model_voices if voice.says in ("holds", "does not hold")]
     unsettled_leanings = {voice.leans for voice in model_voices if voice.says == "no word"}
@@ -113,7 +115,7 @@ def contested(model_voices: Sequence[Voice]) -> bool:
 
 
 def agreed(model_voices: Sequence[Voice]) -> bool | None:
-    """Return on what the rungs agree that have an answer; None if none has one, they disagree, or one is contested."""
+    """Return the common answer of the models that have one; None if none has one, they disagree or one is contested."""
     answers = _answers(model_voices)
     if contested(model_voices):
         return None
@@ -121,7 +123,7 @@ def agreed(model_voices: Sequence[Voice]) -> bool | None:
 
 
 def spread(model_voices: Sequence[Voice]) -> tuple[float, float, float]:
-    """Return the middle value of the rungs that have a word, and the least and the greatest of all; NaN of none."""
+    """Return the median number of the models that have a word, and the least and greatest of all; NaN without one."""
     voices_with_word = [voice for voice in model_voices if voice.says != "no word"]
     if not voices_with_word:
         return nan, nan, nan
@@ -136,7 +138,7 @@ _SENTENCES: Mapping[Says, str] = MappingProxyType(
 
 
 def sentence(model_voices: Sequence[Voice], form: str) -> str:
-    """Return in a sentence or two on which rungs a claim holds, on which not, and which have no word."""
+    """Return sentences that name the models in which a claim holds, those in which it fails, and the rest."""
     parts = []
     for says, words in _SENTENCES.items():
         number = {voice.rung.name: f" ({voice.written(form)})" * (says != "no word") for voice in model_voices}

@@ -33,7 +33,7 @@ class Reading(float):
 def compared(
     value: float, reference: float, *, less: str, more: str, same: str = "the same", within: float = 0.0
 ) -> str:
-    """Return the word for how a value stands to another one.
+    """Return the word for the relation of a value to a reference, for sentences.
 
     Args:
         value: the one that is spoken of.
@@ -112,7 +112,7 @@ def interval(name: str, measures: Mapping[str, float], spread: Collection[str]) 
 
 
 def between(name: str, lower_bound: float, upper_bound: float) -> dict[str, float]:
-    """Return a measure with its interval, for the examples of a rule: the middle and the two ends."""
+    """Return a measure with its interval, for the examples of a rule: middle, lower and upper end."""
     return {name: 0.5 * (lower_bound + upper_bound), f"{name}_low": lower_bound, f"{name}_high": upper_bound}
 
 
@@ -176,7 +176,7 @@ class Rule:
 
     @property
     def asked(self) -> str:
-        """Digest of what decides whether the statement holds: a share of designs is of this rule or of another."""
+        """Hash of the rule's inputs. A stored fraction of designs is valid only for the rule with the same hash."""
         clauses = [
             f"{clause.measure} {clause.relation} {clause.bound}" for clause in (*self.holds, *self._control_clauses)
         ]
@@ -201,9 +201,9 @@ class Rule:
         return " ".join(self.why.format_map({name: Reading(value) for name, value in measures.items()}).split())
 
     def held(self, measures: Mapping[str, float]) -> bool | None:
-        """Return whether the statement, apart from its number, holds.
+        """Return whether the statement holds, apart from its number.
 
-        It fails if one clause fails for sure; None where none does and intervals leave some undecided.
+        It fails if one clause fails surely. It is None if no clause fails surely and intervals leave some undecided.
         """
         return self._holds_all(self.holds, measures)
 
@@ -212,7 +212,7 @@ class Rule:
         return self._holds_all(self._control_clauses, measures)
 
     def unable(self, measures: Mapping[str, float]) -> str:
-        """Return in a sentence what of it the control group does not, or not for sure; empty where it does all."""
+        """Return a sentence that names the properties that the control group lacks; empty if it has all of them."""
         lacking = [str(clause) for clause in self._control_clauses if clause.holds(measures, self.spread) is not True]
         return f"The control group, {self.control.group}, lacks {listed(lacking)}." if self.control and lacking else ""
 

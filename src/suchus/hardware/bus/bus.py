@@ -45,14 +45,7 @@ class Bus:
     """
 
     def __init__(self, port: Port, framing: Framing, *, wait: float = WAIT, clocked: bool = False) -> None:
-        """Take an open port and the protocol that is spoken on it.
-
-        Args:
-            port: the open port.
-            framing: protocol of the packets.
-            wait: time after which a reply counts as missing [s].
-            clocked: whether the bus has the clock of an emulator.
-        """
+        """Take an open port and the protocol that is spoken on it."""
         self.port, self.framing, self.wait, self.clocked = port, framing, wait, clocked
         self.counts = Counts()
         self._decoder = framing.replies()

@@ -69,13 +69,7 @@ class Pulses:
     """
 
     def __init__(self, wires: Wires, boards: Sequence[int], rate: float) -> None:
-        """Set the rate of pulses on all boards.
-
-        Args:
-            wires: the I2C bus.
-            boards: numbers of the boards on it.
-            rate: pulses per second [Hz].
-        """
+        """Set the rate of pulses on all boards."""
         if not LEAST <= rate <= MOST:
             raise InvalidDesign(f"the rate of pulses is {rate:g} Hz; {LEAST:g} to {MOST:g} Hz is what the boards give.")
         self._wires, self.boards, self.rate = wires, tuple(boards), rate

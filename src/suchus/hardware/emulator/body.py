@@ -86,17 +86,7 @@ class EmulatedBody:
         latency: float = 0.0,
         timestep: float | None = None,
     ) -> None:
-        """Set up the simulation of the robot at rest in the first posture of its gait.
-
-        Args:
-            robot: the design.
-            gait: that gives the first posture.
-            ground: level ground if None.
-            lake: no water if None.
-            faults: of the robot.
-            latency: time from a goal to its effect, rounded to steps of the physics [s].
-            timestep: of the physics [s]; that of the robot's size if None.
-        """
+        """Set up the simulation of the robot at rest in the first posture of its gait."""
         timestep = physics_step(robot) if timestep is None else timestep
         check_step(robot, timestep)
         check_faults(faults, robot, _MAX_DURATION)

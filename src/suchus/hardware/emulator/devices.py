@@ -66,13 +66,7 @@ class EmulatedServo(Device):
     """
 
     def __init__(self, place: ServoPlace, baud: int, number: int) -> None:
-        """Set the registers of a servo that is wired at a place.
-
-        Args:
-            place: of the servo in the wiring.
-            baud: bit rate of its bus [1/s].
-            number: index of the servo in the robot's layout.
-        """
+        """Set the registers of a servo that is wired at a place."""
         super().__init__(place.table)
         self.place, self.number = place, number
         codes = {rate: code for code, rate in self.table.bauds.items()}

@@ -42,14 +42,7 @@ class Emulator:
     def __init__(
         self, wiring: Wiring, body: EmulatedBody, trouble: Trouble | None = None, *, clocked: bool = False
     ) -> None:
-        """Connect emulated servos and boards to the buses of a wiring.
-
-        Args:
-            wiring: of the robot.
-            body: the simulated robot.
-            trouble: faults of buses, servos and battery; none if None.
-            clocked: whether the host steps the robot's time over the bus.
-        """
+        """Connect emulated servos and boards to the buses of a wiring."""
         self.body, self.clocked, self.trouble = body, clocked, trouble or Trouble()
         self.wiring = wiring
         self.diverged: Diverged | None = None

@@ -41,13 +41,7 @@ class Server:
     """
 
     def __init__(self, emulator: Emulator, links: Sequence[str | Path] = (), *, sockets: bool = False) -> None:
-        """Open a port for each bus of an emulator.
-
-        Args:
-            emulator: the emulated robot.
-            links: paths under which the ports appear; the names of the system if empty.
-            sockets: whether the ports are sockets and not pseudo-terminals.
-        """
+        """Open a port for each bus of an emulator."""
         self._emulator = emulator
         sockets = sockets or pty is None
         self._ends: list[Any] = []

@@ -93,15 +93,15 @@ class MidlineChain:
         return ChainState(flow_place, moving)
 
     def of_robot(self, values: np.ndarray) -> np.ndarray:
-        """Return a generalised force or an added mass along the robot's own coordinates."""
+        """Return a generalised force or an added mass in the robot's own coordinates."""
         return self._signs * values if values.ndim == 1 else self._signs[:, None] * values * self._signs
 
     def way(self, time: float, posture: ChainState) -> "Way":
-        """Return a way that begins at a posture."""
+        """Return a path that begins at a posture."""
         return Way(time, posture)
 
     def turned(self, place: np.ndarray, other_place: np.ndarray) -> float:
-        """Return the greatest angle by which root and joints of two postures differ [rad]."""
+        """Return the greatest angle between root and joints of two postures [rad]."""
         return float(np.abs(place[2:] - other_place[2:]).max())
 
     @cached_property
@@ -132,12 +132,12 @@ class MidlineChain:
 
     @cached_property
     def _shares(self) -> tuple[np.ndarray, np.ndarray]:
-        """How headings beyond the root's depend on the joints: between stations, and at stations."""
+        """Factors of the joint angles in the heading, between stations and at stations [-]."""
         s, at_root = self.outline.s, self.outline.joints_at(np.array([self.root]))
         return self.outline.joints_at(0.5 * (s[1:] + s[:-1])) - at_root, self.outline.joints_at(s) - at_root
 
     def midline(self, place: np.ndarray) -> Points:
-        """Return the stations in a posture; places and their derivatives follow by summing tangents from the root."""
+        """Return the stations in a posture; positions and derivatives are sums of tangents from the root."""
         (middle, station), joints = self._shares, place[3:]
         tangent, normal = self._tangents(place[2] + middle @ joints)
         jacobian = np.zeros((2, self.outline.stations, self.size))
@@ -150,12 +150,12 @@ class MidlineChain:
         return Points(positions, place[2] + station @ joints, jacobian, turning)
 
     def _tangents(self, heading: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the steps from station to station, and their normals, of headings between them [m]."""
+        """Return the vectors from station to station for headings between them, and their normals [m]."""
         tangent = self.outline.robot.length / (self.outline.stations - 1) * np.stack([np.cos(heading), np.sin(heading)])
         return tangent, np.stack([-tangent[1], tangent[0]])
 
     def _from_root(self, steps: np.ndarray) -> np.ndarray:
-        """Return where steps along the last axis lead from the root on."""
+        """Return the positions to which steps along the last axis lead, from the root on."""
         summed = np.zeros((*steps.shape[:-1], steps.shape[-1] + 1))
         np.cumsum(steps, axis=-1, out=summed[..., 1:])
         s = self.outline.s
@@ -165,7 +165,7 @@ class MidlineChain:
 
     @cached_property
     def _means(self) -> Float[np.ndarray, "part station"]:
-        """How the mean over each part is made of values at the stations, linear between them [-]."""
+        """Weights of the stations in the mean over each part; values are linear between stations [-]."""
         s = self.outline.s
         weights = np.zeros((len(self.ends) - 1, s.size))
         for part_index, (a, b) in enumerate(pairwise(self.ends)):
@@ -176,9 +176,10 @@ class MidlineChain:
         return weights
 
     def centres(self, place: np.ndarray) -> Points:
-        """Return the centres of the parts in a posture, which are worked out once: a step asks for the same ones often.
+        """Return the centres of the parts in a posture, from a cache of recent postures.
 
-        They are means over each part, which bends: a force that is spread along it works by the mean velocity.
+        A centre is the mean over a part that bends. A force that is distributed along the part does its work at the
+        mean velocity.
         """
         cache, key = self._recent_centres, place.tobytes()
         if key not in cache:
@@ -194,12 +195,12 @@ class MidlineChain:
 
     @cached_property
     def _weights(self) -> np.ndarray:
-        """Share of the body's volume at each station, which a centre that the grid follows is made with [-]."""
+        """Fraction of the body's volume at each station; it gives the centre that the grid follows [-]."""
         half_width, half_height = self.outline.silhouette
         return np.asarray(half_width * half_height / (half_width * half_height).sum())
 
     def state(self, posture: ChainState, min_half_width: float) -> BodyState:
-        """Return the midline about its centre, and where the centre is and how it moves, in the frame of the flow.
+        """Return the midline about its centre, and the pose of the centre, in the frame of the flow.
 
         Args:
             posture: of the chain.
@@ -221,7 +222,7 @@ class MidlineChain:
         return (line_state.thickened(min_half_width) if min_half_width > 0.0 else line_state), pose
 
     def force(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, " coordinate"]:
-        """Return the generalised force of what acts on the parts [N, N m; in the plane per metre of depth].
+        """Return the generalised force of the loads on the parts [N, N m; in the plane per metre of depth].
 
         Args:
             place: posture; with that in the middle of the step, force times velocity is the power to second order.
@@ -237,14 +238,14 @@ class MidlineChain:
 
     @cached_property
     def _bends(self) -> np.ndarray:
-        """By how much each part bends per angle of each joint, over its length, shape (part, joint) [1/m]."""
+        """Bend of each part per angle of each joint, over the length of the part, shape (part, joint) [1/m]."""
         return np.diff(self.outline.joints_at(self.ends), axis=0) / np.diff(self.ends)[:, None]
 
     def unpressed(self, place: np.ndarray, pressed: np.ndarray, reference_point: np.ndarray) -> np.ndarray:
-        """Return the generalised force that takes away what the parts do to each other.
+        """Return the generalised force that cancels the moments between the parts.
 
-        A body has no pressure inside, but the flow's has: across a section it is a moment, which works on rigid pieces
-        that turn against each other and does nothing to the water.
+        A real body has no pressure inside, but the body of the flow has. Across a section this pressure is a moment. It
+        does work on rigid pieces that turn against each other, and it has no effect on the water.
 
         Args:
             place: posture.
@@ -263,7 +264,7 @@ class MidlineChain:
         return np.concatenate([np.zeros((*moment.shape[:-1], 3)), moment @ self._bends], axis=-1)
 
     def felt(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
-        """Return what acts on each link, in the world: force, and torque about the vertical through its middle."""
+        """Return the load on each link in the world: force, and torque about the vertical through its middle."""
         points = self.centres(place).place.T - origin
         pull, turn = loads.parts.force[:, :2], loads.parts.torque
         link_loads = np.zeros((len(self.names), 4))
@@ -295,11 +296,11 @@ class MidlineChain:
         return Twists(about=reference_points, linear=linear, angular=turn)
 
     def modes(self, place: np.ndarray, origin: np.ndarray, axes: int) -> list[Twists]:
-        """Return the motions of the parts for a unit rate of each coordinate; see ``twists``."""
+        """Return the motions of the parts at a unit rate of each coordinate; see ``twists``."""
         return [self.twists(place, unit, origin, axes) for unit in np.eye(self.size)]
 
     def body(self, path: "Way", axes: int, min_half_width: float, half_height: np.ndarray) -> flow.Midline | flow.Trunk:
-        """Return the robot as a body of the flow that goes along a path."""
+        """Return the robot as a body of the flow that moves along a path."""
 
         def spine(time: float) -> flow.MidlineState:
             return path.seen(time, lambda posture: self.state(posture, min_half_width))[0]
@@ -309,30 +310,30 @@ class MidlineChain:
         return flow.Trunk(spine=spine, half_height=half_height, cuts=self.cuts)
 
     def motion(self, path: "Way", axes: int, min_half_width: float) -> Callable[[float], flow.Pose]:
-        """Return where the centre of the same body is along a path."""
+        """Return the function that gives the pose of the body's centre at a time [s]."""
         return lambda time: path.seen(time, lambda posture: self.state(posture, min_half_width))[1].along(axes)
 
 
 class Way:
-    """A chain's way through one step: the cubic that has its places and rates at both ends."""
+    """The path of a chain through one step: the cubic with the positions and rates at both ends."""
 
     def __init__(self, time: float, posture: ChainState) -> None:
         self._start, self._end, self._times = posture, posture, (time, time)
         self._states_by_time: dict[float, BodyState] = {}
 
     def seen(self, time: float, state: Callable[[ChainState], BodyState]) -> BodyState:
-        """Return what a function makes of the posture at a time [s], made once a step; always ask for the same one."""
+        """Return a function of the posture at a time [s], from a cache; all calls must use the same function."""
         if time not in self._states_by_time:
             self._states_by_time[time] = state(self.at(time))
         return self._states_by_time[time]
 
     def go(self, time: float, posture: ChainState, end: float, then: ChainState) -> None:
-        """Go from a posture at a time to another [s]."""
+        """Set the path from a posture at a time to a posture at another time [s]."""
         self._times, self._start, self._end = (time, end), posture, then
         self._states_by_time.clear()
 
     def at(self, time: float) -> ChainState:
-        """Return the posture at a time [s]; beyond the ends it goes on at their rates."""
+        """Return the posture at a time [s], extrapolated at constant rates beyond the ends."""
         (start_time, end_time), (p, v), (q, w) = self._times, self._start, self._end
         if time <= start_time or end_time == start_time:
             return ChainState(p + (time - start_time) * v, v)

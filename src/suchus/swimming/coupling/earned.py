@@ -1,8 +1,8 @@
-"""Whether a correction of the section model is earned: fitted to one swim in a flow, held against other swims.
+"""Whether a correction of the section model is valid: it is fitted to one swim in a flow and tested on other swims.
 
-The factors on added mass and drag of each link come from one swim. They are offered for a link only if in every other
-swim, none of which the fit saw, they leave less of the flow's force unexplained than the model as it is shipped, by
-more than cycles differ: the lower end of a bootstrap over blocks of half a cycle is above nothing.
+The factors on added mass and drag of each link come from one swim. A link gets factors only if they reduce the
+unexplained force in every other swim. The reduction must be significant: the lower end of its interval, a bootstrap
+over blocks of half a cycle, is above zero.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from suchus.swimming.coupling.residual import BLOCKS, COVERED, DRAWS, drawn, fit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceParts:
-    """Force across a link in one swim, and the two parts of what sections say of it."""
+    """Force across a link in one swim, and the two parts of the force that the section model predicts."""
 
     flow: Float[np.ndarray, " sample"]
     """Of the flow [N]."""
@@ -33,7 +33,7 @@ class ForceParts:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkJudgement:
-    """What became of the factors of one link."""
+    """The factors of one link, and whether they are valid."""
 
     added: float
     """Factor on added mass that was fitted [-]."""
@@ -52,7 +52,7 @@ class LinkJudgement:
 
 
 def judged(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgement:
-    """Return the factors that one swim gives a link, and whether they help in the others."""
+    """Return the factors of a link that one swim gives, and whether they reduce the error in other swims."""
     added_factor, drag_factor = fitted(fit.flow, fit.added, fit.drag).tolist()
     draws = drawn(fit.flow, fit.added, fit.drag, fit.block)
     lower_bound, upper_bound = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
@@ -75,7 +75,7 @@ def judged(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgement:
 
 
 def _gain(swim: ForceParts, added_factor: float, drag_factor: float) -> float:
-    """Return the lower end of the interval of how much less the factors leave unexplained in a swim [N2]."""
+    """Return the lower end of the 95 % interval of the reduction of the mean square residual in a swim [N2]."""
     shipped_residual, corrected_residual = (
         swim.flow - swim.added - swim.drag,
         swim.flow - added_factor * swim.added - drag_factor * swim.drag,
@@ -91,7 +91,7 @@ def _gain(swim: ForceParts, added_factor: float, drag_factor: float) -> float:
 def earned_correction(
     robot: Robot, records: Sequence[xr.Dataset], *, period: float, first: float, viscosity: float, name: str
 ) -> tuple[SectionCorrection | None, dict[str, LinkJudgement]]:
-    """Return the correction that swims in a flow have earned, if any link has, and the judgement of every link.
+    """Return the correction of all links with valid factors, None without one, and the judgement of every link.
 
     Args:
         robot: that swam.
@@ -130,7 +130,12 @@ def earned_correction(
 
 
 def judgement_text(judgements: dict[str, LinkJudgement], swims: Sequence[str]) -> str:
-    """Return the judgement of every link as Markdown, the other swims by their names."""
+    """Return the judgement of every link as a Markdown table.
+
+    Args:
+        judgements: judgement of each link by its name.
+        swims: names of the other swims.
+    """
     head = "".join(f" R2 in {swim}, shipped | corrected |" for swim in swims)
     lines = [f"| link | added mass x | drag x |{head} offered |\n", f"|---|---:|---:|{'---:|---:|' * len(swims)}---|\n"]
     for link, judgement in judgements.items():

@@ -24,7 +24,7 @@ _ROD_TURN = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])  # turns x to where
 
 
 class LinkChain:
-    """A robot's links over all of its coordinates; see ``chain.MidlineChain``, which has the same methods.
+    """The links of a robot over all of its coordinates, with the methods of ``chain.MidlineChain``.
 
     Args:
         robot: which.
@@ -36,6 +36,7 @@ class LinkChain:
     """Axes in which it moves [-]."""
 
     def __init__(self, robot: Robot, links: RobotLinks, start: Float[np.ndarray, "3"]) -> None:
+        """Take the links of a robot that begins at a position."""
         self.joints, self.names, self._links = links.joints, links.names, links
         number = [segment.name for segment in robot.axis].index(robot.root)
         root_offset = stations(robot)[number][0] + robot.axis[number].front
@@ -58,15 +59,15 @@ class LinkChain:
         return "root_x", "root_y", "root_z", "root_roll", "root_pitch", "root_yaw", *self.joints
 
     def seen(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
-        """Return a state of the robot, whose coordinates are the chain's own."""
+        """Return a state of the robot; its coordinates are those of the chain."""
         return ChainState(place, rate)
 
     def of_robot(self, values: np.ndarray) -> np.ndarray:
-        """Return a generalised force or an added mass along the robot's coordinates, which are the chain's own."""
+        """Return a generalised force or an added mass in the robot's coordinates, which are those of the chain."""
         return values
 
     def _jacobian(self, place: np.ndarray) -> np.ndarray:
-        """Return the Jacobian of the links in a posture, in the frame of the flow; worked out once."""
+        """Return the Jacobian of the links in a posture, in the frame of the flow, from a cache of recent postures."""
         unit = place.copy()
         unit[3:7] /= np.linalg.norm(unit[3:7])
         key = unit.tobytes()
@@ -90,16 +91,16 @@ class LinkChain:
         return self._recent[unit.tobytes()][0]._replace(velocity=rate[:, :3], spin=rate[:, 3:])
 
     def way(self, time: float, posture: ChainState) -> "LinkWay":
-        """Return a way that begins at a posture."""
+        """Return a path that begins at a posture."""
         return LinkWay(self, time, posture)
 
     def turned(self, place: np.ndarray, other_place: np.ndarray) -> float:
-        """Return the greatest angle by which root and joints of two postures differ [rad]."""
+        """Return the greatest angle between root and joints of two postures [rad]."""
         root = 2.0 * np.arccos(np.clip(abs(place[3:7] @ other_place[3:7]), 0.0, 1.0))
         return float(max(root, np.abs(place[7:] - other_place[7:]).max(initial=0.0)))
 
     def force(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, " coordinate"]:
-        """Return the generalised force of what acts on the links [N, N m].
+        """Return the generalised force of the loads on the links [N, N m].
 
         Args:
             place: posture; with that in the middle of the step, force times velocity is the power to second order.
@@ -118,12 +119,12 @@ class LinkChain:
         return loads.parts.force, loads.parts.moment - np.cross(link_origins, loads.parts.force)
 
     def felt(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
-        """Return what acts on each link, in the world: force, and torque about the vertical through its origin."""
+        """Return the load on each link in the world: force, and torque about the vertical through its origin."""
         force, torque = self._wrenches(place, loads, origin)
         return np.column_stack([force @ _HALF_TURN, torque[:, 2]])
 
     def unpressed(self, place: np.ndarray, pressed: np.ndarray, reference_point: np.ndarray) -> np.ndarray:  # noqa: ARG002
-        """Return what takes away what links do to each other: nothing, since they are rigid between their joints."""
+        """Return zeros: links are rigid between their joints, and the pressure inside them does no work."""
         return np.zeros((*pressed.shape[:-2], self.size))
 
     def twists(self, place: np.ndarray, rate: np.ndarray, origin: np.ndarray, axes: int) -> Twists:  # noqa: ARG002
@@ -139,11 +140,11 @@ class LinkChain:
         return Twists(about=states.position - origin, linear=states.velocity, angular=states.spin)
 
     def modes(self, place: np.ndarray, origin: np.ndarray, axes: int) -> list[Twists]:
-        """Return the motions of the links for a unit rate of each coordinate; see ``twists``."""
+        """Return the motions of the links at a unit rate of each coordinate; see ``twists``."""
         return [self.twists(place, unit, origin, axes) for unit in np.eye(self.size)]
 
     def centre(self, states: flow.LinkStates) -> tuple[np.ndarray, np.ndarray]:
-        """Return the point that the grid follows, the mean of the links by their volumes, and its velocity."""
+        """Return position and velocity of the point that the grid follows: the mean of the links by volume."""
         return self._weights @ states.position, self._weights @ states.velocity
 
     def body(self, path: "LinkWay") -> flow.Linked:
@@ -157,7 +158,7 @@ class LinkChain:
         return flow.Linked(pieces=self.pieces, motion=motion)
 
     def motion(self, path: "LinkWay") -> Callable[[float], flow.Pose]:
-        """Return where the centre of the same body is along a path."""
+        """Return the function that gives the pose of the body's centre at a time [s]."""
 
         def pose(time: float) -> flow.Pose:
             (x, y, z), (u, v, w) = (vector.tolist() for vector in self.centre(path.links(time)))
@@ -167,7 +168,7 @@ class LinkChain:
 
 
 class LinkWay(Way):
-    """A robot's way through one step: each link goes along a cubic that has its places and rates at both ends."""
+    """The path of a robot through one step: each link follows a cubic between its states at both ends."""
 
     def __init__(self, chain: LinkChain, time: float, posture: ChainState) -> None:
         super().__init__(time, posture)
@@ -176,18 +177,18 @@ class LinkWay(Way):
         self._seen_links: dict[float, flow.LinkStates] = {}
 
     def go(self, time: float, posture: ChainState, end: float, then: ChainState) -> None:
-        """Go from a posture at a time to another [s]."""
+        """Set the path from a posture at a time to a posture at another time [s]."""
         super().go(time, posture, end, then)
         self._states = self._chain.states(posture), self._chain.states(then)
         self._seen_links.clear()
 
     def at(self, time: float) -> ChainState:
-        """Return the posture at the end of the path that is nearer to a time [s]; between them there are only links."""
+        """Return the posture at the end of the path that is nearer to a time [s]; between the ends only links exist."""
         start_time, end_time = self._times
         return self._start if abs(time - start_time) < abs(time - end_time) else self._end
 
     def links(self, time: float) -> flow.LinkStates:
-        """Return the links at a time [s], in the frame of the flow; beyond the ends they go on at their rates."""
+        """Return the links at a time [s] in the frame of the flow, extrapolated at constant rates beyond the ends."""
         if time not in self._seen_links:
             (start_time, end_time), (start, end) = self._times, self._states
             span = end_time - start_time

@@ -25,7 +25,7 @@ from suchus.swimming.water.swim_setup import ResolvedSwim
 
 
 def floating(robot: Robot) -> Robot:
-    """Return a robot that floats: the same if it does, or with the foam that carries it."""
+    """Return a robot that floats: the same robot if it does, otherwise with the foam that carries it."""
     if floats(robot):
         return robot
     hull_free_robot = with_values(robot, {"hull": None})
@@ -102,7 +102,7 @@ class _OnJoints(FreeInSpace):
         self._coupled_swim, self._commanded = swim, commanded
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what was sampled, with what the robot's servos did and how well it came to terms with the water."""
+        """Return the record of the flow, with the power of the servos and the errors of the coupling."""
         flow_record, robot = super().record(sim, samples), self._coupled_swim.run.robot
         record, period, cycles = (
             self._coupled_swim.record().isel(run=0),
@@ -123,6 +123,7 @@ class _OnJoints(FreeInSpace):
         )
 
     def _loads(self, sim: flow.Simulation) -> xr.Dataset:
+        """Return the torques of the water at the joints, the servo torques, and the weight, in the last cycle."""
         del sim
         record, outline = self._coupled_swim.record().isel(run=0), self._commanded.outline
         samples = round(self._commanded.period / self._coupled_swim.stepper.period)

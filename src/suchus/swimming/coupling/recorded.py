@@ -1,4 +1,4 @@
-"""What is kept of every step of a coupled run, and the record that becomes of it."""
+"""Quantities that are stored in every step of a coupled run, and the record of the run."""
 
 import json
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from suchus.swimming.coupling.linked import LinkChain
 
 @dataclass(slots=True)
 class Series:
-    """What is kept of every step."""
+    """Quantities that are stored in every step."""
 
     time: list[float] = field(default_factory=list)
     """End of the step [s]."""
@@ -37,12 +37,12 @@ class Series:
     the difference over the whole inertia [-]."""
 
     def state(self) -> dict[str, np.ndarray]:
-        """Return all that is kept as arrays, by name."""
+        """Return all stored quantities as arrays, by name."""
         return {series_field.name: np.array(getattr(self, series_field.name)) for series_field in fields(self)}
 
     @classmethod
     def of(cls, state: Mapping[str, np.ndarray]) -> "Series":
-        """Return what ``state`` gave."""
+        """Return the series of a state that ``state`` returned."""
         arrays = ("force", "links")
         return cls(**{name: list(values) if name in arrays else values.tolist() for name, values in state.items()})
 
@@ -50,7 +50,7 @@ class Series:
 def recorded(
     run: Run, chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset, added_mass: np.ndarray
 ) -> xr.Dataset:
-    """Return the record of a coupled run: that of the robot, and beside it what the water did.
+    """Return the record of a coupled run: the record of the robot, and the forces and errors of the water.
 
     Args:
         run: of which.
@@ -85,14 +85,14 @@ def recorded(
 
 
 def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset) -> Mapping[str, np.ndarray]:
-    """Return the series at the samples of a record, NaN where it has not come to."""
+    """Return the series at the samples of a record; NaN after the end of the run."""
     time = record.time.values.astype(float)
     ends = np.array([0.0, *series.time])
     is_computed = time <= ends[-1] + 1e-9
     steps = np.diff(ends)
 
     def mean(values: np.ndarray) -> np.ndarray:
-        """Return the mean of values over the control period before each sample, at the first the first one."""
+        """Return the mean of values over the control period before each sample; the first sample is 0."""
         total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values * _broadcast_steps(steps, values), axis=0)])
         flat = total.reshape(len(total), -1)
         sums = np.column_stack([np.interp(time, ends, column) for column in flat.T])
@@ -102,7 +102,7 @@ def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset
         return np.asarray(means)
 
     def latest_value(values: np.ndarray) -> np.ndarray:
-        """Return the value of the step that holds each sample."""
+        """Return the value of the step that contains each sample."""
         k = np.clip(np.searchsorted(ends, time - 1e-9) - 1, 0, len(values) - 1)
         samples = values[k].astype(float)
         samples[~is_computed] = np.nan
@@ -147,4 +147,5 @@ def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset
 
 
 def _broadcast_steps(steps: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the durations of the steps, in a shape that multiplies values of shape (step, ...)."""
     return steps.reshape(-1, *(1,) * (values.ndim - 1))

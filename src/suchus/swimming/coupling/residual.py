@@ -1,8 +1,7 @@
-"""How far the section model is from the flow, link by link and joint by joint, along the motion that the robot took.
+"""Difference between the section model and the flow, for each link and joint, along the recorded motion.
 
-The section model says of the recorded motion what it would have done; no second run is made. Its force is a part by
-the acceleration and a part by the speed, and the two factors with which they come nearest to the flow's are fitted on
-some cycles and judged on the others.
+The section model predicts forces for the recorded motion; there is no second run. Its force has a part by the
+acceleration and a part by the speed. Two factors on these parts are fitted to some cycles and tested on the others.
 """
 
 from collections.abc import Sequence
@@ -54,7 +53,7 @@ def motion_of(record: xr.Dataset, joints: Sequence[str]) -> RecordedMotion:
 def residual_table(
     robot: Robot, record: xr.Dataset, *, period: float, first: float, viscosity: float
 ) -> xr.Dataset:  # fmt: skip
-    """Return how far the section model is from the flow that a record holds.
+    """Return the difference between the section model and the flow of a record.
 
     Args:
         robot: that swam.
@@ -87,7 +86,7 @@ def residual_table(
 
 
 class SectionsBeside(NamedTuple):
-    """What a flow did to links and joints along a record, and the two parts of what sections say of the same motion."""
+    """Forces of a flow on links and joints along a record, and the two parts that the section model predicts."""
 
     names: list[str]
     """Links from the head on, then joints."""
@@ -113,7 +112,7 @@ class SectionsBeside(NamedTuple):
 
 
 def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity: float) -> SectionsBeside:
-    """Return what the flow of a record did, and beside it the section model; see ``residual_table``."""
+    """Return the forces of the flow in a record and those of the section model; see ``residual_table``."""
     lateral = {hinge.name for hinge in robot.axis_hinges if hinge.turn == "yaw"}
     loaded_joints = [
         str(name) for name in record.joint.values if np.isfinite(record.joint_water_torque.sel(joint=name)).all()
@@ -136,9 +135,9 @@ def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity
 
 
 def _between_joints(robot: Robot, record: xr.Dataset, joints: Sequence[str]) -> xr.Dataset:
-    """Return a record whose links lie between lateral joints: of one that has each body for itself, their sums.
+    """Return a record whose links lie between lateral joints; bodies between two joints are summed.
 
-    Limbs are left out, as sections leave them out.
+    Limbs are left out, as in the section model.
     """
     groups, link_names = link_bodies(robot, joints), {str(name) for name in record.link.values}
     if not any(body in link_names for group in groups for body in group):
@@ -155,7 +154,7 @@ def _between_joints(robot: Robot, record: xr.Dataset, joints: Sequence[str]) -> 
 
 
 def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:
-    """Return what the flow did, at the samples: means over the control period before each, half a period late."""
+    """Return the loads of the flow at the samples: means over the control period before each sample."""
     links = np.concatenate([record.link_force.values[..., :2], record.link_torque.values[..., None]], axis=2)
     moments = record.joint_water_torque.sel(joint=list(joints)).transpose("time", "joint").values
 
@@ -173,13 +172,19 @@ def _lateral_loads(loads: SectionLoads, motion: RecordedMotion) -> np.ndarray:
 
 
 def r2(values: np.ndarray, model: np.ndarray) -> float:
-    """Return the share of the variance of values that a model explains; below 0 it is worse than their mean [-]."""
+    """Return the fraction of the variance of values that a model explains; below 0 it is worse than their mean [-]."""
     spread = float(((values - values.mean()) ** 2).sum())
     return float(1.0 - ((values - model) ** 2).sum() / spread) if spread > 0 else float("nan")
 
 
 def fitted(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray) -> np.ndarray:
-    """Return the factors on two parts with which their sum comes nearest to values, shape (2,) [-]."""
+    """Return the factors on added mass and drag with the least squares of the residual, shape (2,) [-].
+
+    Args:
+        values: forces of the flow, shape (sample,).
+        added_force: part of the section model by the acceleration, shape (sample,).
+        drag: part by the speed, shape (sample,).
+    """
     factors, *_ = np.linalg.lstsq(np.column_stack([added_force, drag]), values, rcond=None)
     return np.asarray(factors)
 
@@ -189,6 +194,7 @@ def _row(
     halves: tuple[np.ndarray, np.ndarray],
     cycle: float,
 ) -> list[float]:  # fmt: skip
+    """Return a row of the residual table: rms, explained variance, factors with intervals, and the test."""
     fit_half, test_half = halves
     factors = fitted(values[fit_half], added_force[fit_half], drag[fit_half])
     draws = drawn(values[fit_half], added_force[fit_half], drag[fit_half], max(round(0.5 * cycle), 2))
@@ -206,7 +212,14 @@ def _row(
 
 
 def drawn(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
-    """Return the factors of fits to blocks that are drawn with replacement, shape (draw, 2); NaN of too few blocks."""
+    """Return the factors of a block bootstrap, shape (draw, 2); NaN if there are too few blocks.
+
+    Args:
+        values: forces of the flow, shape (sample,).
+        added_force: part of the section model by the acceleration, shape (sample,).
+        drag: part by the speed, shape (sample,).
+        block: samples in a block [-].
+    """
     if len(values) < BLOCKS * block:
         return np.full((DRAWS, 2), np.nan)
     rng, count = np.random.default_rng(len(values)), max(len(values) // block, 1)

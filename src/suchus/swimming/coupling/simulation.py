@@ -1,4 +1,4 @@
-"""Simulate runs on any rung of the ladder: on land, in forces section by section, or with a flow around the robot."""
+"""Simulate runs with any model of the water: on land, with the section model, or with a flow around the robot."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -26,10 +26,10 @@ def simulate(
     keep: Path | str | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
-    """Simulate runs whatever their water is, each as ``land.simulate`` does or with the flow around it.
+    """Simulate runs with any water, as ``land.simulate`` does or with the flow around the robot.
 
-    The runs without a flow go together, as a batch; those in a flow one after the other. The same runs give the same
-    bytes, whatever the number of threads.
+    Runs without a flow are simulated together, as a batch; runs in a flow one after another. The same runs give the
+    same bytes, whatever the number of threads.
 
     Args:
         runs: at least one; see ``land.simulate``.

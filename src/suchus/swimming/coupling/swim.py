@@ -1,13 +1,17 @@
 """Robot and flow solved together, step by step.
 
-In each step of the flow the robot goes first, under the force of the last step and the added mass; the flow follows;
-then the robot goes through the same time again under the force that the flow found, and the water gets what that
-changes by one solve of the pressure equation (``flow.twist``). With F the generalised force of the water, A the added
-mass, a the mean acceleration of the step, the robot is told ``F(a) = F* - A (a - a*)``, where F* and a* are those that
-were found last. What the robot was told in its last go, less what the flow says then, is the residual. It is not
-lost: the robot gets that impulse in the next step, and so what MuJoCo's steps miss of its momentum, so that its
-momentum is the impulse of the water. A is symmetric, answers as the water was seen to answer in each correction, and is
-computed anew as the body bends.
+A step of the flow has four parts. The robot moves under the force of the last step and the added mass. The flow
+follows. The robot repeats the step under the force that the flow returned. The water gets the change of the motion by
+one solve of the pressure equation (``flow.twist``).
+
+With F the generalised force of the water, A the added mass and a the mean acceleration of the step, the force that is
+applied to the robot is ``F(a) = F* - A (a - a*)``. F* and a* are those of the last iteration.
+
+The residual is the force applied in the last iteration minus the force that the flow returns. Its impulse is carried
+over to the next step. The momentum error of MuJoCo's steps is carried over as well. The robot's momentum thus equals
+the impulse of the water.
+
+A is symmetric. Each correction updates A with the observed response of the water. A is computed anew as the body bends.
 """
 
 import warnings
@@ -89,7 +93,7 @@ _WIDER = 1.25
 
 
 def check_swim(run: Run, duration: float) -> None:
-    """Refuse a run whose gait, faults, control or body a flow around it cannot have, before the flow is set up.
+    """Refuse a run whose gait, faults, control or body a flow cannot have, before the flow is set up.
 
     Args:
         run: with a ``Slice`` or a ``Space``.
@@ -119,7 +123,7 @@ def check_swim(run: Run, duration: float) -> None:
 
 
 def _check_plane(run: Run) -> None:
-    """Refuse a gait that strokes with limbs, which the flow does not see move, or bends the axis out of its plane.
+    """Refuse a gait that moves limbs, which are at rest in the flow, or bends the axis out of its plane.
 
     Raises:
         InvalidDesign: naming the servo.
@@ -144,10 +148,10 @@ def _check_plane(run: Run) -> None:
 def never_negative(
     added_mass: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"]
 ) -> Float[np.ndarray, "coordinate coordinate"]:
-    """Return an added mass that no motion makes negative: the same, or without what it takes from the robot's own mass.
+    """Return an added mass that is positive semidefinite: negative modes are set to zero.
 
-    Coarse cells may find less than none for the bend of a thin tail, once the pressure inside the body is taken away. A
-    robot that is lighter than that there would be thrown about.
+    Coarse cells may give a negative added mass for the bend of a thin tail, after the pressure inside the body is taken
+    away. A light robot would be unstable with it.
     """
     values, shapes = eigh(added_mass, mass)
     if values[0] >= 0.0:
@@ -160,10 +164,10 @@ def learned(
     added_mass: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"],
     push: Float[np.ndarray, " coordinate"], water_response: Float[np.ndarray, " coordinate"],
 ) -> Float[np.ndarray, "coordinate coordinate"]:  # fmt: skip
-    """Return an added mass near another one that answers an acceleration as the water was seen to.
+    """Return the added mass after a BFGS update with the observed response of the water.
 
-    It is symmetric, and with the robot's own mass positive definite: the update of Broyden, Fletcher, Goldfarb and
-    Shanno of the whole inertia. What would leave less than ``LEAST`` of that inertia along the push is not believed.
+    It is symmetric, and positive definite with the robot's own mass. An update that leaves less than ``LEAST`` of the
+    inertia along the acceleration is rejected.
 
     Args:
         added_mass: symmetric.
@@ -184,10 +188,11 @@ def learned(
 
 
 def out_of_step(max_steps: int, period: int) -> int:
-    """Return how many physics steps a step of the flow has, at most so many, so that it ends at other phases each time.
+    """Return the number of physics steps in a step of the flow, such that steps end at different phases.
 
-    Servos are commanded anew at the beginning of each control period, and light limbs follow so fast that their speed
-    changes by a tenth within it. Steps of the flow that end at one phase would all see the speed at that one.
+    Servos get new commands at the beginning of each control period. Light limbs follow so fast that their speed changes
+    by a tenth within the period. If all steps of the flow ended at the same phase, they would all see the speed of that
+    phase.
 
     Args:
         max_steps: physics steps [-].
@@ -224,6 +229,7 @@ class Swim:
         controller: Controller | None = None,
         begin: Beginning | None = None,
     ) -> None:
+        """Set up robot and flow, and compute the added mass."""
         water = run.solved
         assert water is not None
         self.run, self.water = run, water
@@ -281,12 +287,12 @@ class Swim:
         return self.run.robot.length**2 / (self.run.gait.period * self.water.reynolds)
 
     def _expected_swing(self) -> float:
-        """Return how far the commanded midline swings to a side [m]."""
+        """Return the greatest lateral displacement of the commanded midline [m]."""
         outline = Outline(self.run.robot, 65)
         return float(np.abs(cycle(outline, self.run.gait, *recoil(outline, self.run.gait, 0.0, Water())).y).max())
 
     def _physics_step(self) -> float:
-        """Return the largest step of the physics that divides a control period often enough [s]."""
+        """Return the largest timestep of the physics that divides a control period often enough [s]."""
         period, cell = control_period(self.run.robot), self.run.robot.length / self.water.cells
         lateral_stroke, vertical_stroke = self._strokes if self._linked else (0.0, 0.0)
         fastest = 2 * np.pi / self.run.gait.period * max(self._swing, lateral_stroke, vertical_stroke, cell)
@@ -305,12 +311,12 @@ class Swim:
 
     @property
     def _linked(self) -> bool:
-        """Whether each link has its own pose, and the root moves in space."""
+        """Whether each link has its own pose and the root moves in space."""
         return isinstance(self.water, Space) and self.water.linked
 
     @cached_property
     def _strokes(self) -> tuple[float, float]:
-        """Return how far the gait swings limbs about their hips, and an end of the axis up or down, to a side [m]."""
+        """Return the greatest lateral displacement of limbs and vertical displacement of the axis in the gait [m]."""
         robot, names = self.run.robot, layout(self.run.robot).servos
         angles = cycle_targets(robot, self.run.gait, np.linspace(0.0, 1.0, 24, endpoint=False))
         swings = dict(zip(names, 0.5 * np.ptp(angles, axis=0), strict=True))
@@ -328,6 +334,7 @@ class Swim:
         return max(limbs, default=0.0), rise
 
     def _setup(self) -> flow.Setup:
+        """Return the setup of the flow: grid, body, its motion, and the sides of the box."""
         robot, axes = self.run.robot, self._axes
         setting = SwimSetting(axes=axes, cells=self.water.cells, viscosity=self.viscosity, cycles=1)
         if self.water.beside is not None:
@@ -369,7 +376,7 @@ class Swim:
         return np.array(self.sim.frame[0, : self.chain.axes])
 
     def _water_force(self, began: ChainState, posture: ChainState) -> np.ndarray:
-        """Return the generalised force of the water in the last step, along the robot's own coordinates."""
+        """Return the generalised force of the water in the last step, in the robot's own coordinates."""
         loads, place = self.sim.last(self.run.robot.name), 0.5 * (began.place + posture.place)
         return self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
 
@@ -377,7 +384,7 @@ class Swim:
 
     @property
     def time(self) -> float:
-        """How far it has come [s]."""
+        """Time that has been simulated [s]."""
         return self.stepper.time
 
     @property
@@ -386,9 +393,10 @@ class Swim:
         return self._effort
 
     def _renew(self, *, anew: bool = False) -> None:
-        """Compute the added mass anew if the body has turned or bent enough, and when the wall first has its skin.
+        """Compute the added mass anew if the body has turned or bent enough, and after the first step.
 
-        Corrections that do not come to an end (``anew``) say that it does not fit any more.
+        The argument ``anew`` forces it: corrections that do not converge show that the added mass is not valid any
+        more.
         """
         posture = self.path.at(self.time)
         is_first_step = len(self.series.time) == 1
@@ -409,7 +417,7 @@ class Swim:
         self._implicit_added_mass = self.stepper.burden(self._added_mass)
 
     def _newton(self) -> np.ndarray:
-        """Return how the acceleration that is missing changes with one that is guessed, but for what servos do."""
+        """Return the derivative of the missing acceleration with respect to the guess, without the servos."""
         inertia = self.stepper.mass() + self._implicit_added_mass
         return np.asarray(
             np.eye(self.chain.size) + np.linalg.solve(inertia, self._added_mass - self._implicit_added_mass)
@@ -418,10 +426,10 @@ class Swim:
     def _solve_motion(
         self, count: int, force: np.ndarray, push: np.ndarray, guess: np.ndarray, newton: np.ndarray
     ) -> tuple[CoordinateState, np.ndarray, np.ndarray]:  # fmt: skip
-        """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
+        """Move the robot under ``force`` minus the added mass times the change of the acceleration.
 
-        Returns where it comes to, its mean acceleration on the way, ``guess`` at first, and what force it got beyond
-        that, as rounds end where the two are nearly alike. Broyden's updates of ``newton`` are kept in it.
+        Returns the state at the end, the mean acceleration, and the force beyond the implicit part. The rounds end when
+        the acceleration agrees with ``guess``. Broyden's method updates ``newton`` in place.
         """
         h, start_rate = count * self.timestep, self.stepper.at_begin.rate
         explicit_mass = self._added_mass - self._implicit_added_mass
@@ -440,11 +448,11 @@ class Swim:
         return end, acceleration, extra_force
 
     def _size(self, force: np.ndarray) -> float:
-        """Return the size of a generalised force, each coordinate's over the root of its inertia."""
+        """Return the norm of a generalised force, each coordinate divided by the square root of its inertia."""
         return float(np.sqrt((force**2 / np.diag(self.stepper.mass() + self._added_mass)).sum()))
 
     def _learn(self, push: np.ndarray, water_response: np.ndarray) -> np.ndarray:
-        """Let the added mass be one that answers an acceleration as the water was seen to; return what it gains.
+        """Update the added mass with the observed response of the water, and return the change.
 
         Args:
             push: acceleration more.
@@ -455,7 +463,7 @@ class Swim:
         return self._added_mass - previous_mass
 
     def _adrift(self, impulse: np.ndarray) -> float:
-        """Return the size of an impulse on the whole robot over the greatest momentum that it has had [-]."""
+        """Return the norm of an impulse on the whole robot over its greatest momentum so far [-]."""
         max_momentum = self._greatest_momentum
         return float(np.linalg.norm(impulse[: self.stepper.axes])) / max_momentum if max_momentum > 0.0 else 0.0
 
@@ -556,9 +564,9 @@ class Swim:
         self._renew(anew=correction_count > 0 and residual > self.water.tolerance)
 
     def _fluctuation_work(self, stretch: Stretch, push: np.ndarray, h: float) -> float:
-        """Return the water's work in a step beyond that of its mean force [J].
+        """Return the work of the water in a step beyond the work of its mean force [J].
 
-        The part of it that answers accelerations changes with these within a step, as servos are commanded anew.
+        The part of the force that depends on accelerations changes within a step, because the servos get new commands.
         """
         mean = 0.5 * h * (self.stepper.at_begin.rate + self.stepper.now.rate)
         return float((self._implicit_added_mass @ push) @ (stretch.way - mean))
@@ -567,6 +575,7 @@ class Swim:
         self, stretch: Stretch, water_force: np.ndarray, fluctuation_work: float, posture: ChainState,
         residual: tuple[float, float], correction_count: int,
     ) -> None:  # fmt: skip
+        """Append the quantities of a step to the series."""
         series = self.series
         loads = self.sim.last(self.run.robot.name)
         h = self.time - (series.time[-1] if series.time else 0.0)
@@ -585,7 +594,7 @@ class Swim:
         return np.asarray(self.sim.drift)
 
     def _watch(self, residual: float) -> None:
-        """Refuse what has left the plane, or does not converge; say which joints come to the end of their range."""
+        """Refuse a robot that left the plane or a step that does not converge; warn of joints at their stops."""
         name, bend = self.stepper.off_plane
         if abs(bend) > OFF_PLANE:
             raise InvalidDesign(
@@ -618,7 +627,7 @@ class Swim:
         checkpoint: str | Path | None = None,
         checkpoint_every: float = 15.0,
     ) -> None:
-        """Go on until a time, a whole number of control periods [s]; the same bytes, stopped and gone on or not.
+        """Simulate until a time, a whole number of control periods [s]; an interrupted run gives the same bytes.
 
         Args:
             end_time: time to reach [s].
@@ -658,11 +667,11 @@ class Swim:
 
     @property
     def setup(self) -> object:
-        """What is simulated, and for how long; who has the same can go on from the other's state."""
+        """Setup of the run; a state can be resumed in any swim with an equal setup."""
         return self.run, self.timestep, self.ticks, self.water
 
     def state(self) -> store.State:
-        """Return all that changes, of the flow and of the robot, between two steps."""
+        """Return all variables of flow and robot that change between two steps."""
         current_posture = self.path.at(self.time)
         postures = {
             f"{label}.{name}": getattr(posture, name)
@@ -684,7 +693,7 @@ class Swim:
         }  # fmt: skip
 
     def resume(self, state: store.State) -> None:
-        """Go on from the state of a swim of the same run; to be asked of a fresh one."""
+        """Continue from the state of a swim of the same run; this swim must not have started."""
 
         def component_state(name: str) -> store.State:
             start = f"{name}."
@@ -708,5 +717,5 @@ class Swim:
 
 
 def _lessened(impulse: np.ndarray, momentum: np.ndarray) -> np.ndarray:
-    """Return an impulse along the coordinates less a momentum of the whole robot."""
+    """Return an impulse in the coordinates minus a momentum of the whole robot."""
     return np.concatenate([impulse[: momentum.size] - momentum, impulse[momentum.size :]])

@@ -55,6 +55,7 @@ class FieldWindow:
         }
 
     def _at_corners(self, values: np.ndarray) -> np.ndarray:
+        """Return cell values at the corners of the cells within the window."""
         corners = 0.25 * (values[1:, 1:] + values[1:, :-1] + values[:-1, 1:] + values[:-1, :-1])
         return np.asarray(corners[self._window], np.float32)
 
@@ -85,7 +86,7 @@ def midline(sim: flow.Simulation) -> flow.MidlineState:
 
 
 def sample_course(sim: flow.Simulation, samples: Samples) -> None:
-    """Add where the midline is to the side, at ``COURSE`` places along the body, after a step."""
+    """Store the lateral position of the midline at ``COURSE`` stations, after a step."""
     spine, (position, _) = midline(sim), sim.frame
     stations = np.linspace(0.0, spine.y.size - 1.0, COURSE)
     lateral = np.interp(stations, np.arange(spine.y.size), spine.y) + position[1]
@@ -93,7 +94,7 @@ def sample_course(sim: flow.Simulation, samples: Samples) -> None:
 
 
 def course(sim: flow.Simulation, samples: Samples, period: float, cycles: int) -> xr.Dataset:
-    """Return the course of a free body from its start: midline and centre of mass to the side, at even instants.
+    """Return the lateral course of a free body from its start: midline and centre of mass at equal intervals of time.
 
     Args:
         sim: at its end.
@@ -173,6 +174,7 @@ class VortexSampler:
             samples.add("frames", sim.time, **self._frame(sim))
 
     def _frame(self, sim: flow.Simulation) -> dict[str, np.ndarray]:
+        """Return vortices, spin and midline of the present instant, in small integers."""
         f = self._frequency
         q = _vortices(sim) / (VORTEX * f * f)
         is_vortex = q > 0.25

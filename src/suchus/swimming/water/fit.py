@@ -101,7 +101,10 @@ def fit(
 
 
 def _misfit(outline: Outline, gait: Gait, head: complex, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
-    """Return the rms distance over the tail's swing; at every instant the curves lie over each other on the average."""
+    """Return the rms distance of a gait's midline from the wave, over the swing of the tail [-].
+
+    At every instant both curves have the same mean position.
+    """
     curve = undulation(outline, gait).held(turn=head).curve(time)
     differences = [a - b - (a - b).mean(axis=-1, keepdims=True) for a, b in ((curve.x, x), (curve.y, y))]
     swing = float(np.abs(y[:, -1]).max())
@@ -109,7 +112,7 @@ def _misfit(outline: Outline, gait: Gait, head: complex, time: np.ndarray, x: np
 
 
 def _requested_bends(outline: Outline, heading: np.ndarray) -> np.ndarray:
-    """Return the greatest bend of a wave over the length that each joint stands for [rad]."""
+    """Return the greatest bend of a wave over the length that belongs to each joint [rad]."""
     half = 0.5 * outline.spacings
     ends = [
         np.array([np.interp(outline.places + side * half, outline.s, instant_heading) for instant_heading in heading])
@@ -131,6 +134,13 @@ def _either_side(lower_bound: float, upper_bound: float) -> float:
 
 
 def _check_amplitudes(robot: Robot, name: str, amplitudes: Sequence[float]) -> None:
+    """Refuse bends beyond the range of a servo.
+
+    Args:
+        robot: the design.
+        name: of the motion, for the message.
+        amplitudes: of the bend of each lateral servo [rad].
+    """
     limits = {hinge.name: _either_side(*(hinge.range or (-np.pi, np.pi))) for hinge in robot.axis_hinges}
     limits |= {cable.name: cable.bend_limit for cable in robot.cables}
     for servo, amplitude in zip(lateral_servos(robot), amplitudes, strict=True):
@@ -183,7 +193,7 @@ class Attempt(NamedTuple):
 
 
 def attempts(robot: Robot, *, frequency: float, sign: int = -1) -> list[Attempt]:
-    """Return what a robot's joints make of (20) in each of its readings.
+    """Return the fit of a robot's joints to (20) in each of its readings.
 
     Args:
         robot: whose joints.

@@ -46,7 +46,7 @@ def immersed(
 
 
 def _growth(time: float, duration: float) -> tuple[float, float]:
-    """Return the share of a motion that has grown, smooth at both ends, and its rate."""
+    """Return the fraction of a motion that has grown, smooth at both ends, and its rate [1/s]."""
     if duration <= 0.0 or time >= duration:
         return 1.0, 0.0
     fraction = time / duration
@@ -68,9 +68,9 @@ def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
 
 
 def folded(robot: Robot) -> tuple[flow.Capsule, ...]:
-    """Return the limbs of a robot, stretched and turned straight back from the hips, which lie in the body's plane.
+    """Return the limbs of a robot, stretched and turned straight back from the hips, in the plane of the body.
 
-    Each link is a capsule and each foot a ball, rigid with the body at the hip.
+    Each link is a capsule and each foot a ball. They are fixed to the body at the hip.
     """
     place, capsules = layout(robot), []
     names = [segment.name for segment in place.robot.axis]

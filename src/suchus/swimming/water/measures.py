@@ -22,7 +22,7 @@ class Quarters(NamedTuple):
 
     @classmethod
     def each(cls, record: xr.Dataset) -> "list[Quarters]":
-        """Read every cycle but the first from a record of a tethered slice; the last one comes last."""
+        """Return the quarters of every cycle but the first of a tethered slice, the last cycle at the end."""
         cycles = [record.isel(settled=i) for i in range(record.sizes["settled"])]
         return [cls(*(cycle[f"quarter_{name}"].values.tolist() for name in cls._fields)) for cycle in cycles]
 
@@ -33,7 +33,7 @@ class Quarters(NamedTuple):
 
 
 def convex_higher(record: xr.Dataset) -> float:
-    """Return in which share of the cycle the convex side of the tail has the higher pressure [-]."""
+    """Return the fraction of the cycle in which the convex side of the tail has the higher pressure [-]."""
     return float((record.difference > 0).mean())
 
 
@@ -59,7 +59,7 @@ class LateralSwing(NamedTuple):
 
 
 def swing(lateral_positions: Float[np.ndarray, "sample station"], cycles: int = 2) -> LateralSwing:
-    """Return how far each station swings to either side as a sine, and which share of its swing that sine is.
+    """Return the amplitude of each station's first harmonic, its lag, and the variance that the harmonic explains.
 
     Args:
         lateral_positions: places to the side over whole cycles, first and last instant included [m].
@@ -82,7 +82,7 @@ class Sway(NamedTuple):
 
     @classmethod
     def of(cls, track: Float[np.ndarray, " sample"], cycles: int) -> "Sway":
-        """Measure a track to the side over whole cycles, first and last instant included [m].
+        """Return the sway of a lateral track over whole cycles, first and last instant included [m].
 
         Raises:
             ValueError: the samples are no whole number for each cycle.
@@ -97,7 +97,7 @@ class Sway(NamedTuple):
 def wave_form(
     s: Float[np.ndarray, " station"], amplitude: Float[np.ndarray, " station"], lag: Float[np.ndarray, " station"]
 ) -> tuple[float, float, float, float]:
-    """Return the wave of the form (20) that comes nearest to a swinging midline, and which share of the swing it is.
+    """Return the wave of the form (20) that is nearest to a midline, and the fraction of the swing that it explains.
 
     Args:
         s: arc length from the snout, over the length [-].
@@ -143,7 +143,7 @@ class Swum(NamedTuple):
 
     @classmethod
     def of(cls, free: xr.Dataset, frequency: float) -> "Swum":
-        """Read them from a record of a free slice."""
+        """Return the measures of a record of a free slice."""
         speed, power = float(free.speed[-1]), float(free.power[-1])
         return cls(
             speed,

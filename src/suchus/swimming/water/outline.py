@@ -191,7 +191,7 @@ class Outline:
         return self.bending_at(0.5 * (self.s[1:] + self.s[:-1]))
 
     def bending_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point servo"]:
-        """Return how the heading at points grows with the bend of each of ``servos``, its own sense positive [-]."""
+        """Return the derivative of the heading at points with respect to the bend of each of ``servos`` [-]."""
         joint_bends = self.joints_at(s)
         shares = [joint_bends[:, list(servo.joints)].mean(axis=1) for servo in self.servos]
         return np.array(shares).reshape(len(self.servos), len(s)).T
@@ -201,10 +201,10 @@ class Outline:
         return self.joints_at(s)[:, list(self.passive)]
 
     def joints_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point joint"]:
-        """Return how the heading at points grows with the angle of each joint, in the order of ``joints`` [-].
+        """Return the derivative of the heading at points with respect to each joint, in the order of ``joints`` [-].
 
-        It is the share of the joint's bend that lies ahead of the point; that of a joint ahead of the root, which turns
-        the front end left, counts to the right behind it.
+        A joint's bend is distributed over some length; its part ahead of the point counts. The sign is negative for
+        joints ahead of the root, because they turn the front end to the left.
         """
         reach_fraction = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
         shares = np.asarray(0.5 * (1.0 + reach_fraction + np.sin(np.pi * reach_fraction) / np.pi))
@@ -220,6 +220,6 @@ def tail_root(robot: Robot) -> float:
 def summed(
     start_value: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]
 ) -> Float[np.ndarray, "*b station"]:
-    """Return where steps lead from a start."""
+    """Return the positions to which steps lead from a start."""
     start = np.asarray(start_value)[..., None]
     return np.concatenate([start, start + np.cumsum(steps, axis=-1)], axis=-1)

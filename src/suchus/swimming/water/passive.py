@@ -67,6 +67,16 @@ class _Load:
     def __init__(
         self, outline: Outline, frequency: float, speed: float, water: Water, y: np.ndarray, slope: np.ndarray
     ) -> None:
+        """Compute added mass, mass and linearised drag of the stations in a lateral motion.
+
+        Args:
+            outline: of the robot.
+            frequency: of the motion [Hz].
+            speed: forward [m/s].
+            water: density and drag coefficient.
+            y: first harmonic of the lateral displacement [m].
+            slope: first harmonic of the heading [rad].
+        """
         self._s, self._speed, self._rate = outline.s, speed, 2j * np.pi * frequency
         half_width, half_height = outline.silhouette
         self._added_mass = water.density * np.pi * half_height**2
@@ -76,7 +86,7 @@ class _Load:
         self._joints = outline.places[list(outline.passive)]
 
     def moments(self, y: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        """Return the moments about the passive joints of what the water does beyond them in a sideways motion [N m]."""
+        """Return the moments about the passive joints of the water's load beyond them in a lateral motion [N m]."""
         lateral_velocity = self._rate * y + self._speed * slope
         momentum = self._added_mass * lateral_velocity
         force = -(self._rate * momentum + self._speed * np.gradient(momentum, self._s))

@@ -103,7 +103,7 @@ class TetheredSlice:
         return data.merge(fields_record).merge(self._turns(sim.record, samples))
 
     def _turns(self, series: flow.Record, samples: Samples) -> xr.Dataset:
-        """Return what was at the four quarters of every cycle but the first, see ``measures.Quarters``."""
+        """Return the loads at the four quarters of every cycle but the first, see ``measures.Quarters``."""
         turn_samples, shape = samples.series("turns"), (self._cycles - self._first_cycle, len(QUARTERS))
         step_times, force = series.time - 0.5 * series.step, series.force()
         quantities = {
@@ -200,10 +200,10 @@ def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.Midline
 
 
 def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
-    """Return what the water asks of the lateral servos, each at its own shaft; see ``Outline.at_servos`` [N m].
+    """Return the torque of the water at the shaft of each lateral servo; see ``Outline.at_servos`` [N m].
 
-    Every section is as high as the robot is there and feels the pressures of the flow, which knows no height: water
-    that goes over and under the body would ask for less.
+    Every section has the height of the robot and the pressure of the flow in the plane. Real water also flows over and
+    under the body, and requires less torque.
 
     Args:
         outline: of the robot.
@@ -217,7 +217,7 @@ def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.Midline
 def _moments(
     outline: Outline, surface: flow.Surface, midline: flow.MidlineState, height: np.ndarray
 ) -> Float[np.ndarray, " joint"]:
-    """Return the moment about each joint of what the water does beyond it, markers being so high."""
+    """Return the moment about each joint of the water's load beyond it."""
     m = surface.markers
     fx, fy = surface.traction * m.share * height
     moments = []

@@ -51,7 +51,7 @@ class Samples:
 
     @classmethod
     def of(cls, state: Mapping[str, np.ndarray]) -> "Samples":
-        """Return what ``state`` gave."""
+        """Return the samples of a state that ``state`` returned."""
         samples = cls()
         for key, values in state.items():
             series, name = key.split("/")
@@ -70,7 +70,7 @@ class Samples:
         keep(path, sealed(content.getvalue()))
 
     def load(self, path: Path, time: float, description: str) -> None:
-        """Take up the samples until a time [s].
+        """Read the samples until a time [s].
 
         Raises:
             UnreadableFile: they are broken, end too soon or belong to another swim.
@@ -106,7 +106,7 @@ def _hash(description: str) -> str:
 
 
 def kept_in(folder: str, name: str) -> Path | None:
-    """Return the file in which an experiment keeps an unfinished swim in a folder; None if that is empty."""
+    """Return the file of an unfinished swim in a folder; None if the folder is empty text."""
     return Path(folder) / f"{name.replace(' ', '_')}{_CHECKPOINT_SUFFIX}" if folder else None
 
 
@@ -121,7 +121,7 @@ def check_kept(folder: str) -> None:
 
 
 def all_kept(folder: str, names: Iterable[str]) -> tuple[Path, ...]:
-    """Return the files of unfinished swims of these names in a folder, and of their samples; none if that is empty."""
+    """Return the files of unfinished swims and of their samples in a folder; none if the folder is empty text."""
     files = [path for name in names if (path := kept_in(folder, name)) is not None]
     return tuple(path.with_name(path.name + end) for path in files for end in ("", _SAMPLES_SUFFIX))
 

@@ -54,7 +54,7 @@ class SectionFlow(NamedTuple):
 
 
 def points() -> dict[str, tuple[float, float, int]]:
-    """Return aspect, Keulegan number and cells a height of every flow of the table by its name, nodes first."""
+    """Return aspect, Keulegan-Carpenter number and cells per height of every flow of the table, by its name."""
     cells = {case.name: case.full.cells for case in sections.cases()}
     nodes = [(aspect, keulegan) for aspect in sections.ASPECTS for keulegan in sections.KEULEGANS]
     points_by_name = {sections.name_of(*point): point for point in (*nodes, *sections.HELD_OUT)}
@@ -81,11 +81,11 @@ def attached(keulegan: float, stokes: float = sections.STOKES) -> tuple[float, f
 def likely(
     half_width: Float[np.ndarray, " s"], half_height: Float[np.ndarray, " s"], amplitude: Float[np.ndarray, " s"]
 ) -> tuple[float, float]:
-    """Return by what factors the table's coefficients differ from a swim's own, over the sections of a body [-].
+    """Return factors between the coefficients of a swim and those of the table, over the sections of a body [-].
 
-    Of the table's coefficients that is taken which an attached viscous layer adds at its number of Stokes and not at a
-    robot's. Each section counts for drag as the power that drag takes from it, and for added mass as its kinetic
-    energy; outside the table the nearest of its aspects and Keulegan numbers counts.
+    The table holds an attached viscous layer at its Stokes number; a robot's layer is much thinner, and is taken away.
+    For drag, each section is weighted by the power that drag takes; for added mass, by its kinetic energy. Outside the
+    table the nearest aspect and Keulegan-Carpenter number are taken.
 
     Args:
         half_width: of equally spaced sections [m].
@@ -123,7 +123,7 @@ def measured(instants: int = 200) -> tuple[float, float]:
 
 
 def write_table(outcomes: Mapping[str, FlowOutcome], path: Path = TABLE) -> str:
-    """Write the table of finished flows, and return what it says of itself.
+    """Write the table of finished flows, and return a summary of its errors.
 
     Args:
         outcomes: of ``atlas.sections.cases``, by name.
@@ -198,7 +198,7 @@ def coefficients(aspect: float, keulegan: float, path: Path = TABLE) -> tuple[fl
 
 
 def held_out(path: Path = TABLE) -> Float[np.ndarray, "point 2"]:
-    """Return by how much interpolated Cd and Ca are off at the points that are not among the nodes [-]."""
+    """Return the relative errors of interpolated Cd and Ca at the points that are not nodes [-]."""
     flows = {
         (section_flow.aspect, section_flow.keulegan): section_flow
         for section_flow in table(path)
@@ -212,6 +212,7 @@ def held_out(path: Path = TABLE) -> Float[np.ndarray, "point 2"]:
 
 @lru_cache(maxsize=4)
 def _interpolators(path: Path) -> tuple[RegularGridInterpolator, RegularGridInterpolator]:
+    """Return the interpolators of the logarithms of drag coefficient and added mass in the logarithms of the nodes."""
     nodes = {
         (section_flow.aspect, section_flow.keulegan): section_flow for section_flow in reversed(table(path))
     }  # the coarser grid comes first

@@ -68,6 +68,7 @@ class SwimSetting:
     """Mean divergence left over, in fastest speed per cell; None is 1e-5 in the plane and 1e-4 in space [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings out of range, and settings of a slice for a body in space and vice versa."""
         with Checks("setting", self) as check:
             check.that(self.axes in FINEST, f"setting.axes is {self.axes!r}; 2 is a slice and 3 the body in space")
             check.whole("cells", 32, FINEST.get(self.axes, FINEST[3]))
@@ -132,7 +133,12 @@ class SwimSetting:
         )
 
     def grid_around(self, length: float, reach: float) -> flow.Grid:
-        """Return the cells all around a body in space that reaches so far from its axis to any side [m]."""
+        """Return the cells around a body in space that moves in all directions.
+
+        Args:
+            length: of the body [m].
+            reach: greatest distance of the body from its axis, to any side [m].
+        """
         half_width = reach + (_DRIFT_MARGIN + self.beside) * length
         return flow.Grid.covering(
             (-AHEAD * length, (1.0 + BEHIND) * length),

@@ -94,10 +94,10 @@ def reactive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) 
 
 
 def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tuple[complex, complex]:
-    """Return how the snout sways and the head turns when nothing holds the body.
+    """Return the sway of the snout and the turn of the head of a free body.
 
-    Small lateral motions: body and the water beside it exchange no net lateral momentum and no moment about the
-    snout over time, by Lighthill's reactive force. The body is as heavy as the water it displaces.
+    Lateral motions are small. Body and water exchange no net lateral momentum and no net moment about the snout over
+    time, by Lighthill's reactive force. The body has the mass of the water that it displaces.
 
     Args:
         outline: of the robot.
@@ -174,7 +174,7 @@ def cruise(outline: Outline, motion: Motion, model: Model, water: Water) -> Crui
 
 
 def _velocities(curve: MidlineCurve, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return tangent and the velocity against the water across and along it."""
+    """Return the tangent, and the velocity relative to the water normal to the midline and along it."""
     tangent_x, tangent_y = np.cos(curve.heading), np.sin(curve.heading)
     x_rate = curve.x_rate - speed
     normal_velocity = -tangent_y * x_rate + tangent_x * curve.y_rate
@@ -183,7 +183,7 @@ def _velocities(curve: MidlineCurve, speed: float) -> tuple[np.ndarray, np.ndarr
 
 
 def _perimeter(outline: Outline) -> np.ndarray:
-    """Return the girth of the body at the stations, as of ellipses, by Ramanujan's formula [m]."""
+    """Return the perimeter of the body at the stations by Ramanujan's formula for ellipses [m]."""
     half_width, half_height = outline.silhouette
     return np.asarray(
         np.pi

@@ -62,7 +62,7 @@ class FreeInSpace:
         return data.merge(self._film.record(samples)).merge(course(sim, samples, period, cycles))
 
     def _loads(self, sim: flow.Simulation) -> xr.Dataset:
-        """Return the moments of the last cycle at the joints and the servos, and the weight."""
+        """Return the torques of the last cycle at joints and servos, and the weight."""
         outline, setting = self._swim.outline, self._swim.setting
         last_cycle = sim.record.after((setting.cycles - 1) * self._swim.period * (1.0 + SLACK))
         torques = last_cycle.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
@@ -116,7 +116,7 @@ class TetheredInSpace:
         return dataset.merge(self._turns(sim))
 
     def _turns(self, sim: flow.Simulation) -> xr.Dataset:
-        """Return what was at the four quarters of every cycle but the first, as of a slice; see ``_push``."""
+        """Return the loads at the four quarters of every cycle but the first, as for a slice; see ``_push``."""
         swim, series = self._swim, sim.record
         first_cycle = min(1, swim.setting.cycles - 1)
         count = swim.setting.cycles - first_cycle

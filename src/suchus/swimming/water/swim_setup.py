@@ -115,6 +115,7 @@ class ResolvedSwim:
         setup.check()
 
     def _check_layer(self) -> None:
+        """Refuse cells that are too coarse for the boundary layer of the motion."""
         length, setting = self.robot.length, self.setting
         moving = cycle(self.outline, self.motion, *self.head)
         speed = float(np.hypot(moving.x_rate, moving.y_rate).max())

@@ -23,11 +23,11 @@ VALUES = {"speed": "m/s", "efficiency": "1", "cost_of_transport": "1", "strouhal
 
 
 def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
-    """Return how a robot swims by the resistive and the reactive model.
+    """Return the swim of a robot by the resistive and by the reactive model.
 
-    ``thrust_held`` is the mean force on a body that is kept from moving on but free to sway and turn; everything else
-    belongs to free swimming at the speed where the mean force vanishes. The passive end of the tail is straight, the
-    body as heavy as the water it displaces; limbs do nothing.
+    ``thrust_held`` is the mean force on a body that cannot move forward but can sway and turn. All other quantities are
+    those of free swimming, at the speed with no mean force. The passive end of the tail is straight. The body has the
+    mass of the water that it displaces. Limbs have no effect.
 
     Args:
         robot: who swims, or its name on the shelf.
@@ -78,6 +78,17 @@ _PER_MODEL = {
 def _numbers(
     robot: Robot, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float, water: Water
 ) -> dict[str, float]:
+    """Return speed, power, slip, cost of transport and the similarity numbers of a free swim.
+
+    Args:
+        robot: the design.
+        motion: of the midline.
+        outline: of the robot.
+        curve: midline over one cycle.
+        speed: forward [m/s].
+        power: of the body on the water [W].
+        water: density and viscosity.
+    """
     swing = float(np.ptp(curve.y[:, -1]))
     weight = GRAVITY * displaced(outline)
     moving = speed != 0.0
@@ -95,7 +106,7 @@ def _numbers(
 
 
 def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
-    """Return the mass of the water that the body displaces, its sections taken as ellipses [kg]."""
+    """Return the mass of the water that the body displaces; sections are ellipses [kg]."""
     half_width, half_height = outline.silhouette
     return float(density * np.pi * np.trapezoid(half_width * half_height, outline.s))
 
@@ -121,6 +132,7 @@ def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
 def _record(
     outline: Outline, motion: Motion, water: Water, curves: list[MidlineCurve], per_model: dict[str, list[float]]
 ) -> xr.Dataset:
+    """Return the record of a swim by all models."""
     count = len(curves[0].x)
     data = xr.Dataset(
         coords={
@@ -142,7 +154,7 @@ def _record(
 
 
 def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
-    """Return what both slender-body models say of motions, and which of them the robot can follow.
+    """Return the results of both slender-body models for motions, and whether the robot can follow them.
 
     Args:
         robot: who swims.
@@ -163,7 +175,7 @@ def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None,
 
 
 def greatest(robot: Robot, motion: Gait, *, most: float = 4.0) -> float:
-    """Return the greatest factor of every angle at which joints and servos still follow a motion, to 1e-4 [-].
+    """Return the greatest factor on all angles at which joints and servos can follow a motion, to 1e-4 [-].
 
     Args:
         robot: who swims.
@@ -201,6 +213,7 @@ def _evaluate_motion(outline: Outline, motion: Gait, model: Model, water: Water)
 
 
 def _possible(robot: Robot, motion: Gait) -> bool:
+    """Return whether joints and servos can follow a motion."""
     try:
         check_limits(robot, motion)
         check_speeds(robot, motion)

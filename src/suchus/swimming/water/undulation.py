@@ -64,7 +64,7 @@ class Undulation:
     """Way of the snout to the right [m]."""
 
     def held(self, sway: complex = 0j, turn: complex = 0j) -> "Undulation":
-        """Return the same with a first harmonic added to snout's displacement [m] and head's direction [rad]."""
+        """Return the motion with a first harmonic added to the head's displacement [m] and direction [rad]."""
         middles, stations, snout = self.middles.copy(), self.stations.copy(), self.sway.copy()
         middles[1] += turn
         stations[1] += turn
@@ -137,7 +137,7 @@ def undulation(outline: Outline, motion: Motion) -> Undulation:
 
 
 def still(outline: Outline, frequency: float = 1.0) -> Undulation:
-    """Return the motion that is none."""
+    """Return the motion of a straight body at rest."""
     return _of_joints(outline, "still", frequency, np.zeros((2, len(outline.joints)), complex))
 
 
@@ -174,6 +174,7 @@ def _commanded(outline: Outline, gait: Gait) -> Complex[np.ndarray, "harmonic jo
 
 
 def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
+    """Return the harmonics of a midline that follows a wave exactly."""
     time = motion.wave.period * np.arange(_INSTANTS) / _INSTANTS
     points = np.sort(np.concatenate([outline.s, 0.5 * (outline.s[1:] + outline.s[:-1])]))
     heading, _, lateral = along(motion.wave, points, time)
@@ -189,7 +190,7 @@ def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
 
 
 def _harmonics(values: np.ndarray) -> np.ndarray:
-    """Return the harmonics of values over one cycle, shape (time, ...), as ``Undulation`` wants them."""
+    """Return the Fourier coefficients of values over one cycle, shape (time, ...), in the form of ``Undulation``."""
     harmonics = 2.0 * np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
     harmonics[0] *= 0.5
     return np.asarray(harmonics)
@@ -231,7 +232,7 @@ def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int
 
 
 def unevenness(motion: Undulation, reference: Undulation) -> float:
-    """Return how far a midline is from another of the same outline, the head alike: rms angle over the other's [-]."""
+    """Return the rms difference of the headings of two midlines over the rms heading of the second one [-]."""
     count = max(len(motion.middles), len(reference.middles))
     middles, reference_middles = (
         np.pad(compared_motion.middles, ((0, count - len(compared_motion.middles)), (0, 0)))

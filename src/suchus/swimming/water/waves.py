@@ -157,7 +157,7 @@ def printed_wave(
 
 
 def along(wave: BodyWave, s: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return heading, x and y of a wave at equal arc lengths, each of shape (time, station).
+    """Return heading, x and y of a wave at given arc lengths, each of shape (time, station).
 
     Args:
         wave: the curve.
