@@ -1,4 +1,4 @@
-"""The skeleton and the contacts of the feet, drawn on the frames of the film that the keypoints are from."""
+"""Skeleton and foot contacts, drawn on the frames of the film that the keypoints are from."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A robot of hobby servos that tell nothing: pulses out, nothing back."""
+"""A robot of hobby servos without feedback: it gets pulses, and returns no readings."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ from suchus.robot.design import Robot, layout
 
 
 class BlindRig:
-    """What ``Rig`` is for servos that answer, for those that do not: the same calls, and NaN for every reading.
+    """The counterpart of ``Rig`` for servos without feedback: the same methods, and NaN for every reading.
 
     Args:
         robot: the robot.
@@ -63,7 +63,7 @@ class BlindRig:
         return list(zip(self.names, self.low.tolist(), self.high.tolist(), strict=True))
 
     def check(self) -> list[str]:
-        """Say what nobody can look at."""
+        """Return a warning that nothing can be checked."""
         return [
             "These servos tell nothing: they go to the first posture at once, nobody sees one that is hot, stuck or "
             "unplugged, "
@@ -73,11 +73,11 @@ class BlindRig:
         ]
 
     def read(self) -> RigReading:
-        """Return that nothing is known."""
+        """Return a reading of NaN."""
         return self.now
 
     def sensed(self, time: float) -> Sensed:
-        """Return that nothing is known, for a controller that asks for nothing."""
+        """Return a reading of NaN, for a controller that senses nothing."""
         unknown, place = np.full((1, len(self.names)), np.nan), layout(self.robot)
         return Sensed(
             time=time, servo_position=unknown, servo_velocity=unknown, servo_torque=unknown,
@@ -88,7 +88,7 @@ class BlindRig:
         )  # fmt: skip
 
     def aim(self, angles: np.ndarray) -> np.ndarray:
-        """Send all servos to angles, and return those that their pulses mean, shape (servo,) [rad]."""
+        """Send all servos to angles, and return the angles of the rounded pulses, shape (servo,) [rad]."""
         widths = self._centre + self._slope * (self._sign * angles + self._offset)
         step = 1e6 / self._pulses.rate / 4096
         rounded_widths = np.rint(widths / step) * step
@@ -97,11 +97,11 @@ class BlindRig:
         return sent_angles
 
     def ready(self, goals: np.ndarray) -> np.ndarray:
-        """Let all servos pulse, which gives them their torque."""
+        """Send pulses to all servos, which gives them their torque."""
         return self.aim(goals)
 
     def torque(self, enable: bool) -> None:
-        """Take all pulses away; they come with the next goals."""
+        """Switch all pulses off; the next goals switch them on."""
         if not enable:
             self._pulses.off()
 
@@ -114,7 +114,7 @@ class BlindRig:
         return float("inf")
 
     def watch(self, enable: bool) -> None:
-        """Do nothing: these servos watch nobody."""
+        """Do nothing: these servos have no watchdog."""
 
     def close(self) -> None:
         """Let go of the boards."""

@@ -1,4 +1,4 @@
-"""What a robot that was built says of itself: which servo moves which joint, where its zeros are, how stiff it is."""
+"""Calibration of a robot that was built: joints of servos, zeros, stiffness and friction."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -122,7 +122,7 @@ def find_zeros(rig: Rig, posture: np.ndarray, *, times: int = 10) -> tuple[Wirin
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fitted:
-    """One number of a servo, with the interval that holds it by 95 %."""
+    """A parameter of a servo with the half width of its 95 % interval."""
 
     value: float
     """The number."""
@@ -135,7 +135,7 @@ class Fitted:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServoFit:
-    """What a log says of one servo."""
+    """Parameters of one servo from a log."""
 
     stiffness: Fitted
     """Torque for each radian that it is off its goal [N m/rad]."""

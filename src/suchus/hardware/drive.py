@@ -33,16 +33,16 @@ _PHASES = 64  # of a cycle, at which a gait is looked at before
 
 
 class TickClock(Protocol):
-    """Tells a drive when its ticks are."""
+    """Clock that gives the ticks of a drive."""
 
     def begin(self) -> None:
         """Let tick 0 be now."""
 
     def wait(self, tick: int) -> int:
-        """Return when a tick has come, and which it is then: a later one where time was lost."""
+        """Return after a tick has begun, with its number, or that of a later tick if time was lost."""
 
     def late(self, tick: int) -> float:
-        """Return how long ago a tick should have begun [s]."""
+        """Return the delay of a tick [s]."""
 
 
 class WallClock:
@@ -60,7 +60,7 @@ class WallClock:
         self._start_time = monotonic()
 
     def wait(self, tick: int) -> int:
-        """Sleep until a tick, and return the one that it is then."""
+        """Sleep until a tick begins, and return the number of the present tick."""
         due = self._start_time + tick * self._period
         remaining_time = due - monotonic()
         if remaining_time > 0.0:
@@ -69,12 +69,12 @@ class WallClock:
         return tick + int(-remaining_time / self._period)
 
     def late(self, tick: int) -> float:
-        """Return how long ago a tick should have begun [s]."""
+        """Return the delay of a tick [s]."""
         return monotonic() - self._start_time - tick * self._period
 
 
 class BusClock:
-    """Ticks that an emulator is told: it moves as long as we wait, and nothing is ever late.
+    """Clock of an emulator that the host steps: no tick is late.
 
     Args:
         rig: of emulated servos.
@@ -119,7 +119,7 @@ class DriveSettings:
 
 
 def check_drive(rig: Rig | BlindRig, gait: Gait, control: Control) -> None:
-    """Refuse what the robot cannot do as it is wired, before anything moves.
+    """Refuse a gait or a control that the wired robot cannot follow, before anything moves.
 
     Raises:
         UnsuitedRobot: the control must sense what the robot has no sensor for, or moves air.
@@ -156,7 +156,7 @@ def check_drive(rig: Rig | BlindRig, gait: Gait, control: Control) -> None:
 
 
 class _Halted(Exception):
-    """The robot is to be stopped: the sentence says why."""
+    """The robot must be stopped; the message gives the reason."""
 
 
 def drive(
@@ -170,10 +170,10 @@ def drive(
     say: Callable[[str], None] = lambda _: None,
     progress: Progress = silent,
 ) -> xr.Dataset:
-    """Drive a robot, and leave it safe, however it ends.
+    """Drive a robot, and stop it safely in any case.
 
-    Time in the log is that of the controller: the way to the first posture has negative times. A tick that comes too
-    late is left out in the gait too, which is a function of time; its controller still takes all its steps.
+    Time in the log is that of the controller: the approach to the first posture has negative times. A tick that is too
+    late is skipped in the gait, which is a function of time; the controller takes all its steps.
 
     Args:
         rig: the open robot.
@@ -205,7 +205,7 @@ def drive(
 
 
 class _Drive:
-    """One drive while it lasts."""
+    """One drive of a robot."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""What a driven robot must not do: limits of heat, load, voltage and silence, and what follows when one is passed."""
+"""Limits of a driven robot for heat, load, voltage and silence, and the reaction when one is exceeded."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from suchus.hardware.rig import JUMPS, Rig, RigReading
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveLimits:
-    """When to warn of a servo, and when to stop; each is a state, not an instant."""
+    """Limits for warnings and for stopping the robot."""
 
     warm: float = 10.0
     """So far below the temperature at which a servo switches itself off people are warned [K]."""
@@ -45,7 +45,7 @@ class DriveLimits:
 
 
 class Guard:
-    """Looks at every tick.
+    """Checks the limits at every tick.
 
     Args:
         rig: what is driven.
@@ -118,7 +118,7 @@ class Guard:
             )
 
     def tell(self, key: str, sentence: str) -> None:
-        """Keep a sentence that people should know, once for each key."""
+        """Add a warning, once for each key."""
         if key not in self._warned:
             self._warned.add(key)
             self.warnings.append(sentence)

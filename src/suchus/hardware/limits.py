@@ -58,7 +58,7 @@ def _replacement_text(load: ServoLoad) -> str:
 
 
 def overloaded(servo_loads: Mapping[str, ServoLoad], at_limit: float = AT_LIMIT) -> list[str]:
-    """Return a sentence for each servo that stands at its limit for more than a share of the walk."""
+    """Return a sentence for each servo that is at its limit for more than a fraction of the walk."""
     return [
         f"{name} is at its {_limit(load)} for {100 * load.at_limit:.0f} % of the walk, first at {load.first:.2f} s, "
         f"and up to {_tracking_error_text(load)}; {_replacement_text(load)} would do."
@@ -88,7 +88,7 @@ def check_loads(
     at_limit: float = AT_LIMIT,
     tracking: float = TRACKING,
 ) -> None:
-    """Refuse a gait that a servo cannot follow since it stands at its torque limit.
+    """Refuse a gait that a servo cannot follow because it is at its torque limit.
 
     Args:
         robot: who walks.

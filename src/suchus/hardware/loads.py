@@ -1,4 +1,4 @@
-"""What each servo of a robot bears: torque, speed, power, current and heat, from simulated walks, stands and swims."""
+"""Loads of each servo of a robot: torque, speed, power, current and heat, from simulated walks, stands and swims."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -34,7 +34,7 @@ _CYCLES, _HOLD = 2, 1.0  # of a gait, and of standing [s]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadCase:
-    """One thing that a robot does, for which its servos must be enough."""
+    """A task of a robot, for which its servos are sized."""
 
     name: str
     """Its name in tables."""
@@ -195,7 +195,7 @@ def loads_of_each(
 def records_of_each(
     pairs: Sequence[tuple[Robot, LoadCase]], *, timestep: float | None = None, progress: Progress = silent
 ) -> list[xr.Dataset]:
-    """Return the record of each case after its first second, each with its robot; those of one duration at once.
+    """Return the record of each case after its first second; cases of equal duration run as a batch.
 
     Raises:
         Diverged: a simulation diverged.
@@ -219,7 +219,7 @@ def strong(robot: Robot) -> Robot:
 
 
 def cold(robot: Robot) -> Robot:
-    """Return a robot whose servos do not warm up: in some seconds they hardly do, and such robots share a batch."""
+    """Return a robot whose servos do not warm up; they hardly do in some seconds, and such robots can share a batch."""
 
     def cooled(servo: Servo) -> Servo:
         return servo if servo.winding is None else replace(servo, winding=replace(servo.winding, heat=None))
@@ -281,7 +281,7 @@ def _electric(servo: Servo, torque: np.ndarray, speed: np.ndarray) -> dict[str, 
 
 
 def full_from(servo: Servo) -> float:
-    """Return the part of what a servo can give from which on it counts as being at its limit [-]."""
+    """Return the fraction of a servo's capability above which it counts as being at its limit [-]."""
     return FULL if servo.winding is None else FULL_WOUND
 
 
@@ -308,7 +308,7 @@ def use_of_each(robot: Robot, record: xr.Dataset) -> xr.DataArray:
 
 
 def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
-    """Return the share of the time that each servo spends at its limit [-], over whatever else a record has.
+    """Return the fraction of the time that each servo is at its limit [-], over other dimensions of a record.
 
     Args:
         robot: whose record it is.

@@ -1,4 +1,4 @@
-"""The log of a driven robot: a record as a simulation gives, with what only a wire knows beside it."""
+"""The log of a driven robot: a record like that of a simulation, with the variables of the bus."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,7 +14,7 @@ from suchus.visual.skin import poses
 
 
 class DriveLog:
-    """Keeps ticks and makes them a record.
+    """Collects ticks, and converts them to a record.
 
     Args:
         robot: that is driven.
@@ -30,7 +30,7 @@ class DriveLog:
         return len(self._rows)
 
     def keep(self, time: float, values: Mapping[str, Any]) -> None:
-        """Keep a tick.
+        """Add a tick.
 
         Args:
             time: at which it was planned, since the controller's beginning [s].

@@ -1,4 +1,4 @@
-"""What a robot is built of: parts and their masses, frames, cables, plates, wiring, foam; as numbers for a sheet."""
+"""The parts of a robot and their masses, frames, cables, plates, wiring and foam, as numbers for a sheet."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ class BodyPart:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MassBudget:
-    """What one moving body weighs in the simulation, and what of that its servos and printed walls are."""
+    """Mass of a moving body in the simulation, of its servos and of its printed walls."""
 
     name: str
     """Name of the body."""
@@ -60,13 +60,13 @@ class MassBudget:
 
     @property
     def rest(self) -> float:
-        """What is left for battery, electronics, screws and brackets [kg]; below zero the body gets too heavy."""
+        """Remaining mass for battery, electronics, screws and brackets [kg]; below zero the body is too heavy."""
         return self.simulated - self.servos - self.printed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HingePlace:
-    """Where a hinge is with all joints at zero: forward, left and up from the root's origin."""
+    """Position of a hinge with all joints at zero: forward, left and up from the root's origin."""
 
     name: str
     """Name of the hinge."""
@@ -118,7 +118,7 @@ class TailPlate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cord:
-    """How long the two cords of a cable are, and what they do when the tail bends."""
+    """Lengths of the two cords of a cable, and their changes with the bend of the tail."""
 
     name: str
     """Name of the cable."""
@@ -151,7 +151,7 @@ class ServoWire:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Buoyancy:
-    """What keeps a robot up in water."""
+    """Volumes that carry a robot in water."""
 
     mass: float
     """Of the robot [kg]."""
@@ -435,7 +435,7 @@ def _joints(robot: Robot) -> tuple[HingePlace, ...]:
 
 
 def _links(robot: Robot) -> tuple[DHRow, ...]:
-    """Return the tables of Denavit and Hartenberg of the chains that are of the article's kind.
+    """Return the Denavit-Hartenberg tables of the chains that have the article's geometry.
 
     Paper: Tables I and II, Figs 6 and 8.
     """

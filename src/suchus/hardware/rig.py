@@ -1,4 +1,4 @@
-"""A robot's servos and sensors over its buses: what they say, what they are sent, and whether all is as it must be."""
+"""Servos and sensors of a robot over its buses: readings, goals and checks of the settings."""
 
 from collections.abc import Collection, Sequence
 from contextlib import suppress
@@ -52,7 +52,7 @@ _OF_SERVOS = ("servo_position", "servo_velocity", "servo_torque")
 
 @dataclass(slots=True)
 class RigReading:
-    """What servos and boards said last."""
+    """Last readings of servos and boards."""
 
     angle: np.ndarray
     """Angles of the joints, shape (servo,) [rad]."""
@@ -77,7 +77,7 @@ class RigReading:
 
 
 def senses(robot: Robot, boards: Sequence[BoardPlace]) -> tuple[str, ...]:
-    """Return what a robot with some boards senses: fields of ``control.Sensed``."""
+    """Return the quantities that a robot with some boards senses: fields of ``control.Sensed``."""
     place = layout(robot)
     quantities = [*_OF_SERVOS, *(name for board in boards for name in _SENSES[board.kind])]
     if not place.limbs:
@@ -198,7 +198,7 @@ class Rig:
     # --- before it moves ----------------------------------------------------------------------------------------------
 
     def bytes_per_tick(self, number: int) -> tuple[int, int]:
-        """Return the bytes on a bus in a tick, and how many replies are among them."""
+        """Return the bytes and the number of replies on a bus in a tick."""
         place = self.wiring.bus[number]
         framing, members = FRAMINGS[place.protocol], self._members[number]
         total = answers = 0
@@ -217,7 +217,7 @@ class Rig:
         return total + sum(request_bytes), answers + len(request_bytes)
 
     def _bytes_of(self, number: int, device: int | BoardPlace) -> int:
-        """Return the bytes of asking a servo how it is, or a board what it feels."""
+        """Return the bytes for reading the state of a servo, or the sensors of a board."""
         framing = FRAMINGS[self.wiring.bus[number].protocol]
         if isinstance(device, BoardPlace):
             table = self.wiring.tables(device, self.robot)
@@ -375,7 +375,7 @@ class Rig:
         return []
 
     def _check_range(self, bus: Bus, i: int) -> None:
-        """Refuse a servo that would not go where its file sends it, since its own limits are narrower."""
+        """Refuse a servo whose own limits are narrower than those of the file."""
         servo = self.servos[i]
         lower_bound, upper_bound = (self._read_register(bus, i, name) for name in ("position_low", "position_high"))
         if lower_bound == upper_bound == 0:  # how Feetech says that there are none
@@ -501,7 +501,7 @@ class Rig:
             self.now.felt[_SENSES[board.kind][0]] = row if board.kind != "tail" else row[0]
 
     def sensed(self, time: float) -> Sensed:
-        """Return what a controller may know of one robot: NaN for what it has no sensor for.
+        """Return the readings for a controller: NaN for quantities without a sensor.
 
         Args:
             time: since the beginning [s].
@@ -525,21 +525,21 @@ class Rig:
         )
 
     def aim(self, angles: np.ndarray) -> np.ndarray:
-        """Send all servos to angles, and return those that they were sent to, whole steps, shape (servo,) [rad]."""
+        """Send all servos to angles, and return the rounded angles, shape (servo,) [rad]."""
         steps = self.steps.of(angles)
         self.write("goal_position", dict(enumerate(steps.tolist())))
         return self.steps.angles(steps)
 
     def torque(self, enable: bool) -> None:
-        """Give all servos their torque, or take it away."""
+        """Switch the torque of all servos on or off."""
         self.write("torque_enable", dict.fromkeys(range(len(self.servos)), int(enable)))
 
     def limit(self, fraction: float) -> None:
-        """Let all servos use a share of their torque only, 0 to 1 [-]."""
+        """Limit all servos to a fraction of their torque, 0 to 1 [-]."""
         self.write("torque_limit", {i: round(fraction * servo.table.full) for i, servo in enumerate(self.servos)})
 
     def ready(self, goals: np.ndarray) -> np.ndarray:
-        """Give all servos their torque where they are, and be sure of it; return where they were sent [rad]."""
+        """Switch the torque of all servos on at goals, verify it, and return the rounded goals [rad]."""
         everybody = range(len(self.servos))
         steps = self.steps.of(goals)
         self.surely(
@@ -557,13 +557,13 @@ class Rig:
         return _WATCHDOG * min(units, default=np.inf)
 
     def watch(self, enable: bool) -> None:
-        """Let servos that can watch whether their host is there, or let them rest."""
+        """Switch the watchdogs of the servos on or off."""
         self.write(
             "bus_watchdog", dict.fromkeys(np.flatnonzero(self._has_watchdog).tolist(), _WATCHDOG if enable else 0)
         )
 
     def surely(self, register: str, values: dict[int, int]) -> None:
-        """Write a register of some servos one after the other, until each says that it has it.
+        """Write a register of servos one after another, and verify each by its reply.
 
         Raises:
             BusFailure: one does not say so, or refuses.
@@ -599,7 +599,7 @@ JUMPS = 3
 
 
 def _typical(length: int) -> Packet:
-    """Return a reply with so many bytes of data; what it says counts where numbers are written out."""
+    """Return a reply with a number of bytes of data, as long as a usual one."""
     return Packet(200, 0, STEPS.to_bytes(2, "little") * (length // 2) + bytes(length % 2))
 
 

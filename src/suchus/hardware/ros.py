@@ -22,7 +22,7 @@ NOTE = (
 
 
 def unfit(robot: Robot) -> str:
-    """Return in a sentence why a robot has no such description; empty for one that has."""
+    """Return a sentence why a robot cannot be described for ROS 2; empty if it can."""
     linear_cables = [cable.name for cable in robot.cables if cable.linear is not None]
     if not linear_cables:
         return ""
@@ -35,7 +35,7 @@ def unfit(robot: Robot) -> str:
 
 
 def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_000, port: str = "/dev/ttyUSB0") -> str:
-    """Return a robot as URDF with a joint for each cable's pulley and a ``ros2_control`` block for its servos.
+    """Return a robot as URDF with a joint for each cable's pulley, and a ``ros2_control`` block for its servos.
 
     Args:
         robot: the design.

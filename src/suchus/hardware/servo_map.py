@@ -1,4 +1,4 @@
-"""Which servo hangs on which channel, how it is mounted, and what pulses it understands."""
+"""Channel, mounting and pulse widths of each servo."""
 
 from dataclasses import dataclass, fields
 from math import pi

@@ -1,4 +1,4 @@
-"""Which servos that are sold are enough for a robot, of one family on one bus and one supply: found by simulation."""
+"""Search for sufficient servos for a robot, of one family on one bus and one supply, by simulation."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -32,7 +32,7 @@ FACTORS = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServoFamily:
-    """Servos of one family in a robot, and whether they do."""
+    """Servos of one family in a robot, and whether they are sufficient."""
 
     name: str
     """Name of the family."""
@@ -49,12 +49,12 @@ class ServoFamily:
 
     @property
     def passes(self) -> bool:
-        """Whether it does, if need be with longer periods."""
+        """Whether it is sufficient, also with longer periods."""
         return not self.lacking
 
     @property
     def as_asked(self) -> bool:
-        """Whether it does at the gaits' own periods."""
+        """Whether it is sufficient at the gaits' own periods."""
         return self.passes and all(factor == 1.0 for factor in self.factors.values())
 
     @property
@@ -77,7 +77,7 @@ class ServoFamily:
         return hours * max((self.current(case) for case in self.loads), default=nan)
 
     def binding(self) -> list[tuple[str, str, float]]:
-        """Return each servo with the case that asks most of it and the use of what it has there, the greatest first."""
+        """Return each servo with its most demanding case and its use there, the greatest use first."""
         uses = {
             name: max((use(self.chosen[name], loads[name]), case) for case, loads in self.loads.items())
             for name in self.chosen
@@ -90,7 +90,7 @@ class ServoFamily:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sizing:
-    """What a robot's own servos bear, and which families of servos that are sold would do."""
+    """Loads of a robot's own servos, and sufficient families of servos that are sold."""
 
     robot: Robot
     """The robot as it is designed."""
@@ -103,34 +103,34 @@ class Sizing:
 
     @property
     def best(self) -> ServoFamily | None:
-        """The cheapest family that does at the gaits' own periods; else the cheapest that does at longer ones."""
+        """The cheapest family that is sufficient at the gaits' own periods; otherwise at longer ones."""
         passing = [family for family in self.families if family.as_asked] or [f for f in self.families if f.passes]
         return passing[0] if passing else None
 
     @property
     def slower(self) -> ServoFamily | None:
-        """A family that is cheaper than the best one and does at longer periods, if there is one."""
+        """A cheaper family that is sufficient at longer periods, if there is one."""
         best = self.best
         cheaper = [f for f in self.families if f.passes and best is not None and sum(f.price) < sum(best.price)]
         return cheaper[0] if cheaper else None
 
 
 def use(motor: Motor, load: ServoLoad) -> float:
-    """Return the part of what a servo has that is used: of torque at its speed or of heat, the greater [-]."""
+    """Return the greater part of a servo's capability that is used, of torque at its speed or of heat [-]."""
     return max(load.line / FULL_WOUND, load.rms / motor.continuous_torque)
 
 
 def why(motor: Motor, load: ServoLoad) -> str:
-    """Return what binds a servo, in words."""
+    """Return the limit that is nearest for a servo: heat, torque or torque at speed."""
     if load.rms / motor.continuous_torque >= load.line / FULL_WOUND:
         return "heat"
     return "torque" if load.torque > 0.9 * motor.stall_torque else "torque at speed"
 
 
 def families_of(motors: Mapping[str, Motor]) -> dict[str, tuple[float, list[Motor]]]:
-    """Return the families of some servos with their supply [V] and their servos, the cheapest first.
+    """Return the supply [V] of each family of servos, and its servos, the cheapest first.
 
-    The supply is the greatest at which the numbers of one of them hold.
+    The supply is the greatest nominal voltage of a servo of the family.
 
     Raises:
         InvalidDesign: a servo of a family does not bear the supply.
@@ -152,9 +152,9 @@ def families_of(motors: Mapping[str, Motor]) -> dict[str, tuple[float, list[Moto
 
 
 def places(robot: Robot) -> list[tuple[str, ...]]:
-    """Return the servos that must be alike: left and right limbs of a girdle mirror each other.
+    """Return groups of servos that must be equal: those of left and right limbs of a girdle.
 
-    Linear actuators are left out: no servo that turns takes the place of one.
+    Linear actuators are left out: no turning servo can replace one.
     """
     linear_cables = {cable.name for cable in robot.cables if cable.linear is not None}
     mirrored = {
@@ -169,7 +169,7 @@ def places(robot: Robot) -> list[tuple[str, ...]]:
 
 
 def fitted(robot: Robot, motors: Mapping[str, Motor], volts: float) -> Robot:
-    """Return a robot with servos that are bought, with the gains and gears of its own."""
+    """Return a robot with servos that are sold, with the gains and gears of its own servos."""
     servos = {name: Servo.of(motor, volts, like=robot.servo(name)) for name, motor in motors.items()}
     return with_named_servos(robot, servos)
 
@@ -182,12 +182,12 @@ def size(
     family: str | None = None,
     progress: Progress = silent,
 ) -> Sizing:
-    """Find the servos that are enough for a robot, of each family of those that are sold.
+    """Find sufficient servos for a robot, in each family of those that are sold.
 
-    What a movement asks for is taken from servos four times as strong; of each family the cheapest servos are chosen
-    that give it at its speed and bear its heat. Then the robot is simulated with them, and where one is at its limit
-    for more than 2 % of the time or too warm for ever, the next one takes its place, until all do. A gait that is too
-    fast for all servos of a family is tried with a longer period.
+    The demand of a movement is measured with servos four times as strong. Of each family the cheapest servos are chosen
+    that supply this torque at its speed and bear its heat. Then the robot is simulated with them. A servo that is at
+    its limit for more than 2 % of the time, or too warm in the long run, is replaced by the next one, until all are
+    sufficient. A gait that is too fast for a family is tried with a longer period.
 
     Args:
         robot: who.
@@ -225,7 +225,7 @@ def size(
 
 
 class _Search:
-    """Looks for servos of one family after the other; what movements ask for is simulated once for all."""
+    """Search through families of servos; the demand of each movement is simulated once."""
 
     def __init__(self, robot: Robot, load_cases: Sequence[LoadCase]) -> None:
         self._robot, self._load_cases, self._places = robot, tuple(load_cases), places(robot)
@@ -233,7 +233,7 @@ class _Search:
         self._demands: dict[tuple[str, float], xr.Dataset] = {}
 
     def family(self, name: str, volts: float, motors: Sequence[Motor]) -> ServoFamily:
-        """Return the cheapest servos of a family that do, with periods as long as they must be."""
+        """Return the cheapest sufficient servos of a family, with periods as long as necessary."""
         factors = dict.fromkeys(self._gaits, 1.0)
         best_family = ServoFamily(name=name, volts=volts, chosen={}, factors=dict(factors), loads={})
         while True:
@@ -255,14 +255,14 @@ class _Search:
             factors[gait] = longer_factors[0]
 
     def _can_wait(self, gait: str) -> bool:
-        """Return whether a gait may have a longer period: all but swims, whose wave is that of the swim."""
+        """Return whether a gait may have a longer period: all but swims, whose wave depends on the period."""
         return all(case.lake is None for case in self._load_cases if case.gait.name == gait)
 
     def _slower_cases(self, factors: Mapping[str, float]) -> list[LoadCase]:
         return [case.slower(factors[case.gait.name]) for case in self._load_cases]
 
     def demands(self, factors: Mapping[str, float]) -> list[xr.Dataset]:
-        """Return what strong servos give in each case, its gait's period so many times as long; each simulated once."""
+        """Return the loads of strong servos in each case at a factor on the period; each is simulated once."""
         cases = self._slower_cases(factors)
         keys = [(case.name, factors[case.gait.name]) for case in cases]
         new = [i for i, key in enumerate(keys) if key not in self._demands]
@@ -273,7 +273,7 @@ class _Search:
         return [self._demands[key] for key in keys]
 
     def bears(self, motor: Motor, names: Sequence[str], demands: Sequence[xr.Dataset]) -> bool:
-        """Return whether a servo bears what is asked for in some places: its torque at standstill, and its heat."""
+        """Return whether a servo supplies the torque at standstill, and bears the heat, at some places."""
         for demand in demands:
             torque = demand.servo_torque.sel(servo=list(names)).values
             if np.quantile(np.abs(torque), 1.0 - AT_LIMIT, axis=0).max() > motor.stall_torque:
@@ -283,7 +283,7 @@ class _Search:
         return True
 
     def fits(self, motor: Motor, volts: float, names: Sequence[str], demands: Sequence[xr.Dataset]) -> bool:
-        """Return whether a servo gives what is asked for in some places at its speed, too."""
+        """Return whether a servo also supplies the torque at its speed, at some places."""
         servo = Servo.of(motor, volts, like=self._robot.servo(names[0]))
         return self.bears(motor, names, demands) and all(
             given_in(servo, demand.servo_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values)
@@ -293,7 +293,7 @@ class _Search:
         )
 
     def _hopeless(self, motors: Sequence[Motor], factors: Mapping[str, float]) -> tuple[str, str] | None:
-        """Return the first gait for which no servo of a family bears some place, and why; None if all are borne."""
+        """Return the first gait without a servo that bears it, and the reason; None without such a gait."""
         for case, demand in zip(self._slower_cases(factors), self.demands(factors), strict=True):
             for names in self._places:
                 if not any(self.bears(motor, names, [demand]) for motor in motors):
@@ -311,7 +311,7 @@ class _Search:
         )
 
     def _candidates(self, names: Sequence[str], volts: float, motors: Sequence[Motor], demands: Any) -> list[Motor]:
-        """Return the servos to try in some places, the cheapest first: those that fit, else those that bear it."""
+        """Return the servos to try at some places, the cheapest first: those that fit, else those that bear it."""
         fitting = [motor for motor in motors if self.fits(motor, volts, names, demands)]
         bearing = [motor for motor in motors if self.bears(motor, names, demands)]
         return fitting or bearing or [max(motors, key=lambda motor: motor.continuous_torque)]
@@ -319,7 +319,7 @@ class _Search:
     def _simulated(
         self, name: str, volts: float, motors: Sequence[Motor], factors: Mapping[str, float]
     ) -> tuple[ServoFamily, tuple[str, str] | None]:
-        """Return the servos of a family that do by simulation, or those tried last with a gait that they do not do."""
+        """Return sufficient servos of a family by simulation, or the last ones with the gait that failed."""
         cases, demands = self._slower_cases(factors), self.demands(factors)
         candidates = {names: self._candidates(names, volts, motors, demands) for names in self._places}
         while True:
@@ -340,7 +340,7 @@ class _Search:
             candidates |= {names: candidates[names][1:] for names, _ in weak}
 
     def _shortfall(self, family: ServoFamily, names: Sequence[str], name: str) -> tuple[str, str]:
-        """Return the gait of a case that the best servo of a family does not do, and why."""
+        """Return the gait of a case for which the best servo of a family is not sufficient, and the reason."""
         case = next(slower_case for slower_case in self._slower_cases(family.factors) if slower_case.name == name)
         load, motor = family.loads[name][names[0]], family.chosen[names[0]]
         return case.gait.name, (
@@ -350,7 +350,7 @@ class _Search:
         )
 
     def _weak(self, family: ServoFamily) -> list[tuple[tuple[str, ...], str]]:
-        """Return the places whose servos do not do, each with the case that asks most of it."""
+        """Return the places whose servos are not sufficient, each with its most demanding case."""
         weak_places = []
         for names in self._places:
             uses = [
@@ -365,16 +365,16 @@ class _Search:
 
 
 def does(motor: Motor, load: ServoLoad) -> bool:
-    """Return whether a servo does: below its limit for 98 % of the time, and never too warm."""
+    """Return whether a servo is sufficient: below its limit for 98 % of the time, and never too warm."""
     return load.at_limit <= AT_LIMIT and load.rms <= motor.continuous_torque
 
 
 def with_better(
     robot: Robot, case: LoadCase, loads: Mapping[str, ServoLoad], motors: Mapping[str, Motor] | None = None
 ) -> Mapping[str, ServoLoad]:
-    """Return loads in which each servo at its limit for too long names the cheapest servo that is sold and does.
+    """Return loads that name, for each overloaded servo, the cheapest servo that is sufficient.
 
-    Every one that is named has been simulated in its place.
+    Every named servo has been simulated in its position.
 
     Args:
         robot: who.

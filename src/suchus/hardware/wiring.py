@@ -1,4 +1,4 @@
-"""``hardware.toml``: which servo hangs on which bus, read and written."""
+"""``hardware.toml``, the wiring of a robot: read and written."""
 
 from dataclasses import fields, replace
 from pathlib import Path
@@ -37,7 +37,7 @@ def write_wiring(wiring: Wiring, path: str | Path) -> Path:
 
 
 def wiring_text(wiring: Wiring) -> str:
-    """Return a wiring as TOML: what each value means once, then a line for each bus, servo and board."""
+    """Return a wiring as TOML: the meaning of each value once, then a line for each bus, servo and board."""
     lines = [
         "# The angle of a joint is sign (steps - zero) 2 pi / 4096.",
         f"robot = {_value(wiring.robot)}",

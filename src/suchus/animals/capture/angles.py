@@ -1,8 +1,8 @@
 """From keypoints to the article's four bend angles, and to the bend at every point of the midline.
 
-Every segment of the midline looks forward: from the point behind to the point ahead. Lateral angles are taken in the
-ground plane, seen from above; vertical ones against it, which needs heights. Bends beyond half a turn fold over.
-Whether joints bend all at once or one after another is a standing wave or a travelling one.
+Every segment of the midline points forward: from the rear point to the front point. Lateral angles are taken in the
+ground plane, seen from above. Vertical angles are taken against the ground plane and need heights. Bends beyond half a
+turn are ambiguous. The phases of the joints show whether the body bends as a standing wave or as a travelling wave.
 """
 
 from itertools import pairwise
@@ -22,7 +22,7 @@ def azimuth(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " frame"
 
 
 def elevation(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " frame"]:
-    """Return how far a segment looks up [rad]; NaN where no heights were seen."""
+    """Return the angle of a segment above the ground plane [rad]; NaN without heights."""
     if not tracks.upright:
         return np.full(len(tracks.time), np.nan)
     d = tracks.at(front) - tracks.at(rear)
@@ -32,11 +32,11 @@ def elevation(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " fram
 def bend_angles(tracks: Tracks, tail_share: float = 1.0) -> BendAngles:
     """Return the four angles of Figs 11 and 12 in the article's signs, each of shape (frame,) [rad].
 
-    The spine's is the whole trunk's: the direction of the front girdle (``neck`` or ``snout`` before ``shoulder``)
-    against that of the hind one (``hip`` before ``tail_base``), which equals the sum of the joint angles between
-    them. The tail's lateral angle is that of the tail against the hind girdle, at a share of the tail's length; its
-    vertical one is that of its first segment, the tail's pitch. Angles whose points were not tracked are NaN, as are
-    those to the sides where the camera stands beside the animal, and those up and down where no heights were seen.
+    The angle of the spine is that between the front girdle (``neck`` or ``snout`` to ``shoulder``) and the hind girdle
+    (``hip`` to ``tail_base``). It equals the sum of the joint angles between them. The lateral angle of the tail is
+    that between the tail and the hind girdle, at a fraction of the tail's length. The vertical angle of the tail is
+    that of its first segment. Angles of points that were not tracked are NaN. Lateral angles are NaN in a view from the
+    side, vertical angles without heights.
 
     Args:
         tracks: the keypoints.
@@ -59,7 +59,7 @@ def bend_angles(tracks: Tracks, tail_share: float = 1.0) -> BendAngles:
 
 
 def _tail_yaw(tracks: Tracks, fraction: float) -> Float[np.ndarray, " frame"]:
-    """Return how far the tail looks left of the girdle, drawn through between the middles of its segments [rad]."""
+    """Return the angle of the tail to the left of the girdle, interpolated between its segments [rad]."""
     segments = list(pairwise(tracks.tail_chain[1:]))
     frame_lengths = [np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1) for a, b in segments]
     if not all(np.isfinite(size).any() for size in frame_lengths):  # a segment was never seen whole
@@ -80,7 +80,7 @@ def _tail_yaw(tracks: Tracks, fraction: float) -> Float[np.ndarray, " frame"]:
 
 
 def joint_bends(tracks: Tracks, chain: tuple[str, ...]) -> Float[np.ndarray, "joint frame"]:
-    """Return the lateral bend at every point between two segments of a chain, front end left positive [rad].
+    """Return the lateral bend at every point between two segments of a chain, positive to the left [rad].
 
     Args:
         tracks: the keypoints.
@@ -93,7 +93,7 @@ def joint_bends(tracks: Tracks, chain: tuple[str, ...]) -> Float[np.ndarray, "jo
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:
-    """Return an angle within half a turn of zero [rad]."""
+    """Return the equivalent angle between minus half a turn and half a turn [rad]."""
     return np.asarray(np.mod(angle + np.pi, 2 * np.pi) - np.pi)
 
 
@@ -104,8 +104,8 @@ STANDING = 0.8
 def standing_index(amplitude: ArrayLike, phase: ArrayLike) -> float:
     """Return 1 for a standing wave, 0 for a travelling one: ``|sum A exp(2 i phi)| / sum A`` [-].
 
-    Joints in antiphase count as in phase, since a standing wave may have a node. A straight line through the phases
-    cannot tell the two apart: a half turn at the node looks like a lag.
+    Joints in antiphase count as in phase, because a standing wave may have a node. A linear fit of the phases cannot
+    tell the two waves apart: half a turn at a node resembles a lag.
 
     Args:
         amplitude: of the bend at each joint, of any one unit.

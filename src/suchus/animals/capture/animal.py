@@ -1,4 +1,4 @@
-"""A made-up animal whose every angle is known: what the extraction must find on a body that is not our robot."""
+"""A synthetic animal with known angles, which tests the extraction on a body that is not our robot."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args

@@ -1,4 +1,4 @@
-"""The animal beside the robot: what every joint would have to do, what the gait makes it do, and why they differ."""
+"""Comparison of animal and robot for each joint: required motion, commanded motion, and reason for the difference."""
 
 from itertools import pairwise
 
@@ -19,11 +19,11 @@ _RANGE_END = 0.98  # share of its range from which on a joint is at the end of i
 
 
 def beside(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:
-    """Return for every joint of a robot how far the animal moves it, what its gait leaves of that, and why.
+    """Return for every joint of a robot the animal's angle, the residual of the gait, and the reason for the residual.
 
-    The animal's midline is divided among the hinges of trunk and tail by where they are along the part; its feet are
-    put as far ahead of their girdles as they are in proportion to the trunk, at the width and the height of the gait's.
-    Both clocks have LF's mid-stance in common.
+    The midline of the animal is divided among the hinges of trunk and tail by their positions. The feet have the
+    animal's forward offset in proportion to the trunk, and the width and height of the gait. Both clocks agree at the
+    mid-stance of LF.
 
     Args:
         walk: the measured walk, with all keypoints.
@@ -50,7 +50,7 @@ def beside(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:
 
 
 def beside_lines(data: xr.Dataset, robot: str) -> list[str]:
-    """Return the comparison in lines that people read: a joint each, with what the robot cannot follow and why.
+    """Return the comparison as text, a line for each joint: amplitude, residual and reason.
 
     Args:
         data: as ``beside`` returns it.
@@ -102,7 +102,7 @@ def _axial(walk: Walk, robot: Robot, gait: Gait) -> list[_Row]:
 
 
 def _animal_bends(walk: Walk, region: str, places: list[float]) -> list[np.ndarray]:
-    """Return the animal's bend within the stretch of the midline that each hinge of a part stands for [rad]."""
+    """Return the animal's bend in the section of the midline that belongs to each hinge [rad]."""
     if not places:
         return []
     names, positions = [str(name) for name in walk.phases.keypoint.values], walk.phases.place.values
@@ -129,7 +129,7 @@ def _animal_bends(walk: Walk, region: str, places: list[float]) -> list[np.ndarr
 
 
 def _explain_residual(residual: np.ndarray, is_at_range_end: bool) -> str:
-    """Say what most of a residual is."""
+    """Return a sentence for the largest part of a residual: offset, fundamental or overtones."""
     if is_at_range_end:
         return "the animal's bend is beyond the joint's range"
     waves = np.fft.rfft(residual) / len(residual)
@@ -142,7 +142,7 @@ def _explain_residual(residual: np.ndarray, is_at_range_end: bool) -> str:
 
 
 def _limbs(walk: Walk, robot: Robot, gait: Gait) -> list[_Row]:
-    """Compare the hinges of the limbs, by the postures that put feet where the animal's are."""
+    """Compare the hinges of the limbs, in postures that put the feet at the animal's positions."""
     plan, place = movement(robot, gait), layout(robot)
     phase = walk.phases.phase.values[::_PHASE_STEP]
     clock = _clock(walk, gait, phase)

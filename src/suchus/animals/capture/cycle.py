@@ -1,4 +1,4 @@
-"""The mean cycle of a quantity that repeats: its period, its harmonics, and what is left over."""
+"""The mean cycle of a periodic quantity: its period, its harmonics and its residual."""
 
 from dataclasses import dataclass
 
@@ -38,7 +38,7 @@ class PeriodicFit:
 
     @property
     def noise(self) -> float:
-        """Standard deviation of what is left."""
+        """Standard deviation of the residual."""
         residual = self.residual[np.isfinite(self.residual)]
         return float(np.sqrt(np.sum(residual**2) / max(1, len(residual) - self._parameters)))
 
@@ -70,9 +70,9 @@ class PeriodicFit:
 
 
 def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, drift: int = 0) -> PeriodicFit:
-    """Fit mean, drift and harmonics by least squares to the frames that are seen; points that jumped are left out.
+    """Fit mean, drift and harmonics by least squares to the visible frames; outliers are left out.
 
-    Of what was never seen all is NaN.
+    The fit of a quantity that was never seen is NaN.
 
     Args:
         time: shape (frame,) [s].
@@ -124,10 +124,10 @@ def harmonics_for(frames: int, frames_per_cycle: float, *, most: int) -> int:
 
 
 def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], source: str) -> float:
-    """Return the period that the signals share [s].
+    """Return the common period of signals [s].
 
-    A coarse search by one harmonic on a fine grid of frequencies, down to a cycle three times as long as the tracks,
-    then a refinement by three harmonics.
+    A coarse search fits one harmonic on a grid of frequencies, down to a cycle three times as long as the tracks. A
+    refinement fits three harmonics.
 
     Args:
         time: shape (frame,) [s].

@@ -1,4 +1,4 @@
-"""When feet stand, from how fast they move over the ground, and how far legs swing in their girdle's frame."""
+"""Stance and swing of feet by their speed over the ground, and their motion in the frame of the girdle."""
 
 from functools import cache
 from typing import NamedTuple
@@ -46,12 +46,12 @@ class FootContact(NamedTuple):
 
     @property
     def duty(self) -> float:
-        """Share of the cycle in which it stands [-]."""
+        """Fraction of the cycle in which the foot stands [-]."""
         return (self.lift_off - self.touch_down) % 1.0
 
 
 class FootSweep(NamedTuple):
-    """How one foot moves against its girdle over the mean cycle."""
+    """Motion of one foot relative to its girdle over the mean cycle."""
 
     forward: Float[np.ndarray, " grid"]
     """Distance by which it is ahead of the girdle [m or px]."""
@@ -66,12 +66,12 @@ class FootSweep(NamedTuple):
 
 
 def grid() -> Float[np.ndarray, " grid"]:
-    """Return the phases at which a foot is looked at [cycle]."""
+    """Return the phases at which the motion of a foot is evaluated [cycle]."""
     return np.arange(GRID) / GRID
 
 
 def forward_path(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
-    """Return how far a foot is ahead of the rear of the trunk along it, NaN where it was not seen [m or px]."""
+    """Return the position of a foot ahead of the rear of the trunk, NaN where it was not seen [m or px]."""
     front, rear = tracks.line
     trunk_vector = (tracks.at(front) - tracks.at(rear))[:, :2]
     forward_axis = trunk_vector / np.linalg.norm(trunk_vector, axis=1, keepdims=True)
@@ -79,12 +79,12 @@ def forward_path(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
 
 
 def steps(tracks: Tracks, leg: str, period: float) -> Middles:
-    """Return the middles of a foot's swings; the period need only be roughly right [s]."""
+    """Return the middles of a foot's swings; an approximate period is enough [s]."""
     return middles(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
 
 
 def contact(tracks: Tracks, leg: str, period: float) -> FootContact | None:
-    """Return when a foot stands in the mean cycle, or None where no swing was filmed from stance to stance.
+    """Return stance and swing of a foot in the mean cycle; None without a complete swing.
 
     Args:
         tracks: the keypoints, by a clock that follows the animal's pace.
@@ -119,7 +119,7 @@ def contact(tracks: Tracks, leg: str, period: float) -> FootContact | None:
 
 
 def _speed(tracks: Tracks, leg: str, period: float) -> Float[np.ndarray, " grid"]:
-    """Return how fast a foot moves over the ground in the mean cycle [m/s or px/s]."""
+    """Return the speed of a foot over the ground in the mean cycle [m/s or px/s]."""
     count = _harmonics(tracks, leg, period, _TOP)
     fits = [
         fit(tracks.time, row, period, harmonics=count, drift=_drift(tracks, period)) for row in tracks.at(leg).T[:2]
@@ -128,7 +128,7 @@ def _speed(tracks: Tracks, leg: str, period: float) -> Float[np.ndarray, " grid"
 
 
 def _hidden_fraction(tracks: Tracks, point: str, period: float) -> float:
-    """Return the share of the cycle in which a point is seen in less than a fifth of the frames [-]."""
+    """Return the fraction of the cycle in which a point is seen in less than a fifth of the frames [-]."""
     bins = np.minimum((np.mod(tracks.time / period, 1.0) * _BINS).astype(int), _BINS - 1)
     is_seen = np.isfinite(tracks.at(point)[:, 0])
     frame_counts = np.bincount(bins, minlength=_BINS)
@@ -137,9 +137,9 @@ def _hidden_fraction(tracks: Tracks, point: str, period: float) -> float:
 
 
 def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
-    """Return how a foot moves in the frame of its girdle, whose direction is smoothed over the cycle.
+    """Return the motion of a foot in the frame of its girdle, whose direction is smoothed over the cycle.
 
-    It is None where the girdle's points were not tracked, or seen from the side.
+    It is None if the girdle's points were not tracked, or in a view from the side.
 
     Args:
         tracks: the keypoints.
@@ -166,7 +166,7 @@ def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
 
 
 def path_shape(duty: float) -> Float[np.ndarray, " grid"]:
-    """Return how far ahead a foot is in a gait of stroke one: half a cosine forward, then straight back [-].
+    """Return the forward position of a foot in a gait of stroke one: half a cosine forward, then a line back [-].
 
     Args:
         duty: share of the cycle in which it goes back [-].
@@ -177,7 +177,7 @@ def path_shape(duty: float) -> Float[np.ndarray, " grid"]:
 
 
 def _fitting_path(forward: Float[np.ndarray, " grid"]) -> tuple[float, float]:
-    """Return stroke and duty factor of the gait's path that comes nearest to a foot's, at whatever phase."""
+    """Return stroke and duty factor of the gait's path that is nearest to the path of a foot, at any phase."""
     shapes, power = _paths()
     spectrum = np.fft.rfft(forward - forward.mean())
     likeness = np.fft.irfft(spectrum * shapes, GRID).max(axis=1)
@@ -201,19 +201,19 @@ def smooth_azimuth(tracks: Tracks, front: str, rear: str, period: float) -> Floa
 
 
 def continuous(angle: Float[np.ndarray, " frame"]) -> Float[np.ndarray, " frame"]:
-    """Return an angle without jumps by full turns, NaN where it is [rad]."""
+    """Return an angle without jumps by full turns; NaN stays NaN [rad]."""
     is_seen, unwrapped = np.isfinite(angle), angle.copy()
     unwrapped[is_seen] = np.unwrap(angle[is_seen])
     return unwrapped
 
 
 def _drift(tracks: Tracks, period: float) -> int:
-    """A curved path needs two cycles to be distinguished from the cycle itself."""
+    """Return the power of time for a path: 2 if the tracks have two cycles, otherwise 1."""
     return 2 if tracks.time[-1] - tracks.time[0] >= 1.9 * period else 1
 
 
 def _harmonics(tracks: Tracks, point: str, period: float, max_harmonics: int) -> int:
-    """So many that none swings freely where the point is hidden in every cycle."""
+    """Return the number of harmonics for a point, few enough that gaps in its track leave none undetermined."""
     frame_count = int(np.isfinite(tracks.at(point)[:, 0]).sum())
     gap = _hidden_fraction(tracks, point, period)
     return min(harmonics_for(frame_count, tracks.rate * period, most=max_harmonics), max(2, int(1.0 / max(gap, 1e-3))))

@@ -1,4 +1,4 @@
-"""Filming our own robot: from a record to the keypoints that a camera would have tracked. The extraction's proof."""
+"""Synthetic film of our own robot: the keypoints that a camera would track in a record. It proves the extraction."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -86,7 +86,7 @@ def tracked(points: Mapping[str, np.ndarray], time: np.ndarray, camera: Camera, 
 
 
 def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return where the keypoints of a robot are in the world, each of shape (time, 3) [m].
+    """Return the positions of a robot's keypoints in the world, each of shape (time, 3) [m].
 
     Args:
         robot: whose record it is.
@@ -134,7 +134,7 @@ def _body_of_hinge(place: Layout, hinge: str) -> int:
 
 
 def _tail(place: Layout, body_frames: BodyFrames) -> dict[str, np.ndarray]:
-    """Return the tail's first joint, every other joint that is driven sideways, both ends of the last of them [m]."""
+    """Return the positions of the tail's base, every second lateral joint, and the ends of the last segment [m]."""
     driven_hinges = [place.servos[servo] for servo in place.tail_yaw]
     driven_hinges += [hinge for servo in place.cables for hinge in place.cable(servo).hinges]
     bodies = [next(i for i, body in enumerate(place.bodies) if body.name == name) for name in place.tail]

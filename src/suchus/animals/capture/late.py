@@ -1,7 +1,7 @@
-"""Which keypoints of the midline run late: their frames are not those of the others.
+"""Keypoints of the midline whose frames are later than those of the others.
 
-Neighbours keep their distance. Where one of them is seen late they do not: their link varies as it turns, in every
-cycle again, and as the pace changes, from cycle to cycle. Each of the two is looked at for itself.
+Neighbours have a constant distance. If one of them is late, the distance varies: with the turn of the link in every
+cycle, and with the pace from cycle to cycle. Both effects are tested separately.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -40,10 +40,9 @@ _SMOOTHING_WINDOW = 0.3  # [cycle]; over which the velocity of a keypoint is smo
 
 
 def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dict[str, str]:
-    """Return the midline points that run behind or ahead of the others; from the side that cannot be seen.
+    """Return the midline points that are later or earlier than the others; none in a view from the side.
 
-    The distance of neighbours stays. If one of them is seen late it does not, as the link turns and the pace changes;
-    the lag with which it stays most nearly the same is that of one behind the other.
+    The lag between two neighbours is the one at which their distance varies least.
 
     Args:
         tracks: the keypoints, by the clock.
@@ -89,7 +88,7 @@ def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dic
 
 
 class _LaggedLink(NamedTuple):
-    """How the distance of two neighbours varies if one of them is seen otherwise late."""
+    """Variation of the distance of two neighbours with the lag between them."""
 
     varies: Float[np.ndarray, " lag"]
     """Variance of their distance over that of noise, by how much later the second one is seen [-]."""
@@ -100,7 +99,7 @@ class _LaggedLink(NamedTuple):
 
 
 class _Paced(NamedTuple):
-    """By how much a point runs behind its neighbours, by how their distance varies with the pace."""
+    """Lag of a point behind its neighbours, estimated from the variation of their distance with the pace."""
 
     lag: float
     """By its links together [s]."""
@@ -113,7 +112,7 @@ class _Paced(NamedTuple):
 
 
 class _Lags:
-    """By how much one point of a link runs behind the other, by their courses over the mean cycle."""
+    """Lags between the points of links, estimated from their paths over the mean cycle."""
 
     def __init__(self, tracks: Tracks, clock: Clock, time: np.ndarray) -> None:
         """Fit the path of every keypoint of the midline, and tabulate the lags that are tried.
@@ -142,7 +141,7 @@ class _Lags:
         self._mean_square_bends = dict(zip(chain[1:-1], bends, strict=True))
 
     def _places(self, names: Collection[str], lag: float) -> dict[str, np.ndarray]:
-        """Return where points are so much later than the frames say, shape (frame, 2) each."""
+        """Return the positions of points at a lag after the frames' times, each of shape (frame, 2)."""
         clock_time = self._clock.read(self._time + lag)
         turn = np.exp(2j * np.pi * np.multiply.outer(clock_time, np.arange(1, _HARMONICS + 1)) / self._clock.period)
         positions = {}
@@ -154,7 +153,7 @@ class _Lags:
         return positions
 
     def links(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], _LaggedLink]:
-        """Return how the distance of each pair varies with the lag of its second point; none in too short a film."""
+        """Return the variation of each pair's distance with the lag of its second point; none in too short a film."""
         if len(self._time) < _FRAMES:
             return {}
         first_positions = self._places({first_name for first_name, _ in pairs}, 0.0)
@@ -193,10 +192,10 @@ class _Lags:
         return (lag if is_significant and abs(lag) > _MIN_LAG * self._clock.period else 0.0), gained
 
     def inner(self, chain: Sequence[str], links: Mapping[tuple[str, str], _LaggedLink]) -> dict[str, float]:
-        """Return the point within a chain whose lag is sure by both of its links together, if there is one [s].
+        """Return the inner point of a chain whose lag is significant in both links together, if there is one [s].
 
-        A point that is late is as far behind the one as behind the other, in its turns and by the pace, so that each
-        alone may leave open what all together show.
+        A late point has the same lag behind both neighbours, by the turns and by the pace. All four estimates together
+        may be significant where each alone is not.
         """
         candidates: dict[str, tuple[float, float]] = {}
         for front, name, rear in zip(chain, chain[1:], chain[2:], strict=False) if links else ():
@@ -227,7 +226,7 @@ class _Lags:
         return {name: candidates[name][0]}
 
     def at_an_end(self, chain: Sequence[str]) -> dict[str, float]:
-        """Return the first or last point of a chain if it is surely late by the pace [s]."""
+        """Return the first or last point of a chain if its lag by the pace is significant [s]."""
         estimates = {name: self._paced(chain, name) for name in (chain[0], chain[-1]) if len(self._time) >= _FRAMES}
         significant = {
             name: estimate for name, estimate in estimates.items() if abs(estimate.lag) > _MIN_LAG * self._clock.period
@@ -236,11 +235,11 @@ class _Lags:
         return {name: significant[name].lag} if name and significant[name].z_score > _MIN_END_Z else {}
 
     def _paced(self, chain: Sequence[str], name: str) -> _Paced:
-        """Return by how much a point of a chain runs behind its neighbours by the pace.
+        """Return the lag of a point of a chain behind its neighbours, by the pace.
 
-        A point that is late is off by its velocity times the lag: the faster the body goes, the longer is the link
-        ahead of it and the shorter the one behind. What repeats in every cycle is taken out of length and velocity, so
-        that neither skin that slides nor the chord of a body that bends looks like a lag.
+        A late point is off by its velocity times the lag. At higher speed the link ahead of it is longer, the link
+        behind it shorter. The periodic part of length and velocity is removed, so that sliding skin and the chord of a
+        bent body do not resemble a lag.
         """
         half = max(2, round(_SMOOTHING_WINDOW * self._clock.period * self._tracks.rate / 2))
         lags, errors = np.transpose([self._by_pace(name, neighbour, half) for neighbour in beside(chain, name)])
@@ -249,7 +248,7 @@ class _Lags:
         return _Paced(lag, error, abs(lag) / error, float(np.min(np.sign(lag) * lags / errors)))
 
     def _by_pace(self, name: str, neighbour: str, half: int) -> tuple[float, float]:
-        """Return by how much a point runs behind its neighbour, by the pace, and the standard error [s]."""
+        """Return the lag of a point behind one neighbour, by the pace, and its standard error [s]."""
         place = self._tracks.at(name)[:, :2]
         link = self._tracks.at(neighbour)[:, :2] - place
         link_length, link_direction = (
@@ -279,10 +278,10 @@ class _Lags:
 
 
 def _moving_line(place: Float[np.ndarray, "frame axis"], half: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return where a straight line through each frame and ``half`` before and after it is, and its slope [1/frame].
+    """Return value and slope [1/frame] of a straight line through each frame and ``half`` frames on either side.
 
-    Points that were not seen are put between their neighbours. Both are NaN at the ends of the film, and where fewer
-    than half of these frames were seen.
+    Missing points are interpolated. Both are NaN at the ends of the film, and where fewer than half of these frames
+    were seen.
     """
     frames, (middle, slope) = np.arange(len(place)), np.full((2, *place.shape), np.nan)
     steps = np.arange(-half, half + 1)

@@ -1,4 +1,4 @@
-"""From what was seen of an animal to the gait of any robot: by feet and bends, or joint by joint as it was measured."""
+"""From a measured walk to the gait of any robot: by feet and bends, or by the measured angle of each joint."""
 
 import re
 from collections.abc import Sequence
@@ -85,11 +85,11 @@ def to_gait(
     time: Time = "froude",
     trunk: float | None = None,
 ) -> Captured:
-    """Return the gait by which a robot walks as was measured.
+    """Return the gait by which a robot walks as the animal was measured.
 
     Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. Trunk and tail
-    bend by their first harmonics, each shared evenly by its hinges. Quantities that were not measured are the base's.
-    What the robot's limits refuse is changed as little as needed.
+    bend by their first harmonics, and all hinges of a region bend equally. Quantities that were not measured are those
+    of the base gait. Quantities beyond the robot's limits are changed as little as possible.
 
     Args:
         walk: the measured walk.
@@ -154,7 +154,7 @@ def driven_share(robot: Robot) -> float:
 
 
 def mean_of(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
-    """Return the mean of a number over legs, leaving out duty factors that are not sure."""
+    """Return the mean of a number over legs; uncertain duty factors are left out."""
     reliable_legs = [leg for leg in legs if stem != "duty" or not walk.numbers[f"duty_{leg}"].error > UNSURE]
     return float(np.mean([walk.value(f"{stem}_{leg}") for leg in reliable_legs or legs]))
 
@@ -266,7 +266,7 @@ def _with_bends(walk: Walk, robot: Robot, gait: Gait, notes: list[str]) -> Gait:
 
 
 def _bend_limits(robot: Robot, region: Literal["trunk", "tail"]) -> list[float]:
-    """Return how far each hinge that bends a part sideways can bend it to either side [rad]."""
+    """Return the greatest lateral bend of each hinge of trunk or tail, to either side [rad]."""
     place, ranges, hinges = layout(robot), np.abs(servo_ranges(robot)).min(axis=1), yaw_hinges(robot)
     cables = {servo: place.cable(servo).bend_limit / place.cable(servo).joints for servo in place.cables}
     return [cables.get(hinges.servos[k], float(ranges[hinges.servos[k]])) for k in hinges.within(region)]
@@ -313,7 +313,7 @@ def _with_steps(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdl
 
 
 def _feet(walk: Walk, robot: Robot, base_feet: Sequence[_Feet], girdles: Girdles, notes: list[str]) -> list[_Feet]:
-    """Return the measured paths of the feet at the robot's size."""
+    """Return the measured foot paths, scaled to the robot [m]."""
     trunk, sides = hips_ahead(robot, 0), [girdle.aside for girdle in robot.girdles]
     strokes, stroke = [trunk * mean_of(walk, "stroke", legs) for legs in _PAIRS], trunk * mean_of(walk, "stroke")
     if girdles == "alike" and abs(strokes[0] - strokes[1]) > 0.1 * stroke:
@@ -471,7 +471,7 @@ def _spelled(place: Layout) -> tuple[str, ...]:
 
 
 def _swing(robot: Robot, gait: Gait, limb: LimbPlace) -> tuple[float, float]:
-    """Return when the foot of a limb begins to go forward, and for which share of the cycle it does [cycle]."""
+    """Return the phase at which a foot begins its swing, and the duration of the swing [cycle]."""
     clock = np.arange(_STEPS) / _STEPS
     design, place = limb.girdle.limb, layout(robot)
     targets, angles = cycle_targets(robot, gait, clock), np.zeros((_STEPS, len(design.hinges)))

@@ -1,9 +1,9 @@
-"""Which keypoints are to be trusted: what was tracked is held against what a body can do, and what is wrong is named.
+"""Plausibility of keypoints: tracks are compared with what a body can do, and faults are named.
 
-Neighbours on the midline keep their distance and follow each other from front to back; feet stay within reach of their
-girdles; from one frame to the next nothing leaps. A keypoint that breaks this throughout is left out, one that does so
-in some frames is lost there, and a sentence says so. What only the user can mend, as two keypoints whose names are
-exchanged, is refused.
+Neighbours on the midline keep their distance and their order. Feet stay within reach of their girdles. No point jumps
+from one frame to the next. A keypoint that violates this throughout is left out. One that violates it in some frames is
+treated as lost there, and a sentence reports it. Faults that only the user can correct, such as exchanged names, are
+refused.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -35,7 +35,7 @@ _STANDS = 0.15  # [trunk]; a body that goes and comes by less, over a whole film
 
 
 class Screened(NamedTuple):
-    """Tracks that can be trusted, and what was found to be wrong."""
+    """Plausible tracks, and the faults of the others."""
 
     tracks: Tracks
     """Without the keypoints that are wrong throughout; others are lost where they are wrong."""
@@ -46,7 +46,7 @@ class Screened(NamedTuple):
 
 
 def screened(tracks: Tracks) -> Screened:
-    """Return what can be trusted of tracks.
+    """Return the plausible part of tracks.
 
     Raises:
         UnusableTracks: names of keypoints are exchanged, those that are left do not show where the trunk heads, or the
@@ -81,7 +81,7 @@ def screened(tracks: Tracks) -> Screened:
 
 
 def _trusted_tracks(source: Tracks, faults: Collection[str], tracks: Tracks | None = None) -> Tracks:
-    """Return the tracks of the keypoints that are not wrong; those that are left must show where the trunk heads."""
+    """Return the tracks without faulty keypoints; the rest must show the direction of the trunk."""
     trusted_tracks = (tracks or source).without(faults)
     if len(trusted_tracks.trunk_chain) < 2:
         reason_text = (
@@ -106,9 +106,9 @@ def _lost_keypoints(tracks: Tracks, phrase: str = "is lost") -> dict[str, str]:
 
 
 def _noise(place: np.ndarray) -> float:
-    """Return the standard deviation of a coordinate from frame to frame [m or px]; NaN where too little is seen.
+    """Return the standard deviation of a coordinate from frame to frame [m or px]; NaN if too little is seen.
 
-    Each place is held against the cubic through the two before and the two after, which a body follows.
+    Each position is compared with the cubic through the two positions before and the two after it.
     """
     if len(place) < 5:
         return float("nan")
@@ -118,7 +118,7 @@ def _noise(place: np.ndarray) -> float:
 
 
 def _scale(tracks: Tracks) -> float:
-    """Return about how long the trunk is, whatever one keypoint does [m or px]."""
+    """Return an estimate of the trunk's length that does not depend on any single keypoint [m or px]."""
     chain = tracks.midline
     links = [float(np.nanmedian(_distance(tracks, a, b))) for a, b in pairwise(chain)]
     front, rear = tracks.line
@@ -135,7 +135,7 @@ def _typical_noise(noise: Mapping[str, float], scale: float) -> float:
 
 
 def _shaky_keypoints(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[str, str]:
-    """Return the keypoints whose noise hides what they do, while others are seen well."""
+    """Return the keypoints whose noise hides their motion, while others are seen well."""
     chain, typical_noise = tracks.midline, _typical_noise(noise, scale)
     link = float(np.median([np.nanmedian(_distance(tracks, a, b)) for a, b in pairwise(chain)]))
     faults = {}
@@ -150,7 +150,7 @@ def _shaky_keypoints(tracks: Tracks, noise: Mapping[str, float], scale: float) -
 
 
 def _noisy(tracks: Tracks, noise: Mapping[str, float], scale: float) -> list[str]:
-    """Name the keypoints that are seen much worse than others."""
+    """Return a sentence that names keypoints with much more noise than usual."""
     typical_noise = _typical_noise(noise, scale)
     loud = [name for name in tracks.points if noise[name] > _SHAKES * typical_noise]
     shakes = ", ".join(f"{name} by {_length(noise[name], tracks)}" for name in loud)
@@ -163,7 +163,7 @@ def _length(value: float, tracks: Tracks) -> str:
 
 
 class _Links:
-    """The distances between neighbours on the midline, and between every other one, frame by frame."""
+    """Distances between neighbours on the midline, and between every second point, frame by frame."""
 
     def __init__(self, tracks: Tracks, noise: Mapping[str, float], scale: float) -> None:
         self._tracks, self._noise, self._scale = tracks, noise, scale
@@ -178,26 +178,26 @@ class _Links:
         return self._distances[pair]
 
     def max_deviation(self, pair: tuple[str, str], fraction: float) -> float:
-        """Return by how much the distance of a pair may differ from what it usually is."""
+        """Return the tolerance for the distance of a pair about its median."""
         noises = np.nan_to_num([self._noise[name] for name in pair])
         typical_distance = min(float(np.nanmedian(self.distance(pair))), self._scale)
         return float(fraction * typical_distance + _NOISES * np.hypot(*noises)) + 1e-9
 
     def excess(self, pair: tuple[str, str]) -> float:
-        """Return how far the distance of a pair varies beyond what it may, in units of that; 0 where it does not."""
+        """Return the spread of a pair's distance over its tolerance, minus one; 0 within the tolerance [-]."""
         distance = self.distance(pair)
         spread = float(1.4826 * np.nanmedian(np.abs(distance - np.nanmedian(distance))))
         return max(0.0, spread / self.max_deviation(pair, _SWAY) - 1.0)
 
     def strays(self, pair: tuple[str, str], fraction: float = _ASTRAY) -> Bool[np.ndarray, " frame"]:
-        """Return in which frames the distance of a pair is not what it usually is, by more than a share of it."""
+        """Return the frames in which the distance of a pair differs from its median by more than a tolerance."""
         distance = self.distance(pair)
         with np.errstate(invalid="ignore"):
             return np.abs(distance - np.nanmedian(distance)) > self.max_deviation(pair, fraction)
 
 
 def _unsteady(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[str, str]:
-    """Return the midline points that do not keep their distance from their neighbours: the fewest that explain it.
+    """Return the fewest midline points that explain all varying distances between neighbours.
 
     Raises:
         UnusableTracks: it cannot be told which ones are wrong.
@@ -329,11 +329,12 @@ _JUMP_FACTOR, _JUMP_PERCENTILE = 3.0, 90.0  # times what is not exceeded in so m
 
 
 def _without_jumps(tracks: Tracks, scale: float) -> tuple[Tracks, dict[str, np.ndarray]]:
-    """Return the tracks with points lost where they are far from where they were just before and just after, and where.
+    """Return the tracks without points that jumped, and the frames of the jumps by keypoint.
 
-    Far is beyond a fifth of the trunk, and beyond three times what 90 % of the frames of that point stay below, so that
-    a fast foot in a slow film is none. This is Hampel's identifier with a window of seven frames and a quantile that
-    holds where a foot stands still most of the time. Longer mistakes, as two feet exchanged for a while, are no jumps.
+    A jump is a distance of more than a fifth of the trunk from the median of the seven frames around it. It must also
+    exceed three times the distance that 90 % of the frames stay below, so that a fast foot in a slow film is no jump.
+    This is Hampel's identifier with a quantile that is valid for a foot that rests most of the time. Longer faults,
+    such as two exchanged feet, are no jumps.
     """
     position = tracks.position.copy()
     padded = np.pad(position, ((_MEDIAN_HALF_WINDOW, _MEDIAN_HALF_WINDOW), (0, 0), (0, 0)), constant_values=np.nan)
@@ -356,11 +357,10 @@ def _without_jumps(tracks: Tracks, scale: float) -> tuple[Tracks, dict[str, np.n
 
 
 def _without_strays(tracks: Tracks, noise: Mapping[str, float], scale: float) -> tuple[Tracks, dict[str, np.ndarray]]:
-    """Return the tracks with midline points lost where they are not at their usual distance from neighbours, and where.
+    """Return the tracks without midline points at a wrong distance from neighbours, and their frames by keypoint.
 
-    In every frame the point goes that most of the wrong distances have in common, then the next; so do feet that are
-    much farther from their girdles than they usually are, where the girdles are where they belong. A point that its
-    neighbour has passed may be as far from it as ever; then it is not as far from the next but one.
+    In every frame the point with most wrong distances is removed, then the next. Feet much farther from their girdles
+    than usual are removed too. Distances between every second point reveal a point that passed its neighbour.
     """
     links, chain = _Links(tracks, noise, scale), tracks.midline
     pairs = links.pairs(chain)
@@ -392,14 +392,14 @@ def _without_strays(tracks: Tracks, noise: Mapping[str, float], scale: float) ->
 
 
 def _girdle(tracks: Tracks, leg: str) -> str:
-    """Return the point of the trunk that is nearest to where a limb begins."""
+    """Return the point of the trunk that is nearest to the base of a limb."""
     front = leg.endswith("F")
     girdle_point = "shoulder" if front else "hip"
     return girdle_point if girdle_point in tracks.points else tracks.line[0 if front else 1]
 
 
 def _frame_notes(phrase: str, frames: Mapping[str, np.ndarray], tracks: Tracks) -> list[str]:
-    """Say which keypoints do something in how many frames, where these are more than a few."""
+    """Return a sentence on keypoints with a fault in more than a few frames; empty without one."""
     notes = []
     for name, is_affected in frames.items():
         if is_affected.mean() >= _MIN_REPORT_FRACTION / 4 and is_affected.sum() >= 3:
@@ -423,7 +423,7 @@ def _unreachable_feet(tracks: Tracks, scale: float) -> dict[str, str]:
 
 
 def _check_moves(tracks: Tracks, noise: Mapping[str, float], scale: float) -> None:
-    """Refuse an animal that neither goes nor moves a foot.
+    """Refuse an animal that moves neither its trunk nor a foot.
 
     Raises:
         UnusableTracks: it stands.
@@ -507,7 +507,7 @@ def _astride(tracks: Tracks, scale: float) -> dict[str, str]:
 
 
 def _check_noise(tracks: Tracks, left_leg: str, right_leg: str, fraction: float) -> None:
-    """Refuse feet that change sides from frame to frame, if they do so often."""
+    """Refuse feet that change sides in many frames."""
     if fraction > _OFTEN:
         raise UnusableTracks(
             f"in {tracks.source} {left_leg} lies right of {right_leg} in {100 * fraction:.0f} % of the frames, now "

@@ -1,8 +1,8 @@
-"""A walk stride by stride, and over the phase of its mean cycle: what a table of measurements is made of.
+"""The strides of a walk, and its mean cycle over the phase: the tables of measurements.
 
-A stride lasts from one lift-off of LF to the next (of the first foot that there is, without feet from the film's
-beginning). An interval, from ``NAME_low`` to ``NAME_high``, holds the truth in 95 of 100 cases: in a single stride it
-comes from the noise of the keypoints, over all strides from how they differ as well.
+A stride begins with a lift-off of LF, or of the first tracked foot, or without feet at the beginning of the film. An
+interval from ``NAME_low`` to ``NAME_high`` has 95 % confidence. For a single stride it follows from the noise of the
+keypoints, for all strides also from their differences.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,12 +32,12 @@ PHASES = 100
 
 
 def times(n: int) -> float:
-    """Return how many standard errors of n values hold the truth in 95 of 100 cases."""
+    """Return the factor on the standard error of n values that gives a 95 % interval."""
     return float(student.ppf(0.975, n - 1)) if n > 1 else float("nan")
 
 
 def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
-    """Return what every whole stride was like, over ``stride`` and ``leg``, with intervals by the noise of keypoints.
+    """Return the measurements of every complete stride, over ``stride`` and ``leg``, with intervals.
 
     Args:
         tracks: the keypoints, by the clock.
@@ -80,7 +80,7 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], ze
 
 
 def _jitter(feet: Mapping[str, FootContact]) -> float:
-    """Return half the interval of how long a stride lasts, by how feet differ on the clock that cuts them [cycle]."""
+    """Return the half width of the interval of a stride's duration, from differences between the feet [cycle]."""
     deviations = []
     for foot in feet.values():
         phases = foot.swings.phase
@@ -90,7 +90,7 @@ def _jitter(feet: Mapping[str, FootContact]) -> float:
 
 
 def _body(stride_tracks: Tracks, period: float) -> dict[str, tuple[float, float]]:
-    """Return how far the trunk goes and turns in one stride, and how it bends, each with half its interval."""
+    """Return advance, turn and bends of the trunk in one stride, each with the half width of its interval."""
     quantities: dict[str, tuple[float, float]] = {}
     advances, noise, point_count = [], [], 0
     for name in stride_tracks.trunk_chain:
@@ -118,7 +118,7 @@ def _body(stride_tracks: Tracks, period: float) -> dict[str, tuple[float, float]
 def _amplitude_row(
     name: str, series: np.ndarray, stride_tracks: Tracks, period: float, drift: int = 0
 ) -> dict[str, tuple[float, float]]:
-    """Return the amplitude of an angle, or by how much it drifts over the stride, with half its interval [rad]."""
+    """Return amplitude or drift of an angle over a stride, with the half width of its interval [rad]."""
     n = int(np.isfinite(series).sum())
     if n < _MIN_FRAMES:
         return {}
@@ -133,7 +133,7 @@ def _amplitude_row(
 def _put_feet(
     data: xr.Dataset, clock: Clock, feet: Mapping[str, FootContact], zero: float, numbers: np.ndarray, unit: str
 ) -> None:
-    """Put when each foot lifts off and touches down into the strides in which it does, and where."""
+    """Add times of lift-off and touchdown, duty factors, phases and step lengths of each foot to the strides."""
     data.coords["leg"] = ("leg", list(feet))
     shape = (len(numbers), len(feet))
     names = ("lift_off", "touch_down", "duty", "limb_phase", "step_length")
@@ -183,7 +183,7 @@ def over_phase(
     zero: float,
     unsure: float,
 ) -> xr.Dataset:
-    """Return angles and curvature over the phase of the mean cycle, with intervals by how cycles differ.
+    """Return angles and curvature over the phase of the mean cycle, with intervals from the variation of cycles.
 
     Args:
         tracks: the keypoints, by the clock.
@@ -235,18 +235,18 @@ def over_phase(
 
 
 def _protraction(path: FootSweep, zero: float) -> Float[np.ndarray, " phase"]:
-    """Return how far a foot is turned forward from abreast its girdle, over the phase of tables [rad]."""
+    """Return the angle of a foot ahead of the direction abreast of its girdle, over the phase of tables [rad]."""
     return np.arctan2(_forward_offset(path, zero), path.outward)
 
 
 def _forward_offset(path: FootSweep, zero: float) -> Float[np.ndarray, " phase"]:
-    """Return how far a foot is ahead of its girdle, over the phase of tables [m or px]."""
+    """Return the position of a foot ahead of its girdle, over the phase of tables [m or px]."""
     grid = np.arange(len(path.forward)) / len(path.forward)
     return np.interp(np.arange(PHASES) / PHASES + zero, grid, path.forward, period=1.0)
 
 
 def _put_curvature(data: xr.Dataset, tracks: Tracks, period: float, zero: float, unsure: float, count: int) -> None:
-    """Put the curvature at each point between two segments of the midline, right or down positive."""
+    """Add the curvature at each point between two segments of the midline, positive to the right or down."""
     chain = tracks.midline
     if len(chain) < 3:
         return
@@ -299,10 +299,10 @@ def _put_curvature(data: xr.Dataset, tracks: Tracks, period: float, zero: float,
 
 
 def half_width(value: np.ndarray | float, cycle_values: np.ndarray, unsure: float) -> np.ndarray:
-    """Return half the width of the interval of a mean by how single cycles differ.
+    """Return the half width of a mean's 95 % interval, from the variation of single cycles.
 
-    That the mean of all is not the mean of single cycles, since their phases do, is a part of it; so is that the phase
-    at which the cycle begins is not sure.
+    It contains the difference between the fit to all cycles and the mean of single cycles, and the uncertainty of the
+    phase at which the cycle begins.
 
     Args:
         value: over all cycles, any shape; where ``unsure`` is given, phases are the last axis.
@@ -331,7 +331,7 @@ def _add_with_interval(
     unit: str,
     meaning: str,
 ) -> None:
-    """Put a number and both ends of its interval into a table."""
+    """Add a quantity and both ends of its interval to a dataset."""
     data[name] = (dims, value, _attributes(unit, meaning))
     data[f"{name}_low"] = (dims, value - error, _attributes(unit, f"lower end of the 95 % interval of {name}"))
     data[f"{name}_high"] = (dims, value + error, _attributes(unit, f"upper end of the 95 % interval of {name}"))

@@ -1,12 +1,11 @@
-"""How long a foot swings, and when: from where it is over the ground.
+"""Duration and time of a foot's swings, from its positions on the ground.
 
-A foot rests at one place, then moves to the next. First the middle of each swing is found by itself. Then all strides
-are laid over each other, each from mid-stance to mid-stance, and one swing is fitted to them: when it begins and ends,
-and how the speed runs in between,
-``(1 - |2 u**s - 1|**q)**p`` over the time u of the swing, 0 to 1. q flattens the middle, p softens the ends, s hurries
-one of them. How little is known of a swing's slow ends is so a part of how uncertain its edges are.
+A foot rests at one position, then moves to the next. First the middle of each swing is estimated. Then all strides are
+superimposed, each from mid-stance to mid-stance, and one swing is fitted to them. The speed over the time u of the
+swing, 0 to 1, is ``(1 - |2 u**s - 1|**q)**p``: q flattens the middle, p softens the ends, s shifts the peak. The
+uncertainty of the edges contains that of the shape.
 
-From the swings of all feet follows a clock that keeps the animal's pace: on it every stride lasts equally long.
+The swings of all feet define a clock that follows the animal's pace: on it all strides have the same duration.
 """
 
 from collections.abc import Mapping
@@ -37,7 +36,7 @@ _GRID = np.linspace(0.0, 1.0, 161)
 
 
 class Middles(NamedTuple):
-    """When a foot was in the middle of each of its swings, in the order of time."""
+    """Times of the middle of each swing of a foot, in ascending order."""
 
     time: Float[np.ndarray, " swing"]
     """Halfway from lift-off to touchdown [s]."""
@@ -73,7 +72,7 @@ class Swing(NamedTuple):
 
 
 class _Frames(NamedTuple):
-    """What is seen around each swing, from mid-stance to mid-stance; weight 0 where nothing is."""
+    """Visible frames around each swing, from mid-stance to mid-stance; weight 0 in the rest of the array."""
 
     time: Float[np.ndarray, "swing frame"]  # [cycle]
     trace: Float[np.ndarray, "swing frame"]  # from one place to the next, in strides
@@ -82,7 +81,7 @@ class _Frames(NamedTuple):
 
 
 def middles(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: float) -> Middles:
-    """Return the middles of the swings that were filmed from stance to stance; there may be none.
+    """Return the middles of all complete swings; there may be none.
 
     Args:
         time: shape (frame,) [s].
@@ -98,7 +97,7 @@ def middles(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: fl
 
 
 def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: float) -> Swing | None:
-    """Return the swing of a foot, or None if none was filmed from stance to stance.
+    """Return the mean swing of a foot, or None without a complete swing.
 
     Args:
         time: by a clock on which every stride lasts about a period, shape (frame,) [s].
@@ -142,14 +141,14 @@ def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: floa
 
 
 def _gap(times: np.ndarray, start: float, end: float) -> float:
-    """Return the longest time of a swing, and around it, in which no frame is [cycle]."""
+    """Return the longest interval without a frame in and around a swing [cycle]."""
     edges = np.concatenate([[start], np.sort(times), [end]])
     is_inside = (edges[1:] > start) & (edges[:-1] < end)
     return float(np.diff(edges)[is_inside].max(initial=0.0))
 
 
 def _thin_out(times: np.ndarray, trace: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Put frames together that are next to each other, by their medians, until they are few enough."""
+    """Return medians of successive frames, such that at most ``_MAX_FRAMES`` remain."""
     order = np.argsort(times, kind="stable")
     size = -(-len(times) // _MAX_FRAMES)
     use = order[: len(order) // size * size].reshape(-1, size)
@@ -157,9 +156,9 @@ def _thin_out(times: np.ndarray, trace: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _turns(time: np.ndarray, forward: np.ndarray) -> Float[np.ndarray, "swing 2"]:
-    """Return when a foot turns forward and back again, roughly [cycle].
+    """Return the approximate phases at which a foot turns forward and back again [cycle].
 
-    Its path along the body is smoothed; a swing is where that rises from well below the middle to well above it.
+    The path along the body is smoothed. A swing is a rise from well below the middle to well above it.
     """
     is_seen = np.isfinite(forward)
     if is_seen.sum() < 4:
@@ -187,7 +186,7 @@ def _turns(time: np.ndarray, forward: np.ndarray) -> Float[np.ndarray, "swing 2"
 
 
 def _swing_frames(time: np.ndarray, place: np.ndarray, turns: np.ndarray) -> tuple[_Frames, np.ndarray]:
-    """Return the frames around each swing and a first guess of its edges and places."""
+    """Return the frames around each swing, and first guesses of its edges and positions."""
     middle = turns.mean(axis=1)
     borders = np.concatenate([middle[:1] - 0.6, (middle[1:] + middle[:-1]) / 2, middle[-1:] + 0.6])
     is_seen = np.isfinite(place).all(axis=1)
@@ -215,7 +214,7 @@ def _swing_frames(time: np.ndarray, place: np.ndarray, turns: np.ndarray) -> tup
 
 
 def _course(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the share of its path that a foot has covered, and its speed in paths per swing, on ``_GRID``."""
+    """Return path and speed of a swing on ``_GRID``: the fraction of the path, and paths per swing."""
     p, q, s = np.exp(shape)
     speed = (1.0 - np.abs(2.0 * _GRID**s - 1.0) ** q) ** p
     path = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2)])
@@ -223,7 +222,7 @@ def _course(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _fast(shape: np.ndarray) -> float:
-    """Return where in a swing the middle of its fast part lies [swing]."""
+    """Return the middle of the fast part of a swing [swing]."""
     speed = _course(shape)[1]
     fast = np.flatnonzero(speed > _FAST_FRACTION * speed.max())
     lower_bound, upper_bound = (
@@ -239,10 +238,10 @@ def _fast(shape: np.ndarray) -> float:
 def _fit_each_swing(
     frames: _Frames, start: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Fit each swing by itself, of the shape that is expected.
+    """Fit lift-off, touchdown and both positions of each swing, with the expected shape.
 
-    Gauss and Newton's steps, in rounds in which frames far off count less. Edges are drawn to those of a swing of the
-    mean duration, or noise would sharpen some swings and hide others.
+    The fit takes Gauss-Newton steps with robust weights. The durations have a prior about their mean; without it noise
+    would shorten some swings and lengthen others.
 
     Returns:
         Lift-off, touchdown [cycle] and both places [stride] of each, the standard errors of its middle, how long it
@@ -287,7 +286,7 @@ def _fit_each_swing(
 
 
 def _normal(frames: _Frames, parameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the normal matrices of the swings and their right sides."""
+    """Return the normal matrices and right-hand sides of the fits to all swings."""
     lift_off, touch_down, start_place, end_place = (parameters[:, i, None] for i in range(4))
     u = np.clip((frames.time - lift_off) / (touch_down - lift_off), 0.0, 1.0)
     course, speed = _course(_SHAPE)
@@ -342,7 +341,7 @@ _SWINGS_PER_MARK = 4  # swings whose mean is one mark of the clock: noise and a 
 
 
 class Clock(NamedTuple):
-    """Times and how many cycles had passed then; in between and beyond it goes on evenly."""
+    """Numbers of cycles at given times; interpolation and extrapolation are linear."""
 
     time: Float[np.ndarray, " mark"]
     """Increasing [s]."""
@@ -352,23 +351,22 @@ class Clock(NamedTuple):
     """Mean of a cycle [s]."""
 
     def read(self, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
-        """Return what the clock shows, in mean periods [s]."""
+        """Return the time on the clock, in mean periods [s]."""
         interpolation = np.interp(time, self.time, self.cycles)
         extrapolation = np.minimum(time - self.time[0], 0.0) + np.maximum(time - self.time[-1], 0.0)
         return np.asarray(self.period * interpolation + extrapolation)
 
     def seconds(self, cycles: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
-        """Return when the clock shows so many cycles [s]."""
+        """Return the times at given numbers of cycles [s]."""
         interpolation = np.interp(cycles, self.cycles, self.time)
         extrapolation = np.minimum(cycles - self.cycles[0], 0.0) + np.maximum(cycles - self.cycles[-1], 0.0)
         return np.asarray(interpolation + self.period * extrapolation)
 
 
 def paced(feet: Mapping[str, Middles], period: float) -> Clock:
-    """Return the clock of a walk; an even one where too few swings were seen.
+    """Return the clock of a walk; a uniform one if too few swings were seen.
 
-    Every foot counts its own swings; the phase lag of each other foot behind the first one is the same in all
-    cycles on the clock.
+    Each foot has a constant phase lag behind the first foot on this clock.
 
     Args:
         feet: the middles of their swings.
@@ -396,12 +394,12 @@ def paced(feet: Mapping[str, Middles], period: float) -> Clock:
 
 
 def _cycle_numbers(time: np.ndarray, lasts: float) -> np.ndarray:
-    """Number the swings of a foot; one that was not seen is passed over."""
+    """Return the cycle number of each swing of a foot; a missing swing leaves a gap."""
     return np.concatenate([[0.0], np.cumsum(np.maximum(1.0, np.round(np.diff(time) / lasts)))])
 
 
 def _clock_of_marks(time: np.ndarray, cycle: np.ndarray, weight: np.ndarray) -> Clock:
-    """Put swings that follow each other together, and draw the clock through their means."""
+    """Return the clock through means of several successive swings."""
     kernel = np.ones(min(_SWINGS_PER_MARK, len(time) - 1))
     total = np.convolve(weight, kernel, mode="valid")
     times = np.convolve(weight * time, kernel, mode="valid") / total

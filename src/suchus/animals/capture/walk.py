@@ -1,4 +1,4 @@
-"""What was seen of a walk: its mean cycle, its numbers with their spread, and what kind of wave it is."""
+"""A measured walk: its mean cycle, its numbers with their spread, and the kind of its wave."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -199,7 +199,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
 
 
 def _timed(tracks: Tracks) -> tuple[Tracks, Clock, float]:
-    """Return the tracks by a clock on which strides last equally long, that clock, and the period [s]."""
+    """Return the tracks on a clock with equal strides, that clock, and the period [s]."""
     check_size(tracks)
     tracks = tracks.ahead()
     signals = _swinging(tracks)
@@ -217,7 +217,7 @@ _KEYPOINTS_NEEDED = {
 
 
 def _missing_point_notes(tracks: Tracks) -> list[str]:
-    """Say what keypoints that are not there leave unknown."""
+    """Return sentences on what is unknown because keypoints are missing."""
     missing = set(lacking(tracks.points))
     missing |= {"neck or snout"} if "neck (or snout)" in missing else set()
     notes, footless = [], not tracks.legs
@@ -276,9 +276,10 @@ def _measurements(
 
 
 def _widen_late_phases(numbers: dict[str, Seen]) -> list[str]:
-    """Widen the phases of feet that step late and lie as far behind their partners, and say so.
+    """Widen the intervals of the phases of feet that may be late in the film, and return notes.
 
-    A foot whose frames come late does both at once: the body has gone on by as much of a stride.
+    A foot with late frames has a late phase, and lies behind its partner by the distance that the body advances in that
+    time.
     """
     notes = []
     for left_leg, right_leg in (LEGS[:2], LEGS[2:]):
@@ -346,7 +347,7 @@ def _paced(strides: xr.Dataset, period: Seen, mean_reading: _Reading, unit: str)
 
 
 def _check_feet(feet: Mapping[str, FootContact], source: str) -> None:
-    """Refuse feet of which it cannot be seen whether they stand or swing."""
+    """Refuse tracks in which noise hides stance and swing of all feet."""
     duty_errors = {leg: foot.duty_error for leg, foot in feet.items() if np.isfinite(foot.duty_error)}
     if duty_errors and min(duty_errors.values()) > _BLIND:
         leg = min(duty_errors, key=lambda name: duty_errors[name])
@@ -357,7 +358,7 @@ def _check_feet(feet: Mapping[str, FootContact], source: str) -> None:
 
 
 def _uncertain_feet_notes(feet: Mapping[str, FootContact], cycles: float) -> tuple[str, ...]:
-    """Say of which feet too little is seen, and how many more cycles would show enough."""
+    """Return sentences on feet with uncertain steps, and the number of cycles that would be enough."""
     notes = []
     single_step_legs = [leg for leg, foot in feet.items() if not np.isfinite(foot.duty_error)]
     if single_step_legs:
@@ -491,7 +492,7 @@ def _cycle(tracks: Tracks, number: int, period: float) -> Tracks:
 
 
 def _deviations(name: str, value: float, cycle_numbers: Sequence[Mapping[str, float]]) -> np.ndarray:
-    """Return how far a number of each cycle is from that of all, around the cycle where it is a phase."""
+    """Return the differences between a number of each cycle and that of all cycles; phases are wrapped."""
     deviations = np.array([numbers[name] for numbers in cycle_numbers if name in numbers]) - value
     return wrapped(2 * np.pi * deviations) / (2 * np.pi) if _unit(name) == "cycle" else deviations
 
@@ -512,7 +513,7 @@ def _chains(tracks: Tracks) -> dict[str, tuple[str, ...]]:
 
 
 def _index(tracks: Tracks, chain: tuple[str, ...], period: float) -> float:
-    """Standing index of a chain, over the joints whose bend stands out of the noise; NaN with fewer than two."""
+    """Return the standing index of a chain, over joints whose bend exceeds the noise; NaN with fewer than two."""
     amplitude, phase = [], []
     for series in joint_bends(tracks, chain):
         bend = fit(tracks.time, series, period, harmonics=3)
@@ -523,7 +524,7 @@ def _index(tracks: Tracks, chain: tuple[str, ...], period: float) -> float:
 
 
 def _check_advance(reading: _Reading, source: str) -> None:
-    """On ground at rest the body goes farther in a cycle than a foot sweeps back."""
+    """Refuse tracks in which the body advances less per cycle than a foot sweeps back."""
     if not reading.sweeps:
         return
     swept = 2 * float(np.mean([path.stroke for path in reading.sweeps.values()]))

@@ -82,7 +82,7 @@ def middle(ends: tuple[float, float]) -> float:
 
 
 def even(ends: tuple[float, float], fraction: float) -> float:
-    """Return the value at a share of a range, 0 to 1."""
+    """Return the value at a fraction of a range, 0 to 1."""
     return float(ends[0] + fraction * (ends[1] - ends[0]))
 
 
@@ -98,7 +98,7 @@ def choices(names: Sequence[str], count: int) -> list[dict[str, float]]:
 
 
 def errors(share: float) -> float:
-    """Return how many half widths of a 95 % interval a number is off at a share of its normal distribution [-]."""
+    """Return the deviation at a quantile of the normal distribution, in half widths of a 95 % interval [-]."""
     return float(norm.ppf(np.clip(share, 1e-6, 1 - 1e-6))) / _Z_95
 
 
@@ -122,7 +122,7 @@ def unsure(walk: Walk) -> tuple[str, ...]:
 
 
 def drawn(walk: Walk, shares: Mapping[str, float]) -> Walk:
-    """Return a walk as it may have been: each number somewhere in its interval.
+    """Return a possible walk: each number is at a quantile of its distribution.
 
     Args:
         walk: the measured one.
@@ -164,7 +164,7 @@ def _deviate(name: str, measurement: Seen, deviation: float) -> float:
 
 
 def sized(robot: Robot, length: float, mass: float | None = None) -> Robot:
-    """Return a body so many times as long, everything else in proportion, and as heavy as is asked for.
+    """Return a body scaled in length, and in mass.
 
     Args:
         robot: the body.
@@ -176,7 +176,7 @@ def sized(robot: Robot, length: float, mass: float | None = None) -> Robot:
 
 
 def widened(robot: Robot, volume: float) -> Robot:
-    """Return a body whose axis is so much wider and higher that it has a volume, its length as it is.
+    """Return a body with a given volume and the same length; width and height of its axis are scaled.
 
     Args:
         robot: the body.
@@ -218,7 +218,7 @@ def put(
     answers: np.ndarray,
     description: tuple[str, str],
 ) -> None:
-    """Put the first of some answers into a dataset, and the least and the greatest of all as ends of its interval.
+    """Add the first of several results to a dataset, with the least and the greatest as ends of its interval.
 
     Args:
         data: the dataset.

@@ -1,7 +1,7 @@
-"""Forces under single feet of a walk that was filmed: the animal's body walks as it was seen, in every choice.
+"""Forces on single feet of a filmed walk: the animal's body repeats the walk in simulations.
 
-The film gives when and where feet stand and how the body bends; the body's own weight, the ground and the stiffness of
-joints decide which of the feet that stand carries how much. So the body walks, and the forces are read from its feet.
+The film gives stance, swing and bends. Weight, ground and stiffness of the joints determine how the feet share the
+load. So the body is simulated, and the forces are taken from its feet.
 """
 
 from collections.abc import Mapping, Sequence
@@ -178,7 +178,7 @@ def _lengthen_limb(girdle: Girdle, factor: float) -> Girdle:
 
 
 def _reaches(body: Robot, walk: Walk, gait: Gait, trunk: float) -> bool:
-    """Return whether feet go where they were seen to go."""
+    """Return whether the feet follow the measured paths."""
     for girdle, limb, legs in zip(body.girdles, gait.limbs, (LEGS[:2], LEGS[2:]), strict=True):
         film_ratios = {"stroke": mean_of(walk, "stroke", legs), "outward": mean_of(walk, "outward", legs)}
         target_lengths = {
@@ -209,7 +209,7 @@ def _try(walk: Walk, body: Robot, base: Gait, unknown: Unknown, shares: Mapping[
 
 
 def _scale_parameter(body: Robot, gait: Gait, name: str, factor: float) -> Gait:
-    """Return a gait one of whose numbers is a multiple of what it is, as far as the limbs follow."""
+    """Return a gait with one number scaled, as far as the limbs can follow."""
     original = gait.number(name)
     for fraction in _HALVES if original else ():
         candidate = gait.with_numbers(**{name: original * (1.0 + fraction * (factor - 1.0))})
@@ -226,10 +226,10 @@ def played_forces(
     unknown: Unknown | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
-    """Return the same of a walk of which a table gives the joint angles, played on a robot.
+    """Return the forces of a walk whose joint angles are given by a table, on the body of a robot.
 
-    The table shows neither size nor time: the body has the robot's own size, and each joint is uncertain by what the
-    harmonics leave of its angles.
+    The table gives neither size nor time: the body has the robot's size. Each joint is uncertain by the residual of its
+    harmonics.
 
     Args:
         cycle: the table.
@@ -269,7 +269,7 @@ def played_forces(
 
 
 def _waved(curve: Curve, size: float, shares: Mapping[str, float]) -> Curve:
-    """Return a curve with a first harmonic added that is as large as what the table's harmonics leave of it [rad]."""
+    """Return a curve with an added first harmonic as large as the residual of the table's harmonics [rad]."""
     turn = 2 * np.pi * np.arange(len(curve.angles)) / len(curve.angles)
     parts = [2.0 * size * errors(shares[f"{component} {curve.servo}"]) for component in ("cosine", "sine")]
     correction = parts[0] * np.cos(turn) + parts[1] * np.sin(turn)
@@ -366,7 +366,7 @@ def _forces_dataset(
 
 
 def _peaks(table: Quantities, body: Robot, responses: Sequence[_GroundResponse]) -> None:
-    """Add what stands out in the forces on fore and hind feet, the mean of left and right, beside the salamanders'."""
+    """Add the peak forces on fore and hind feet, means of left and right, and those of salamanders."""
     limbs = layout(body).limbs
     for pair, number in (("fore", 0), ("hind", limbs[-1].number)):
         limb_indices = [i for i, limb in enumerate(limbs) if limb.number == number]
@@ -418,7 +418,7 @@ _ALWAYS = (
 
 
 def _left_open(walk: Walk, unknown: Unknown) -> list[str]:
-    """Say what cannot be known from the film, and what was taken instead."""
+    """Return sentences on what the film does not show, and the assumptions about it."""
     notes = list(_ALWAYS)
     notes.append(f"friction is somewhere from {unknown.friction[0]:g} to {unknown.friction[1]:g}")
     if unknown.mass is None:

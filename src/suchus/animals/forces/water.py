@@ -1,8 +1,8 @@
-"""Force and power of the water on a body that swims as it was filmed: by sections, in a slice, in space.
+"""Force and power of the water on a body that swims as filmed: by the section model, in a slice, in space.
 
-On every rung the same happens: the joints follow the first harmonics of the film, nothing else holds the body, which is
-as heavy as the water that it displaces, in the plane, deep below the surface, its limbs left out. Speed, sway and
-turning are what the water makes of it, so that the speed can be held against the film's.
+In every model the joints follow the first harmonics of the film. The body is free, as heavy as the water that it
+displaces, in a plane deep below the surface, without limbs. Speed, sway and turning are results; the speed can be
+compared with the film.
 """
 
 from collections.abc import Mapping, Sequence
@@ -158,7 +158,7 @@ def swim_gait(walk: Walk, robot: Robot) -> Gait:
 
 
 def _body_length(walk: Walk, length: float | None) -> float:
-    """Return how long the animal is [m]."""
+    """Return the length of the animal [m]."""
     if length is not None:
         if not 0.0 < length < np.inf:
             raise UnusableTracks(f"the animal is {length:g} m long; a length above 0 is needed.")
@@ -250,9 +250,10 @@ class _Bends:
 def _shared(
     harmonics: Complex[np.ndarray, " place"], places: Float[np.ndarray, " place"], hinges: Sequence[float]
 ) -> list[complex]:
-    """Return the bend of each hinge: that of the midline halfway to its neighbours.
+    """Return the bend of each hinge: that of the midline between the middles to its neighbours.
 
-    Between keypoints a midline is evenly curved: each keypoint's bend is that of the halves of the segments beside it.
+    The midline has constant curvature between keypoints. The bend of a keypoint is that of the adjacent halves of its
+    segments.
 
     Args:
         harmonics: harmonics of the bends at keypoints [rad].
@@ -301,14 +302,14 @@ def _viscosity(body: Robot, gait: Gait, cells: int) -> float:
 
 
 def _cells(body: Robot, rung: str) -> int:
-    """Return the cells per body length of a flow: as many as show the body, in a slice as it is thickened."""
+    """Return the cells per body length of a flow, enough to resolve the thickness of the body."""
     half_widths, _ = Outline(body, 65).silhouette
     min_cells = 1.02 * THINNEST * body.length / (2.0 * float(np.max(half_widths)))
     return CELLS[rung] if rung == "slice" else max(CELLS[rung], int(np.ceil(min_cells)))
 
 
 def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, progress: Progress) -> _Swum:
-    """Return a swim in a flow; that of a slice as deep as it displaces what the body does."""
+    """Return a swim in a flow; a slice has the depth at which it displaces as much water as the body."""
     outline = Outline(body, cells + 1)
     bluntness = 1.75 if rung == "slice" else 0.0
     setting = SwimSetting(
@@ -406,7 +407,7 @@ def _numbers(body: Robot, gait: Gait, speeds: np.ndarray, table: Quantities) -> 
 
 
 def _left_open(body: Robot, viscosity: float, unknown: Unknown) -> list[str]:
-    """Say what cannot be known from the film, and what was taken instead."""
+    """Return sentences on what the film does not show, and the assumptions about it."""
     notes = [
         f"sections, fins and limbs are not on the film: the body is that of {body.name}, its limbs left out",
         "the body swims deep below the surface, in a plane; near the surface waves take power, which is not in it",

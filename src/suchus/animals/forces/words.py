@@ -1,4 +1,4 @@
-"""What forces of a film say, in lines that people read."""
+"""The results of forces from a film, as lines of text."""
 
 import numpy as np
 import xarray as xr
@@ -12,7 +12,7 @@ _STANDS_OUT = (
 
 
 def said(data: xr.Dataset) -> list[str]:
-    """Return what stands out in forces of a film, a line each.
+    """Return the main results of forces from a film, a line for each.
 
     Args:
         data: as ``walked_forces``, ``played_forces`` or ``swum_forces`` return it.

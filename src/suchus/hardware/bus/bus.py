@@ -1,4 +1,4 @@
-"""One bus as its host sees it: requests out, replies in, each by a deadline; what goes wrong is counted."""
+"""One bus at the host: requests, replies with deadlines, and counters of errors."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ _STEPPING = 60.0
 
 
 class NoAnswer(BusFailure):
-    """A servo that did not answer, or not in a way that could be understood."""
+    """A servo gave no reply, or none that can be decoded."""
 
 
 @dataclass(slots=True)
 class Counts:
-    """What went wrong on a bus."""
+    """Counters of errors on a bus."""
 
     missing: int = 0
     """Replies that did not come in time [-]."""
@@ -67,11 +67,11 @@ class Bus:
 
     @property
     def settled(self) -> bool:
-        """Whether no late reply is to be expected any more."""
+        """Whether no late reply can come any more."""
         return self.clocked or monotonic() >= self._quiet_from
 
     def settle(self) -> None:
-        """Take what still comes until the bus has been silent for twice the wait."""
+        """Read late replies until the bus has been silent for twice the wait."""
         while not self.settled:
             if self.port.receive(max(self._quiet_from - monotonic(), 0.0)):
                 self.counts.stale += 1
@@ -79,7 +79,7 @@ class Bus:
         self._decoder.clear()
 
     def send(self, data: bytes) -> None:
-        """Send a request that nobody answers."""
+        """Send a request without a reply."""
         self.port.send(data, max(self.wait, 0.05))
 
     def ask(self, request: bytes, servo: int, length: int | None = None, wait: float | None = None) -> Packet:
@@ -102,7 +102,7 @@ class Bus:
         return replies[servo]
 
     def begin(self, servos: Collection[int], address: int, length: int) -> None:
-        """Ask several servos for the same bytes; ``end`` returns what they say."""
+        """Request the same bytes of several servos; ``end`` returns the replies."""
         if not self.clocked:
             for packet in self._decoder.feed(self.port.receive(0.0)):
                 self._keep(packet)
@@ -113,7 +113,7 @@ class Bus:
     def end(self, servos: Collection[int], length: int, wait: float | None = None) -> dict[int, Packet]:
         """Return the replies to ``begin`` that come in time, by servo.
 
-        A servo whose reply is missing has a late one to the same question as before taken for it, if there is one.
+        A missing reply is replaced by a late reply to the same question, if there is one.
 
         Args:
             servos: that were asked.
@@ -127,7 +127,7 @@ class Bus:
         return late_replies | replies
 
     def _keep(self, packet: Packet) -> None:
-        """Keep a reply that was not waited for any more, if it can only be one to ``begin``."""
+        """Store a late reply, if it can only be a reply to ``begin``."""
         if self._requested_lengths.get(packet.id) == len(packet.data):
             self._late_replies[packet.id] = packet
         else:
@@ -136,7 +136,14 @@ class Bus:
     def _collect(
         self, servos: Collection[int], length: int | None, wait: float, *, has_end_marker: bool = False
     ) -> dict[int, Packet]:
-        """Return replies by servo; where the end of the answers is told, until then."""
+        """Return replies by servo, until all have come, the deadline, or the end marker.
+
+        Args:
+            servos: that were asked.
+            length: of the data in each reply; None for any [byte].
+            wait: time until the deadline [s].
+            has_end_marker: whether the clock of an emulator marks the end of the replies.
+        """
         replies: dict[int, Packet] = {}
         end = monotonic() + wait
         while has_end_marker or len(replies) < len(servos):
@@ -193,7 +200,7 @@ class Bus:
             )
 
     def pass_until(self, tick: int) -> None:
-        """Let an emulator's robot move until a tick, counted from when the emulator began.
+        """Let the robot of an emulator move until a tick, counted from the start of the emulator.
 
         Raises:
             NoAnswer: there is no such clock on the bus, or the robot cannot go on.

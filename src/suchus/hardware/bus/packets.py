@@ -50,7 +50,7 @@ class Decoder(ABC):
         """Frames whose checksum was wrong [-]."""
 
     def feed(self, data: bytes) -> list[Packet]:
-        """Take bytes and return the packets that they complete, in their order."""
+        """Add received bytes, and return the packets that are now complete, in order."""
         self._buffer += data
         packets: list[Packet] = []
         while (step := self._next_packet(bytes(self._buffer))) is not None:
@@ -63,7 +63,7 @@ class Decoder(ABC):
         return packets
 
     def clear(self) -> None:
-        """Forget what has begun and not ended."""
+        """Discard an incomplete packet."""
         self.dropped += len(self._buffer)
         self._buffer.clear()
 
@@ -98,18 +98,18 @@ class Framing(ABC):
 
     @abstractmethod
     def alert(self, code: int) -> bool:
-        """Return whether the error of a reply says that something is wrong with the servo."""
+        """Return whether the error of a reply contains an alert."""
 
     @abstractmethod
     def refusal(self, code: int) -> str:
-        """Return why a servo did not do what it was asked, by the error of its reply; empty if it did."""
+        """Return why a servo refused a request, by the error of its reply; empty if it did not."""
 
     def number(self, value: int) -> bytes:
         """Return an address or a length as it stands in parameters."""
         return value.to_bytes(self.word, "little")
 
     def read(self, servo: int, address: int, length: int) -> bytes:
-        """Return the request that asks one servo for the bytes from an address on."""
+        """Return the request for bytes of one servo from an address on."""
         return self.request(Packet(servo, Instruction.READ, self.number(address) + self.number(length)))
 
     def write(self, servo: int, address: int, data: bytes) -> bytes:
@@ -121,7 +121,7 @@ class Framing(ABC):
         return self.request(Packet(servo, Instruction.PING))
 
     def reboot(self, servo: int) -> bytes:
-        """Return the request that lets a servo begin anew, which ends an alert."""
+        """Return the request that reboots a servo, which ends an alert."""
         return self.request(Packet(servo, Instruction.REBOOT))
 
     def sync_read(self, servos: Sequence[int], address: int, length: int) -> bytes:

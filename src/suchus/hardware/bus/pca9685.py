@@ -79,7 +79,7 @@ class Pulses:
             self._write(board, MODE, [_INCREMENT])
 
     def send(self, pulses: Mapping[tuple[int, int], float]) -> None:
-        """Let channels pulse.
+        """Set the pulse widths of channels.
 
         Args:
             pulses: widths by board and channel [us].
@@ -92,7 +92,7 @@ class Pulses:
                 self._block(board, {c: board_widths[c] for c in range(start, start + _BLOCK) if c in board_widths})
 
     def _block(self, board: int, widths: Mapping[int, float]) -> None:
-        """Write neighbouring channels at once, those between that have none switched off."""
+        """Write successive channels at once; channels between them without a width are switched off."""
         if not widths:
             return
         first_channel, last_channel = min(widths), max(widths)

@@ -1,4 +1,4 @@
-"""Where the bytes of a bus come and go: a serial port, a socket; nothing blocks for longer than it is told."""
+"""Ports of a bus: serial port or socket; no call blocks for longer than its deadline."""
 
 import errno
 import os
@@ -23,11 +23,11 @@ _GONE_ERRORS = (errno.EIO, errno.ENXIO, errno.ENODEV, errno.EPIPE, errno.ECONNRE
 
 
 class BusGone(BusFailure):
-    """A bus whose other end is no longer there."""
+    """The other end of a bus is gone."""
 
 
 class Port(Protocol):
-    """A way to a bus."""
+    """A connection to a bus."""
 
     name: str
     """As the user named it."""
@@ -82,7 +82,7 @@ class FilePort:
                     remainder = remainder[os.write(self._fd, remainder) :]
 
     def receive(self, wait: float) -> bytes:
-        """Return what has arrived, see ``Port``."""
+        """Return the received bytes, see ``Port``; empty after a time without any."""
         with self._noticing():
             ready, _, _ = select.select((self._fd,), (), (), max(wait, 0.0))
             if not ready:

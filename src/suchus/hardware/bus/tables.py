@@ -47,7 +47,7 @@ class Register:
     """Least and greatest value that it takes; None for all that fit."""
 
     def encode(self, value: int) -> bytes:
-        """Return the bytes of a value, which is clipped to what fits."""
+        """Return the bytes of a value, which is clipped to the range of the register."""
         if self.sign == "two":
             limit = 1 << (8 * self.size - 1)
             return min(max(value, -limit), limit - 1).to_bytes(self.size, "little", signed=True)
@@ -57,7 +57,7 @@ class Register:
         return min(max(value, 0), (1 << 8 * self.size) - 1).to_bytes(self.size, "little")
 
     def decode(self, data: bytes) -> int:
-        """Return the value that bytes are."""
+        """Return the value of bytes."""
         value = int.from_bytes(data, "little", signed=self.sign == "two")
         if self.sign == "bit" and value >> self.sign_bit & 1:
             return -(value & ((1 << self.sign_bit) - 1))
@@ -123,7 +123,7 @@ class Table:
         return name in self.by_name
 
     def block(self, ends: tuple[str, str]) -> tuple[int, int]:
-        """Return address and length of what lies from one register to another [byte]."""
+        """Return address and length of the block from one register to another [byte]."""
         first_register, last_register = self[ends[0]], self[ends[1]]
         return first_register.address, last_register.address + last_register.size - first_register.address
 
@@ -299,7 +299,7 @@ TABLES: Mapping[str, Table] = MappingProxyType(
 
 
 def _board(model: str, number: int, protocol: BusProtocol, registers: tuple[Register, ...]) -> Table:
-    """Return the table of a board for sensors: its number, then what it feels, in one block."""
+    """Return the table of a sensor board: its number, then its sensors in one block."""
     model_register = Register(name="model_number", address=0, size=2, initial=number)
     return Table(
         model=model,
@@ -331,7 +331,7 @@ def imu_board(protocol: BusProtocol) -> Table:
 
 
 def load_board(protocol: BusProtocol, kind: str, places: int, unit: float) -> Table:
-    """Return the table of a board that feels the normal force at several places.
+    """Return the table of a board that measures the normal force at several positions.
 
     Args:
         protocol: that it speaks.

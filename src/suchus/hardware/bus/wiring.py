@@ -1,4 +1,4 @@
-"""Which servo of a robot hangs on which bus under which number, and how its steps become the joint's angle."""
+"""Bus and number of each servo of a robot, and the conversion between steps of the servo and joint angles."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -180,7 +180,7 @@ def board_table(board: BoardPlace, protocol: BusProtocol, robot: Robot) -> Table
 
 
 def fingerprint(robot: Robot) -> str:
-    """Return what tells a robot's servos and their ranges from those of another."""
+    """Return a hash of a robot's servos and their ranges."""
     ranges = [[round(end, 6) if np.isfinite(end) else None for end in row] for row in servo_ranges(robot).tolist()]
     return digest({"servos": list(layout(robot).servos), "ranges": ranges})[:16]
 
@@ -276,7 +276,7 @@ def check_names(owner: str, names: Sequence[str], robot: Robot) -> None:
 
 
 def twice(values: Iterable[T]) -> list[T]:
-    """Return the values that stand there more than once, each once."""
+    """Return the values that occur more than once, each once."""
     return [value for value, count in Counter(values).items() if count > 1]
 
 

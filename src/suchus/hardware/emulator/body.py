@@ -25,7 +25,7 @@ _MAX_DURATION = 86400.0  # [s]
 
 @dataclass(frozen=True, slots=True)
 class Commanded:
-    """Holds the servo angles that it is given, one after another; begins in the first posture of the run's gait."""
+    """Control by given servo angles; it begins in the first posture of the run's gait."""
 
     @property
     def feels(self) -> bool:
@@ -126,12 +126,12 @@ class EmulatedBody:
         return self._loop.time
 
     def sensed(self) -> Sensed:
-        """Return what the robot feels now, by sensors that may be broken."""
+        """Return the readings of the robot's sensors, which may have faults."""
         return self._loop.sensed()
 
     @property
     def now(self) -> Mapping[str, np.ndarray]:
-        """What a record would hold of this instant, by the names of ``record.VARIABLES`` without run and time."""
+        """Variables of the present instant, by the names of ``record.VARIABLES``, without run and time."""
         self._probe.store(0, self._loop.command.phase, self._loop.command.targets)
         return self._probe.sample(0, 0)
 
@@ -151,7 +151,7 @@ class EmulatedBody:
             self._coming.append((due, new_goals))
 
     def power(self, place: int, share: float) -> None:
-        """Give a servo a share of its torque from now on, 0 to 1 [-]."""
+        """Set the fraction of its torque that a servo may use, 0 to 1 [-]."""
         if share == self.powered[place]:
             return
         self.powered[place] = share
@@ -203,7 +203,7 @@ class EmulatedBody:
         return full_record.isel(run=0)
 
     def _take(self, step: int) -> None:
-        """Let goals that have arrived act."""
+        """Apply goals whose latency is over."""
         while self._coming and self._coming[0][0] <= step:
             self._goals = self._coming.pop(0)[1]
         self._commands.targets = self._goals[None]

@@ -1,4 +1,4 @@
-"""What hangs on an emulated bus: servos with their control tables, and boards for sensors."""
+"""Devices on an emulated bus: servos with their control tables, and sensor boards."""
 
 from math import pi
 
@@ -19,7 +19,7 @@ SWITCHES_OFF = {"input voltage": False, "overheated": True, "encoder": False, "e
 
 
 class Device:
-    """Something with a control table.
+    """A device with a control table.
 
     Args:
         table: its registers.
@@ -37,7 +37,7 @@ class Device:
         return register.decode(bytes(self.memory[register.address : register.address + register.size]))
 
     def put(self, name: str, value: int) -> None:
-        """Set a register, whether or not others can write it."""
+        """Set a register, also one that is read-only for the host."""
         register = self.table[name]
         self.memory[register.address : register.address + register.size] = register.encode(value)
 

@@ -1,4 +1,4 @@
-"""An emulated robot's buses: bytes in, bytes out, each when a real wire would have carried them."""
+"""Buses of an emulated robot: bytes in, bytes out, with the delays of a real bus."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -70,7 +70,7 @@ class Emulator:
         self._feel()
 
     def hear(self, number: int, data: bytes, baud: int | None = None) -> list[tuple[float, bytes]]:
-        """Take bytes from a bus and return the replies, each with the time after which it has come [s].
+        """Process bytes from a bus, and return the replies, each with its delay [s].
 
         Args:
             number: of the bus.
@@ -111,7 +111,7 @@ class Emulator:
     # --- what is answered ---------------------------------------------------------------------------------------------
 
     def _answers(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
-        """Return who answers what; None for the clock."""
+        """Return the replies to a packet with their devices; None for the clock."""
         word, data = line.framing.word, packet.data
         if packet.code == Instruction.SYNC_READ and len(data) >= 2 * word:
             address, length = _number(data, word), _number(data[word:], word)
@@ -170,7 +170,7 @@ class Emulator:
         return device.get("model_number").to_bytes(2, "little") + bytes([firmware])
 
     def _listening(self, line: _Line, servo: int) -> Device | None:
-        """Return a device that hears and answers."""
+        """Return a device, or None if it does not answer."""
         device = line.devices.get(servo)
         has_trouble = self.body.time >= self.trouble.at
         if device is None or (has_trouble and servo in self.trouble.mute):
@@ -195,7 +195,7 @@ class Emulator:
         return error
 
     def _spoilt(self, line: _Line, reply: Packet) -> bytes:
-        """Return the bytes of a reply as they arrive, nothing of one that is lost."""
+        """Return the bytes of a reply as they arrive; empty if it is lost."""
         random, trouble = self._random, self.trouble
         data = bytearray(line.framing.reply(reply))
         if reply.id in trouble.twin:  # two replies at once
@@ -230,7 +230,7 @@ class Emulator:
                 servo.fail("overload" if servo.table.protocol == "feetech" else "electrical shock")
 
     def _feel(self) -> None:
-        """Let servos and boards tell what the robot feels, or felt before where that is on its way for long."""
+        """Write the robot's sensor readings to servos and boards, delayed by the latency."""
         self._delayed_readings.append(self.body.sensed())
         sensed = self._delayed_readings[0]
         if len(self._delayed_readings) > self._delay_ticks:
@@ -255,7 +255,7 @@ def _number(data: Sequence[int], word: int) -> int:
 
 
 class MemoryPort:
-    """A port to an emulator in the same process, whose clock is told the time: nothing waits for anything.
+    """A port to an emulator in the same process, without delays.
 
     Args:
         emulator: with a clock of its own.

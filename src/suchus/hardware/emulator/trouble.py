@@ -1,4 +1,4 @@
-"""What goes wrong on an emulated bus and in its servos; what breaks in the body is a ``Fault`` of the simulation."""
+"""Faults of an emulated bus and of its servos; faults of the body are those of the simulation (``Fault``)."""
 
 from dataclasses import dataclass
 
