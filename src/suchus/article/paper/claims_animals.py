@@ -1,6 +1,6 @@
-"""What other publications state of animals and of models of them, beside which experiments of suchus stand.
+"""Claims of other publications on animals and their models, with which experiments of suchus are compared.
 
-Only what was read stands here: numbers of public data, and abstracts.
+All were read: they are numbers of public data, and abstracts.
 """
 
 from dataclasses import replace

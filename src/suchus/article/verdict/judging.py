@@ -28,7 +28,7 @@ _FILE = "claims.json"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Share:
-    """In how many plausible designs the statement of a claim holds."""
+    """Fraction of plausible designs in which the statement of a claim holds."""
 
     claim: str
     """Its key."""
@@ -104,7 +104,7 @@ def _shipped() -> Mapping[str, Mapping[str, Any]]:
 
 
 def digest(claims: Mapping[str, Mapping[str, object]]) -> str:
-    """Return the SHA-256 of a table's rows, which stands in the table beside them."""
+    """Return the SHA-256 of a table's rows, which the table also contains."""
     return hashlib.sha256(json.dumps(claims, sort_keys=True).encode()).hexdigest()
 
 
@@ -164,9 +164,9 @@ class Verdict:
 
     @property
     def fragile(self) -> bool:
-        """Whether other plausible designs give another answer too often to rely on this one.
+        """Whether too many other plausible designs give another answer than this verdict.
 
-        What was chosen for one design, or follows from how it was made, is no answer that others could shake.
+        Values that were chosen for one design, or follow from its construction, are not fragile.
         """
         return fragile(self.rule, self.verdict, self.share or self.too_few)
 

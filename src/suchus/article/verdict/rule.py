@@ -49,7 +49,7 @@ def compared(
 
 
 def listed(items: Sequence[str]) -> str:
-    """Return items as a list in a sentence: ``a, b and c``."""
+    """Return words as a list in a sentence: ``a, b and c``."""
     if len(items) < 2:
         return "".join(items)
     return f"{', '.join(items[:-1])} and {items[-1]}"
@@ -118,7 +118,7 @@ def between(name: str, lower_bound: float, upper_bound: float) -> dict[str, floa
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlGroup:
-    """The control group that a claim speaks of: with what it compares, or who alone does what it says."""
+    """The control group of a claim: the designs with which the claim compares, or which alone show the effect."""
 
     group: str
     """Name of its runs, as in the record."""
@@ -227,10 +227,10 @@ class Rule:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Varied:
-    """How an experiment is asked again with other plausible designs and settings, to see in how many a claim holds.
+    """Variation of designs and settings of an experiment, which gives the fraction of designs in which a claim holds.
 
-    It is declared as ``VARIED`` beside the rules of an experiment, and answers what the walks of
-    ``suchus study claims`` cannot: those have no rough ground, no feedback, no water.
+    It is declared as ``VARIED`` beside the rules of an experiment. It is for experiments that the walks of ``suchus
+    study claims`` cannot replace: those walks have no rough ground, no feedback and no water.
     """
 
     claims: tuple[str, ...]

@@ -1,7 +1,8 @@
-"""The midline of a robot as its joints bend it: where it is, how it moves, and what a force on it asks of the joints.
+"""The midline of a robot over its joints: position, velocity, and generalised forces of the water.
 
 Coordinates are those of the root in its plane and the lateral joints (``land.stepper``). The flow sees the robot from
-above with its head at the origin and its tail towards +x, its y to the robot's right: the world, turned by half a turn.
+above. Its head is at the origin, its tail towards +x, and y points to the robot's right: the frame is the world turned
+by half a turn.
 """
 
 from collections.abc import Callable
@@ -50,7 +51,7 @@ class Points(NamedTuple):
 
 @dataclass(frozen=True)
 class MidlineChain:
-    """A robot's midline over its joints, divided into parts none of which reaches over a joint."""
+    """A robot's midline over its joints, divided into parts that contain no joint."""
 
     outline: Outline
     """The robot and its stations."""
@@ -83,7 +84,7 @@ class MidlineChain:
 
     @cached_property
     def _signs(self) -> np.ndarray:
-        """What turns coordinates of the robot into those of the chain and back."""
+        """Signs that convert coordinates of the robot to those of the chain and back."""
         return np.array([-1.0, -1.0] + (self.size - 2) * [1.0])
 
     def seen(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
@@ -106,14 +107,14 @@ class MidlineChain:
 
     @cached_property
     def root(self) -> float:
-        """Where the root's origin is, from the snout [m]."""
+        """Position of the root's origin, from the snout [m]."""
         robot = self.outline.robot
         number = [segment.name for segment in robot.axis].index(robot.root)
         return stations(robot)[number][0] + robot.axis[number].front
 
     @cached_property
     def ends(self) -> Float[np.ndarray, " end"]:
-        """Arc lengths between which the parts lie, the first and the last those of the body [m]."""
+        """Arc lengths of the ends of the parts, from snout to tip [m]."""
         places, length = np.sort(self.outline.places), self.outline.robot.length
         coarse, part_length = [0.0, *places.tolist(), length], length / self.parts
         fine = [np.linspace(a, b, max(int((b - a) / part_length), 1), endpoint=False) for a, b in pairwise(coarse)]
@@ -126,7 +127,7 @@ class MidlineChain:
 
     @cached_property
     def links(self) -> Float[np.ndarray, " part"]:
-        """Which link between two joints each part belongs to, from the head on [-]."""
+        """Index of the link that each part belongs to, from the head on [-]."""
         middle = 0.5 * (self.ends[1:] + self.ends[:-1])
         return np.searchsorted(np.sort(self.outline.places), middle)
 

@@ -1,7 +1,7 @@
-"""A robot as links, each with its own pose: limbs that paddle, bodies that leave the plane.
+"""A robot as links, each with its own pose: limbs can paddle, and bodies can leave the plane.
 
 Coordinates are all of the robot's own (``land.stepper``): six rates of the root, then every hinge. The flow sees the
-robot turned by half a turn, as it sees a midline: its head at the origin, its tail towards +x.
+robot turned by half a turn: its head is at the origin, its tail towards +x.
 """
 
 from collections.abc import Callable
@@ -55,7 +55,7 @@ class LinkChain:
 
     @cached_property
     def coordinates(self) -> tuple[str, ...]:
-        """Their names."""
+        """Names of the coordinates."""
         return "root_x", "root_y", "root_z", "root_roll", "root_pitch", "root_yaw", *self.joints
 
     def seen(self, place: np.ndarray, rate: np.ndarray) -> ChainState:

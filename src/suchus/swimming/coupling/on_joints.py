@@ -33,7 +33,7 @@ def floating(robot: Robot) -> Robot:
 
 
 def _run(robot: Robot, gait: Gait, setting: SwimSetting) -> Run:
-    """Return the run that swims so."""
+    """Return the run of the swim."""
     reynolds = robot.length**2 / (gait.period * setting.viscosity)
     water = Space(
         cells=setting.cells, reynolds=reynolds, tail_height=setting.tail_height, limbs=setting.limbs,
@@ -46,7 +46,7 @@ def _run(robot: Robot, gait: Gait, setting: SwimSetting) -> Run:
 
 
 def check_on_joints(robot: Robot, gait: Gait, setting: SwimSetting) -> None:
-    """Refuse what ``swim_on_joints`` cannot swim, before anything runs.
+    """Refuse a robot or a motion that ``swim_on_joints`` cannot simulate, before anything runs.
 
     Raises:
         InvalidDesign, OutsideLimits: see ``Swim``.

@@ -107,7 +107,7 @@ class SectionsBeside(NamedTuple):
 
     @property
     def step(self) -> float:
-        """From sample to sample [s]."""
+        """Interval between samples [s]."""
         return float(self.time[1] - self.time[0])
 
 

@@ -204,7 +204,7 @@ def out_of_step(max_steps: int, period: int) -> int:
 
 
 class Swim:
-    """One run whose water is a flow, from rest.
+    """One run in a flow, from rest.
 
     Args:
         run: with a ``Slice`` or a ``Space``.
@@ -389,7 +389,7 @@ class Swim:
 
     @property
     def effort(self) -> float:
-        """Work of the servos so far, braking counted as much as driving [J]."""
+        """Work of the servos so far; braking counts as positive work [J]."""
         return self._effort
 
     def _renew(self, *, anew: bool = False) -> None:
@@ -468,7 +468,7 @@ class Swim:
         return float(np.linalg.norm(impulse[: self.stepper.axes])) / max_momentum if max_momentum > 0.0 else 0.0
 
     def step(self, end_time: float) -> None:
-        """Take one step of the flow and of the robot that does not go beyond a time [s].
+        """Take one step of the flow and of the robot that ends at a time or before it [s].
 
         Raises:
             Diverged: robot or flow did, or the two do not come to terms; with the record so far.
@@ -712,7 +712,7 @@ class Swim:
     # --- what is kept ------------------------------------------------------------------------------------------
 
     def record(self) -> xr.Dataset:
-        """Return the record so far, in the schema of a run with ``record.WATER`` and ``record.COUPLED``; NaN beyond."""
+        """Return the record so far, with the variables of ``record.WATER`` and ``record.COUPLED``; NaN after it."""
         return recorded(self.run, self.chain, self.series, self.stepper.record(), self._start_added)
 
 

@@ -1,4 +1,4 @@
-"""What is kept of the fields around a swimming body: a window of the plane, and vortices in space."""
+"""Samples of the fields around a swimming body: a window of the plane, and vortices in space."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ SPINE = (("x", "m"), ("y", "m"), ("heading", "rad"), ("half_width", "m"))
 
 
 class FieldWindow:
-    """A window of the grid, in its corners, and what is seen through it."""
+    """A window of the grid, whose fields are sampled at the corners of its cells."""
 
     def __init__(self, grid: flow.Grid, length: float, rear_end: float, half_width: float) -> None:
         """Open a window from a third of a length ahead of the snout.
@@ -154,7 +154,7 @@ def _vortices(sim: flow.Simulation) -> np.ndarray:
 
 
 class VortexSampler:
-    """Looks at a body at equal intervals of its last cycle and samples its midline and the vortices around it."""
+    """Samples the midline and the vortices of a body at equal intervals of its last cycle."""
 
     def __init__(self, frequency: float, end: float, frames: int) -> None:
         """Begin to wait for the last cycle.
@@ -167,7 +167,7 @@ class VortexSampler:
         self._frequency, self._end, self._frames = frequency, end, frames
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
-        """Take a frame if one is due."""
+        """Store a frame if one is due."""
         remaining_cycles = (self._end - sim.time) * self._frequency
         count = samples.count("frames")
         if count < self._frames and remaining_cycles < 1.0 - (count + 1) / self._frames + 1e-6:
@@ -186,7 +186,7 @@ class VortexSampler:
         }
 
     def record(self, samples: Samples) -> xr.Dataset:
-        """Return the frames: ``vortices`` and ``spin`` in whole numbers, and what 1 of them stands for."""
+        """Return the frames: ``vortices`` and ``spin`` as integers, and the values of their units."""
         if samples.count("frames") == 0:
             return xr.Dataset()
         frames, f, box = samples.series("frames"), self._frequency, ("frame", "z", "y", "x")

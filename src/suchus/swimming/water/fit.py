@@ -1,7 +1,7 @@
-"""Waves that the joints are asked to make: the motion that comes nearest to them.
+"""Fit of a gait to a body wave: the motion of the joints that is nearest to the wave.
 
-The article commands a continuous wave; a robot has a few lateral servos, the article's three yaw joints and one cable.
-So the wave's tangent angles are fitted by least squares, and what remains is reported.
+The article commands a continuous wave. A robot has a few lateral servos; the article's has three yaw joints and one
+cable. So the wave's tangent angles are fitted by least squares, and the misfit is reported.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,7 +26,7 @@ _TIMES = 48
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
-    """A swimming gait that comes nearest to a wave."""
+    """The swimming gait that is nearest to a wave."""
 
     gait: Gait
     """The gait."""
@@ -46,10 +46,10 @@ def fit(
     most: float = 0.25,
     limbs: tuple[float, float] = LIMBS_BACK,
 ) -> Fit:
-    """Return the gait of the lateral servos that comes nearest to a wave, least squares on tangent angles.
+    """Return the gait of the lateral servos that is nearest to a wave, by least squares of tangent angles.
 
-    Angles are compared at equal arc lengths over one cycle, their first harmonic in time; the head's direction is
-    free, the passive end straight.
+    Angles are compared at equal arc lengths over one cycle, by their first harmonic in time. The direction of the head
+    is free, the passive end straight.
 
     Args:
         robot: whose joints.
@@ -122,7 +122,7 @@ def _requested_bends(outline: Outline, heading: np.ndarray) -> np.ndarray:
 
 
 def _limits(outline: Outline) -> np.ndarray:
-    """Return how far each joint bends to either side, those of a cable an even share of what it allows [rad]."""
+    """Return the greatest bend of each joint to either side; the joints of a cable have equal limits [rad]."""
     robot = outline.robot
     limits = {hinge.name: hinge.range or (-np.pi, np.pi) for hinge in robot.axis_hinges}
     limits |= {name: (0.0, cable.bend_limit / cable.joints) for cable in robot.cables for name in cable.hinges}
@@ -163,7 +163,7 @@ def swim_of(
     reading: str = "I",
     limbs: tuple[float, float] = LIMBS_BACK,
 ) -> Gait:
-    """Return the gait in which a robot swims unless another one is asked for: the wave of (20) on its joints.
+    """Return the default swimming gait of a robot: the wave of (20) on its joints.
 
     Args:
         robot: any robot whose axis bends sideways; its hull makes no difference.
@@ -182,7 +182,7 @@ def swim_of(
 
 
 class Attempt(NamedTuple):
-    """A reading that was tried."""
+    """The fit to one reading of (20)."""
 
     letter: str
     """Letter of ``kinematics.wave.READINGS``."""

@@ -1,4 +1,4 @@
-"""The robot as a body of the flow solver: a slice through it, as deep as the flow is, or the body itself."""
+"""The robot as a body of the flow solver: a slice through it, or the body itself."""
 
 from functools import lru_cache
 
@@ -19,11 +19,11 @@ def immersed(
 ) -> flow.Midline:
     """Return the robot as a bending body of ``suchus.flow``, head at the origin, tail towards +x, y to its right.
 
-    The midline bends as it is commanded, the six cable joints all alike. On the robot one cable holds their sum alone,
-    so that the water's moments, which differ from joint to joint, would make their angles differ: that is left out, as
-    is what the passive end gives way, see ``sprung``.
+    The midline bends as it is commanded, and the six cable joints bend equally. The real cable fixes only their sum,
+    and the moments of the water differ between the joints; this is neglected. The compliance of the passive end is
+    neglected as well, see ``sprung``.
 
-    Seen from above that frame is turned by half a turn, not mirrored: counter-clockwise stays counter-clockwise.
+    Seen from above the frame is turned by half a turn, not mirrored: counter-clockwise stays counter-clockwise.
 
     Args:
         outline: of the robot; stations about one cell apart serve well.
@@ -54,7 +54,7 @@ def _growth(time: float, duration: float) -> tuple[float, float]:
 
 
 def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
-    """Return half of the body's height at the stations, limbs left out, with a raised tail if it is asked for [m].
+    """Return half of the body's height at the stations, without limbs, with a raised tail if requested [m].
 
     Args:
         outline: of the robot.

@@ -1,4 +1,4 @@
-"""Numbers read from the records of a tethered and of a free swim; how each is defined stands here."""
+"""Measures of a tethered and of a free swim, and their definitions."""
 
 from typing import NamedTuple
 
@@ -28,7 +28,7 @@ class Quarters(NamedTuple):
 
     @property
     def moves(self) -> float:
-        """How far the difference has moved towards the tip from T/4 to 3T/4, in tail lengths [-]."""
+        """Displacement of the pressure difference towards the tip from T/4 to 3T/4, in tail lengths [-]."""
         return self.place[2] - self.place[0]
 
 
@@ -38,17 +38,17 @@ def convex_higher(record: xr.Dataset) -> float:
 
 
 def level(track: np.ndarray) -> np.ndarray:
-    """Return a track over whole cycles, first and last instant included, less its mean line.
+    """Return a track over whole cycles, first and last instant included, minus its mean line.
 
-    The line's slope is the displacement from the first to the last instant: a line of least squares would lean with a
-    sine.
+    The slope of the line is the displacement from the first to the last instant. A line of least squares would be
+    tilted by a sine.
     """
     drift = (track[-1] - track[0]) * np.linspace(-0.5, 0.5, track.size)
     return np.asarray(track - drift - np.mean(track[:-1] - drift[:-1]))
 
 
 class LateralSwing(NamedTuple):
-    """How each station of a body swings to either side, as a sine of one cycle."""
+    """First harmonic of each station's lateral motion."""
 
     amplitude: Float[np.ndarray, " station"]
     """Amplitude of the sine [m]."""
@@ -73,7 +73,7 @@ def swing(lateral_positions: Float[np.ndarray, "sample station"], cycles: int = 
 
 
 class Sway(NamedTuple):
-    """A track's displacement to the side and back, once a cycle."""
+    """Lateral motion of a track once a cycle."""
 
     amplitude: float
     """Amplitude of the sine of one cycle [m]."""
@@ -126,7 +126,7 @@ def wave_form(
 
 
 class Swum(NamedTuple):
-    """A free swim in numbers, of its last cycle."""
+    """Measures of a free swim in its last cycle."""
 
     speed: float
     """Forward [m/s]."""
@@ -156,7 +156,7 @@ class Swum(NamedTuple):
 
 
 def efficiency(drag: float, speed: float, power: float) -> float:
-    """Return the quasi-propulsive efficiency: the power that towing the straight body takes over that of the joints.
+    """Return the quasi-propulsive efficiency: the power for towing the straight body over that of the joints.
 
     Args:
         drag: of the straight body at that speed [N or N/m].

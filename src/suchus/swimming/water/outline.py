@@ -1,7 +1,7 @@
-"""The robot seen from above, limbs folded away: how wide it is along its midline, and how its joints bend that.
+"""Outline of the robot from above, without limbs: its width along the midline, and the bend by its joints.
 
-Frame: the snout at the origin when the base rests there, x towards the tail, y to the robot's right, so that x is
-that of (20); a heading is the direction from head to tail. Arc length s runs from the snout to the tip of the tail.
+The snout is at the origin when the base rests there, x points towards the tail, y to the robot's right: x is that of
+(20). A heading is the direction from head to tail. Arc length s runs from the snout to the tip of the tail.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class BodySilhouette(NamedTuple):
 
 
 def silhouette(robot: Robot, s: Float[np.ndarray, " station"]) -> BodySilhouette:
-    """Return how far the straight robot reaches sideways and upwards, limbs left out.
+    """Return half width and half height of the straight robot along its midline, without limbs.
 
     Args:
         robot: the design.
@@ -41,7 +41,7 @@ def silhouette(robot: Robot, s: Float[np.ndarray, " station"]) -> BodySilhouette
 
 
 class MidlineCurve(NamedTuple):
-    """A bent midline and how it moves; every array has the shape (*b, station)."""
+    """A bent midline and its velocity; every array has the shape (*b, station)."""
 
     x: Float[np.ndarray, "*b station"]
     """[m]."""
@@ -58,7 +58,7 @@ class MidlineCurve(NamedTuple):
 
 
 class LateralServo(NamedTuple):
-    """What bends the midline at a command: a servo at its hinge, or a cable at several."""
+    """A servo that bends the midline: at its hinge, or by a cable at several hinges."""
 
     name: str
     """Name of the servo."""
@@ -70,11 +70,11 @@ class LateralServo(NamedTuple):
 
 @dataclass(frozen=True)
 class Outline:
-    """A robot's midline, from its joints.
+    """A robot's midline over its joints.
 
-    Each joint's bend is smeared over a length, the curvature as a raised cosine: half way to the nearest joint on
-    either side where a servo turns one hinge between rigid segments, as far as the nearest joint in a cable section
-    and a passive end, which are flexible. Where such joints bend alike the curvature is even.
+    The bend of each joint is distributed over a length, with a raised cosine as curvature. A joint between rigid
+    segments reaches half way to the nearest joint on either side. A joint in a cable section or a passive end, which
+    are flexible, reaches to the nearest joint. The curvature is constant where such joints bend equally.
     """
 
     robot: Robot
@@ -93,7 +93,7 @@ class Outline:
 
     @cached_property
     def silhouette(self) -> BodySilhouette:
-        """How wide and high the body is at the stations."""
+        """Half width and half height of the body at the stations."""
         return silhouette(self.robot, self.s)
 
     @cached_property
@@ -104,16 +104,16 @@ class Outline:
 
     @cached_property
     def ahead(self) -> int:
-        """How many of ``joints`` lie ahead of the root.
+        """Number of ``joints`` ahead of the root.
 
-        A positive angle turns the front end left there, and the tip right behind the root.
+        A positive angle of such a joint turns the front end left; behind the root it turns the tip right.
         """
         place = layout(self.robot)
         return sum(name in place.hinges[place.ahead] for name in self.joints)
 
     @cached_property
     def servos(self) -> tuple[LateralServo, ...]:
-        """What bends the midline at a command, in the order of ``motion.lateral_servos``."""
+        """The servos that bend the midline, in the order of ``motion.lateral_servos``."""
         place, order = layout(self.robot), {name: i for i, name in enumerate(self.joints)}
         hinges = {name: place.cable(place.servos.index(name)).hinges for name in self._cables}
         joints_by_servo = {
@@ -122,10 +122,10 @@ class Outline:
         return tuple(LateralServo(name, joints, joints[0] < self.ahead) for name, joints in joints_by_servo.items())
 
     def at_servos(self, moments: Float[np.ndarray, "*b joint"]) -> Float[np.ndarray, "*b servo"]:
-        """Return what moments about ``joints`` ask of ``servos``, each at its own shaft [N m].
+        """Return the torques of ``servos`` for moments about ``joints``, each at its own shaft [N m].
 
-        A cable bends its joints alike, so that its servo takes the mean of their moments, over the ratio of half the
-        cords' distance to the pulley.
+        A cable bends its joints equally. Its servo carries the mean of their moments, over the ratio of half the
+        distance of the cords to the pulley radius.
         """
         cables = {cable.name: cable.pulley / (0.5 * cable.cord_spacing) for cable in self.robot.cables}
         columns = [
@@ -135,13 +135,13 @@ class Outline:
 
     @cached_property
     def passive(self) -> tuple[int, ...]:
-        """Those of ``joints`` that no servo moves."""
+        """Indices of ``joints`` without a servo."""
         driven_joints = {joint for servo in self.servos for joint in servo.joints}
         return tuple(i for i in range(len(self.joints)) if i not in driven_joints)
 
     @property
     def tail_root(self) -> float:
-        """Where the tail begins, at the end of the root's segment, from the snout [m]."""
+        """Position at which the tail begins, at the end of the root's segment, from the snout [m]."""
         return tail_root(self.robot)
 
     @property
@@ -150,7 +150,7 @@ class Outline:
 
     @cached_property
     def places(self) -> Float[np.ndarray, " joint"]:
-        """Where the joints are, from the snout [m]."""
+        """Positions of the joints, from the snout [m]."""
         ends = np.cumsum([segment.front + segment.rear for segment in self.robot.axis])
         hinge_positions = {
             h.name: end for segment, end in zip(self.robot.axis, ends, strict=True) for h in segment.hinges
@@ -159,10 +159,10 @@ class Outline:
 
     @cached_property
     def spacings(self) -> Float[np.ndarray, " joint"]:
-        """From each joint to the nearest one that is driven in the same way [m].
+        """Distance from each joint to the nearest one with the same kind of drive [m].
 
-        That is by a servo of its own, by the same cable, or by nothing; of a single one the distance is that to the
-        nearest of all, or to the nearer end of the body.
+        Kinds are a servo of its own, the same cable, or none. For a single joint the distance is that to the nearest
+        joint of any kind, or to the nearer end of the body.
         """
         cables = {joint: servo.name for servo in self.servos if servo.name in self._cables for joint in servo.joints}
         drive = ["" if i in self.passive else cables.get(i, "servo") for i in range(len(self.joints))]
@@ -179,7 +179,7 @@ class Outline:
 
     @cached_property
     def reaches(self) -> Float[np.ndarray, " joint"]:
-        """Half of the length over which each joint bends the midline [m]."""
+        """Half of the length over which the bend of each joint is distributed [m]."""
         rigid = [servo.joints[0] for servo in self.servos if servo.name not in self._cables]
         share = np.ones(len(self.joints))
         share[rigid] = 0.5
@@ -187,7 +187,7 @@ class Outline:
 
     @cached_property
     def bending(self) -> Float[np.ndarray, "middle servo"]:
-        """How the heading halfway between stations grows with the bend of each of ``servos`` [-]."""
+        """Derivative of the heading halfway between stations with respect to the bend of each of ``servos`` [-]."""
         return self.bending_at(0.5 * (self.s[1:] + self.s[:-1]))
 
     def bending_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point servo"]:
@@ -197,7 +197,7 @@ class Outline:
         return np.array(shares).reshape(len(self.servos), len(s)).T
 
     def passive_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point passive"]:
-        """Return how the heading at points grows with the bend of each passive joint [-]."""
+        """Return the derivative of the heading at points with respect to each passive joint [-]."""
         return self.joints_at(s)[:, list(self.passive)]
 
     def joints_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point joint"]:

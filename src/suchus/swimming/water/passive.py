@@ -1,4 +1,4 @@
-"""The passive end of the tail, bent by the water against its springs."""
+"""The passive end of the tail, which the water bends against its springs."""
 
 from dataclasses import replace
 
@@ -15,11 +15,11 @@ _ROUNDS = 12
 
 
 def sprung(outline: Outline, motion: Motion, speed: float, water: Water | None = None) -> Undulation:
-    """Return a motion whose passive end gives way to the water, for a body that nothing holds.
+    """Return a motion whose passive end yields to the water, for a free body.
 
-    Each passive joint balances its spring and damper against the moment about it of Lighthill's reaction of the water
-    beyond it, of the drag across the body (linearised so that it takes the same work from a sine), and of the mass of
-    the end itself, as heavy as its water. First harmonic, small bends: a model of the round body, which knows no wake.
+    The spring and the damper of each passive joint balance three moments: Lighthill's reaction of the water beyond the
+    joint, the drag across the body, and the inertia of the end, which has the mass of its water. The drag is linearised
+    with equal work for a sine. The model has a first harmonic, small bends, a round body and no wake.
 
     Args:
         outline: of the robot.
@@ -55,14 +55,14 @@ def _with_bend(base_motion: Undulation, middles: np.ndarray, stations: np.ndarra
 
 
 def _springs(outline: Outline, frequency: float) -> np.ndarray:
-    """Return spring and damper of each passive joint at a frequency, as the model has them [N m/rad]."""
+    """Return the complex stiffness of each passive joint at a frequency, by spring and damper [N m/rad]."""
     drives = {hinge.name: hinge.drive for hinge in outline.robot.axis_hinges}
     springs = [drives[outline.joints[i]] for i in outline.passive]
     return np.array([s.stiffness + 2j * np.pi * frequency * s.damping for s in springs if isinstance(s, Spring)])
 
 
 class _Load:
-    """What the water does to a section that moves sideways, linear in that motion."""
+    """Load of the water on a section in a lateral motion, linear in that motion."""
 
     def __init__(
         self, outline: Outline, frequency: float, speed: float, water: Water, y: np.ndarray, slope: np.ndarray

@@ -1,6 +1,6 @@
-"""What is sampled and recorded of a slice through the robot: tethered by its snout, as in Fig. 17, or free.
+"""Samples and record of a slice through the robot: tethered at its snout, as in Fig. 17, or free.
 
-Of a tethered slice also what the water does along the skin: pressures on the two sides of the tail, and moments about
+The record of a tethered slice also has the loads along the skin: pressures on both sides of the tail, and moments about
 the joints.
 """
 
@@ -26,7 +26,7 @@ PLACES = 33
 
 
 class TetheredSlice:
-    """Forces, loads along the skin and fields of a slice whose motion is given."""
+    """Forces, loads along the skin and fields of a slice with a prescribed motion."""
 
     def __init__(self, swim: ResolvedSwim) -> None:
         self._outline, self._view = swim.outline, FieldWindow(swim.setup.grid, swim.robot.length, 1.9, 0.6)
@@ -34,7 +34,7 @@ class TetheredSlice:
         self._first_cycle = min(1, self._cycles - 1)
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
-        """Sample what is due after a step."""
+        """Store the samples that are due after a step."""
         phase = (sim.time - self._start) / self._period
         turn = sim.time / self._period > self._first_cycle + 0.25 * (samples.count("turns") + 1) - SLACK
         if phase <= SLACK and not turn:
@@ -63,7 +63,7 @@ class TetheredSlice:
             samples.add("quarters", sim.time, sides=sides, **fields, **midline_values(midline))
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what was sampled, at even phases, with the means of every cycle."""
+        """Return the record of the samples at equal phases, with the means of every cycle."""
         lateral = self._outline.servos
         series, steps, quarters = sim.record.after(self._start), samples.series("steps"), samples.series("quarters")
         phase = np.arange(1, PHASES + 1) / PHASES
@@ -130,14 +130,14 @@ def _noise(series: flow.Record, period: float) -> float:
 
 
 class FreeSlice:
-    """Track, speed and fields of a slice that swims freely."""
+    """Track, speed and fields of a free slice."""
 
     def __init__(self, swim: ResolvedSwim) -> None:
         self._swim, self._view = swim, FieldWindow(swim.setup.grid, swim.robot.length, 2.25, 0.6)
         self._end, self._period, self._frames = swim.end, swim.period, swim.setting.frames
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
-        """Sample what is due after a step."""
+        """Store the samples that are due after a step."""
         sample_course(sim, samples)
         remaining_cycles = (self._end - sim.time) / self._period
         if remaining_cycles > 2.0 + SLACK:
@@ -153,7 +153,7 @@ class FreeSlice:
             )
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what was sampled, at even phases, with the means of every cycle."""
+        """Return the record of the samples at equal phases, with the means of every cycle."""
         period, outline, motion = self._period, self._swim.outline, self._swim.motion
         speed, power = cycle_means(sim.record, period, self._swim.setting.cycles, ("velocity_x", "power"))
         track = samples.series("track")
@@ -186,9 +186,9 @@ class FreeSlice:
 
 
 def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
-    """Return the moment of the water about the first joint of each lateral servo, of what lies beyond it [N m/m].
+    """Return the water's moment about the first joint of each lateral servo, of the load beyond it [N m/m].
 
-    Beyond a joint ahead of the root lies the part towards the snout, beyond one behind it the part towards the tip.
+    Beyond means towards the snout for a joint ahead of the root, towards the tip for one behind it.
 
     Args:
         outline: of the robot.
@@ -241,7 +241,7 @@ def tail_sides(outline: Outline, surface: flow.Surface) -> Float[np.ndarray, "2 
 
 
 def convex_less_concave(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> float:
-    """Return the mean pressure along the convex side of the tail less that along the concave side [Pa]."""
+    """Return the mean pressure on the convex side of the tail minus that on the concave side [Pa]."""
     m, start = surface.markers, outline.tail_root
     means = []
     for side in (1.0, -1.0):
@@ -252,12 +252,12 @@ def convex_less_concave(outline: Outline, surface: flow.Surface, midline: flow.M
 
 
 def place_of_difference(sides: Float[np.ndarray, "2 place"]) -> float:
-    """Return where the pressure difference sits, root 0 to tip 1: the mean place, weighted with the difference [-]."""
+    """Return the mean position of the pressure difference, weighted by it; root 0, tip 1 [-]."""
     weight = np.abs(sides[1] - sides[0])
     total = float(weight.sum())
     return float(weight @ np.linspace(0.0, 1.0, sides.shape[1])) / total if total > 0 else 0.5
 
 
 def bend(outline: Outline, midline: flow.MidlineState) -> float:
-    """Return how far the tail bends from its root to its tip, to the robot's right [rad]."""
+    """Return the bend of the tail from root to tip, positive to the robot's right [rad]."""
     return float(midline.heading[-1] - np.interp(outline.tail_root, outline.s, midline.heading))

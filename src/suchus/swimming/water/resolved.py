@@ -31,13 +31,13 @@ _RAMP = 0.5
 
 
 class SwimObserver(Protocol):
-    """Samples a swim after every step, and makes a record of it in the end."""
+    """Takes samples after every step of a swim, and makes its record."""
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
-        """Add to the samples."""
+        """Store samples."""
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what the swim's samples and the flow's own record say."""
+        """Return the record of the swim, from its samples and the record of the flow."""
 
 
 _OBSERVERS: dict[tuple[int, bool], Callable[[ResolvedSwim], SwimObserver]] = {
@@ -59,10 +59,10 @@ def resolved_swim(
     checkpoint: Path | str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Return a swim by CFD: from rest, the motion growing over the first half cycle.
+    """Return a swim by CFD from rest; the motion grows over the first half cycle.
 
-    A free body is as heavy as the water it displaces, and the grid travels with its centre; ``x`` and ``y`` of the
-    record are in its frame at each instant.
+    A free body has the mass of the water that it displaces. The grid follows its centre; ``x`` and ``y`` of the record
+    are in the frame of the grid at each instant.
 
     Args:
         robot: who swims.
@@ -104,7 +104,7 @@ def resolved_swim(
 def check_resolved_swim(
     robot: Robot, motion: Motion, setting: SwimSetting, *, sway: complex = 0j, turn: complex = 0j
 ) -> None:
-    """Refuse what joints, servos, grid, box or machine cannot follow, before anything runs; see ``resolved_swim``."""
+    """Refuse a swim beyond the limits of joints, servos, grid, box or machine, before anything runs."""
     ResolvedSwim(robot=robot, motion=motion, setting=setting, sway=sway, turn=turn).check()
 
 

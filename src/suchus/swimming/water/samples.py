@@ -1,8 +1,8 @@
-"""What is sampled of a flow as it goes, and how a run that was stopped goes on from its last pause.
+"""Samples of a running flow, and checkpoints from which a stopped run continues.
 
-At every pause the samples are written first, then the flow's own checkpoint, each in one piece. A kill loses at most
-what came after the last pause, Ctrl-C likewise; and since a run pauses at the same instants whether it saves or not,
-one that was stopped ends with the same bytes as one that was not.
+At every pause the samples are written first, then the checkpoint of the flow. Each file is written atomically. An
+interrupted run loses at most the time since the last pause. A run pauses at the same instants whether it saves or not;
+thus a resumed run gives the same bytes.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -26,13 +26,13 @@ _CHECKPOINT_SUFFIX, _SAMPLES_SUFFIX = ".kept-swim", ".samples"  # how the files 
 
 
 class Samples:
-    """Samples of a run in series, each of a time and named values."""
+    """Samples of a run in series; each has a time and named values."""
 
     def __init__(self) -> None:
         self._series: dict[str, list[dict[str, np.ndarray]]] = {}
 
     def add(self, series: str, time: float, **values: np.ndarray | float) -> None:
-        """Add a sample to a series: the time [s] and values of the same shapes as in the samples before."""
+        """Add a sample to a series: the time [s], and values of constant shapes."""
         sample = {"time": np.asarray(time), **{name: np.asarray(value) for name, value in values.items()}}
         self._series.setdefault(series, []).append(sample)
 
@@ -46,7 +46,7 @@ class Samples:
         return {name: np.stack([sample[name] for sample in samples]) for name in samples[0]}
 
     def state(self) -> dict[str, np.ndarray]:
-        """Return the samples so far by ``series/name``."""
+        """Return the samples so far as arrays, by ``series/name``."""
         return {f"{series}/{name}": values for series in self._series for name, values in self.series(series).items()}
 
     @classmethod
@@ -111,7 +111,7 @@ def kept_in(folder: str, name: str) -> Path | None:
 
 
 def check_kept(folder: str) -> None:
-    """Refuse a folder for unfinished swims before any is begun, if they could not be kept there.
+    """Refuse a folder in which unfinished swims cannot be stored.
 
     Raises:
         Unwritable: it is no folder, or cannot be written to.

@@ -1,8 +1,8 @@
-"""What an elliptic section of a body feels in water: a table of drag and added mass computed by the flow solver.
+"""Drag and added mass of elliptic sections: a table that was computed by the flow solver.
 
-The sections move to and fro in water at rest, ``atlas.sections`` says how. Between the nodes of the table the
-logarithms are linear in those of aspect and Keulegan number. The table stands at a number of Stokes of 20, so that its
-Reynolds numbers are 20 to 400; the robot's number of Stokes is 3600. See docs/amphibious.md for what follows.
+The sections oscillate in water at rest, see ``atlas.sections``. Between the nodes the logarithms are linear in those of
+aspect and Keulegan-Carpenter number. The table has a Stokes number of 20, that is Reynolds numbers of 20 to 400. The
+robot's Stokes number is 3600; docs/amphibious.md describes the consequences.
 """
 
 import csv
@@ -31,7 +31,7 @@ _COLUMNS = ("aspect", "keulegan", "cells", "drag", "added", "drag_before", "adde
 
 
 class SectionFlow(NamedTuple):
-    """What one section feels."""
+    """Coefficients of one section."""
 
     aspect: float
     """Height across the motion over thickness along it [-]."""
@@ -65,7 +65,7 @@ def points() -> dict[str, tuple[float, float, int]]:
 
 
 def attached(keulegan: float, stokes: float = sections.STOKES) -> tuple[float, float]:
-    """Return drag coefficient and added mass of a round section around which the water does not separate [-].
+    """Return drag coefficient and added mass of a round section in attached flow [-].
 
     Args:
         keulegan: number of Keulegan and Carpenter, small [-].
@@ -158,7 +158,7 @@ def write_table(outcomes: Mapping[str, FlowOutcome], path: Path = TABLE) -> str:
 
 @lru_cache(maxsize=4)
 def table(path: Path = TABLE) -> tuple[SectionFlow, ...]:
-    """Return every point of a table, held-out ones and those on a finer grid too.
+    """Return all points of a table, also those that are held out and those on a finer grid.
 
     Raises:
         UnreadableFile: it holds something else.

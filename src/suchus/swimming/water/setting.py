@@ -1,4 +1,4 @@
-"""How a swim is resolved by the flow solver: in the plane or in space, tethered or free, how finely, how long."""
+"""Settings of a swim in the flow solver: in the plane or in space, tethered or free, resolution and duration."""
 
 from dataclasses import dataclass, replace
 
@@ -98,7 +98,7 @@ class SwimSetting:
 
     @property
     def tethered(self) -> bool:
-        """Whether the body's whole motion is given."""
+        """Whether the whole motion of the body is prescribed."""
         return not any(self.free)
 
     @property
@@ -111,7 +111,7 @@ class SwimSetting:
         return self.blunt * length / self.cells
 
     def largest_divergence(self) -> float:
-        """Return ``tolerance``, or what stands for None [-]."""
+        """Return ``tolerance``, or its default if it is None [-]."""
         return _TOLERANCES[self.axes] if self.tolerance is None else self.tolerance
 
     def grid(self, length: float, swing: float = 0.0, height: float = 0.0) -> flow.Grid:

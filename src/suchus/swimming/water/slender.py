@@ -1,8 +1,8 @@
-"""Slender-body models of swimming: resistive after Taylor, reactive after Lighthill, on the robot's own midline.
+"""Slender-body models of swimming on the robot's midline: resistive after Taylor, reactive after Lighthill.
 
-Both take every section of the body for itself. The resistive model drags it by its own velocity; the reactive one
-gives it the momentum of the water beside it, which leaves at the tail. Neither knows the wake nor the flow around the
-head. The body swims towards -x, at the speed U against the water.
+Both treat every section by itself. The resistive model computes the drag of its velocity. The reactive model computes
+the momentum of the water beside it, which is shed at the tail. Neither has a wake or the flow around the head. The body
+swims towards -x at the speed U.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ _THRUST_TOLERANCE = 1e-5
 
 
 class Effort(NamedTuple):
-    """Means over a cycle."""
+    """Mean thrust and power over a cycle."""
 
     thrust: float
     """Force forward [N]."""
@@ -68,11 +68,11 @@ def resistive(outline: Outline, curve: MidlineCurve, speed: float, water: Water)
 
 
 def reactive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) -> Effort:
-    """Return thrust and power after Lighthill: the momentum that sheds at the tail, less the body's friction.
+    """Return thrust and power after Lighthill: momentum shed at the tail, minus the body's friction.
 
-    The mean force is that of the water that passes the plane through the tail's tip, square to the body, with the
-    pressure on that plane. The water must leave there: the model knows nothing of a body that swims tail first, and
-    its thrust at rest is the same for a wave and its reverse.
+    The mean force is the momentum flux through the plane normal to the body at the tip of the tail, with the pressure
+    on that plane. The water must leave there: the model is not valid for a body that swims tail first. Its thrust at
+    rest is the same for a wave and its reverse.
 
     Args:
         outline: of the robot.
@@ -127,7 +127,7 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
 
 
 def cycle(outline: Outline, motion: Motion, sway: complex = 0j, turn: complex = 0j) -> MidlineCurve:
-    """Return the midline over one cycle, shape (time, station), its snout swaying and its head turning as given."""
+    """Return the midline over one cycle, shape (time, station), with given sway of the snout and turn of the head."""
     body_motion = undulation(outline, motion)
     return body_motion.held(sway, turn).curve(np.arange(_TIMES) / _TIMES / body_motion.frequency)
 

@@ -1,4 +1,4 @@
-"""What is sampled and recorded of the robot's own body in space: free, or its motion given."""
+"""Samples and record of the robot's body in space: free, or with a prescribed motion."""
 
 from itertools import pairwise
 
@@ -19,7 +19,7 @@ _PER_CYCLE = {"velocity_x": ("speed", "m/s"), "force_x": ("thrust", "N"), "power
 
 
 class FreeInSpace:
-    """Speed, moments at the joints, wake and vortices of a body that the water moves."""
+    """Speed, moments at the joints, wake and vortices of a free body."""
 
     def __init__(self, swim: ResolvedSwim) -> None:
         self._swim, self._end, self._period = swim, swim.end, swim.period
@@ -35,7 +35,7 @@ class FreeInSpace:
         samples.add("track", sim.time, heading=spine.heading[0], tail=spine.y[-1] + position[1])
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what was sampled, at even phases, with the means of every cycle."""
+        """Return the record of the samples at equal phases, with the means of every cycle."""
         period, cycles, series = self._swim.period, self._swim.setting.cycles, sim.record
         outline, motion, robot = self._swim.outline, self._swim.motion, self._swim.robot
         servos = [servo.name for servo in outline.servos]
@@ -77,7 +77,7 @@ class FreeInSpace:
 
 
 class TetheredInSpace:
-    """Forces on a body whose motion is given; the flow's own record is enough."""
+    """Forces on a body with a prescribed motion, from the record of the flow."""
 
     def __init__(self, swim: ResolvedSwim) -> None:
         self._swim = swim
@@ -86,7 +86,7 @@ class TetheredInSpace:
         """Sample nothing."""
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what was sampled, at even phases, with the means of every cycle."""
+        """Return the record at equal phases, with the means of every cycle."""
         del samples
         period, cycles, (sway, turn) = self._swim.period, self._swim.setting.cycles, self._swim.head
         axial_force, power = cycle_means(sim.record, period, cycles, ("force_x", "power"))
@@ -141,9 +141,9 @@ class TetheredInSpace:
         return xr.Dataset(data, coords=coords)
 
     def _push(self, sim: flow.Simulation, time: float, force: np.ndarray) -> float:
-        """Return the push on the tail from its convex side less that from its concave one, over the tail's side [Pa].
+        """Return the lateral force on the tail from convex to concave side, over the side area of the tail [Pa].
 
-        It stands for the difference of the pressures, which no grid here resolves along a round tail's skin.
+        It replaces the pressure difference, because no grid resolves the pressure along the skin of a round tail.
 
         Args:
             sim: at its end.

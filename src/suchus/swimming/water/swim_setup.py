@@ -1,4 +1,4 @@
-"""What is simulated when a robot swims in the flow solver, and the checks before anything runs."""
+"""Setup of a robot's swim in the flow solver, and the checks before it runs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ they were at 96 to 192 cells a length."""
 
 @dataclass(frozen=True, kw_only=True)
 class ResolvedSwim:
-    """One robot, one motion, one setting: what is simulated."""
+    """A robot, a motion and a setting, from which the flow is set up."""
 
     robot: Robot
     """The robot that swims."""
@@ -61,7 +61,7 @@ class ResolvedSwim:
 
     @property
     def key(self) -> str:
-        """What tells this swim from others, in full."""
+        """Text that identifies the swim."""
         motion = self.motion
         if hasattr(motion, "middles"):
             return repr((self.sway, self.turn, self.robot, motion.name, motion.middles.tobytes(), self.setting))
@@ -69,14 +69,14 @@ class ResolvedSwim:
 
     @cached_property
     def head(self) -> tuple[complex, complex]:
-        """Harmonics of the snout's sway [m] and of the head's direction [rad]: those given, or those to be expected."""
+        """Harmonics of the snout's sway [m] and of the head's direction [rad]: given, or estimated."""
         if self.setting.tethered:
             return self.sway, self.turn
         return recoil(self.outline, self.motion, 0.0, Water())
 
     @cached_property
     def setup(self) -> flow.Setup:
-        """What is simulated: the body, snout at the origin, in its box of water."""
+        """Setup of the flow: the body, its snout at the origin, in its box of water."""
         length, name, free = self.robot.length, self.robot.name, not self.setting.tethered
         shape = body_shape(
             self.outline, self.motion, self.setting, sway=self.sway, turn=self.turn, grow=GROWS / self.motion.frequency
@@ -92,7 +92,7 @@ class ResolvedSwim:
         )  # fmt: skip
 
     def check(self) -> None:
-        """Refuse what joints, servos, grid, box or machine cannot follow, before anything runs.
+        """Refuse a swim beyond the limits of joints, servos, grid, box or machine, before anything runs.
 
         Raises:
             OutsideLimits: the joints or servos cannot follow the motion.
@@ -129,7 +129,7 @@ class ResolvedSwim:
             )
 
     def _cost(self, cells: int) -> str:
-        """Return what a swim in space with so many cells per body length takes, for a message."""
+        """Return a text on the cost of a swim in space with a number of cells per body length."""
         setting = self.setting
         if not setting.in_space:
             return ""
@@ -160,7 +160,7 @@ def box_grid(outline: Outline, setting: SwimSetting, swing: float) -> flow.Grid:
 
 
 def box_sides(setting: SwimSetting) -> flow.Sides:
-    """Return what lies around the box: an unbounded domain, in space beyond a plane of symmetry its image."""
+    """Return the sides of the box: an unbounded domain, in space with its image beyond a plane of symmetry."""
     return flow.Sides(low=flow.Mirror()) if setting.in_space else flow.Sides()
 
 

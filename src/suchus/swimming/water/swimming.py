@@ -1,4 +1,4 @@
-"""How a robot swims by the models that cost nothing: one motion in full, or many in a few numbers each."""
+"""Swims by slender-body models, which take no time: one motion in full, or many with a few numbers each."""
 
 from collections.abc import Sequence
 
@@ -114,8 +114,7 @@ def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
 def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
     """Return the speed of the body wave towards the tail, negative if it runs to the head [m/s].
 
-    The phase of the sideways motion along the body is fitted with a straight line, each place weighted with the square
-    of its amplitude.
+    A line is fitted to the phase of the lateral motion along the body, weighted with the squared amplitude.
     """
     count = len(curve.y)
     turning = np.exp(-2j * np.pi * np.arange(count) / count)

@@ -1,11 +1,10 @@
-"""How a midline bends over time: as its joints bend it, or exactly as a wave prescribes.
+"""Motion of a midline over time: by the bends of its joints, or exactly as a wave prescribes.
 
-Both are the same thing to the flow and to the models: tangent angles along the body, each a sum of harmonics in time.
-Places and velocities follow by summing tangents from the snout, so that the midline keeps its length whatever the wave,
-and velocities are exact derivatives.
+Both are tangent angles along the body, each a sum of harmonics in time. Positions and velocities are sums of tangents
+from the snout. So the midline has a constant length, and velocities are exact derivatives.
 
-A cable fixes the sum of its joints only, and a passive end bends as the water lets it; a gait commands them and cannot
-see that. So a motion can also be taken from the angles of every lateral joint of a run (``taken``).
+A cable fixes only the sum of its joints, and the water bends a passive end. A gait cannot describe that. So a motion
+can also be taken from the angles of every lateral joint of a run (``taken``).
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +28,7 @@ HARMONICS = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExactWave:
-    """A wave that the midline follows exactly, joints or not: a body that bends anywhere."""
+    """A wave that the midline follows exactly, independent of joints."""
 
     name: str
     """Name, as messages, tables and files show it."""
@@ -42,7 +41,7 @@ class ExactWave:
 
     @property
     def frequency(self) -> float:
-        """Of the wave [Hz]."""
+        """Frequency of the wave [Hz]."""
         return 1.0 / self.wave.period
 
 
@@ -72,7 +71,7 @@ class Undulation:
         return replace(self, middles=middles, stations=stations, sway=snout)
 
     def curve(self, time: Float[np.ndarray, "*b"], growth: float = 1.0, growth_rate: float = 0.0) -> MidlineCurve:
-        """Return the midline at times.
+        """Return the midline and its velocity at times.
 
         Args:
             time: [s].
@@ -113,7 +112,7 @@ Motion = Gait | ExactWave | Undulation
 
 
 def undulation(outline: Outline, motion: Motion) -> Undulation:
-    """Return how the midline bends in a motion; in a gait the snout stays in place and the head straight.
+    """Return the motion of a midline; in a gait the snout stays in place and the head straight.
 
     Args:
         outline: of the robot.
@@ -142,7 +141,7 @@ def still(outline: Outline, frequency: float = 1.0) -> Undulation:
 
 
 def _of_joints(outline: Outline, name: str, frequency: float, harmonics: np.ndarray) -> Undulation:
-    """Return the motion of a midline whose joints have such harmonics, shape (harmonic, joint) [rad]."""
+    """Return the motion of a midline with given harmonics of its joints, shape (harmonic, joint) [rad]."""
     middle = 0.5 * (outline.s[1:] + outline.s[:-1])
     return Undulation(
         name=name,
@@ -155,7 +154,7 @@ def _of_joints(outline: Outline, name: str, frequency: float, harmonics: np.ndar
 
 
 def _commanded(outline: Outline, gait: Gait) -> Complex[np.ndarray, "harmonic joint"]:
-    """Return the harmonics of the joints in a gait, a cable's bend shared evenly, without their means [rad]."""
+    """Return the harmonics of the joints in a gait, without their means [rad]; joints of a cable bend equally."""
     plan, place = movement(outline.robot, gait), layout(outline.robot)
     harmonics = np.zeros((HARMONICS if gait.curves else 2, len(outline.joints)), complex)
     if gait.curves:
@@ -199,8 +198,8 @@ def _harmonics(values: np.ndarray) -> np.ndarray:
 def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int, name: str = "as taken") -> Undulation:
     """Return the motion of the midline in the last whole cycles of a run, averaged over them.
 
-    Only yaw counts, as in the slice of water seen from above that it is for: pitch, heave and roll of the run are not
-    in it, and of yaw its mean over a cycle is not.
+    Only yaw counts, without its mean, as in a slice of water seen from above. Pitch, heave and roll of the run are left
+    out.
 
     Args:
         outline: of the robot without a hull.

@@ -31,7 +31,7 @@ class BodyWave(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PrintedWave:
-    """(20) on a robot, from the snout or from the root of the tail on; ahead of that the body stays straight.
+    """(20) on a robot, from the snout or from the root of the tail on; the body ahead of it stays straight.
 
     Paper: Eq. (20).
     """
@@ -89,11 +89,11 @@ class EelWave:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FilmedWave:
-    """A wave of which a film gave the amplitudes of snout and tail, and its length: ``A(x) sin 2 pi (x / wave - f t)``.
+    """A wave with amplitudes and length from a film: ``A(x) sin 2 pi (x / wave - f t)``.
 
-    In between the amplitude follows a parabola that is level at the snout; that is what a film says of it that gives
-    its ends only, and how swimmers of the eel's and of the carp's kind look (Di Santo et al. 2021, PNAS 118,
-    e2113206118).
+    Between snout and tail the amplitude is a parabola with zero slope at the snout. A film that gives the amplitudes of
+    the ends only does not say more. Eel-like and carp-like swimmers have such envelopes (Di Santo et al. 2021, PNAS
+    118, e2113206118).
     """
 
     length: float
