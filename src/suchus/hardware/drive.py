@@ -24,12 +24,12 @@ from suchus.sim.land import Run
 from suchus.sim.land.loop import start
 
 Stop = Literal["sag", "hold", "off"]
-_START_TOLERANCE = 0.005  # [rad]; a servo so near to where it begins needs no way there
-_SAG_TORQUE = 0.2  # share of the torque with which a robot sinks
-_HOLDS, _SINKS = 0.2, 0.6  # [s]; how long it is held before it is let down, and how long that lasts
-_WATCHDOG_FRACTION = 0.8  # share of the time that servos wait for us after which they may have given up
+_START_TOLERANCE = 0.005  # [rad]; distance from the first posture without an approach
+_SAG_TORQUE = 0.2  # fraction of the torque with which a robot sinks
+_HOLDS, _SINKS = 0.2, 0.6  # [s]; hold before the robot sinks, and duration of sinking
+_WATCHDOG_FRACTION = 0.8  # fraction of the watchdog's time after which a servo may have stopped
 _BY_IMU = ("orientation", "angular_velocity", "acceleration")
-_PHASES = 64  # of a cycle, at which a gait is looked at before
+_PHASES = 64  # phases of a cycle at which a gait is checked
 
 
 class TickClock(Protocol):

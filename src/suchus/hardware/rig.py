@@ -36,10 +36,8 @@ TRIED = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
 """Bit rates at which servos are looked for that do not answer at the one that the file names [1/s]."""
 PATIENT = 0.1
 """How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
-_MAX_ATTEMPTS = 8  # times that a question is asked before the robot moves: a tenth of all packets may be lost
-_MIN_TICK_FRACTION = (
-    0.25  # share of the wait that must be left of a tick, or a board be given, to ask more than the servos
-)
+_MAX_ATTEMPTS = 8  # attempts of a request before the robot moves: a tenth of all packets may be lost
+_MIN_TICK_FRACTION = 0.25  # least fraction of the wait for requests after those to the servos
 _WATCHDOG = 5  # steps of 20 ms
 _SENSES = {
     "imu": ("orientation", "angular_velocity", "acceleration"),

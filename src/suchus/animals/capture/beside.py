@@ -14,8 +14,8 @@ from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.motion import Gait, cycle_targets, movement
 
 _RESIDUAL_TOLERANCE = np.radians(2.0)  # a residual below this needs no reason
-_PHASE_STEP = 4  # phase at which limbs are compared
-_RANGE_END = 0.98  # share of its range from which on a joint is at the end of it
+_PHASE_STEP = 4  # phases of the table per phase at which limbs are compared
+_RANGE_END = 0.98  # fraction of its range from which on a joint is at its end
 
 
 def beside(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:

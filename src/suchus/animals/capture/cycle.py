@@ -9,14 +9,14 @@ from scipy.optimize import minimize_scalar
 from suchus.animals.capture.tracks import UnusableTracks
 
 LEAST_CYCLES = 1.2
-"""How much of a cycle must be seen, so that its end can be told by its beginning coming again [cycle]."""
+"""Least duration of tracks: the beginning of a cycle must appear twice [cycle]."""
 LEAST_FRAMES = 12
-"""Frames in one cycle below which steps cannot be told apart [-]."""
+"""Least frames in one cycle: with fewer, steps cannot be separated [-]."""
 _FASTEST = 12.0  # [1/s]; the stride frequency of the fastest small lizards
-_REPEATS = 0.15  # share of the movement that one harmonic explains; of noise alone it explains less
-_PIECE = 6.0  # [cycle]; a pace that varies by a tenth has not drifted apart by then
-_ROUNDS = 3  # of leaving out points that jumped
-_JUMP = 8.0  # times the usual residual; what a body does in steps stays well below
+_REPEATS = 0.15  # least fraction of variance that one harmonic explains; in noise it explains less
+_PIECE = 6.0  # [cycle]; duration over which a pace that varies by a tenth stays coherent
+_ROUNDS = 3  # rounds of leaving out outliers
+_JUMP = 8.0  # outlier over the usual residual; steps of a body stay well below
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

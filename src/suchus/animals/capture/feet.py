@@ -14,10 +14,10 @@ from suchus.animals.capture.tracks import Tracks
 
 GRID = 400
 """Phases of a cycle at which a foot is looked at [-]."""
-_DUTIES = np.round(np.arange(0.30, 0.91, 0.01), 2)  # that a path is compared with
-_TOP = 14  # harmonics of a foot's path; enough for the jerk of lifting off
-_Z_95 = 1.96  # standard errors to either side that hold the truth in 95 of 100 cases
-_BINS, _RARE = 40, 0.2  # of the cycle; share of the frames of a bin in which a hidden foot may be seen
+_DUTIES = np.round(np.arange(0.30, 0.91, 0.01), 2)  # duty factors of the paths with which a path is compared
+_TOP = 14  # greatest number of harmonics of a foot's path
+_Z_95 = 1.96  # standard errors in half a 95 % interval
+_BINS, _RARE = 40, 0.2  # bins of the cycle; greatest visible fraction of a bin with a hidden foot
 
 
 class FootContact(NamedTuple):

@@ -17,26 +17,22 @@ from suchus.animals.capture.screen import beside
 from suchus.animals.capture.swings import Clock
 from suchus.animals.capture.tracks import Tracks
 
-_MIN_LAG, _MAX_LAG = 0.015, 0.3  # [cycle]; least and most by which a keypoint may be found to run late
-_GAIN, _FRAMES = 18.0, 30  # twice the likelihood gained that makes it sure; frames that it takes
-_EXPLAINS = 0.5  # share of how the distance varies that may be left
-_GAIN_OF_TWO = 12.0  # the same of both links of a point, as they turn and by the pace, at one lag
-_MIN_TURN_GAIN, _EXPLAINS_OF_TWO = (
-    7.0,
-    0.75,
-)  # of that by the turns, and share that may be left: enough without the pace
-_NEARLY = 0.08  # [cycle]; that lag at most: a longer one shows in one link alone, or is noise
-_MIN_PACE_Z, _MIN_LINK_Z = (
-    3.0,
-    1.5,
-)  # standard errors of a lag by the pace that are enough without the turns, and by each link
-_MIN_END_Z = 5.0  # the same of a point with one link
-_BENDS = 5  # powers of time that a path is drawn with at most
-_HARMONICS = 4  # of its mean cycle at most
-_SKIN = 0.01  # [link]; its least standard deviation
-_UNKNOWN = 1e9  # [s]; standard error of a lag of which too little is seen
-_EXACT = 1e-4  # [link]; no keypoint is placed better
-_SMOOTHING_WINDOW = 0.3  # [cycle]; over which the velocity of a keypoint is smoothed
+_MIN_LAG, _MAX_LAG = 0.015, 0.3  # [cycle]; range of lags that are reported
+_GAIN, _FRAMES = 18.0, 30  # twice the gain of log-likelihood that is significant; least frames
+_EXPLAINS = 0.5  # greatest fraction of the distance's variance that may remain at the lag
+_GAIN_OF_TWO = 12.0  # the gain for both links of a point at one lag, by turns and pace together
+_MIN_TURN_GAIN = 7.0  # the part of that gain by the turns that is significant without the pace
+_EXPLAINS_OF_TWO = 0.75  # greatest fraction of the variance that may remain in both links
+_NEARLY = 0.08  # [cycle]; greatest lag by both links: a longer one is significant in one link alone, or noise
+_MIN_PACE_Z = 3.0  # lag by the pace that is significant without the turns [standard error]
+_MIN_LINK_Z = 1.5  # the same for each link alone
+_MIN_END_Z = 5.0  # the same for a point with one link
+_BENDS = 5  # greatest power of time in the fit of a path
+_HARMONICS = 4  # greatest number of harmonics in the fit of a path
+_SKIN = 0.01  # [link]; least standard deviation of a distance
+_UNKNOWN = 1e9  # [s]; standard error of a lag with too few frames
+_EXACT = 1e-4  # [link]; least error of a keypoint's position
+_SMOOTHING_WINDOW = 0.3  # [cycle]; for the velocity of a keypoint
 
 
 def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dict[str, str]:

@@ -16,22 +16,22 @@ from jaxtyping import Bool, Float
 
 from suchus.animals.capture.tracks import LOST, Tracks, UnusableTracks
 
-_SWAY = 0.1  # share of its length by which a link between neighbours may vary: skin slides over bones
-_NOISES = 4.0  # standard deviations of noise that it may vary beyond that
-_ASTRAY = 0.25  # the same share in a single frame
-_FOLDED = 0.5  # the same of points that are not neighbours: a body that bends by two radians between them
-_ROUNDS = 4  # keypoints that may be elsewhere in one frame, and still be told from the others
-_MIN_REPORT_FRACTION = 0.02  # share of the frames in which a keypoint leaps or is elsewhere from which on it is named
-_SHAKES = 3.0  # times the usual noise from which on a keypoint is named
-_QUIET = 0.003  # [trunk]; noise that is never named
-_HIDES = 0.15  # [trunk]; noise in which nothing is seen
-_MAX_LINK_NOISE = 0.5  # [link]; noise from which on a link has no direction
-_SHORTER = 0.03  # share by which the midline must be shorter if two points change their names
-_MAX_LENGTH_RATIO = 1.3  # times the midline without two points; with points that belong to it, it is hardly longer
-_MIN_GIRDLE_GAIN = 0.25  # [trunk]; how much nearer feet must be to their girdles if they do
-_REACH = 2.0  # [trunk]; no foot is usually farther from its girdle
-_STRETCHED = 2.0  # times its usual distance from its girdle; a foot that is farther off is elsewhere
-_STANDS = 0.15  # [trunk]; a body that goes and comes by less, over a whole film, stands
+_SWAY = 0.1  # fraction of its length by which a link between neighbours may vary: skin slides over bones
+_NOISES = 4.0  # standard deviations of noise by which it may vary in addition
+_ASTRAY = 0.25  # the same fraction in a single frame
+_FOLDED = 0.5  # the same fraction for points that are not neighbours: a body that bends by two radians between them
+_ROUNDS = 4  # greatest number of stray keypoints in one frame that can be identified
+_MIN_REPORT_FRACTION = 0.02  # fraction of frames with jumps or strays from which on a keypoint is reported
+_SHAKES = 3.0  # noise over the usual noise from which on a keypoint is reported
+_QUIET = 0.003  # [trunk]; noise that is never reported
+_HIDES = 0.15  # [trunk]; noise that hides all motion
+_MAX_LINK_NOISE = 0.5  # [link]; noise that hides the direction of a link
+_SHORTER = 0.03  # fraction by which the midline must shorten if the names of two points are exchanged
+_MAX_LENGTH_RATIO = 1.3  # length of the midline over that without two points, if both belong to it
+_MIN_GIRDLE_GAIN = 0.25  # [trunk]; decrease of the distance of feet from girdles if their names are exchanged
+_REACH = 2.0  # [trunk]; greatest median distance of a foot from its girdle
+_STRETCHED = 2.0  # greatest distance of a foot from its girdle over the median distance
+_STANDS = 0.15  # [trunk]; least displacement of a body that walks
 
 
 class Screened(NamedTuple):
@@ -323,9 +323,9 @@ def _check_order(tracks: Tracks, scale: float) -> None:
         )
 
 
-_MEDIAN_HALF_WINDOW = 3  # frames before and after, whose median a point is held against
-_MIN_JUMP = 0.2  # [trunk]; less is noise, which the fits take care of
-_JUMP_FACTOR, _JUMP_PERCENTILE = 3.0, 90.0  # times what is not exceeded in so many per cent of the frames
+_MEDIAN_HALF_WINDOW = 3  # frames on either side in the window of the median
+_MIN_JUMP = 0.2  # [trunk]; smaller deviations are noise
+_JUMP_FACTOR, _JUMP_PERCENTILE = 3.0, 90.0  # jump over this percentile of the deviations
 
 
 def _without_jumps(tracks: Tracks, scale: float) -> tuple[Tracks, dict[str, np.ndarray]]:
@@ -441,11 +441,11 @@ def _check_moves(tracks: Tracks, noise: Mapping[str, float], scale: float) -> No
         )
 
 
-_MAX_SIDE_OFFSET = 0.1  # [trunk]; so far on the wrong side of the midline a foot is wrong
-_ALWAYS = 0.9  # share of the frames that counts as always
-_IN_A_ROW = 0.5  # share of these frames that follow each other, below which it is noise
-_OFTEN = 0.1  # share of the frames in which noise may do so
-_SOMETIMES = 0.02  # share that a point's noise does not explain
+_MAX_SIDE_OFFSET = 0.1  # [trunk]; greatest distance of a foot on the wrong side
+_ALWAYS = 0.9  # fraction of frames that counts as always
+_IN_A_ROW = 0.5  # fraction of successive frames among these; noise has less
+_OFTEN = 0.1  # greatest fraction of frames with feet exchanged by noise
+_SOMETIMES = 0.02  # fraction of frames that noise does not explain
 
 
 def _check_sides(tracks: Tracks) -> None:

@@ -19,14 +19,13 @@ from suchus.animals.capture.feet import FootContact, FootSweep, continuous
 from suchus.animals.capture.swings import Clock
 from suchus.animals.capture.tracks import Tracks
 
-_Z_95 = 1.96  # standard errors to either side that hold the truth in 95 of 100 cases
-_SLOPE = np.sqrt(12.0)  # standard errors of a mean in that of a slope over the whole stride
-_SLOPE_INFLATION = float(
-    (1 - 12 / (2 * np.pi**2) * sum(1 / k**2 for k in (1, 2, 3))) ** -0.5
-)  # times as uncertain is a slope
-# beside three harmonics of the same stride, which explain most of a straight line
-_SHARED = 1.5  # cycles that count as one: neighbours share the marks of the clock, and so its errors
-_MIN_FRAMES = 8  # frames of a stride that are needed
+_Z_95 = 1.96  # standard errors in half a 95 % interval
+_SLOPE = np.sqrt(12.0)  # standard error of a slope over a whole stride, over that of a mean
+# Standard error of a slope fitted with three harmonics of the same stride, over that of a slope alone:
+# the harmonics explain most of a straight line.
+_SLOPE_INFLATION = float((1 - 12 / (2 * np.pi**2) * sum(1 / k**2 for k in (1, 2, 3))) ** -0.5)
+_SHARED = 1.5  # cycles per independent cycle: neighbours share marks of the clock, and their errors
+_MIN_FRAMES = 8  # least frames of a stride
 PHASES = 100
 """Phases of the mean cycle in tables [-]."""
 

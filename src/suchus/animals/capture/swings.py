@@ -17,21 +17,21 @@ from scipy.optimize import least_squares
 
 _SMOOTH = 0.04  # [cycle]; standard deviation of the smoothing that separates swings, not their edges
 _TURNS = 0.15  # share of the range of its path by which a foot must pass the middle, or it is noise
-_HALF = 0.25  # [cycle]; what must have been filmed before and after the middle of a swing
+_HALF = 0.25  # [cycle]; least time in the film before and after the middle of a swing
 _MIN_DURATION = 0.02  # [cycle]; shortest swing
-_SHAPE, _SHAPES = np.log([1.4, 2.4, 1.0]), np.array([0.5, 0.5, 0.25])  # logarithms of p, q, s: expected, and how far
-_MIN_SHAPE, _MAX_SHAPE = np.log([0.8, 1.5, 0.6]), np.log([2.5, 6.0, 1.6])  # no foot is known to move otherwise
-_EDGES, _PLACES = 0.15, 0.5  # [cycle], [stride]; the same of edges about where the foot turns, and of its places
+_SHAPE, _SHAPES = np.log([1.4, 2.4, 1.0]), np.array([0.5, 0.5, 0.25])  # logarithms of p, q, s: mean and spread
+_MIN_SHAPE, _MAX_SHAPE = np.log([0.8, 1.5, 0.6]), np.log([2.5, 6.0, 1.6])  # their bounds
+_EDGES, _PLACES = 0.15, 0.5  # [cycle], [stride]; prior spread of edges and positions
 _ROUNDS, _STEPS = 4, 4
 _TAIL = 4.0  # standard deviations at which a frame counts half
-_BLUR = 0.05  # [stride]; from which on frames are looked at more and more sharply
-_SHARP = 4e-3  # [stride]; places are not trusted beyond
-_MARGIN = 0.2  # [cycle]; what is farther before and after a swing may be a slip
-_UNSEEN = 0.7  # share of a swing from which on, unseen, it might begin and end anywhere within
-_FAST_FRACTION = 0.5  # share of its top speed from which on a foot is fast
-_FAMILY = 0.02  # share of a swing; how far the best of these shapes leaves the edges of another from where they are
-_MAX_FRAMES = 1200  # frames that are fitted at once
-_EXACT = 1e-9  # relative change at which a fit is done
+_BLUR = 0.05  # [stride]; first scale of the robust fit
+_SHARP = 4e-3  # [stride]; least error of a position
+_MARGIN = 0.2  # [cycle]; frames around a swing that are fitted; farther ones may be slips
+_UNSEEN = 0.7  # hidden fraction of a swing within which its edges are unknown
+_FAST_FRACTION = 0.5  # fraction of the greatest speed above which a foot is fast
+_FAMILY = 0.02  # error of the edges by the shape, over the duration of a swing
+_MAX_FRAMES = 1200  # greatest number of frames in a fit
+_EXACT = 1e-9  # relative tolerance of a fit
 _GRID = np.linspace(0.0, 1.0, 161)
 
 

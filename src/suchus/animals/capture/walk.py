@@ -19,19 +19,17 @@ from suchus.core.checks import require
 from suchus.robot.design import LEGS
 
 UNSURE = 0.1
-"""Half the width of the interval of a duty factor from which on a foot does not count for the gait's [-]."""
-_BLIND = 0.25  # the same from which on a walk is refused, if no foot is better
-_STRAIGHT = 1e-6  # [rad]; what bends less has no phase
-_BINS = 20  # of phase, for the spread
-_SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
-_MIN_VISIBLE_FRACTION = 0.25  # least share of frames in which all points of a signal are seen
-_MIN_LAG, _LAG_TOLERANCE = (
-    0.015,
-    0.35,
-)  # [cycle], share; a foot that is later, and by about as much behind, was seen late
-_PLACE_ERROR = 0.005  # share of a step by which the unknown shape of the swing may move the places of a foot
-_PLACES = 0.7  # share of the frames of a cycle in which a point must be seen to tell how far it comes in it
-_ADVANCE = 0.3  # share of the distance that feet sweep below which the body does not advance
+"""Half width of a duty factor's interval above which the foot is left out of the gait's duty factor [-]."""
+_BLIND = 0.25  # the same above which a walk is refused, if all feet exceed it
+_STRAIGHT = 1e-6  # [rad]; smaller bends have no phase
+_BINS = 20  # bins of phase, for the spread
+_SHARP = 3.0  # least amplitude of a bend over its standard error
+_MIN_VISIBLE_FRACTION = 0.25  # least fraction of frames with all points of a signal
+_MIN_LAG = 0.015  # [cycle]; phase lag of a foot that may be late in the film
+_LAG_TOLERANCE = 0.35  # relative difference between its phase lag and its lag in position
+_PLACE_ERROR = 0.005  # error of a step by the unknown shape of the swing, over its length
+_PLACES = 0.7  # least fraction of frames with a point, for its advance in a cycle
+_ADVANCE = 0.3  # least advance of the body over the distance that feet sweep
 
 
 class Seen(NamedTuple):

@@ -34,12 +34,12 @@ SETTLE, CYCLES = 1, 3
 LOADED = 0.15
 """Vertical force from which a foot counts as standing [body weight], as in ``suchus run salamander``."""
 _DIRECTIONS = {"vertical": "up", "sideways": "toward the midline of the course", "foreaft": "forward along the course"}
-_MIN_SUCCESS_FRACTION = 0.8  # share of the choices that must be possible
-_HOLD_TIME = 0.05  # [cycle]; a force that lasts as long is no strike
-_STRONGER = 4.0  # times a robot's torque and speed that the animal's joints have: the film shows what they do
-_LIMB_FACTORS = tuple(1.0 + 0.1 * step for step in range(16))  # times as long limbs that are tried
-_REACH_TOLERANCE = 0.005  # [trunk]; as near a foot is to where it was seen
-_HALVES = (1.0, 0.5, 0.25, 0.0)  # shares of a change that are tried where limbs do not follow all of it
+_MIN_SUCCESS_FRACTION = 0.8  # least fraction of choices that can be walked
+_HOLD_TIME = 0.05  # [cycle]; duration of a force that is no strike
+_STRONGER = 4.0  # factor on torque and speed of a robot's servos: the film shows that the animal is strong enough
+_LIMB_FACTORS = tuple(1.0 + 0.1 * step for step in range(16))  # factors on the length of limbs that are tried
+_REACH_TOLERANCE = 0.005  # [trunk]; greatest error of a foot path
+_HALVES = (1.0, 0.5, 0.25, 0.0)  # fractions of a change that are tried, the greatest first
 
 
 class _Try(NamedTuple):

@@ -53,26 +53,29 @@ from suchus.swimming.water.samples import Samples
 from suchus.swimming.water.setting import DENSITY, SwimSetting
 
 OFF_PLANE = 0.12
-"""Angle by which a joint may leave the plane that the flow takes the body to stay in [rad]."""
+"""Greatest angle of a joint out of the plane of the flow [rad]."""
 LOST = 1.0
-"""Residual from which a step counts as one that does not converge [-]: the force that is left over is as large as the
-greatest so far."""
+"""Residual above which a step is unconverged [-]: the residual force exceeds the greatest force so far."""
 PATIENCE = 5
-"""Steps in a row that may do so [-]: at the start there is hardly any force to compare with."""
+"""Greatest number of successive unconverged steps [-]: at the start the force is too small for a comparison."""
 LONGEST = 1.25
-"""Step of the flow over the time in which a cycle's waves go on by a cell, at most [-]: at rest it has no bound of its
-own, and while the robot swims it takes some 0.9."""
+"""Greatest step of the flow, over the time in which the body wave moves by a cell [-].
+
+At rest the flow has no other bound. While the robot swims, the step is about 0.9 of that time."""
 STEPS = 100
-"""Steps of the flow in a cycle, at least, where limbs stroke [-]: forces and velocities are means over a step, whose
-product misses the power by a share of the second order; with 42 it is up to 0.5 % off, with 100 0.1 %."""
+"""Least number of steps of the flow in a cycle with moving limbs [-].
+
+Forces and velocities are means over a step. The error of their product, the power, is of second order: up to 0.5 % with
+42 steps, 0.1 % with 100."""
 FINER = 5
-"""Physics steps in a step of the flow, at least: with 1, 5 and 10 the energy closes to 1e-2, 2e-3 and 8e-4 [-]."""
+"""Least number of physics steps in a step of the flow; energy error: 1e-2 with 1, 2e-3 with 5, 8e-4 with 10 [-]."""
 LEAST = 0.1
-"""Share of the inertia of robot and water along a correction, at least, that the water's answer to it may leave [-].
-Chosen: with less, the next guess of the acceleration would be more than ten times as large."""
+"""Least inertia along a correction after an update of the added mass, over the inertia before it [-].
+
+It is chosen: with less, the next guess of the acceleration would be more than ten times as large."""
 _MAX_ROUNDS, _ROUND_TOLERANCE = 10, 1e-4
-"""Rounds in which the robot and the part of the added mass that its own matrix has no room for come to terms, at most;
-and the change of the acceleration, over its size, at which they have [-]."""
+"""Greatest number of rounds for the explicit part of the added mass, which the robot's own matrix cannot hold; and the
+relative change of the acceleration at which they have converged [-]."""
 _CHANGING = {
     "force": "_force",
     "push": "_push",
@@ -87,9 +90,9 @@ _CHANGING = {
     "effort": "_effort",
     "start_added": "_start_added",
 }
-"""Attributes that a swim changes, by the names that a checkpoint has of them."""
+"""Attributes that change during a swim, by their names in a checkpoint."""
 _WIDER = 1.25
-"""Swing that the box has room for, over that of the commanded midline [-]."""
+"""Swing for which the box is made, over that of the commanded midline [-]."""
 
 
 def check_swim(run: Run, duration: float) -> None:
@@ -471,7 +474,7 @@ class Swim:
         """Take one step of the flow and of the robot that ends at a time or before it [s].
 
         Raises:
-            Diverged: robot or flow did, or the two do not come to terms; with the record so far.
+            Diverged: robot or flow diverged, or the coupling does not converge; with the record so far.
             OutsideLimits: the water is so fast that the flow's step falls below the physics'.
             InvalidDesign: the robot leaves the plane, or the box.
         """
@@ -613,7 +616,7 @@ class Swim:
         self._strikes = self._strikes + 1 if residual > LOST or not np.isfinite(residual) else 0
         if self._strikes >= PATIENCE or not np.isfinite(residual):
             raise Diverged(
-                f"at t = {self.time:.4g} s robot and flow do not come to terms: a force of {residual:.3g} times the "
+                f"at t = {self.time:.4g} s robot and flow do not converge: a force of {residual:.3g} times the "
                 f"greatest so far is left over after {self.water.corrections} corrections; allow more corrections "
                 f"(now {self.water.corrections}), or take more cells.", time=self.time,
             )  # fmt: skip
