@@ -113,7 +113,7 @@ def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: floa
     offset = (frames.time - middle[:, None])[is_seen]
     trace = ((frames.trace - parameters[:, 2, None]) / (parameters[:, 3] - parameters[:, 2])[:, None])[is_seen]
     is_near = np.abs(offset) < float(np.mean(durations)) / 2 + _MARGIN
-    offset, trace = _thin_out(offset[is_near], trace[is_near])
+    offset, trace = _median_frames(offset[is_near], trace[is_near])
     pooled_fit, covariance = _fit_pooled_swing(offset, trace, float(np.mean(durations)))
     duration_weights, middle_weights = np.array([-1.0, 1.0]), np.array([0.5, 0.5])
     duration, half = float(pooled_fit[:2] @ duration_weights), float(pooled_fit[:2] @ middle_weights)
@@ -147,7 +147,7 @@ def _gap(times: np.ndarray, start: float, end: float) -> float:
     return float(np.diff(edges)[is_inside].max(initial=0.0))
 
 
-def _thin_out(times: np.ndarray, trace: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _median_frames(times: np.ndarray, trace: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return medians of successive frames, such that at most ``_MAX_FRAMES`` remain."""
     order = np.argsort(times, kind="stable")
     size = -(-len(times) // _MAX_FRAMES)

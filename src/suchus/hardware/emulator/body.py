@@ -193,11 +193,11 @@ class EmulatedBody:
             self._turn_over()
         self._recorder.store(self._stored_samples, self._loop.command.phase, self._loop.command.targets)
         full = [block.record(self._times(number * _BLOCK_SAMPLES)) for number, block in enumerate(self._blocks)]
-        last_part = self._recorder.record(self._times(self.tick - self._stored_samples)).isel(
+        last_block = self._recorder.record(self._times(self.tick - self._stored_samples)).isel(
             time=slice(self._stored_samples + 1)
         )
-        end = last_part.ended.copy(data=np.array([float(last_part.time[-1])]))
-        parts = [block_record.assign(ended=end, cause=last_part.cause) for block_record in (*full, last_part)]
+        end = last_block.ended.copy(data=np.array([float(last_block.time[-1])]))
+        parts = [block_record.assign(ended=end, cause=last_block.cause) for block_record in (*full, last_block)]
         full_record = xr.concat(parts, "time", join="exact", data_vars="minimal") if len(parts) > 1 else parts[0]
         full_record.attrs.update(timestep=self.period / self._loop.steps, control_period=self.period)
         return full_record.isel(run=0)
