@@ -116,10 +116,10 @@ def test_what_an_answer_would_take_from_the_mass_is_not_believed(share, believed
     assert (after is not added) is believed
     assert np.linalg.eigvalsh(mass + after).min() > 0.0
     swim = Swim(swim_run(), 0.1)
-    push, start = np.ones(swim.chain.size), swim._added
+    push, start = np.ones(swim.chain.size), swim._added_mass
     answered = share * (swim.stepper.mass() + start) @ push - swim.stepper.mass() @ push
     gained = swim._learn(push, answered)
-    assert swim._added == pytest.approx(start + gained)
+    assert swim._added_mass == pytest.approx(start + gained)
     assert np.any(gained) == believed
 
 
@@ -151,7 +151,8 @@ def test_a_light_robot_has_the_momentum_and_the_energy_that_the_water_leaves_it(
     impulses = np.cumsum(np.diff([0.0, *swim.series.time])[:, None] * np.array(swim.series.force)[:, :2], axis=0)
     greatest = np.abs(momenta).max()
     assert np.abs(momenta - impulses).max() < 0.01 * greatest
-    assert momenta[-1] - impulses[-1] == pytest.approx(-swim._owed[:2], abs=1e-6 * greatest)  # nothing else is lost
+    # nothing else is lost
+    assert momenta[-1] - impulses[-1] == pytest.approx(-swim._residual_impulse[:2], abs=1e-6 * greatest)
     record = swim.record().isel(run=0)
     assert float(abs(record.energy_error[-1])) < 3e-4  # 1.3e-3 where the force on a step is taken for even
     assert float(abs(record.power_error[-1])) < 3e-3  # 5e-3 where cells belong to the part that their first face does
@@ -322,7 +323,7 @@ def test_a_step_that_does_not_come_to_terms_ends_with_its_numbers_and_the_record
     assert len(swim.series.time) == coupled.PATIENCE
     assert 2 < reached.sum() < record.sizes["time"] - 2
     assert told.value.time == pytest.approx(swim.time)
-    assert f"at t = {swim.time:.4g} s robot and flow do not come to terms" in str(record.cause.values)
+    assert f"at t = {swim.time:.4g} s robot and flow do not converge" in str(record.cause.values)
     assert float(record.ended) == pytest.approx(swim.time)
 
 

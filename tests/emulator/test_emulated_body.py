@@ -39,7 +39,7 @@ def driven(ticks=TICKS, **settings):
 
 def test_a_body_that_is_sent_the_gait_moves_as_the_simulation_to_the_bit_in_blocks_too(monkeypatch):
     truth = crawl(ROBOT, GAIT, duration=0.01 * TICKS, timestep=0.005)
-    monkeypatch.setattr(body, "_ROOM", 50)
+    monkeypatch.setattr(body, "_BLOCK_SAMPLES", 50)
     with monkeypatch.context() as moving:  # a record takes long, and whoever waits for an answer would wait for it
         moving.delattr(body.Recorder, "record")
         one = driven()

@@ -58,7 +58,7 @@ def test_it_is_driven_through_a_port(protocol, sockets, tmp_path):
 
 def test_servos_hear_nothing_at_another_bit_rate_and_the_one_that_answers_is_named(monkeypatch):
     monkeypatch.setattr("suchus.hardware.rig.PATIENT", 0.05)
-    monkeypatch.setattr("suchus.hardware.rig._AGAIN", 1)
+    monkeypatch.setattr("suchus.hardware.rig._MAX_ATTEMPTS", 1)
     with served(clocked=False) as server:
         made = wiring()
         made = replace(made, bus=(replace(made.bus[0], port=server.ports[0], baud=2_000_000),))

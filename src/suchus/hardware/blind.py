@@ -1,4 +1,4 @@
-"""A robot of hobby servos that tell nothing: pulses out, nothing back."""
+"""A robot of hobby servos without feedback: it gets pulses, and returns no readings."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ from suchus.robot.design import Robot, layout
 
 
 class BlindRig:
-    """What ``Rig`` is for servos that answer, for those that do not: the same calls, and NaN for every reading.
+    """The counterpart of ``Rig`` for servos without feedback: the same methods, and NaN for every reading.
 
     Args:
         robot: the robot.
@@ -29,6 +29,7 @@ class BlindRig:
     """None that tell their heat."""
 
     def __init__(self, robot: Robot, servo_map: ServoMap, pulses: Pulses) -> None:
+        """Take pulse widths, directions and angle limits of all servos from the servo map."""
         self.robot, self._pulses = robot, pulses
         self.names = layout(robot).servos
         self._lines = servo_map.ordered(robot)
@@ -38,8 +39,10 @@ class BlindRig:
         self._slope = np.array([line.pulse_per_radian for line in self._lines])
         self._offset = np.array([line.offset for line in self._lines])
         ends = np.array([[line.pulse_min, line.pulse_max] for line in self._lines])
-        reached = self._sign[:, None] * ((ends - self._centre[:, None]) / self._slope[:, None] - self._offset[:, None])
-        self.low, self.high = reached.min(axis=1), reached.max(axis=1)
+        angle_limits = self._sign[:, None] * (
+            (ends - self._centre[:, None]) / self._slope[:, None] - self._offset[:, None]
+        )
+        self.low, self.high = angle_limits.min(axis=1), angle_limits.max(axis=1)
         self.speed = np.array([robot.servo(name).speed for name in self.names])
         self.period = 1.0 / servo_map.rate
         self.asked = np.zeros(len(self.names), dtype=bool)
@@ -47,10 +50,10 @@ class BlindRig:
         self.text = f"servo map {servo_map.name}"
         count = len(self.names)
         unknown = np.full((6, count), np.nan)
-        never = np.zeros((3, count), dtype=int)
+        zero_counts = np.zeros((3, count), dtype=int)
         self.now = RigReading(
             angle=unknown[0], velocity=unknown[1], torque=unknown[2], current=unknown[3], voltage=unknown[4],
-            temperature=unknown[5], error=never[0], heard=never[1], age=never[2],
+            temperature=unknown[5], error=zero_counts[0], heard=zero_counts[1], age=zero_counts[2],
         )  # fmt: skip
         self.jumps = np.zeros(count, dtype=int)
 
@@ -60,7 +63,7 @@ class BlindRig:
         return list(zip(self.names, self.low.tolist(), self.high.tolist(), strict=True))
 
     def check(self) -> list[str]:
-        """Say what nobody can look at."""
+        """Return a warning that nothing can be checked."""
         return [
             "These servos tell nothing: they go to the first posture at once, nobody sees one that is hot, stuck or "
             "unplugged, "
@@ -70,11 +73,11 @@ class BlindRig:
         ]
 
     def read(self) -> RigReading:
-        """Return that nothing is known."""
+        """Return a reading of NaN."""
         return self.now
 
     def sensed(self, time: float) -> Sensed:
-        """Return that nothing is known, for a controller that asks for nothing."""
+        """Return a reading of NaN, for a controller that senses nothing."""
         unknown, place = np.full((1, len(self.names)), np.nan), layout(self.robot)
         return Sensed(
             time=time, servo_position=unknown, servo_velocity=unknown, servo_torque=unknown,
@@ -85,21 +88,21 @@ class BlindRig:
         )  # fmt: skip
 
     def aim(self, angles: np.ndarray) -> np.ndarray:
-        """Send all servos to angles, and return those that their pulses mean, shape (servo,) [rad]."""
+        """Send all servos to angles, and return the angles of the rounded pulses, shape (servo,) [rad]."""
         widths = self._centre + self._slope * (self._sign * angles + self._offset)
         step = 1e6 / self._pulses.rate / 4096
-        whole = np.rint(widths / step) * step
-        self._pulses.send(dict(zip(self._places, whole.tolist(), strict=True)))
-        meant: np.ndarray = self._sign * ((whole - self._centre) / self._slope - self._offset)
-        return meant
+        rounded_widths = np.rint(widths / step) * step
+        self._pulses.send(dict(zip(self._places, rounded_widths.tolist(), strict=True)))
+        sent_angles: np.ndarray = self._sign * ((rounded_widths - self._centre) / self._slope - self._offset)
+        return sent_angles
 
     def ready(self, goals: np.ndarray) -> np.ndarray:
-        """Let all servos pulse, which gives them their torque."""
+        """Send pulses to all servos, which gives them their torque."""
         return self.aim(goals)
 
-    def torque(self, on: bool) -> None:
-        """Take all pulses away; they come with the next goals."""
-        if not on:
+    def torque(self, enable: bool) -> None:
+        """Switch all pulses off; the next goals switch them on."""
+        if not enable:
             self._pulses.off()
 
     def limit(self, share: float) -> None:
@@ -110,8 +113,8 @@ class BlindRig:
         """No servo watches whether we are there [s]."""
         return float("inf")
 
-    def watch(self, on: bool) -> None:
-        """Do nothing: these servos watch nobody."""
+    def watch(self, enable: bool) -> None:
+        """Do nothing: these servos have no watchdog."""
 
     def close(self) -> None:
         """Let go of the boards."""

@@ -1,4 +1,4 @@
-"""What a robot that was built says of itself: which servo moves which joint, where its zeros are, how stiff it is."""
+"""Calibration of a robot that was built: joints of servos, zeros, stiffness and friction."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -15,8 +15,8 @@ from suchus.hardware.rig import Rig
 NUDGE = radians(5.0)
 """By how much a servo is moved so that people see which one it is [rad]."""
 _PACE = radians(20.0)  # [rad/s]; how fast
-_LEAST = 50  # samples from which a servo is judged
-_COVERED = 1.96  # standard deviations on either side that hold 95 %
+_MIN_SAMPLES = 50  # samples from which a servo is judged
+_Z_95 = 1.96  # standard deviations on either side that hold 95 %
 
 Answer = Callable[[int, int], tuple[str, int]]
 """Asked with bus and number of the servo that has just moved to more steps: the joint that moved, and 1 where in its
@@ -24,9 +24,9 @@ positive sense, -1 where not."""
 
 
 def find_wiring(rig: Rig, clock: TickClock, answer: Answer) -> Wiring:
-    """Move each servo alone, there and back, and return the wiring by what moved.
+    """Move each servo alone, forward and back, and return the wiring by the joint that moved.
 
-    All others are without torque meanwhile, and it too in the end.
+    All other servos have no torque meanwhile. In the end no servo has torque.
 
     Args:
         rig: the open robot, wired as is believed; its names are not.
@@ -39,47 +39,49 @@ def find_wiring(rig: Rig, clock: TickClock, answer: Answer) -> Wiring:
     """
     rig.check()
     clock.begin()
-    tick, found = 0, {}
+    tick, servo_by_joint = 0, {}
     rig.torque(False)
     try:
-        for i, one in enumerate(rig.servos):
+        for i, servo in enumerate(rig.servos):
             if not rig.asked[i]:
-                found[one.name] = one
+                servo_by_joint[servo.name] = servo
                 continue
             rig.read()
             if not rig.now.heard[i]:
                 rig.read()
-            here = rig.now.angle[i]
-            if not np.isfinite(here):
-                raise BusFailure(f"number {one.id} on bus {one.bus} does not say where it is.")
+            start_angle = rig.now.angle[i]
+            if not np.isfinite(start_angle):
+                raise BusFailure(f"number {servo.id} on bus {servo.bus} does not say where it is.")
             steps = int(rig.steps.of(rig.now.angle)[i])
             rig.surely("goal_position", {i: steps})
-            rig.surely("torque_limit", {i: one.table.full})
+            rig.surely("torque_limit", {i: servo.table.full})
             rig.surely("torque_enable", {i: 1})
-            far = round(NUDGE / rig.steps.unit)
+            nudge_steps = round(NUDGE / rig.steps.unit)
             count = max(1, round(NUDGE / _PACE / rig.period))
-            way = [steps + round(far * (k + 1) / count) for k in range(count)]
-            tick = _through(rig, clock, tick, i, [*way, *count * [way[-1]]])
-            name, sign = answer(one.bus, one.id)
-            tick = _through(rig, clock, tick, i, [*way[::-1], steps])
+            trajectory = [steps + round(nudge_steps * (k + 1) / count) for k in range(count)]
+            tick = _move_through(rig, clock, tick, i, [*trajectory, *count * [trajectory[-1]]])
+            name, sign = answer(servo.bus, servo.id)
+            tick = _move_through(rig, clock, tick, i, [*trajectory[::-1], steps])
             rig.surely("torque_enable", {i: 0})
-            if name in found:
+            if name in servo_by_joint:
                 raise InvalidDesign(
-                    f"{name} was said to have moved with number {found[name].id} and with number {one.id}; each joint "
-                    "has one servo: begin again, and look which one it is."
+                    f"{name} was said to have moved with number {servo_by_joint[name].id} and with number "
+                    f"{servo.id}; each joint has one servo: begin again, and look which one it is."
                 )
-            true = next((other for other in rig.servos if other.name == name), None)
-            if true is None:
+            believed_servo = next((candidate for candidate in rig.servos if candidate.name == name), None)
+            if believed_servo is None:
                 raise InvalidDesign(f"{name} is no servo of {rig.robot.name!r}; there is {', '.join(rig.names)}.")
-            found[name] = replace(one, name=name, sign=sign, low=true.low, high=true.high)
+            servo_by_joint[name] = replace(
+                servo, name=name, sign=sign, low=believed_servo.low, high=believed_servo.high
+            )
     finally:
         for _ in range(3):
             rig.torque(False)
-    return replace(rig.wiring, servo=tuple(found[name] for name in rig.names))
+    return replace(rig.wiring, servo=tuple(servo_by_joint[name] for name in rig.names))
 
 
-def _through(rig: Rig, clock: TickClock, tick: int, i: int, steps: list[int]) -> int:
-    """Send one servo through steps, one a tick, and return the tick that comes next."""
+def _move_through(rig: Rig, clock: TickClock, tick: int, i: int, steps: list[int]) -> int:
+    """Send a servo through positions, one for each tick, and return the number of the next tick."""
     for step in steps:
         rig.write("goal_position", {i: step})
         tick = max(clock.wait(tick + 1), tick + 1)
@@ -88,7 +90,7 @@ def _through(rig: Rig, clock: TickClock, tick: int, i: int, steps: list[int]) ->
 
 
 def find_zeros(rig: Rig, posture: np.ndarray, *, times: int = 10) -> tuple[Wiring, np.ndarray]:
-    """Return the wiring with the zeros by where the servos are now, limp, and by how much each zero changed [rad].
+    """Return the wiring with new zeros, and the change of each zero [rad]: the robot is limp in a known posture.
 
     Args:
         rig: the open robot, which somebody holds in a posture.
@@ -101,25 +103,26 @@ def find_zeros(rig: Rig, posture: np.ndarray, *, times: int = 10) -> tuple[Wirin
     rig.check()
     for _ in range(3):
         rig.torque(False)
-    told = []
+    samples = []
     for _ in range(times):
         rig.read()
-        told.append(np.where(rig.now.heard, rig.now.angle, np.nan))
-    heard = np.isfinite(told).any(axis=0) | ~rig.asked
-    if not heard.all():
-        silent = [name for name, yes in zip(rig.names, heard, strict=True) if not yes]
+        samples.append(np.where(rig.now.heard, rig.now.angle, np.nan))
+    has_answered = np.isfinite(samples).any(axis=0) | ~rig.asked
+    if not has_answered.all():
+        silent = [name for name, is_heard in zip(rig.names, has_answered, strict=True) if not is_heard]
         raise BusFailure(f"{' and '.join(silent[:4])} does not say where it is.")
-    here = np.where(rig.asked, np.nanmedian(np.where(rig.asked, told, 0.0), axis=0), posture)
-    off = here - posture
+    angles = np.where(rig.asked, np.nanmedian(np.where(rig.asked, samples, 0.0), axis=0), posture)
+    zero_errors = angles - posture
     servo = tuple(
-        replace(one, zero=one.zero + one.sign * round(off[i] / rig.steps.unit)) for i, one in enumerate(rig.servos)
+        replace(servo_place, zero=servo_place.zero + servo_place.sign * round(zero_errors[i] / rig.steps.unit))
+        for i, servo_place in enumerate(rig.servos)
     )
-    return replace(rig.wiring, servo=servo), off
+    return replace(rig.wiring, servo=servo), zero_errors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fitted:
-    """One number of a servo, with the interval that holds it by 95 %."""
+    """A parameter of a servo with the half width of its 95 % interval."""
 
     value: float
     """The number."""
@@ -132,7 +135,7 @@ class Fitted:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServoFit:
-    """What a log says of one servo."""
+    """Parameters of one servo from a log."""
 
     stiffness: Fitted
     """Torque for each radian that it is off its goal [N m/rad]."""
@@ -147,12 +150,14 @@ class ServoFit:
 
 
 def fit_log(record: xr.Dataset) -> Mapping[str, ServoFit]:
-    """Return what a log says of each servo, by least squares; those that hardly moved are left out.
+    """Return the parameters of each servo that a log shows, by least squares; servos that hardly moved are left out.
 
-    How far a servo is off its goal is its torque over its stiffness, plus half of its play in the sense of the torque,
-    plus what damping takes: linear in all that is looked for. Its friction is what of the torque changes sign with its
-    motion, beside a constant, a part with the angle, with the speed and with the acceleration: move joints to and fro,
-    one at a time and without load, else it is blurred. Torques are told by currents, and are as good as those.
+    The error of a servo is its torque over its stiffness, plus half of its play in the sense of the torque, plus a term
+    for damping. The error is linear in all of these parameters. The friction is the part of the torque that changes its
+    sign with the speed, besides a constant and parts in proportion to angle, speed and acceleration.
+
+    Move the joints to and fro, one at a time and without load: other motions blur the friction. Torques are computed
+    from currents, and are as accurate as those.
 
     Args:
         record: of one run; its goals act after the sample in which they stand.
@@ -162,54 +167,56 @@ def fit_log(record: xr.Dataset) -> Mapping[str, ServoFit]:
     """
     goal, angle = record.servo_target.values[:-1], record.servo_angle.values[1:]
     speed, torque = record.servo_velocity.values[1:], record.servo_torque.values[1:]
-    if len(goal) < _LEAST or not np.isfinite(torque).any():
+    if len(goal) < _MIN_SAMPLES or not np.isfinite(torque).any():
         raise IncompatibleRecord(
             f"a log of {len(goal)} samples {'with' if np.isfinite(torque).any() else 'without'} torques tells "
             "nothing of "
-            f"the servos; {_LEAST} samples with torques at least are needed."
+            f"the servos; {_MIN_SAMPLES} samples with torques at least are needed."
         )
     period = float(np.median(np.diff(record.time.values)))
-    found = {}
+    fits = {}
     for i, name in enumerate(record.servo.values):
-        whole = np.isfinite(goal[:, i] + angle[:, i] + speed[:, i] + torque[:, i])
+        is_valid = np.isfinite(goal[:, i] + angle[:, i] + speed[:, i] + torque[:, i])
         if "servo_heard" in record:
-            whole &= record.servo_heard.values[1:, i] > 0
-        off, t, w, a = (part[whole, i] for part in (goal - angle, torque, speed, angle))
-        if len(off) < _LEAST or np.ptp(t) < 1e-6 or np.ptp(a) < 1e-4:
+            is_valid &= record.servo_heard.values[1:, i] > 0
+        goal_error, t, w, a = (series[is_valid, i] for series in (goal - angle, torque, speed, angle))
+        if len(goal_error) < _MIN_SAMPLES or np.ptp(t) < 1e-6 or np.ptp(a) < 1e-4:
             continue
-        one = np.ones_like(off)
-        soft, halves = _least_squares(np.column_stack([t, w, np.sign(t), one]), off)
-        if not soft[0] > 0.0:
+        constant = np.ones_like(goal_error)
+        compliance, halves = _least_squares(np.column_stack([t, w, np.sign(t), constant]), goal_error)
+        if not compliance[0] > 0.0:
             continue
         faster = np.gradient(w, period)
-        felt, felt_halves = _least_squares(np.column_stack([one, a, faster, w, np.tanh(w / 0.02)]), t)
-        stiffness = 1.0 / soft[0]
-        found[str(name)] = ServoFit(
+        friction_fit, friction_halves = _least_squares(np.column_stack([constant, a, faster, w, np.tanh(w / 0.02)]), t)
+        stiffness = 1.0 / compliance[0]
+        fits[str(name)] = ServoFit(
             stiffness=Fitted(value=stiffness, half=halves[0] * stiffness**2),
-            damping=Fitted(value=soft[1] * stiffness, half=halves[1] * stiffness),
-            play=Fitted(value=2.0 * soft[2], half=2.0 * halves[2]),
-            friction=Fitted(value=felt[4], half=felt_halves[4]),
-            offset=Fitted(value=soft[3], half=halves[3]),
+            damping=Fitted(value=compliance[1] * stiffness, half=halves[1] * stiffness),
+            play=Fitted(value=2.0 * compliance[2], half=2.0 * halves[2]),
+            friction=Fitted(value=friction_fit[4], half=friction_halves[4]),
+            offset=Fitted(value=compliance[3], half=halves[3]),
         )
-    if not found:
+    if not fits:
         raise IncompatibleRecord("no servo of the log moved and gave a torque: drive a gait, and fit that log.")
-    return found
+    return fits
 
 
 def _least_squares(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the coefficients and half of the width of their intervals, residuals that follow one another counted once.
+    """Return coefficients and half widths of their 95 % intervals, with the correlation of residuals in time.
 
     Args:
         columns: shape (sample, coefficient).
         values: shape (sample,).
     """
-    found, *_ = np.linalg.lstsq(columns, values, rcond=None)
-    left = values - columns @ found
+    coefficients, *_ = np.linalg.lstsq(columns, values, rcond=None)
+    residual = values - columns @ coefficients
     count = max(len(values) - columns.shape[1], 1)
-    alike = float(np.clip(np.corrcoef(left[:-1], left[1:])[0, 1], 0.0, 0.99)) if left.std() > 0.0 else 0.0
-    spread = left.var() * len(values) / count * (1.0 + alike) / (1.0 - alike)
-    half: np.ndarray = _COVERED * np.sqrt(np.diag(spread * np.linalg.pinv(columns.T @ columns)))
-    return found, half
+    autocorrelation = (
+        float(np.clip(np.corrcoef(residual[:-1], residual[1:])[0, 1], 0.0, 0.99)) if residual.std() > 0.0 else 0.0
+    )
+    spread = residual.var() * len(values) / count * (1.0 + autocorrelation) / (1.0 - autocorrelation)
+    half: np.ndarray = _Z_95 * np.sqrt(np.diag(spread * np.linalg.pinv(columns.T @ columns)))
+    return coefficients, half
 
 
 def fits_text(fits: Mapping[str, ServoFit]) -> str:
@@ -218,7 +225,9 @@ def fits_text(fits: Mapping[str, ServoFit]) -> str:
     units = ("Nm_per_rad", "Nms_per_rad", "rad", "Nm", "rad")
     head = ",".join(f"{name}_{unit},{name}_half" for name, unit in zip(names, units, strict=True))
     rows = [
-        ",".join([name, *(f"{getattr(fit, one).value:.6g},{getattr(fit, one).half:.3g}" for one in names)])
+        ",".join(
+            [name, *(f"{getattr(fit, quantity).value:.6g},{getattr(fit, quantity).half:.3g}" for quantity in names)]
+        )
         for name, fit in fits.items()
     ]
     return "\n".join([f"servo,{head}", *rows]) + "\n"

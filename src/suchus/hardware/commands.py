@@ -33,9 +33,9 @@ class Commands(NamedTuple):
 
 
 def commands(robot: Robot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
-    """Return the commands of some cycles, so that they can be repeated without a jump.
+    """Return the commands of some cycles, which can be repeated without a jump.
 
-    A cycle is divided into the whole number of intervals that is nearest to the map's rate.
+    A cycle has the whole number of intervals that is nearest to the map's rate.
 
     Args:
         robot: who walks.
@@ -56,33 +56,34 @@ def commands(robot: Robot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> 
             f"gait {gait.name!r} has a cycle of {gait.period:g} s, {samples} samples at {servo_map.rate:g} Hz; "
             f"8 are needed: raise the rate to {8 / gait.period:.3g} Hz."
         )
-    one = intended(robot, gait, START + np.arange(samples) * gait.period / samples).targets
+    cycle_angles = intended(robot, gait, START + np.arange(samples) * gait.period / samples).targets
     turns = _cranks(robot)
     step = gait.period / samples
-    after = np.roll(one, -1, axis=0)
-    after[-1] += turns  # a crank goes on where the others begin anew
-    before = np.roll(one, 1, axis=0)
-    before[0] -= turns
-    along = np.arange(cycles * samples + 1)
-    speed = (after - before) / (2 * step)
-    angles = one[along % samples] + turns * (along // samples)[:, None]
+    next_angles = np.roll(cycle_angles, -1, axis=0)
+    next_angles[-1] += turns  # a crank goes on where the others begin anew
+    previous_angles = np.roll(cycle_angles, 1, axis=0)
+    previous_angles[0] -= turns
+    sample_index = np.arange(cycles * samples + 1)
+    speed = (next_angles - previous_angles) / (2 * step)
+    angles = cycle_angles[sample_index % samples] + turns * (sample_index // samples)[:, None]
     pulses = _pulses(servo_map.ordered(robot), angles)
     pulleys = {cable.name: cable.pulley for cable in robot.cables if cable.linear is not None}
-    return Commands(along * step, angles, speed[along % samples], pulses, layout(robot).servos, pulleys)
+    return Commands(sample_index * step, angles, speed[sample_index % samples], pulses, layout(robot).servos, pulleys)
 
 
 def _cranks(robot: Robot) -> np.ndarray:
-    """Return by how much each servo's angle has grown after a cycle: a turn of a crank, nothing of others [rad]."""
-    place, grown = layout(robot), np.zeros(len(layout(robot).servos))
+    """Return by how much each servo's angle changes in a cycle: by a turn for a crank, by nothing for others [rad]."""
+    place, turn_per_cycle = layout(robot), np.zeros(len(layout(robot).servos))
     for limb in place.limbs:
-        driven = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
-        for i, hinge in enumerate(driven):
+        driven_hinges = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
+        for i, hinge in enumerate(driven_hinges):
             if isinstance(hinge.drive, Crank):
-                grown[limb.servos.start + i] = -2 * np.pi
-    return grown
+                turn_per_cycle[limb.servos.start + i] = -2 * np.pi
+    return turn_per_cycle
 
 
 def _pulses(lines: Sequence[ServoLine], angles: np.ndarray) -> np.ndarray:
+    """Return the pulse widths of servos at angles, shape (sample, servo) [us]."""
     direction = np.array([line.direction for line in lines])
     offset = np.array([line.offset for line in lines])
     centre = np.array([line.pulse_centre for line in lines])
@@ -92,10 +93,12 @@ def _pulses(lines: Sequence[ServoLine], angles: np.ndarray) -> np.ndarray:
 
 def csv_text(samples: Commands) -> str:
     """Return a table: time [s], each servo's angle [rad], its pulse [us], then each linear actuator's travel [m]."""
-    names, moved = samples.servos, list(samples.pulleys)
-    travels = samples.angles[:, [names.index(n) for n in moved]] * [samples.pulleys[n] for n in moved]
+    names, actuator_names = samples.servos, list(samples.pulleys)
+    travels = samples.angles[:, [names.index(n) for n in actuator_names]] * [samples.pulleys[n] for n in actuator_names]
     lines = [
-        ",".join(["time_s", *(f"{n}_rad" for n in names), *(f"{n}_us" for n in names), *(f"{n}_m" for n in moved)])
+        ",".join(
+            ["time_s", *(f"{n}_rad" for n in names), *(f"{n}_us" for n in names), *(f"{n}_m" for n in actuator_names)]
+        )
     ]
     for time, angles, pulses, travel in zip(samples.time, samples.angles, samples.pulses, travels, strict=True):
         cells = [
@@ -110,7 +113,7 @@ def csv_text(samples: Commands) -> str:
 def trajectory_text(robot: Robot, samples: Commands, *, virtual: bool = False) -> str:
     """Return a ROS 2 ``trajectory_msgs/JointTrajectory`` as YAML, for the joints of the exported URDF.
 
-    That has no cable: the bend that the pulley gives the tail is shared evenly by the hinges that the cable bends.
+    The URDF has no cable: all hinges that a cable bends get an equal part of the bend that its pulley gives.
 
     Args:
         robot: who walks.
@@ -128,11 +131,11 @@ def trajectory_text(robot: Robot, samples: Commands, *, virtual: bool = False) -
     for servo in place.cables:
         hinges = place.cable(servo).hinges
         bend = bend_of_servo(place.cable(servo), samples.angles[:, servo])
-        turned = np.gradient(bend, samples.time) if len(bend) > 1 else np.zeros_like(bend)
-        around = samples.time[1] + samples.time[-1] - samples.time[-2]  # the last sample is the first
-        turned[[0, -1]] = (bend[1] - bend[-2]) / around
+        bend_rate = np.gradient(bend, samples.time) if len(bend) > 1 else np.zeros_like(bend)
+        closing_interval = samples.time[1] + samples.time[-1] - samples.time[-2]  # the last sample is the first
+        bend_rate[[0, -1]] = (bend[1] - bend[-2]) / closing_interval
         places = np.column_stack([places, np.tile(bend[:, None] / len(hinges), len(hinges))])
-        speeds = np.column_stack([speeds, np.tile(turned[:, None] / len(hinges), len(hinges))])
+        speeds = np.column_stack([speeds, np.tile(bend_rate[:, None] / len(hinges), len(hinges))])
         names += hinges
     return _trajectory(names, samples.time, places, speeds)
 

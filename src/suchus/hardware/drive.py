@@ -24,25 +24,25 @@ from suchus.sim.land import Run
 from suchus.sim.land.loop import start
 
 Stop = Literal["sag", "hold", "off"]
-_EARLY = 0.005  # [rad]; a servo so near to where it begins needs no way there
-_SAGS = 0.2  # share of the torque with which a robot sinks
-_HOLDS, _SINKS = 0.2, 0.6  # [s]; how long it is held before it is let down, and how long that lasts
-_SURE = 0.8  # share of the time that servos wait for us after which they may have given up
+_START_TOLERANCE = 0.005  # [rad]; distance from the first posture without an approach
+_SAG_TORQUE = 0.2  # fraction of the torque with which a robot sinks
+_HOLDS, _SINKS = 0.2, 0.6  # [s]; hold before the robot sinks, and duration of sinking
+_WATCHDOG_FRACTION = 0.8  # fraction of the watchdog's time after which a servo may have stopped
 _BY_IMU = ("orientation", "angular_velocity", "acceleration")
-_PHASES = 64  # of a cycle, at which a gait is looked at before
+_PHASES = 64  # phases of a cycle at which a gait is checked
 
 
 class TickClock(Protocol):
-    """Tells a drive when its ticks are."""
+    """Clock that gives the ticks of a drive."""
 
     def begin(self) -> None:
         """Let tick 0 be now."""
 
     def wait(self, tick: int) -> int:
-        """Return when a tick has come, and which it is then: a later one where time was lost."""
+        """Return after a tick has begun, with its number, or that of a later tick if time was lost."""
 
     def late(self, tick: int) -> float:
-        """Return how long ago a tick should have begun [s]."""
+        """Return the delay of a tick [s]."""
 
 
 class WallClock:
@@ -53,28 +53,28 @@ class WallClock:
     """
 
     def __init__(self, period: float) -> None:
-        self._period, self._begun = period, monotonic()
+        self._period, self._start_time = period, monotonic()
 
     def begin(self) -> None:
         """Let tick 0 be now."""
-        self._begun = monotonic()
+        self._start_time = monotonic()
 
     def wait(self, tick: int) -> int:
-        """Sleep until a tick, and return the one that it is then."""
-        due = self._begun + tick * self._period
-        left = due - monotonic()
-        if left > 0.0:
-            sleep(left)
+        """Sleep until a tick begins, and return the number of the present tick."""
+        due = self._start_time + tick * self._period
+        remaining_time = due - monotonic()
+        if remaining_time > 0.0:
+            sleep(remaining_time)
             return tick
-        return tick + int(-left / self._period)
+        return tick + int(-remaining_time / self._period)
 
     def late(self, tick: int) -> float:
-        """Return how long ago a tick should have begun [s]."""
-        return monotonic() - self._begun - tick * self._period
+        """Return the delay of a tick [s]."""
+        return monotonic() - self._start_time - tick * self._period
 
 
 class BusClock:
-    """Ticks that an emulator is told: it moves as long as we wait, and nothing is ever late.
+    """Clock of an emulator that the host steps: no tick is late.
 
     Args:
         rig: of emulated servos.
@@ -119,7 +119,7 @@ class DriveSettings:
 
 
 def check_drive(rig: Rig | BlindRig, gait: Gait, control: Control) -> None:
-    """Refuse what the robot cannot do as it is wired, before anything moves.
+    """Refuse a gait or a control that the wired robot cannot follow, before anything moves.
 
     Raises:
         UnsuitedRobot: the control must sense what the robot has no sensor for, or moves air.
@@ -138,13 +138,13 @@ def check_drive(rig: Rig | BlindRig, gait: Gait, control: Control) -> None:
     clock = np.arange(_PHASES) / _PHASES
     angles = cycle_targets(robot, gait, clock)
     rates = np.abs(np.roll(angles, -1, axis=0) - angles) * _PHASES / gait.period
-    for i, (name, least, most) in enumerate(rig.bounds):
-        low, high = angles[:, i].min(), angles[:, i].max()
-        if low < least - 1e-9 or high > most + 1e-9:
+    for i, (name, min_angle, max_angle) in enumerate(rig.bounds):
+        gait_min, gait_max = angles[:, i].min(), angles[:, i].max()
+        if gait_min < min_angle - 1e-9 or gait_max > max_angle + 1e-9:
             raise OutsideLimits(
-                f"gait {gait.name!r} turns {name} from {low:.2f} to {high:.2f} rad, and the hardware allows "
-                f"{least:g} "
-                f"to {most:g} rad: mount its horn with another zero, or take another gait."
+                f"gait {gait.name!r} turns {name} from {gait_min:.2f} to {gait_max:.2f} rad, and the hardware allows "
+                f"{min_angle:g} "
+                f"to {max_angle:g} rad: mount its horn with another zero, or take another gait."
             )
         if rates[:, i].max() > rig.speed[i]:
             slower = gait.period * rates[:, i].max() / rig.speed[i]
@@ -156,7 +156,7 @@ def check_drive(rig: Rig | BlindRig, gait: Gait, control: Control) -> None:
 
 
 class _Halted(Exception):
-    """The robot is to be stopped: the sentence says why."""
+    """The robot must be stopped; the message gives the reason."""
 
 
 def drive(
@@ -170,10 +170,10 @@ def drive(
     say: Callable[[str], None] = lambda _: None,
     progress: Progress = silent,
 ) -> xr.Dataset:
-    """Drive a robot, and leave it safe, however it ends.
+    """Drive a robot, and stop it safely in any case.
 
-    Time in the log is that of the controller: the way to the first posture has negative times. A tick that comes too
-    late is left out in the gait too, which is a function of time; its controller still takes all its steps.
+    Time in the log is that of the controller: the approach to the first posture has negative times. A tick that is too
+    late is skipped in the gait, which is a function of time; the controller takes all its steps.
 
     Args:
         rig: the open robot.
@@ -200,12 +200,12 @@ def drive(
     controller = start([run], ticks + 1, rig.period)
     for sentence in rig.check():
         say(sentence)
-    one = _Drive(rig, gait, controller, settings, clock or WallClock(rig.period), asked, say, progress)
-    return one.run(ticks)
+    session = _Drive(rig, gait, controller, settings, clock or WallClock(rig.period), asked, say, progress)
+    return session.run(ticks)
 
 
 class _Drive:
-    """One drive while it lasts."""
+    """One drive of a robot."""
 
     def __init__(
         self,
@@ -214,28 +214,29 @@ class _Drive:
         controller: Controller,
         settings: DriveSettings,
         clock: TickClock,
-        asked: Callable[[], str],
+        stop_request: Callable[[], str],
         say: Callable[[str], None],
         progress: Progress,
     ) -> None:
+        """Take rig, gait, controller and settings; nothing moves yet."""
         self._rig, self._gait, self._controller = rig, gait, controller
-        self._settings, self._clock, self._asked, self._say = settings, clock, asked, say
+        self._settings, self._clock, self._stop_request, self._say = settings, clock, stop_request, say
         self._progress = progress
         self._log, self._guard = DriveLog(rig.robot, gait), Guard(rig, settings.limits)
-        self._told = 0
+        self._warning_count = 0
         self._tick = self._offset = 0
         self._goal = np.zeros(len(rig.names))
-        self._missed = self._clamped = 0
-        self._spoken = 0.0  # when servos heard from us, since the first tick [s]
+        self._missed_ticks = self._clamped = 0
+        self._last_goal_time = 0.0  # when servos heard from us, since the first tick [s]
         self._limb = np.full(len(layout(rig.robot).limbs), np.nan)
 
     def run(self, ticks: int) -> xr.Dataset:
-        """Approach, drive, and end safely."""
-        cause, failed, ended = "", None, False
+        """Approach the first posture, drive for some ticks, stop the robot safely and return the log."""
+        cause, failed, is_complete = "", None, False
         try:
             self._approach()
             self._go(ticks)
-            ended = True
+            is_complete = True
         except _Halted as stop:
             cause = str(stop)
         except BusFailure as error:
@@ -250,38 +251,39 @@ class _Drive:
             raise
         self._end(self._settings.stop)
         record = self._record(cause)
-        if failed is not None or (cause and not ended and not cause.startswith(ASKED)):
+        if failed is not None or (cause and not is_complete and not cause.startswith(ASKED)):
             raise BusFailure(f"{cause.rstrip('.')}; the robot was stopped.", record=record) from failed
         return record
 
     def _approach(self) -> None:
-        """Bring the robot from where it is to where it begins, slowly."""
+        """Move the robot slowly from its present posture to the first posture of the gait."""
         rig = self._rig
         rig.torque(False)
         for _ in range(5):  # each may have holes
             rig.read()
             if np.isfinite(rig.now.angle[rig.asked]).all():
                 break
-        unheard = [name for name, one, yes in zip(rig.names, rig.now.angle, rig.asked, strict=True)
-                   if yes and not np.isfinite(one)]  # fmt: skip
+        unheard = [name for name, angle, is_asked in zip(rig.names, rig.now.angle, rig.asked, strict=True)
+                   if is_asked and not np.isfinite(angle)]  # fmt: skip
         if unheard:
             raise BusFailure(f"{' and '.join(unheard[:4])} does not say where it is: the robot cannot be started.")
-        there = np.clip(self._controller.rest()[0], rig.low, rig.high)
-        here = np.where(rig.asked, rig.now.angle, there)
-        self._goal = rig.ready(np.clip(here, rig.low, rig.high))
+        goal_angles = np.clip(self._controller.rest()[0], rig.low, rig.high)
+        start_angles = np.where(rig.asked, rig.now.angle, goal_angles)
+        self._goal = rig.ready(np.clip(start_angles, rig.low, rig.high))
         rig.watch(True)
-        far = float(np.abs(there - here)[rig.asked].max(initial=0.0))
-        count = int(max(far - _EARLY, 0.0) / self._settings.approach / rig.period)
+        max_offset = float(np.abs(goal_angles - start_angles)[rig.asked].max(initial=0.0))
+        count = int(max(max_offset - _START_TOLERANCE, 0.0) / self._settings.approach / rig.period)
         self._clock.begin()
-        self._offset, first = count, -count
-        self._tick = tick = first
+        self._offset, first_tick = count, -count
+        self._tick = tick = first_tick
         while tick < 0:
-            share = (tick - first + 1) / count
+            share = (tick - first_tick + 1) / count
             rig.read()
-            self._send(tick, here + (there - here) * share)
-            tick = max(self._clock.wait(tick + 1 - first) + first, tick + 1)
+            self._send(tick, start_angles + (goal_angles - start_angles) * share)
+            tick = max(self._clock.wait(tick + 1 - first_tick) + first_tick, tick + 1)
 
     def _go(self, ticks: int) -> None:
+        """Drive the gait from tick 0 to the last tick; ticks that the computer missed are skipped."""
         tick, stepped = 0, -1
         while tick <= ticks:
             command = None
@@ -298,108 +300,112 @@ class _Drive:
                 self._progress("driving", tick / max(ticks, 1))
             if tick == ticks:
                 break
-            reached = max(self._clock.wait(tick + 1 + self._offset) - self._offset, tick + 1)
-            self._missed += min(reached, ticks) - tick - 1
-            tick = min(reached, ticks)
+            next_tick = max(self._clock.wait(tick + 1 + self._offset) - self._offset, tick + 1)
+            self._missed_ticks += min(next_tick, ticks) - tick - 1
+            tick = min(next_tick, ticks)
         self._progress("driving", 1.0)
 
-    def _send(self, tick: int, wanted: np.ndarray) -> None:
-        """Look whether all is well, send goals within the limits, and keep the tick."""
-        rig, now = self._rig, self._rig.now
-        late = self._clock.late(tick + self._offset)
-        self._wake(late + (tick + self._offset) * rig.period)
-        why = self._guard.look(now)
-        for sentence in self._guard.warnings[self._told :]:
+    def _send(self, tick: int, targets: np.ndarray) -> None:
+        """Check the robot, send targets within the limits of the servos, and log the tick."""
+        rig, reading = self._rig, self._rig.now
+        lateness = self._clock.late(tick + self._offset)
+        self._wake(lateness + (tick + self._offset) * rig.period)
+        stop_reason = self._guard.look(reading)
+        for sentence in self._guard.warnings[self._warning_count :]:
             self._say(sentence)
-        self._told = len(self._guard.warnings)
+        self._warning_count = len(self._guard.warnings)
         step = rig.speed * rig.period * 1.0001
-        within = np.clip(wanted, rig.low, rig.high)
-        slewed = np.clip(within, self._goal - step, self._goal + step)
-        self._clamped += int((np.abs(slewed - wanted) > rig.step)[rig.asked].any())
-        if not why:
-            self._goal = np.where(np.abs(slewed - within) > 0.0, slewed, within)
-            sent = rig.aim(self._goal)
+        allowed_targets = np.clip(targets, rig.low, rig.high)
+        slewed = np.clip(allowed_targets, self._goal - step, self._goal + step)
+        self._clamped += int((np.abs(slewed - targets) > rig.step)[rig.asked].any())
+        if not stop_reason:
+            self._goal = np.where(np.abs(slewed - allowed_targets) > 0.0, slewed, allowed_targets)
+            sent_angles = rig.aim(self._goal)
         else:
-            sent = np.full(len(rig.names), np.nan)
+            sent_angles = np.full(len(rig.names), np.nan)
         self._tick = tick
-        felt: dict[str, np.ndarray] = {name: now.felt[name] for name in _BY_IMU if name in now.felt}
-        if "foot_pressure" in now.felt:
-            feet = now.felt["foot_pressure"]
-            felt["foot_force"] = np.column_stack([np.full((len(feet), 2), np.nan), feet])
+        sensor_values: dict[str, np.ndarray] = {name: reading.felt[name] for name in _BY_IMU if name in reading.felt}
+        if "foot_pressure" in reading.felt:
+            feet = reading.felt["foot_pressure"]
+            sensor_values["foot_force"] = np.column_stack([np.full((len(feet), 2), np.nan), feet])
         self._log.keep(
             tick * rig.period,
-            felt
+            sensor_values
             | {
-                "servo_angle": now.angle, "servo_velocity": now.velocity, "servo_torque": now.torque,
-                "servo_target": sent, "limb_phase": self._limb, "servo_asked": wanted, "servo_heard": now.heard,
-                "reading_age": now.age * rig.period, "servo_current": now.current, "servo_voltage": now.voltage,
-                "servo_temperature": now.temperature, "servo_error": np.maximum(now.error, 0), "tick_began": late,
-                "tick_took": self._clock.late(tick + self._offset) - late,
+                "servo_angle": reading.angle, "servo_velocity": reading.velocity, "servo_torque": reading.torque,
+                "servo_target": sent_angles, "limb_phase": self._limb, "servo_asked": targets,
+                "servo_heard": reading.heard,
+                "reading_age": reading.age * rig.period, "servo_current": reading.current,
+                "servo_voltage": reading.voltage,
+                "servo_temperature": reading.temperature, "servo_error": np.maximum(reading.error, 0),
+                "tick_began": lateness,
+                "tick_took": self._clock.late(tick + self._offset) - lateness,
             },
         )  # fmt: skip
-        if why:
-            raise _Halted(why)
-        if asked := self._asked():
-            raise _Halted(f"{ASKED}{asked}")
+        if stop_reason:
+            raise _Halted(stop_reason)
+        if request := self._stop_request():
+            raise _Halted(f"{ASKED}{request}")
 
-    def _wake(self, now: float) -> None:
-        """Let servos take goals again that stood still, since they heard nothing for so long.
+    def _wake(self, time: float) -> None:
+        """Reset the watchdogs of the servos if they heard nothing for too long.
 
         Args:
-            now: since the first tick [s].
+            time: since the first tick [s].
         """
-        away, self._spoken = now - self._spoken, now
-        if away > _SURE * self._rig.patience:
+        silence, self._last_goal_time = time - self._last_goal_time, time
+        if silence > _WATCHDOG_FRACTION * self._rig.patience:
             self._rig.watch(False)
             self._rig.watch(True)
             self._guard.tell(
                 "away",
-                f"this computer was busy with other things for {away:.2g} s, in which the servos stood still: end what "
-                "else it does.",
+                f"this computer was busy with other things for {silence:.2g} s, in which the servos stood still: end "
+                "what else it does.",
             )
 
-    def _end(self, how: Stop) -> None:
-        """Leave the robot safe; whatever fails, its torque is taken away, three times."""
+    def _end(self, stop_mode: Stop) -> None:
+        """Stop the robot safely; whatever fails, the torque is switched off three times."""
         rig = self._rig
         try:
-            if how == "hold":
+            if stop_mode == "hold":
                 rig.watch(False)
                 return
-            if how == "sag":
+            if stop_mode == "sag":
                 self._pass(_HOLDS)
-                rig.limit(_SAGS)
+                rig.limit(_SAG_TORQUE)
                 self._pass(_SINKS)
         except BusFailure:  # what can be said no longer; why it ended is known by then
             pass
         except BaseException:
-            self._off()
+            self._switch_off()
             raise
-        self._off()
+        self._switch_off()
         with suppress(SuchusError):
             rig.watch(False)
             rig.limit(1.0)
 
-    def _off(self) -> None:
+    def _switch_off(self) -> None:
         for _ in range(3):
             with suppress(BusFailure, OSError):
                 self._rig.torque(False)
 
     def _pass(self, seconds: float) -> None:
-        """Let time pass while the servos keep hearing from us."""
+        """Hold the posture for some time, with goals in every tick."""
         rig = self._rig
-        until = self._tick + round(seconds / rig.period)
-        while self._tick < until:
+        end_tick = self._tick + round(seconds / rig.period)
+        while self._tick < end_tick:
             rig.read()
             rig.aim(self._goal)
             self._tick = max(self._clock.wait(self._tick + 1 + self._offset) - self._offset, self._tick + 1)
 
     def _record(self, cause: str) -> xr.Dataset:
+        """Return the log as a record, with counts of the bus, warnings and digests of gait and robot."""
         rig = self._rig
         return self._log.record(
             cause,
             {
                 "control_period": rig.period,
-                "missed": self._missed,
+                "missed": self._missed_ticks,
                 "clamped": self._clamped,
                 "broken": [bus.broken for bus in rig.buses],
                 "missing": [bus.counts.missing for bus in rig.buses],
@@ -418,15 +424,15 @@ ASKED = "asked to stop: "
 
 
 def about(record: xr.Dataset) -> dict[str, Any]:
-    """Return what a log says of the wire: jitter, holes, missed ticks, heat.
+    """Return statistics of the bus from a log: delays, missing replies, missed ticks, temperature.
 
     Returns:
         ``late_median``, ``late_p99``, ``late_most`` [s]; ``missed``, ``ticks``; ``holes`` and ``worst_holes`` [-], of
         all readings and of the servo with most, ``worst_servo``; ``hottest`` [degC]; ``clamped`` [-].
     """
-    took, heard = record.tick_began.values + record.tick_took.values, record.servo_heard.values
-    share = 1.0 - heard.mean(axis=0)
-    worst = int(np.argmax(share))
+    took, has_answered = record.tick_began.values + record.tick_took.values, record.servo_heard.values
+    hole_fraction = 1.0 - has_answered.mean(axis=0)
+    worst_servo = int(np.argmax(hole_fraction))
     heat = record.servo_temperature.values
     return {
         "late_median": float(np.median(took)),
@@ -435,8 +441,8 @@ def about(record: xr.Dataset) -> dict[str, Any]:
         "missed": int(record.attrs.get("missed", 0)),
         "clamped": int(record.attrs.get("clamped", 0)),
         "ticks": int(record.sizes["time"]),
-        "holes": float(share.mean()),
-        "worst_holes": float(share[worst]),
-        "worst_servo": str(record.servo.values[worst]),
+        "holes": float(hole_fraction.mean()),
+        "worst_holes": float(hole_fraction[worst_servo]),
+        "worst_servo": str(record.servo.values[worst_servo]),
         "hottest": float(np.nanmax(heat)) if np.isfinite(heat).any() else float("nan"),
     }

@@ -1,4 +1,4 @@
-"""What each servo of a robot bears: torque, speed, power, current and heat, from simulated walks, stands and swims."""
+"""Loads of each servo of a robot: torque, speed, power, current and heat, from simulated walks, stands and swims."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -34,7 +34,7 @@ _CYCLES, _HOLD = 2, 1.0  # of a gait, and of standing [s]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadCase:
-    """One thing that a robot does, for which its servos must be enough."""
+    """A task of a robot, for which its servos are sized."""
 
     name: str
     """Its name in tables."""
@@ -82,7 +82,7 @@ def cases(
     standing: bool = False,
     water: bool = False,
 ) -> tuple[LoadCase, ...]:
-    """Return what a robot shall do: its gaits on level ground, up slopes and with each fault, standing up, a swim.
+    """Return the load cases of a robot: gaits on level ground, on slopes and with faults, standing up, a swim.
 
     Args:
         robot: who.
@@ -95,21 +95,21 @@ def cases(
     Raises:
         UnsuitedRobot: it cannot stand up, or swim.
     """
-    found = [LoadCase(name=gait.name, gait=gait) for gait in gaits]
+    load_cases = [LoadCase(name=gait.name, gait=gait) for gait in gaits]
     for gait in gaits:
         for slope in slopes:
             name = f"{gait.name}, {degrees(slope):.3g} degrees uphill"
-            found.append(LoadCase(name=name, gait=gait, ground=Ground(uphill=slope)))
-        found += [LoadCase(name=f"{gait.name}, {fault.name}", gait=gait, faults=(fault,)) for fault in faults]
+            load_cases.append(LoadCase(name=name, gait=gait, ground=Ground(uphill=slope)))
+        load_cases += [LoadCase(name=f"{gait.name}, {fault.name}", gait=gait, faults=(fault,)) for fault in faults]
     if standing:
         check_needs(robot, STANDING, "suchus size --standing")
         control = Standing(at=START, hold=_HOLD)
         seconds = control.down_from(robot) - START
-        found.append(LoadCase(name="standing up", gait=gaits[0], control=control, seconds=seconds))
+        load_cases.append(LoadCase(name="standing up", gait=gaits[0], control=control, seconds=seconds))
     if water:
         swim = swim_of(check_needs(robot, ["axis"], "suchus size --water"))
-        found.append(LoadCase(name="swimming", gait=swim, control=Swimming(), lake=Lake(level=robot.length)))
-    return tuple(found)
+        load_cases.append(LoadCase(name="swimming", gait=swim, control=Swimming(), lake=Lake(level=robot.length)))
+    return tuple(load_cases)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -160,24 +160,24 @@ class ServoLoad:
 
 
 def loads(robot: Robot, gait: Gait, *, progress: Progress = silent) -> Mapping[str, ServoLoad]:
-    """Return what each servo bears in two cycles of a walk on level ground.
+    """Return the loads of each servo in two cycles of a walk on level ground.
 
     Raises:
         Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow the gait.
     """
-    (borne,) = loads_of_each(robot, cases(robot, (gait,)), progress=progress)
-    return borne
+    (load_by_servo,) = loads_of_each(robot, cases(robot, (gait,)), progress=progress)
+    return load_by_servo
 
 
 def loads_of_each(
-    robot: Robot, asked: Sequence[LoadCase], *, timestep: float | None = None, progress: Progress = silent
+    robot: Robot, load_cases: Sequence[LoadCase], *, timestep: float | None = None, progress: Progress = silent
 ) -> list[Mapping[str, ServoLoad]]:
-    """Return what each servo bears in each of several cases, and what four times as strong ones would give.
+    """Return the loads of each servo in several cases, with the torque that four times as strong servos would give.
 
     Args:
         robot: who.
-        asked: what it does.
+        load_cases: what it does.
         timestep: of the physics [s]; that of the robot's size if None.
         progress: told the share that is done.
 
@@ -185,39 +185,41 @@ def loads_of_each(
         Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow a gait.
     """
-    pairs = [(one, case) for case in asked for one in (cold(robot), strong(robot))]
+    pairs = [(body, case) for case in load_cases for body in (cold(robot), strong(robot))]
     records = records_of_each(pairs, timestep=timestep, progress=progress)
-    return [borne(robot, own, needed) for own, needed in zip(records[::2], records[1::2], strict=True)]
+    return [
+        borne(robot, record, strong_record) for record, strong_record in zip(records[::2], records[1::2], strict=True)
+    ]
 
 
 def records_of_each(
     pairs: Sequence[tuple[Robot, LoadCase]], *, timestep: float | None = None, progress: Progress = silent
 ) -> list[xr.Dataset]:
-    """Return the record of each case after its first second, each with its robot; those of one duration at once.
+    """Return the record of each case after its first second; cases of equal duration run as a batch.
 
     Raises:
         Diverged: a simulation diverged.
         OutsideLimits: the joints cannot follow a gait.
     """
     ends = sorted({case.end for _, case in pairs})
-    found: dict[int, xr.Dataset] = {}
+    record_by_case: dict[int, xr.Dataset] = {}
     for number, end in enumerate(ends):
         members = [i for i, (_, case) in enumerate(pairs) if case.end == end]
         runs = [pairs[i][1].run(pairs[i][0]) for i in members]
         share = portion(progress, number, len(ends))
         record = whole(simulate(runs, duration=end, timestep=timestep, progress=share))
         for i, member in enumerate(members):
-            found[member] = between(record.isel(run=i)).assign_attrs(step=record.timestep)
-    return [found[i] for i in range(len(pairs))]
+            record_by_case[member] = between(record.isel(run=i)).assign_attrs(step=record.timestep)
+    return [record_by_case[i] for i in range(len(pairs))]
 
 
 def strong(robot: Robot) -> Robot:
-    """Return a robot whose servos are four times as strong at any speed, which shows what a movement asks for."""
+    """Return a robot with servos four times as strong at any speed; they show the torque that a movement requires."""
     return with_servos(robot, lambda servo: replace(servo, torque=STRONG * servo.torque, winding=None))
 
 
 def cold(robot: Robot) -> Robot:
-    """Return a robot whose servos do not warm up: in some seconds they hardly do, and such robots share a batch."""
+    """Return a robot whose servos do not warm up; they hardly do in some seconds, and such robots can share a batch."""
 
     def cooled(servo: Servo) -> Servo:
         return servo if servo.winding is None else replace(servo, winding=replace(servo.winding, heat=None))
@@ -225,83 +227,88 @@ def cold(robot: Robot) -> Robot:
     return with_servos(robot, cooled)
 
 
-def borne(robot: Robot, walk: xr.Dataset, needed: xr.Dataset | None = None) -> Mapping[str, ServoLoad]:
-    """Return what each servo bears in a record.
+def borne(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None = None) -> Mapping[str, ServoLoad]:
+    """Return the loads of each servo in a record.
 
     Args:
         robot: whose record it is, with its windings.
         walk: the part that counts.
-        needed: the same of ``strong`` servos; that of the robot itself if None.
+        strong_walk: the same of ``strong`` servos; that of the robot itself if None.
     """
-    used, first = use_of_each(robot, walk), walk.time.values - START
-    asked = np.abs((walk if needed is None else needed).servo_torque)
-    off = np.abs(walk.servo_target - walk.servo_angle)
-    found = {}
+    use, elapsed_time = use_of_each(robot, walk), walk.time.values - START
+    required_torque = np.abs((walk if strong_walk is None else strong_walk).servo_torque)
+    tracking_error = np.abs(walk.servo_target - walk.servo_angle)
+    load_by_servo = {}
     for name in layout(robot).servos:
-        servo, one = robot.servo(name), walk.sel(servo=name)
-        torque, speed = one.servo_torque.values, one.servo_velocity.values
-        full = used.sel(servo=name).values >= full_from(servo)
-        pulled = [cable for cable in robot.cables if cable.name == name]
-        found[name] = ServoLoad(
+        servo, servo_record = robot.servo(name), walk.sel(servo=name)
+        torque, speed = servo_record.servo_torque.values, servo_record.servo_velocity.values
+        full = use.sel(servo=name).values >= full_from(servo)
+        cables = [cable for cable in robot.cables if cable.name == name]
+        load_by_servo[name] = ServoLoad(
             torque=float(np.abs(torque).max()),
             limit=servo.torque,
             at_limit=float(full.mean()),
-            first=float(first[np.argmax(full)]) if full.any() else nan,
-            off=float(np.quantile(off.sel(servo=name), 1.0 - AT_LIMIT)),
-            needed=float(np.quantile(asked.sel(servo=name), 1.0 - AT_LIMIT)),
+            first=float(elapsed_time[np.argmax(full)]) if full.any() else nan,
+            off=float(np.quantile(tracking_error.sel(servo=name), 1.0 - AT_LIMIT)),
+            needed=float(np.quantile(required_torque.sel(servo=name), 1.0 - AT_LIMIT)),
             rms=float(np.sqrt((torque**2).mean())),
             speed=float(np.abs(speed).max()),
             power=float(max((torque * speed).max(), 0.0)),
-            line=float(np.quantile(used.sel(servo=name), 1.0 - AT_LIMIT)),
-            tension=float(np.abs(torque).max() / pulled[0].pulley) if pulled else nan,
-            radius=pulled[0].pulley if pulled and pulled[0].linear is not None else nan,
+            line=float(np.quantile(use.sel(servo=name), 1.0 - AT_LIMIT)),
+            tension=float(np.abs(torque).max() / cables[0].pulley) if cables else nan,
+            radius=cables[0].pulley if cables and cables[0].linear is not None else nan,
         )
-        found[name] = replace(found[name], **_electric(servo, torque, speed))
-    return found
+        load_by_servo[name] = replace(load_by_servo[name], **_electric(servo, torque, speed))
+    return load_by_servo
 
 
 def _electric(servo: Servo, torque: np.ndarray, speed: np.ndarray) -> dict[str, Any]:
-    """Return currents and heat of a servo that gives these torques at these speeds; nothing without a winding."""
+    """Return currents and heat of a servo at these torques and speeds; empty without a winding."""
     winding = servo.winding
     if winding is None:
         return {}
-    part = torque / servo.torque
-    drawn = winding.stall_current * np.maximum(part**2 + part * speed / servo.ideal_speed, 0.0)
-    currents = winding.idle_current + drawn
-    found = {"current": float(currents.mean()), "peak_current": float(currents.max())}
+    torque_fraction = torque / servo.torque
+    load_current = winding.stall_current * np.maximum(
+        torque_fraction**2 + torque_fraction * speed / servo.ideal_speed, 0.0
+    )
+    currents = winding.idle_current + load_current
+    electric_loads = {"current": float(currents.mean()), "peak_current": float(currents.max())}
     heat = winding.heat
     if heat is None:
-        return found
+        return electric_loads
     loss = winding.volts * winding.stall_current * float((torque**2).mean()) / servo.torque**2
-    return {**found, "steady": heat.steady(loss), "warm_after": heat.reached_after(loss)}
+    return {**electric_loads, "steady": heat.steady(loss), "warm_after": heat.reached_after(loss)}
 
 
 def full_from(servo: Servo) -> float:
-    """Return the part of what a servo can give from which on it counts as being at its limit [-]."""
+    """Return the fraction of a servo's capability above which it counts as being at its limit [-]."""
     return FULL if servo.winding is None else FULL_WOUND
 
 
 def use_of_each(robot: Robot, record: xr.Dataset) -> xr.DataArray:
-    """Return the torque of each servo over what it can give at its speed [-], over whatever else a record has.
+    """Return the torque of each servo over the torque that it can give at its speed [-].
 
-    A servo with a winding gives less at speed in the direction of its torque. The speed is that at which the torque was
-    given, a physics step before the sample.
+    A servo with a winding gives less torque at speed in the direction of the torque. The torque was given one physics
+    step before the sample, at the speed of that instant.
     """
     dims = record.servo_torque.dims
     torque, speed = record.servo_torque, record.servo_velocity
     step = record.attrs.get("step", record.attrs.get("timestep", 0.0)) / float(record.time[1] - record.time[0])
-    before = speed.shift(time=1).fillna(speed)
-    along = np.sign(torque) * (speed - step * (speed - before))
+    previous_speed = speed.shift(time=1).fillna(speed)
+    speed_along_torque = np.sign(torque) * (speed - step * (speed - previous_speed))
     limits = [
-        xr.DataArray(robot.servo(str(name)).given(along.sel(servo=name).values), dims=[d for d in dims if d != "servo"])
+        xr.DataArray(
+            robot.servo(str(name)).given(speed_along_torque.sel(servo=name).values),
+            dims=[d for d in dims if d != "servo"],
+        )
         for name in record.servo.values
     ]
-    given = xr.concat(limits, "servo").assign_coords(servo=record.servo).transpose(*dims)
-    return np.abs(torque) / np.maximum(given, 1e-9)
+    available_torque = xr.concat(limits, "servo").assign_coords(servo=record.servo).transpose(*dims)
+    return np.abs(torque) / np.maximum(available_torque, 1e-9)
 
 
 def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
-    """Return the share of the time that each servo spends at its limit [-], over whatever else a record has.
+    """Return the fraction of the time that each servo is at its limit [-], over other dimensions of a record.
 
     Args:
         robot: whose record it is.
@@ -312,12 +319,12 @@ def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
 
 
 def given_in(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np.ndarray, " time"]) -> float:
-    """Return torque over what a servo can give at its speed, but for the worst 2 % of the time [-].
+    """Return torque over the torque that a servo gives at its speed, exceeded in 2 % of the time [-].
 
     Args:
         servo: another servo than that of the record.
         torque: that a movement asks for [N m].
         speed: of the shaft [rad/s].
     """
-    given = servo.given(np.sign(torque) * speed)
-    return float(np.quantile(np.abs(torque) / np.maximum(given, 1e-9), 1.0 - AT_LIMIT))
+    available_torque = servo.given(np.sign(torque) * speed)
+    return float(np.quantile(np.abs(torque) / np.maximum(available_torque, 1e-9), 1.0 - AT_LIMIT))

@@ -1,4 +1,4 @@
-"""The log of a driven robot: a record as a simulation gives, with what only a wire knows beside it."""
+"""The log of a driven robot: a record like that of a simulation, with the variables of the bus."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,7 +14,7 @@ from suchus.visual.skin import poses
 
 
 class DriveLog:
-    """Keeps ticks and makes them a record.
+    """Collects ticks, and converts them to a record.
 
     Args:
         robot: that is driven.
@@ -30,7 +30,7 @@ class DriveLog:
         return len(self._rows)
 
     def keep(self, time: float, values: Mapping[str, Any]) -> None:
-        """Keep a tick.
+        """Add a tick.
 
         Args:
             time: at which it was planned, since the controller's beginning [s].
@@ -70,15 +70,16 @@ class DriveLog:
             "label": ["driven"],
         }  # fmt: skip
         record = dataset({name: value[None] for name, value in arrays.items()}, per_run, coordinates)
-        more = {
-            name: (("run", *dims), arrays[name][None], {"units": unit, "long_name": what})
-            for name, (dims, unit, what) in DRIVEN.items()
+        driven_variables = {
+            name: (("run", *dims), arrays[name][None], {"units": unit, "long_name": meaning})
+            for name, (dims, unit, meaning) in DRIVEN.items()
         }
-        made = record.assign(more).isel(run=0)
-        made.attrs.update(attributes)
-        return made
+        drive_record = record.assign(driven_variables).isel(run=0)
+        drive_record.attrs.update(attributes)
+        return drive_record
 
     def _column(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
+        """Return the values of a variable in all ticks; NaN in ticks without one."""
         column = np.full(shape, np.nan)
         for i, row in enumerate(self._rows):
             if name in row:
@@ -87,7 +88,7 @@ class DriveLog:
 
 
 def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
-    """Return the angles of all hinges at servo angles: a cable bends its hinges evenly, springs stay where they are.
+    """Return the angles of all hinges at servo angles: a cable bends its hinges evenly, springs stay at rest.
 
     Args:
         robot: the design.
@@ -101,16 +102,16 @@ def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
         if hinge >= 0:
             angles[..., hinge] = servos[..., servo]
         else:
-            cable, turned = place.cable(servo), servos[..., servo]
-            known = np.isfinite(turned)
-            bend = np.where(known, bend_of_servo(cable, np.where(known, turned, 0.0)), np.nan)
+            cable, pulley_angle = place.cable(servo), servos[..., servo]
+            is_known = np.isfinite(pulley_angle)
+            bend = np.where(is_known, bend_of_servo(cable, np.where(is_known, pulley_angle, 0.0)), np.nan)
             for name in cable.hinges:
                 angles[..., place.hinges.index(name)] = bend / len(cable.hinges)
     return angles
 
 
 def held(record: xr.Dataset, robot: Robot) -> xr.Dataset:
-    """Return a log for the eye: where nobody measured the robot's place, it is held above one, and feels nothing.
+    """Return a log that can be shown: a robot without a measured position is fixed above the ground, without loads.
 
     Args:
         record: of one run; one that says where the robot was is returned as it is.
@@ -118,22 +119,24 @@ def held(record: xr.Dataset, robot: Robot) -> xr.Dataset:
     """
     if "servo_heard" not in record or np.isfinite(record.position.values).any():
         return record
-    told = record.servo_angle.values
-    angles = np.where(np.isfinite(told), told, record.servo_target.values)  # servos that tell nothing are where sent
+    servo_angles = record.servo_angle.values
+    angles = np.where(
+        np.isfinite(servo_angles), servo_angles, record.servo_target.values
+    )  # servos that tell nothing are where sent
     record = record.assign(joint_angle=record.joint_angle.copy(data=hinge_angles(robot, angles)))
     record = record.isel(time=np.isfinite(angles).all(axis=-1))
     count, place = record.sizes["time"], layout(robot)
     position = np.zeros((count, 3))
     level = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
-    turned = record.orientation.values
-    orientation = np.where(np.isfinite(turned).all(axis=-1, keepdims=True), turned, level)
+    quaternions = record.orientation.values
+    orientation = np.where(np.isfinite(quaternions).all(axis=-1, keepdims=True), quaternions, level)
     bones = poses(robot, position, orientation, record.joint_angle.values)
-    lowest = float(bones.positions[..., 2].min(initial=0.0))
-    position[:, 2] = -lowest + 0.1 * robot.length * bool(not place.limbs) + 0.02 * robot.length
+    min_height = float(bones.positions[..., 2].min(initial=0.0))
+    position[:, 2] = -min_height + 0.1 * robot.length * bool(not place.limbs) + 0.02 * robot.length
     tips = bones.positions[:, [limb.tip for limb in place.limbs]] + position[:, None]
-    shown = {
+    variables = {
         "position": position, "orientation": orientation, "centre_of_mass": position, "foot_position": tips,
         "foot_force": np.zeros((count, len(place.limbs), 3)), "belly_force": np.zeros((count, len(place.trunk), 3)),
         "tail_force": np.zeros((count, 3)), "snout": position, "tail_tip": bones.positions[:, -1] + position,
     }  # fmt: skip
-    return record.assign({name: record[name].copy(data=values) for name, values in shown.items()})
+    return record.assign({name: record[name].copy(data=values) for name, values in variables.items()})

@@ -37,7 +37,7 @@ def libraries() -> tuple[Any, Any]:
     return trimesh, ezdxf
 
 
-def stl(part: BodyPart) -> bytes:
+def stl(body_part: BodyPart) -> bytes:
     """Return the outline of a rod, a shell or a foot as a binary STL, its middle at the origin [mm].
 
     A rod lies along z.
@@ -46,8 +46,8 @@ def stl(part: BodyPart) -> bytes:
         NoOutlines: trimesh is not installed.
     """
     trimesh, _ = libraries()
-    length, width, height = (_MM * side for side in part.size)
-    if part.kind == "rod":
+    length, width, height = (_MM * side for side in body_part.size)
+    if body_part.kind == "rod":
         mesh = trimesh.creation.capsule(height=length - width, radius=width / 2, count=[_SIDES, _SIDES])
         mesh.apply_translation(-mesh.bounds.mean(axis=0))
     else:
@@ -70,8 +70,8 @@ def plates_dxf(plates: Sequence[TailPlate]) -> str:
         radius = _MM * plate.radius
         x += radius
         space.add_circle((x, 0.0), radius, dxfattribs={"layer": "CUT"})
-        for aside, up in plate.holes:
-            middle = (x + _MM * aside, _MM * up)
+        for lateral_offset, height in plate.holes:
+            middle = (x + _MM * lateral_offset, _MM * height)
             space.add_circle(middle, _MM * CORD_HOLE / 2, dxfattribs={"layer": "DRILL"})
         label = f"{plate.name}, {_MM * plate.thickness:.1f} mm thick"
         space.add_text(label, height=2.0, dxfattribs={"layer": "TEXT"}).set_placement((x - radius, radius + 2.0))
@@ -92,15 +92,17 @@ def top_dxf(sheet: Sheet) -> str:
     drawing = _drawing(ezdxf, {**{name: i % 6 + 1 for i, name in enumerate(bodies)}, "JOINTS": 7})
     space = drawing.modelspace()
     origins = frames(sheet.robot, np.zeros(len(sheet.joints))).places
-    where = dict(zip(bodies, origins, strict=True))
-    for part in sheet.parts:
-        if part.kind not in ("rod", "shell", "foot"):
+    origin_by_body = dict(zip(bodies, origins, strict=True))
+    for body_part in sheet.parts:
+        if body_part.kind not in ("rod", "shell", "foot"):
             continue
-        x, y, _ = _MM * (where[part.body] + np.array(part.centre))
-        length, width, _ = (_MM * side for side in part.size)
-        layer = {"layer": part.body}
-        if part.kind == "rod":
-            space.add_lwpolyline(_stadium(x, y, length, width, along=_along(sheet, part)), close=True, dxfattribs=layer)
+        x, y, _ = _MM * (origin_by_body[body_part.body] + np.array(body_part.centre))
+        length, width, _ = (_MM * side for side in body_part.size)
+        layer = {"layer": body_part.body}
+        if body_part.kind == "rod":
+            space.add_lwpolyline(
+                _stadium(x, y, length, width, azimuth=_rod_azimuth(sheet, body_part)), close=True, dxfattribs=layer
+            )
         else:
             major, ratio = (
                 ((length / 2, 0, 0), width / length) if length >= width else ((0, width / 2, 0), length / width)
@@ -113,24 +115,24 @@ def top_dxf(sheet: Sheet) -> str:
     return _text(drawing)
 
 
-def _along(sheet: Sheet, part: BodyPart) -> float:
-    """Return the direction in which a rod lies from above: forward, or aside as the links of limbs do [rad]."""
+def _rod_azimuth(sheet: Sheet, body_part: BodyPart) -> float:
+    """Return the direction of a rod seen from above [rad]: 0 along the body, sideways for the links of limbs."""
     robot = sheet.robot
-    in_limb = any(part.name.startswith((f"L{girdle.name}_", f"R{girdle.name}_")) for girdle in robot.girdles)
+    in_limb = any(body_part.name.startswith((f"L{girdle.name}_", f"R{girdle.name}_")) for girdle in robot.girdles)
     if not in_limb:
         return 0.0
-    link = next(link for g in robot.girdles for link in g.limb.links if part.name[1:] == f"{g.name}_{link.name}")
-    side = 1.0 if part.name.startswith("L") else -1.0
+    link = next(link for g in robot.girdles for link in g.limb.links if body_part.name[1:] == f"{g.name}_{link.name}")
+    side = 1.0 if body_part.name.startswith("L") else -1.0
     return float(np.arctan2(side * link.end[1], link.end[0]))
 
 
-def _stadium(x: float, y: float, length: float, width: float, along: float) -> list[tuple[float, float]]:
-    """Return the outline of a rod with round ends from above."""
+def _stadium(x: float, y: float, length: float, width: float, azimuth: float) -> list[tuple[float, float]]:
+    """Return the outline of a rod with round ends, seen from above [mm]."""
     reach, radius = max(length - width, 0.0) / 2, width / 2
     turns = np.linspace(-np.pi / 2, np.pi / 2, _SIDES // 2)
     half = np.column_stack([reach + radius * np.cos(turns), radius * np.sin(turns)])
     points = np.concatenate([half, -half])
-    c, s = np.cos(along), np.sin(along)
+    c, s = np.cos(azimuth), np.sin(azimuth)
     return [(float(x + c * u - s * v), float(y + s * u + c * v)) for u, v in points]
 
 
@@ -142,6 +144,6 @@ def _drawing(ezdxf: Any, layers: dict[str, int]) -> Any:
 
 
 def _text(drawing: Any) -> str:
-    out = io.StringIO()
-    drawing.write(out)
-    return out.getvalue()
+    stream = io.StringIO()
+    drawing.write(stream)
+    return stream.getvalue()

@@ -1,4 +1,4 @@
-"""What a robot is built of: parts and their masses, frames, cables, plates, wiring, foam; as numbers for a sheet."""
+"""The parts of a robot and their masses, frames, cables, plates, wiring and foam, as numbers for a sheet."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ class BodyPart:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MassBudget:
-    """What one moving body weighs in the simulation, and what of that its servos and printed walls are."""
+    """Mass of a moving body in the simulation, of its servos and of its printed walls."""
 
     name: str
     """Name of the body."""
@@ -60,13 +60,13 @@ class MassBudget:
 
     @property
     def rest(self) -> float:
-        """What is left for battery, electronics, screws and brackets [kg]; below zero the body gets too heavy."""
+        """Remaining mass for battery, electronics, screws and brackets [kg]; below zero the body is too heavy."""
         return self.simulated - self.servos - self.printed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HingePlace:
-    """Where a hinge is with all joints at zero: forward, left and up from the root's origin."""
+    """Position of a hinge with all joints at zero: forward, left and up from the root's origin."""
 
     name: str
     """Name of the hinge."""
@@ -118,7 +118,7 @@ class TailPlate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cord:
-    """How long the two cords of a cable are, and what they do when the tail bends."""
+    """Lengths of the two cords of a cable, and their changes with the bend of the tail."""
 
     name: str
     """Name of the cable."""
@@ -151,7 +151,7 @@ class ServoWire:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Buoyancy:
-    """What keeps a robot up in water."""
+    """Volumes that carry a robot in water."""
 
     mass: float
     """Of the robot [kg]."""
@@ -218,28 +218,28 @@ def sheet(
     require("parts", "wall", wall, 1e-5, 0.1, "m")
     require("parts", "density", density, 1.0, 2e4, "kg/m3")
     sold = shipped() if motors is None else motors
-    moved = {cable.name for cable in robot.cables if cable.linear is not None}
-    bought = {
+    linear_cables = {cable.name for cable in robot.cables if cable.linear is not None}
+    motor_by_servo = {
         name: sold[servo.winding.motor]
         for name, servo in servos_of(robot).items()
-        if name not in moved and servo.winding is not None and servo.winding.motor in sold
+        if name not in linear_cables and servo.winding is not None and servo.winding.motor in sold
     }
     seats = _seats(robot)
-    parts = (*_shapes(robot), *_foam(robot), *_servos(robot, bought, seats))
-    bodies = _bodies(robot, bought, seats, parts, wall * density)
-    still = np.zeros(len(layout(robot).hinges))
+    parts = (*_shapes(robot), *_foam(robot), *_servos(robot, motor_by_servo, seats))
+    bodies = _bodies(robot, motor_by_servo, seats, parts, wall * density)
+    zero_angles = np.zeros(len(layout(robot).hinges))
     return Sheet(
         robot=robot,
-        bought=bought,
+        bought=motor_by_servo,
         parts=parts,
         bodies=bodies,
-        centre=_point(centre_of_mass(robot, still)),
-        built=_built(robot, parts, wall * density),
+        centre=_point(centre_of_mass(robot, zero_angles)),
+        built=_built_centre(robot, parts, wall * density),
         joints=_joints(robot),
         links=_links(robot),
         plates=_plates(robot),
         cords=tuple(_cord(robot, cable) for cable in robot.cables),
-        wires=_wires(robot, bought, seats),
+        wires=_wires(robot, motor_by_servo, seats),
         floating=_floating(robot),
     )
 
@@ -264,21 +264,22 @@ def _point(values: np.ndarray | Sequence[float]) -> tuple[float, float, float]:
 
 
 def _shapes(robot: Robot) -> list[BodyPart]:
+    """Return the rods, shells and feet of a robot's bodies."""
     place = layout(robot)
     segments = {segment.name: segment for segment in place.robot.axis}
-    found = []
+    shape_parts = []
     for body in place.bodies:
         for shape in segments[body.name].shapes if body.name in segments else ():
             centre = _point((shape.centre[0] + body.shift, *shape.centre[1:]))
             if isinstance(shape, Rod):
                 length = float(np.linalg.norm(np.subtract(shape.end, shape.start)))
                 size = (length + 2 * shape.radius, 2 * shape.radius, 2 * shape.radius)
-                about = f"rod of {1000 * length:.1f} mm between the middles of its round ends"
-                found.append(BodyPart(body=body.name, name=shape.name, kind="rod", size=size, mass=shape.mass,
-                                  centre=centre, about=about))  # fmt: skip
+                description = f"rod of {1000 * length:.1f} mm between the middles of its round ends"
+                shape_parts.append(BodyPart(body=body.name, name=shape.name, kind="rod", size=size, mass=shape.mass,
+                                  centre=centre, about=description))  # fmt: skip
             else:
                 a, b, c = shape.half
-                found.append(BodyPart(body=body.name, name=shape.name, kind="shell", size=(2 * a, 2 * b, 2 * c),
+                shape_parts.append(BodyPart(body=body.name, name=shape.name, kind="shell", size=(2 * a, 2 * b, 2 * c),
                                   mass=shape.mass, centre=centre, about="shell, an ellipsoid"))  # fmt: skip
     for limb in place.limbs:
         links = limb.girdle.limb.links
@@ -286,130 +287,159 @@ def _shapes(robot: Robot) -> list[BodyPart]:
             carrier = place.bodies[limb.tip - len(links) + 1 + i].name
             end = (link.end[0], limb.side * link.end[1], link.end[2])
             size = (link.length + 2 * link.radius, 2 * link.radius, 2 * link.radius)
-            about = f"rod of {1000 * link.length:.1f} mm from joint to {'foot' if i == len(links) - 1 else 'joint'}"
-            found.append(BodyPart(body=carrier, name=f"{limb.name}_{link.name}", kind="rod", size=size, mass=link.mass,
-                              centre=_point(np.array(end) / 2), about=about))  # fmt: skip
+            description = (
+                f"rod of {1000 * link.length:.1f} mm from joint to {'foot' if i == len(links) - 1 else 'joint'}"
+            )
+            shape_parts.append(BodyPart(body=carrier, name=f"{limb.name}_{link.name}", kind="rod", size=size,
+                              mass=link.mass,
+                              centre=_point(np.array(end) / 2), about=description))  # fmt: skip
             if i == len(links) - 1:
                 foot = limb.girdle.limb.foot
                 ball = 2 * foot.radius
-                found.append(BodyPart(body=carrier, name=f"{limb.name}_foot", kind="foot", size=(ball, ball, ball),
+                shape_parts.append(BodyPart(body=carrier, name=f"{limb.name}_foot", kind="foot",
+                              size=(ball, ball, ball),
                                   mass=foot.mass, centre=_point(end), about="rubber ball"))  # fmt: skip
-    return found
+    return shape_parts
 
 
 def _foam(robot: Robot) -> list[BodyPart]:
+    """Return the blocks of foam of the hull, as cubes."""
     hull = robot.hull
     if hull is None:
         return []
     centres = foam_centres(robot)
-    found = []
-    for one in (foam for foam in hull.foam if foam.volume > 0.0):
-        side = one.volume ** (1 / 3)
-        about = f"{1e6 * one.volume:.0f} cm3 around the body, raised by {1000 * one.raised:.0f} mm"
-        found.append(BodyPart(body=one.body, name=f"{one.body}_foam", kind="foam", size=(side, side, side),
-                          mass=hull.density * one.volume, centre=_point(centres[one.body]), about=about))  # fmt: skip
-    return found
+    foam_parts = []
+    for foam_block in (foam for foam in hull.foam if foam.volume > 0.0):
+        side = foam_block.volume ** (1 / 3)
+        description = f"{1e6 * foam_block.volume:.0f} cm3 around the body, raised by {1000 * foam_block.raised:.0f} mm"
+        foam_parts.append(BodyPart(body=foam_block.body, name=f"{foam_block.body}_foam", kind="foam",
+                          size=(side, side, side),
+                          mass=hull.density * foam_block.volume,
+                          centre=_point(centres[foam_block.body]), about=description))  # fmt: skip
+    return foam_parts
 
 
 def _seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
-    """Return the body on which each servo sits and where: that ahead of its hinge in the chain from the root."""
+    """Return the body on which each servo sits and its position: the body before its hinge, from the root."""
     place = layout(robot)
-    found = {}
+    seats = {}
     for body in place.bodies:
         parent = place.bodies[body.parent] if body.parent >= 0 else body
         for _, name, _ in body.hinges:
-            found[name] = (parent.name, _point(body.offset))
+            seats[name] = (parent.name, _point(body.offset))
     for cable in place.robot.cables:
-        found[cable.name] = found[cable.hinges[0]]
-        root = next((b for b in place.bodies if b.name == found[cable.name][0] and b.parent >= 0), None)
+        seats[cable.name] = seats[cable.hinges[0]]
+        root = next((b for b in place.bodies if b.name == seats[cable.name][0] and b.parent >= 0), None)
         if root is not None:  # the pulley sits ahead of the section that it bends
-            found[cable.name] = (place.bodies[root.parent].name, _point(root.offset))
-    return {name: found[name] for name in place.servos}
+            seats[cable.name] = (place.bodies[root.parent].name, _point(root.offset))
+    return {name: seats[name] for name in place.servos}
 
 
 def _servos(
-    robot: Robot, bought: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
+    robot: Robot, motor_by_servo: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
 ) -> list[BodyPart]:
-    found = []
-    moved = {cable.name: cable.linear for cable in robot.cables if cable.linear is not None}
+    """Return the servos as parts, with size and mass where a servo that is sold is known."""
+    servo_parts = []
+    linear_drives = {cable.name: cable.linear for cable in robot.cables if cable.linear is not None}
     for name, servo in ((name, robot.servo(name)) for name in layout(robot).servos):
-        body, at = seats[name]
-        motor = bought.get(name)
-        about = f"servo of {servo.torque:g} N m and {servo.speed:g} rad/s"
-        if name in moved:
-            one = moved[name]
-            about = (
-                f"linear actuator of {one.force:g} N, {1000 * one.speed:g} mm/s and {2000 * one.travel:.1f} mm stroke"
+        body, position = seats[name]
+        motor = motor_by_servo.get(name)
+        description = f"servo of {servo.torque:g} N m and {servo.speed:g} rad/s"
+        if name in linear_drives:
+            actuator = linear_drives[name]
+            description = (
+                f"linear actuator of {actuator.force:g} N, {1000 * actuator.speed:g} mm/s and "
+                f"{2000 * actuator.travel:.1f} mm stroke"
             )
-        found.append(
+        servo_parts.append(
             BodyPart(
                 body=body,
                 name=name,
                 kind="servo",
                 size=(nan, nan, nan) if motor is None else motor.size,
                 mass=nan if motor is None else motor.mass,
-                centre=at,
-                about=about if motor is None else motor.name,
+                centre=position,
+                about=description if motor is None else motor.name,
             )
         )
-    return found
+    return servo_parts
 
 
 def _bodies(
     robot: Robot,
-    bought: Mapping[str, Motor],
+    motor_by_servo: Mapping[str, Motor],
     seats: Mapping[str, tuple[str, tuple[float, float, float]]],
     parts: Sequence[BodyPart],
     skin: float,
 ) -> tuple[MassBudget, ...]:
+    """Return the mass budget of each body: as simulated, of its servos, and of printed walls and foam.
+
+    Args:
+        robot: the design.
+        motor_by_servo: servos that are sold, by name.
+        seats: body and position of each servo.
+        parts: of all bodies.
+        skin: mass of a printed wall per area [kg/m2].
+    """
     masses, _ = body_masses(robot)
-    found = []
+    budgets = []
     for body, mass in zip(layout(robot).bodies, masses, strict=True):
-        own = [part for part in parts if part.body == body.name]
+        body_parts = [body_part for body_part in parts if body_part.body == body.name]
         sitting = [
-            bought[name].mass if name in bought else nan for name, (seat, _) in seats.items() if seat == body.name
+            motor_by_servo[name].mass if name in motor_by_servo else nan
+            for name, (seat, _) in seats.items()
+            if seat == body.name
         ]
-        printed = sum(skin * area(part.kind, part.size) for part in own if part.kind in ("rod", "shell", "foot"))
-        foam = sum(part.mass for part in own if part.kind == "foam")
-        found.append(
-            MassBudget(name=body.name, simulated=float(mass), servos=float(sum(sitting)), printed=printed + foam)
+        printed_mass = sum(
+            skin * area(body_part.kind, body_part.size)
+            for body_part in body_parts
+            if body_part.kind in ("rod", "shell", "foot")
         )
-    return tuple(found)
+        foam = sum(body_part.mass for body_part in body_parts if body_part.kind == "foam")
+        budgets.append(
+            MassBudget(name=body.name, simulated=float(mass), servos=float(sum(sitting)), printed=printed_mass + foam)
+        )
+    return tuple(budgets)
 
 
-def _built(robot: Robot, parts: Sequence[BodyPart], skin: float) -> tuple[float, float, float]:
+def _built_centre(robot: Robot, parts: Sequence[BodyPart], skin: float) -> tuple[float, float, float]:
     """Return the centre of mass of servos, walls and foam, all joints at zero [m]; NaN if servos are unknown."""
     place = layout(robot)
     origins = frames(robot, np.zeros(len(place.hinges))).places
-    where = {body.name: origins[i] for i, body in enumerate(place.bodies)}
+    origin_by_body = {body.name: origins[i] for i, body in enumerate(place.bodies)}
     weights, points = [], []
-    for part in parts:
-        weights.append(skin * area(part.kind, part.size) if part.kind in ("rod", "shell", "foot") else part.mass)
-        points.append(where[part.body] + np.array(part.centre))
+    for body_part in parts:
+        weights.append(
+            skin * area(body_part.kind, body_part.size)
+            if body_part.kind in ("rod", "shell", "foot")
+            else body_part.mass
+        )
+        points.append(origin_by_body[body_part.body] + np.array(body_part.centre))
     total = float(np.sum(weights))
     return _point(np.array(weights) @ np.array(points) / total)
 
 
 def _joints(robot: Robot) -> tuple[HingePlace, ...]:
+    """Return position, axis, range and actuator of each hinge, all joints at zero."""
     place = layout(robot)
     origins = frames(robot, np.zeros(len(place.hinges))).places
-    pulled = {hinge: cable.name for cable in place.robot.cables for hinge in cable.hinges}
-    found = []
+    cable_by_hinge = {hinge: cable.name for cable in place.robot.cables for hinge in cable.hinges}
+    hinges = []
     for i, body in enumerate(place.bodies):
         parent = place.bodies[body.parent].name if body.parent >= 0 else ""
         for hinge, name, axis in body.hinges:
-            drive = name if isinstance(hinge.servo, Servo) else pulled.get(name, "spring")
-            found.append(HingePlace(name=name, body=body.name, parent=parent, at=_point(origins[i]), axis=_point(axis),
+            drive = name if isinstance(hinge.servo, Servo) else cable_by_hinge.get(name, "spring")
+            hinges.append(HingePlace(name=name, body=body.name, parent=parent, at=_point(origins[i]), axis=_point(axis),
                                range=hinge.range, driven_by=drive))  # fmt: skip
-    return tuple(found)
+    return tuple(hinges)
 
 
 def _links(robot: Robot) -> tuple[DHRow, ...]:
-    """Return the tables of Denavit and Hartenberg of the chains that are of the article's kind.
+    """Return the Denavit-Hartenberg tables of the chains that have the article's geometry.
 
     Paper: Tables I and II, Figs 6 and 8.
     """
-    found = []
+    rows = []
     chains = (("front leg", 0), ("hind leg", -1)) if len(robot.girdles) > 1 else (("hind leg", -1),)
     for chain, girdle in chains if robot.girdles else ():
         leg = leg_of(robot.girdles[girdle])
@@ -417,17 +447,18 @@ def _links(robot: Robot) -> tuple[DHRow, ...]:
             lengths = (leg.hip_offset, 0.0, leg.femur, leg.tibia)
             names = ("yaw", "pitch", "knee", "foot")
             for i, (a, alpha) in enumerate(zip(lengths, (0.0, pi / 2, 0.0, 0.0), strict=True)):
-                found.append(DHRow(chain=chain, number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=names[i]))
+                rows.append(DHRow(chain=chain, number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=names[i]))
     spine = spine_of(robot) if robot.girdles else None
     if spine is not None:
         for i, name in enumerate(spine.names):
             alpha = 0.0 if i == 0 else (-pi / 2 if i % 2 else pi / 2)
             a = spine.base if i == 0 else spine.link
-            found.append(DHRow(chain="spine", number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=name))
-    return tuple(found)
+            rows.append(DHRow(chain="spine", number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=name))
+    return tuple(rows)
 
 
 def _plates(robot: Robot) -> tuple[TailPlate, ...]:
+    """Return the plates of a tail that cords bend; none for other tails."""
     tail = tail_of(robot)
     if tail is None or not tail.cabled:
         return ()
@@ -440,52 +471,64 @@ def _plates(robot: Robot) -> tuple[TailPlate, ...]:
 
 
 def _cord(robot: Robot, cable: Cable) -> Cord:
+    """Return the table of a cord pair: bend of the section, actuator travel, and the length changes of both cords."""
     tail, linear = tail_of(robot), cable.linear is not None
-    told = cable.pulley if linear else 1.0
+    output_factor = cable.pulley if linear else 1.0
     if tail is None or not tail.cabled or cable.hinges != tail.driven:
         half = cable.cord_spacing / 2
-        bent = np.linspace(0.0, cable.bend_limit, _STEPS).tolist()
-        straight = tuple((b, told * b * half / cable.pulley, 0.0 - b * half, b * half) for b in bent)
+        straight_bends = np.linspace(0.0, cable.bend_limit, _STEPS).tolist()
+        straight = tuple((b, output_factor * b * half / cable.pulley, 0.0 - b * half, b * half) for b in straight_bends)
         return Cord(name=cable.name, section=nan, travel=cable.bend_limit * half, table=straight, linear=linear)
-    most = min(cable.bend_limit, bend_limit(tail))
-    bends = np.linspace(0.0, most, _STEPS)
-    toward, away = (change + 0.0 for change in cable_changes(tail, bends))  # no -0
-    turns = told * servo_angle(tail, bends)
-    table = tuple(zip(bends.tolist(), turns.tolist(), toward.tolist(), away.tolist(), strict=True))
+    max_bend = min(cable.bend_limit, bend_limit(tail))
+    bends = np.linspace(0.0, max_bend, _STEPS)
+    inner_change, outer_change = (change + 0.0 for change in cable_changes(tail, bends))  # no -0
+    turns = output_factor * servo_angle(tail, bends)
+    table = tuple(zip(bends.tolist(), turns.tolist(), inner_change.tolist(), outer_change.tolist(), strict=True))
     return Cord(
-        name=cable.name, section=tail.joints * tail.pitch, travel=float(-toward[-1]), table=table, linear=linear
+        name=cable.name, section=tail.joints * tail.pitch, travel=float(-inner_change[-1]), table=table, linear=linear
     )
 
 
 def _wires(
-    robot: Robot, bought: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
+    robot: Robot, motor_by_servo: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
 ) -> tuple[ServoWire, ...]:
-    """Return the chain of each bus from the root outward: every servo hangs on the nearest one wired already."""
+    """Return the chain of each bus from the root outward: each servo hangs on the nearest one that is wired already."""
     place = layout(robot)
     origins = frames(robot, np.zeros(len(place.hinges))).places
-    where = {body.name: origins[i] for i, body in enumerate(place.bodies)}
-    at = {name: where[body] + np.array(point) for name, (body, point) in seats.items()}
-    found: list[ServoWire] = []
-    for bus in dict.fromkeys(bought[name].family if name in bought else "servos" for name in place.servos):
-        members = [n for n in place.servos if (bought[n].family if n in bought else "servos") == bus]
+    origin_by_body = {body.name: origins[i] for i, body in enumerate(place.bodies)}
+    seat_positions = {name: origin_by_body[body] + np.array(point) for name, (body, point) in seats.items()}
+    wires: list[ServoWire] = []
+    for bus in dict.fromkeys(
+        motor_by_servo[name].family if name in motor_by_servo else "servos" for name in place.servos
+    ):
+        members = [n for n in place.servos if (motor_by_servo[n].family if n in motor_by_servo else "servos") == bus]
         wired: dict[str, np.ndarray] = {"controller": np.zeros(3)}
         while members:
-            name, after = min(
-                ((name, one) for name in members for one in wired),
-                key=lambda pair: float(np.linalg.norm(at[pair[0]] - wired[pair[1]])),
+            name, predecessor = min(
+                ((name, wired_name) for name in members for wired_name in wired),
+                key=lambda pair: float(np.linalg.norm(seat_positions[pair[0]] - wired[pair[1]])),
             )
-            straight = float(np.linalg.norm(at[name] - wired[after]))
+            straight = float(np.linalg.norm(seat_positions[name] - wired[predecessor]))
             number = place.servos.index(name) + 1
-            found.append(ServoWire(servo=name, number=number, bus=bus, after=after, length=max(SPARE * straight, 0.05)))
-            wired[name] = at[name]
+            wires.append(
+                ServoWire(servo=name, number=number, bus=bus, after=predecessor, length=max(SPARE * straight, 0.05))
+            )
+            wired[name] = seat_positions[name]
             members.remove(name)
-    return tuple(found)
+    return tuple(wires)
 
 
 def _floating(robot: Robot) -> Buoyancy:
+    """Return the volumes that carry a robot: its bodies, foam and air chambers."""
     hull = robot.hull
-    whole = sum(volumes(robot).values())
-    foam = () if hull is None else tuple((one.body, one.volume, one.raised) for one in hull.foam)
-    chambers = () if hull is None else tuple((one.body, one.share) for one in hull.chambers)
-    bare = whole - sum(volume for _, volume, _ in foam)
-    return Buoyancy(mass=robot.mass, bare=bare, foam=foam, air=0.0 if hull is None else hull.air, chambers=chambers)
+    total_volume = sum(volumes(robot).values())
+    foam = (
+        ()
+        if hull is None
+        else tuple((foam_block.body, foam_block.volume, foam_block.raised) for foam_block in hull.foam)
+    )
+    chambers = () if hull is None else tuple((chamber.body, chamber.share) for chamber in hull.chambers)
+    bare_volume = total_volume - sum(volume for _, volume, _ in foam)
+    return Buoyancy(
+        mass=robot.mass, bare=bare_volume, foam=foam, air=0.0 if hull is None else hull.air, chambers=chambers
+    )

@@ -1,4 +1,4 @@
-"""A robot's servos and sensors over its buses: what they say, what they are sent, and whether all is as it must be."""
+"""Servos and sensors of a robot over its buses: readings, goals and checks of the settings."""
 
 from collections.abc import Collection, Sequence
 from contextlib import suppress
@@ -36,8 +36,8 @@ TRIED = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
 """Bit rates at which servos are looked for that do not answer at the one that the file names [1/s]."""
 PATIENT = 0.1
 """How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
-_AGAIN = 8  # times that a question is asked before the robot moves: a tenth of all packets may be lost
-_LEAST = 0.25  # share of the wait that must be left of a tick, or a board be given, to ask more than the servos
+_MAX_ATTEMPTS = 8  # attempts of a request before the robot moves: a tenth of all packets may be lost
+_MIN_TICK_FRACTION = 0.25  # least fraction of the wait for requests after those to the servos
 _WATCHDOG = 5  # steps of 20 ms
 _SENSES = {
     "imu": ("orientation", "angular_velocity", "acceleration"),
@@ -50,7 +50,7 @@ _OF_SERVOS = ("servo_position", "servo_velocity", "servo_torque")
 
 @dataclass(slots=True)
 class RigReading:
-    """What servos and boards said last."""
+    """Last readings of servos and boards."""
 
     angle: np.ndarray
     """Angles of the joints, shape (servo,) [rad]."""
@@ -75,14 +75,14 @@ class RigReading:
 
 
 def senses(robot: Robot, boards: Sequence[BoardPlace]) -> tuple[str, ...]:
-    """Return what a robot with some boards senses: fields of ``control.Sensed``."""
+    """Return the quantities that a robot with some boards senses: fields of ``control.Sensed``."""
     place = layout(robot)
-    found = [*_OF_SERVOS, *(name for board in boards for name in _SENSES[board.kind])]
+    quantities = [*_OF_SERVOS, *(name for board in boards for name in _SENSES[board.kind])]
     if not place.limbs:
-        found.append("foot_pressure")
+        quantities.append("foot_pressure")
     if not place.tail:
-        found.append("tail_pressure")
-    return tuple(found)
+        quantities.append("tail_pressure")
+    return tuple(quantities)
 
 
 class Rig:
@@ -114,6 +114,7 @@ class Rig:
         without: Sequence[str] = (),
         needed: Collection[str] | None = None,
     ) -> None:
+        """Open the buses of a robot; nothing moves."""
         self.robot, self.wiring, self.clocked = robot, wiring, clocked
         self.servos = wiring.ordered(robot)
         self.names = layout(robot).servos
@@ -126,23 +127,23 @@ class Rig:
         self.period = control_period(robot) if rate is None else 1.0 / rate
         self.asked = np.array([name not in self.without for name in self.names])
         self.steps = Steps(self.servos)
-        self.low = np.array([one.low for one in self.servos])
-        self.high = np.array([one.high for one in self.servos])
+        self.low = np.array([servo.low for servo in self.servos])
+        self.high = np.array([servo.high for servo in self.servos])
         self.speed = np.array([robot.servo(name).speed for name in self.names])
         self._members = [
-            [i for i, one in enumerate(self.servos) if one.bus == number and self.asked[i]]
+            [i for i, servo in enumerate(self.servos) if servo.bus == number and self.asked[i]]
             for number in range(len(wiring.bus))
         ]
         self._always: list[list[BoardPlace]] = []
         self._turns: list[list[int | BoardPlace]] = []
         for number in range(len(wiring.bus)):
             boards = [board for board in wiring.board if board.bus == number]
-            at_once = [b for b in boards if needed is None or not set(_SENSES[b.kind]).isdisjoint(needed)]
-            self._always.append(at_once)
-            seldom: list[int | BoardPlace] = [b for b in boards if b not in at_once]
+            prompt_boards = [b for b in boards if needed is None or not set(_SENSES[b.kind]).isdisjoint(needed)]
+            self._always.append(prompt_boards)
+            seldom: list[int | BoardPlace] = [b for b in boards if b not in prompt_boards]
             members = self._members[number]
             if members and self.servos[members[0]].table.health is not None:
-                seldom = [one for i in members for one in (i, *seldom)]  # a board as often as all servos together
+                seldom = [device for i in members for device in (i, *seldom)]  # a board as often as all servos together
             self._turns.append(seldom)
         self._check_time()
         self._wait = min(WAIT, 0.8 * self.period)
@@ -168,7 +169,7 @@ class Rig:
             heard=np.zeros(count, dtype=bool),
             age=np.zeros(count, dtype=int),
         )
-        self._watched = np.array(["bus_watchdog" in one.table for one in self.servos])
+        self._has_watchdog = np.array(["bus_watchdog" in servo.table for servo in self.servos])
         self.jumps = np.zeros(count, dtype=int)
         """How often in a row a servo said that it is where it cannot be, shape (servo,) [-]."""
 
@@ -180,7 +181,7 @@ class Rig:
     @property
     def bounds(self) -> Sequence[tuple[str, float, float]]:
         """Name of each servo, and the least and greatest angle that it may be sent to [rad]."""
-        return [(one.name, one.low, one.high) for one in self.servos]
+        return [(servo.name, servo.low, servo.high) for servo in self.servos]
 
     @property
     def step(self) -> float:
@@ -195,7 +196,7 @@ class Rig:
     # --- before it moves ----------------------------------------------------------------------------------------------
 
     def bytes_per_tick(self, number: int) -> tuple[int, int]:
-        """Return the bytes on a bus in a tick, and how many replies are among them."""
+        """Return the bytes and the number of replies on a bus in a tick."""
         place = self.wiring.bus[number]
         framing, members = FRAMINGS[place.protocol], self._members[number]
         total = answers = 0
@@ -205,23 +206,26 @@ class Rig:
             goal = table["goal_position"]
             ids = [self.servos[i].id for i in members]
             total += len(framing.sync_read(ids, 0, length)) + len(members) * len(framing.reply(_typical(length)))
-            total += len(framing.sync_write(goal.address, {one: _typical(goal.size).data for one in ids}))
+            total += len(framing.sync_write(goal.address, {servo_id: _typical(goal.size).data for servo_id in ids}))
             answers += len(members)
-        extra = [self._bytes_of(number, one) for one in self._turns[number]]
-        asked = [self._bytes_of(number, one) for one in self._always[number]] + ([max(extra)] if extra else [])
-        return total + sum(asked), answers + len(asked)
+        extra = [self._bytes_of(number, device) for device in self._turns[number]]
+        request_bytes = [self._bytes_of(number, device) for device in self._always[number]] + (
+            [max(extra)] if extra else []
+        )
+        return total + sum(request_bytes), answers + len(request_bytes)
 
-    def _bytes_of(self, number: int, one: int | BoardPlace) -> int:
-        """Return the bytes of asking a servo how it is, or a board what it feels."""
+    def _bytes_of(self, number: int, device: int | BoardPlace) -> int:
+        """Return the bytes for reading the state of a servo, or the sensors of a board."""
         framing = FRAMINGS[self.wiring.bus[number].protocol]
-        if isinstance(one, BoardPlace):
-            table = self.wiring.tables(one, self.robot)
-            return len(framing.sync_read((one.id,), 0, 2)) + len(framing.reply(_typical(table.block(table.felt)[1])))
-        health = self.servos[one].table.health
+        if isinstance(device, BoardPlace):
+            table = self.wiring.tables(device, self.robot)
+            return len(framing.sync_read((device.id,), 0, 2)) + len(framing.reply(_typical(table.block(table.felt)[1])))
+        health = self.servos[device].table.health
         assert health is not None
-        return len(framing.read(1, 0, 2)) + len(framing.reply(_typical(self.servos[one].table.block(health)[1])))
+        return len(framing.read(1, 0, 2)) + len(framing.reply(_typical(self.servos[device].table.block(health)[1])))
 
     def _check_time(self) -> None:
+        """Refuse buses that carry more bytes in a tick than their bit rate allows."""
         for number, place in enumerate(self.wiring.bus):
             total, _ = self.bytes_per_tick(number)
             seconds = total * BITS / place.baud
@@ -234,7 +238,7 @@ class Rig:
                 )
 
     def check(self) -> list[str]:
-        """Look whether all servos are there and set as they must be; return what is no reason not to drive.
+        """Check that all servos answer and are set as needed; return warnings that do not forbid a drive.
 
         Raises:
             BusFailure: a servo does not answer, or cannot be driven as it is set; nothing has moved.
@@ -244,12 +248,12 @@ class Rig:
                 f"no clock answers on {self.buses[0].port.name}: only an emulator has one, started with --clock bus; a "
                 "robot is driven with --clock wall."
             )
-        said: list[str] = []
+        remarks: list[str] = []
         for bus in self.buses:
             bus.wait = PATIENT
         for number, bus in enumerate(self.buses):
             self._find(number, bus)
-            said += self._settings(number, bus)
+            remarks += self._settings(number, bus)
             keeps = latency_timer(bus.port.name)
             if keeps is not None and keeps > 1:
                 raise BusFailure(
@@ -263,42 +267,42 @@ class Rig:
         for bus in self.buses:
             bus.settle()
             bus.wait = self._wait
-        return said
+        return remarks
 
     def _find(self, number: int, bus: Bus) -> None:
-        """Refuse a bus on which not all answer, each alone and twice."""
+        """Refuse a bus on which a servo or board does not answer, or two have one number."""
         members = self._members[number]
-        wanted = {self.servos[i].id: self.servos[i].name for i in members}
-        wanted |= {board.id: f"the board {board.kind!r}" for board in self.wiring.board if board.bus == number}
+        names_by_id = {self.servos[i].id: self.servos[i].name for i in members}
+        names_by_id |= {board.id: f"the board {board.kind!r}" for board in self.wiring.board if board.bus == number}
         garbled = {}
-        heard: set[int] = set()
-        for servo in wanted:
+        answering_ids: set[int] = set()
+        for servo in names_by_id:
             broken = bus.broken + bus.dropped
-            for _ in range(_AGAIN):
+            for _ in range(_MAX_ATTEMPTS):
                 if bus.ping(servo) is not None:
-                    heard.add(servo)
+                    answering_ids.add(servo)
                     break
-            garbled[servo] = bus.broken + bus.dropped > broken and servo not in heard
-        missing = [servo for servo in wanted if servo not in heard]
-        if wanted and not heard and not any(garbled.values()):
-            raise BusFailure(self._nobody(number, bus, next(iter(wanted))))
+            garbled[servo] = bus.broken + bus.dropped > broken and servo not in answering_ids
+        missing = [servo for servo in names_by_id if servo not in answering_ids]
+        if names_by_id and not answering_ids and not any(garbled.values()):
+            raise BusFailure(self._nobody(number, bus, next(iter(names_by_id))))
         twins = [servo for servo in missing if garbled[servo]]
         if twins:
             raise BusFailure(
-                f"{_listed(wanted, twins)} on {bus.port.name} answers with replies that cannot be read, and nobody "
-                "else "
+                f"{_listed(names_by_id, twins)} on {bus.port.name} answers with replies that cannot be read, and "
+                "nobody else "
                 "does so: two servos have that number. Unplug one and give it another."
             )
         if missing:
-            others = ", ".join(str(one) for one in sorted(heard)) or "none"
+            other_ids = ", ".join(str(servo_id) for servo_id in sorted(answering_ids)) or "none"
             raise BusFailure(
-                f"{_listed(wanted, missing)} on {bus.port.name} does not answer; there answer {others}. Look at its "
-                "plug "
+                f"{_listed(names_by_id, missing)} on {bus.port.name} does not answer; there answer {other_ids}. Look "
+                "at its plug "
                 "and its number, or go on with it limp by --without NAME."
             )
 
     def _nobody(self, number: int, bus: Bus, servo: int) -> str:
-        """Return the sentence for a bus on which nobody answers, at which other rates too."""
+        """Return the sentence for a bus on which nobody answers, with the bit rate at which one does."""
         place = self.wiring.bus[number]
         if not place.port.startswith("socket://") and not self.clocked:
             bus.close()
@@ -306,10 +310,10 @@ class Rig:
                 if baud == place.baud:
                     continue
                 with suppress(SuchusError):
-                    other = Bus(open_port(place.port, baud), bus.framing)
-                    answered = other.ping(servo)
-                    other.close()
-                    if answered is not None:
+                    trial_bus = Bus(open_port(place.port, baud), bus.framing)
+                    reply = trial_bus.ping(servo)
+                    trial_bus.close()
+                    if reply is not None:
                         return (
                             f"nobody answers on {place.port} at {place.baud} baud, but at {baud} baud number {servo} "
                             "does: "
@@ -322,83 +326,85 @@ class Rig:
         )
 
     def _settings(self, number: int, bus: Bus) -> list[str]:
-        said = []
+        """Refuse servos whose settings do not fit, and return warnings about servos without a watchdog."""
+        unwatched_names = []
         delay = 0.0
         for i in self._members[number]:
-            one = self.servos[i]
-            model = self._read(bus, i, "model_number")
-            if model != one.table.number:
+            servo = self.servos[i]
+            model = self._read_register(bus, i, "model_number")
+            if model != servo.table.number:
                 raise BusFailure(
-                    f"{one.name}, number {one.id}, says that it is model {model}; {one.model} is {one.table.number}: "
-                    "its "
+                    f"{servo.name}, number {servo.id}, says that it is model {model}; {servo.model} is "
+                    f"{servo.table.number}: its "
                     "registers may stand elsewhere. Correct the model in the file."
                 )
-            pause = self._read(bus, i, "return_delay") * one.table["return_delay"].unit
+            pause = self._read_register(bus, i, "return_delay") * servo.table["return_delay"].unit
             delay += pause
-            if self._read(bus, i, "operating_mode") != one.table["operating_mode"].initial:
+            if self._read_register(bus, i, "operating_mode") != servo.table["operating_mode"].initial:
                 raise BusFailure(
-                    f"{one.name}, number {one.id}, is not in its mode for positions: set its operating mode to "
-                    f"{one.table['operating_mode'].initial} with its maker's program."
+                    f"{servo.name}, number {servo.id}, is not in its mode for positions: set its operating mode to "
+                    f"{servo.table['operating_mode'].initial} with its maker's program."
                 )
             self._check_range(bus, i)
-            self._watched[i] = "bus_watchdog" in one.table and (
-                self._read(bus, i, "firmware") >= one.table.watches_from
+            self._has_watchdog[i] = "bus_watchdog" in servo.table and (
+                self._read_register(bus, i, "firmware") >= servo.table.watches_from
             )
-            if not self._watched[i]:
-                said.append(one.name)
+            if not self._has_watchdog[i]:
+                unwatched_names.append(servo.name)
         total, answers = self.bytes_per_tick(number)
         seconds = total * BITS / self.wiring.bus[number].baud + delay
         if not self.clocked and seconds > FULLEST * self.period:
-            each = delay / max(len(self._members[number]), 1)
+            delay_per_servo = delay / max(len(self._members[number]), 1)
             raise BusFailure(
-                f"the servos on {bus.port.name} wait {1e6 * each:.0f} us each before they answer, which makes a tick "
-                "of "
+                f"the servos on {bus.port.name} wait {1e6 * delay_per_servo:.0f} us each before they answer, which "
+                "makes a tick of "
                 f"{answers} replies {1e3 * seconds:.1f} ms long, and it may last {1e3 * self.period:g} ms: set their "
                 f"return_delay to 0 (address {self.servos[self._members[number][0]].table['return_delay'].address}), "
                 "or "
                 f"drive at --rate {FULLEST / seconds:.0f}."
             )
-        if said:
+        if unwatched_names:
             return [
-                f"{said[0] if len(said) == 1 else f'{len(said)} servos'} on {bus.port.name} would hold the last goal "
-                "with "
+                f"{unwatched_names[0] if len(unwatched_names) == 1 else f'{len(unwatched_names)} servos'} on "
+                f"{bus.port.name} would hold the last goal with "
                 "full torque if this computer died: they have no watchdog, or too old a firmware for it (Dynamixel X: "
                 "from 38). Renew the firmware, or put a relay into their supply."
             ]
         return []
 
     def _check_range(self, bus: Bus, i: int) -> None:
-        """Refuse a servo that would not go where its file sends it, since its own limits are narrower."""
-        one = self.servos[i]
-        low, high = (self._read(bus, i, name) for name in ("position_low", "position_high"))
-        if low == high == 0:  # how Feetech says that there are none
+        """Refuse a servo whose own limits are narrower than those of the file."""
+        servo = self.servos[i]
+        lower_bound, upper_bound = (self._read_register(bus, i, name) for name in ("position_low", "position_high"))
+        if lower_bound == upper_bound == 0:  # how Feetech says that there are none
             return
-        ends = sorted(one.zero + one.sign * round(angle / self.steps.unit) for angle in (one.low, one.high))
-        if ends[0] < low or ends[1] > high:
+        ends = sorted(servo.zero + servo.sign * round(angle / self.steps.unit) for angle in (servo.low, servo.high))
+        if ends[0] < lower_bound or ends[1] > upper_bound:
             raise BusFailure(
-                f"{one.name}, number {one.id}, takes goals from {low} to {high} steps, and the file sends it from "
-                f"{ends[0]} to {ends[1]}: its zero is wrong, or set its position limits "
-                f"({one.table['position_low'].address} and {one.table['position_high'].address}) anew."
+                f"{servo.name}, number {servo.id}, takes goals from {lower_bound} to {upper_bound} steps, and the "
+                f"file sends it from {ends[0]} to {ends[1]}: its zero is wrong, or set its position limits "
+                f"({servo.table['position_low'].address} and {servo.table['position_high'].address}) anew."
             )
 
-    def _read(self, bus: Bus, i: int, register: str) -> int:
-        one = self.servos[i]
-        for _ in range(_AGAIN - 1):
+    def _read_register(self, bus: Bus, i: int, register: str) -> int:
+        """Return the value of a register of servo i, which is asked for several times."""
+        servo = self.servos[i]
+        for _ in range(_MAX_ATTEMPTS - 1):
             with suppress(NoAnswer):
-                return bus.read(one.id, one.table[register])
-        return bus.read(one.id, one.table[register])
+                return bus.read(servo.id, servo.table[register])
+        return bus.read(servo.id, servo.table[register])
 
     # --- while it moves -----------------------------------------------------------------------------------------------
 
     def read(self) -> RigReading:
-        """Ask all, take what comes in time, and keep what was said before of those that are silent."""
+        """Read all servos and boards; a servo that is silent keeps its last reading, which becomes older."""
         end = monotonic() + self._wait
         for number, bus in enumerate(self.buses):
             if self._members[number]:
                 bus.begin([self.servos[i].id for i in self._members[number]], *self._block(number))
-        now = self.now
-        now.heard = np.zeros(len(self.servos), dtype=bool)
-        now.age = now.age + 1
+        reading = self.now
+        reading.heard = np.zeros(len(self.servos), dtype=bool)
+        reading.age = reading.age + 1
         for number, bus in enumerate(self.buses):
             members = self._members[number]
             if members:
@@ -408,71 +414,76 @@ class Rig:
                     if self.servos[i].id in replies:
                         reply = replies[self.servos[i].id]
                         self._take(i, self.servos[i].table, reply.data, alert=bus.framing.alert(reply.code))
-                        now.age[i] += int(self.servos[i].id in bus.late)
+                        reading.age[i] += int(self.servos[i].id in bus.late)
         for number, bus in enumerate(self.buses):
             for board in self._always[number]:
-                self._feel(bus, board, max(end - monotonic(), _LEAST * self._wait))
-            if bus.settled and (self.clocked or end - monotonic() > _LEAST * self._wait):
-                self._look_after(number, bus)
+                self._feel(bus, board, max(end - monotonic(), _MIN_TICK_FRACTION * self._wait))
+            if bus.settled and (self.clocked or end - monotonic() > _MIN_TICK_FRACTION * self._wait):
+                self._poll_health(number, bus)
         self._turn += 1
-        return now
+        return reading
 
     def _block(self, number: int) -> tuple[int, int]:
         table = self.servos[self._members[number][0]].table
         return table.block(table.felt)
 
     def _take(self, i: int, table: Table, data: bytes, *, alert: bool) -> None:
-        now, one = self.now, self.servos[i]
+        """Store position, speed and torque of servo i from a reply; an impossible position counts as a jump."""
+        reading, servo = self.now, self.servos[i]
         values = table.unpack(table.felt, data)
-        angle = one.sign * (values["present_position"] - one.zero) * self.steps.unit
-        far = 3.0 * self.speed[i] * self.period * now.age[i] + 2 * np.pi / STEPS
-        if np.isfinite(now.angle[i]) and abs(angle - now.angle[i]) > far and self.jumps[i] < JUMPS:
+        angle = servo.sign * (values["present_position"] - servo.zero) * self.steps.unit
+        max_step = 3.0 * self.speed[i] * self.period * reading.age[i] + 2 * np.pi / STEPS
+        if np.isfinite(reading.angle[i]) and abs(angle - reading.angle[i]) > max_step and self.jumps[i] < JUMPS:
             self.jumps[i] += 1
             return
         self.jumps[i] = 0
-        now.angle[i], now.heard[i], now.age[i] = angle, True, 0
-        now.velocity[i] = one.sign * values["present_velocity"] * table["present_velocity"].unit
+        reading.angle[i], reading.heard[i], reading.age[i] = angle, True, 0
+        reading.velocity[i] = servo.sign * values["present_velocity"] * table["present_velocity"].unit
         if "present_current" in values:
-            now.current[i] = one.sign * values["present_current"] * table["present_current"].unit
-            now.torque[i] = now.current[i] * table.torque_per_ampere
+            reading.current[i] = servo.sign * values["present_current"] * table["present_current"].unit
+            reading.torque[i] = reading.current[i] * table.torque_per_ampere
         else:
-            now.torque[i] = one.sign * values["present_load"] * table["present_load"].unit * table.stall_torque
+            reading.torque[i] = servo.sign * values["present_load"] * table["present_load"].unit * table.stall_torque
         self._health(i, table, values)
         if not alert:
-            now.error[i] = 0
-        elif not now.error[i]:
-            now.error[i] = -1  # which alert, is asked when the bus has time for it
+            reading.error[i] = 0
+        elif not reading.error[i]:
+            reading.error[i] = -1  # which alert, is asked when the bus has time for it
 
     def _health(self, i: int, table: Table, values: dict[str, int]) -> None:
-        now = self.now
+        """Store voltage, temperature and alerts of servo i, as far as a block of registers holds them."""
+        reading = self.now
         if "present_voltage" in values:
-            now.voltage[i] = values["present_voltage"] * table["present_voltage"].unit
+            reading.voltage[i] = values["present_voltage"] * table["present_voltage"].unit
         if "present_temperature" in values:
-            now.temperature[i] = values["present_temperature"]
+            reading.temperature[i] = values["present_temperature"]
         if "hardware_error" in values:
-            now.error[i] = values["hardware_error"]
+            reading.error[i] = values["hardware_error"]
 
-    def _look_after(self, number: int, bus: Bus) -> None:
-        """Ask a servo how it is, one with an alert first, or a board; never while a late reply may still come."""
+    def _poll_health(self, number: int, bus: Bus) -> None:
+        """Read the state of one servo, one with an alert first, or a board, if the bus has time for it."""
         alarmed = [i for i in self._members[number] if self.now.error[i] == -1]
         turns = self._turns[number]
         if alarmed:
-            one = self.servos[alarmed[0]]
+            servo = self.servos[alarmed[0]]
             with suppress(NoAnswer):
-                self.now.error[alarmed[0]] = bus.read(one.id, one.table["hardware_error"])
+                self.now.error[alarmed[0]] = bus.read(servo.id, servo.table["hardware_error"])
         elif turns:
-            asked = turns[self._turn % len(turns)]
-            if isinstance(asked, BoardPlace):
-                self._feel(bus, asked, self._wait)
+            device = turns[self._turn % len(turns)]
+            if isinstance(device, BoardPlace):
+                self._feel(bus, device, self._wait)
                 return
-            table = self.servos[asked].table
+            table = self.servos[device].table
             assert table.health is not None
             address, length = table.block(table.health)
             with suppress(NoAnswer):
-                reply = bus.ask(bus.framing.read(self.servos[asked].id, address, length), self.servos[asked].id, length)
-                self._health(asked, table, table.unpack(table.health, reply.data))
+                reply = bus.ask(
+                    bus.framing.read(self.servos[device].id, address, length), self.servos[device].id, length
+                )
+                self._health(device, table, table.unpack(table.health, reply.data))
 
     def _feel(self, bus: Bus, board: BoardPlace, wait: float) -> None:
+        """Read a board, and store what its sensors measure."""
         table = self.wiring.tables(board, self.robot)
         address, length = table.block(table.felt)
         bus.begin((board.id,), address, length)
@@ -480,87 +491,91 @@ class Rig:
         if board.id not in replies:
             return
         values = table.unpack(table.felt, replies[board.id].data)
-        row = np.array([values[one.name] * one.unit for one in table.registers[1:]])
+        row = np.array([values[register.name] * register.unit for register in table.registers[1:]])
         if board.kind == "imu":
-            turned = row[:4] / max(float(np.linalg.norm(row[:4])), 1e-9)
-            self.now.felt |= {"orientation": turned, "angular_velocity": row[4:7], "acceleration": row[7:10]}
+            orientation = row[:4] / max(float(np.linalg.norm(row[:4])), 1e-9)
+            self.now.felt |= {"orientation": orientation, "angular_velocity": row[4:7], "acceleration": row[7:10]}
         else:
             self.now.felt[_SENSES[board.kind][0]] = row if board.kind != "tail" else row[0]
 
     def sensed(self, time: float) -> Sensed:
-        """Return what a controller may know of one robot: NaN for what it has no sensor for.
+        """Return the readings for a controller: NaN for quantities without a sensor.
 
         Args:
             time: since the beginning [s].
         """
-        now, place = self.now, layout(self.robot)
+        reading, place = self.now, layout(self.robot)
         shapes = {
             "foot_pressure": (len(place.limbs),), "belly_pressure": (len(place.trunk),), "tail_pressure": (),
             "orientation": (4,), "angular_velocity": (3,), "acceleration": (3,),
         }  # fmt: skip
-        felt = {name: np.array(now.felt.get(name, np.full(shape, np.nan)))[None] for name, shape in shapes.items()}
+        sensor_values = {
+            name: np.array(reading.felt.get(name, np.full(shape, np.nan)))[None] for name, shape in shapes.items()
+        }
         if not place.tail:
-            felt["tail_pressure"] = np.zeros(1)
+            sensor_values["tail_pressure"] = np.zeros(1)
         return Sensed(
             time=time,
-            servo_position=now.angle[None].copy(),
-            servo_velocity=now.velocity[None].copy(),
-            servo_torque=now.torque[None].copy(),
-            **felt,
+            servo_position=reading.angle[None].copy(),
+            servo_velocity=reading.velocity[None].copy(),
+            servo_torque=reading.torque[None].copy(),
+            **sensor_values,
         )
 
     def aim(self, angles: np.ndarray) -> np.ndarray:
-        """Send all servos to angles, and return those that they were sent to, whole steps, shape (servo,) [rad]."""
+        """Send all servos to angles, and return the rounded angles, shape (servo,) [rad]."""
         steps = self.steps.of(angles)
         self.write("goal_position", dict(enumerate(steps.tolist())))
         return self.steps.angles(steps)
 
-    def torque(self, on: bool) -> None:
-        """Give all servos their torque, or take it away."""
-        self.write("torque_enable", dict.fromkeys(range(len(self.servos)), int(on)))
+    def torque(self, enable: bool) -> None:
+        """Switch the torque of all servos on or off."""
+        self.write("torque_enable", dict.fromkeys(range(len(self.servos)), int(enable)))
 
-    def limit(self, share: float) -> None:
-        """Let all servos use a share of their torque only, 0 to 1 [-]."""
-        self.write("torque_limit", {i: round(share * one.table.full) for i, one in enumerate(self.servos)})
+    def limit(self, fraction: float) -> None:
+        """Limit all servos to a fraction of their torque, 0 to 1 [-]."""
+        self.write("torque_limit", {i: round(fraction * servo.table.full) for i, servo in enumerate(self.servos)})
 
     def ready(self, goals: np.ndarray) -> np.ndarray:
-        """Give all servos their torque where they are, and be sure of it; return where they were sent [rad]."""
+        """Switch the torque of all servos on at goals, verify it, and return the rounded goals [rad]."""
         everybody = range(len(self.servos))
         steps = self.steps.of(goals)
         self.surely(
-            "bus_watchdog", dict.fromkeys(np.flatnonzero(self._watched).tolist(), 0)
+            "bus_watchdog", dict.fromkeys(np.flatnonzero(self._has_watchdog).tolist(), 0)
         )  # ends an older one, which would keep goals away
         self.surely("goal_position", dict(enumerate(steps.tolist())))
-        self.surely("torque_limit", {i: one.table.full for i, one in enumerate(self.servos)})
+        self.surely("torque_limit", {i: servo.table.full for i, servo in enumerate(self.servos)})
         self.surely("torque_enable", dict.fromkeys(everybody, 1))
         return self.steps.angles(steps)
 
     @property
     def patience(self) -> float:
         """Time without a word from us after which a servo that watches stands still and takes no goals [s]."""
-        units = (self.servos[i].table["bus_watchdog"].unit for i in np.flatnonzero(self._watched))
+        units = (self.servos[i].table["bus_watchdog"].unit for i in np.flatnonzero(self._has_watchdog))
         return _WATCHDOG * min(units, default=np.inf)
 
-    def watch(self, on: bool) -> None:
-        """Let servos that can watch whether their host is there, or let them rest."""
-        self.write("bus_watchdog", dict.fromkeys(np.flatnonzero(self._watched).tolist(), _WATCHDOG if on else 0))
+    def watch(self, enable: bool) -> None:
+        """Switch the watchdogs of the servos on or off."""
+        self.write(
+            "bus_watchdog", dict.fromkeys(np.flatnonzero(self._has_watchdog).tolist(), _WATCHDOG if enable else 0)
+        )
 
     def surely(self, register: str, values: dict[int, int]) -> None:
-        """Write a register of some servos one after the other, until each says that it has it.
+        """Write a register of servos one after another, and verify each by its reply.
 
         Raises:
             BusFailure: one does not say so, or refuses.
         """
         for i, value in values.items():
-            one = self.servos[i]
-            if not self.asked[i] or register not in one.table:
+            servo = self.servos[i]
+            if not self.asked[i] or register not in servo.table:
                 continue
-            for left in reversed(range(_AGAIN)):
+            for attempts_left in reversed(range(_MAX_ATTEMPTS)):
                 try:
-                    self.buses[one.bus].write(one.id, one.table[register], value)
+                    self.buses[servo.bus].write(servo.id, servo.table[register], value)
                     break
                 except NoAnswer:
-                    if not left:
+                    if not attempts_left:
                         raise
 
     def write(self, register: str, values: dict[int, int]) -> None:
@@ -582,9 +597,10 @@ JUMPS = 3
 
 
 def _typical(length: int) -> Packet:
-    """Return a reply with so many bytes of data; what it says counts where numbers are written out."""
+    """Return a reply with a number of bytes of data, as long as a usual one."""
     return Packet(200, 0, STEPS.to_bytes(2, "little") * (length // 2) + bytes(length % 2))
 
 
-def _listed(wanted: dict[int, str], which: Sequence[int]) -> str:
-    return " and ".join(f"number {one} ({wanted[one]})" for one in which[:6])
+def _listed(names_by_id: dict[int, str], servo_ids: Sequence[int]) -> str:
+    """Return the numbers of up to six servos with their names."""
+    return " and ".join(f"number {servo_id} ({names_by_id[servo_id]})" for servo_id in servo_ids[:6])

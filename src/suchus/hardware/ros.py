@@ -22,19 +22,20 @@ NOTE = (
 
 
 def unfit(robot: Robot) -> str:
-    """Return in a sentence why a robot has no such description; empty for one that has."""
-    moved = [cable.name for cable in robot.cables if cable.linear is not None]
-    if not moved:
+    """Return a sentence why a robot cannot be described for ROS 2; empty if it can."""
+    linear_cables = [cable.name for cable in robot.cables if cable.linear is not None]
+    if not linear_cables:
         return ""
     return (
-        f"Robot {robot.name!r} moves {', '.join(moved)} by a linear actuator, which has no place among the servos of "
+        f"Robot {robot.name!r} moves {', '.join(linear_cables)} by a linear actuator, which has no place among the "
+        "servos of "
         f"{PLUGIN}: take the plain URDF (suchus export), or let a servo pull the cords by a pulley (tail.drive = "
         "'cable')."
     )
 
 
 def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_000, port: str = "/dev/ttyUSB0") -> str:
-    """Return a robot as URDF with a joint for each cable's pulley and a ``ros2_control`` block for its servos.
+    """Return a robot as URDF with a joint for each cable's pulley, and a ``ros2_control`` block for its servos.
 
     Args:
         robot: the design.
@@ -45,8 +46,8 @@ def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_00
     Raises:
         UnsuitedRobot: a linear actuator moves a cable.
     """
-    if said := unfit(robot):
-        raise UnsuitedRobot(said)
+    if reason := unfit(robot):
+        raise UnsuitedRobot(reason)
     place = layout(robot)
     root = ElementTree.fromstring(urdf(robot))
     for i in place.cables:
@@ -68,6 +69,14 @@ def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_00
 
 
 def _control(robot: Robot, numbers: Sequence[int], baud: int, port: str) -> ElementTree.Element:
+    """Return the ``ros2_control`` block of a robot's servos.
+
+    Args:
+        robot: the design.
+        numbers: ids of the servos on their bus, in the order of the layout.
+        baud: bit rate of the bus [1/s].
+        port: device name of the bus.
+    """
     names = layout(robot).servos
     count = len(names)
     block = ElementTree.Element("ros2_control", name=f"{robot.name}_servos", type="system")

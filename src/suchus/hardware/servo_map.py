@@ -1,4 +1,4 @@
-"""Which servo hangs on which channel, how it is mounted, and what pulses it understands."""
+"""Channel, mounting and pulse widths of each servo."""
 
 from dataclasses import dataclass, fields
 from math import pi
@@ -40,6 +40,7 @@ class ServoLine:
     """Which servo board, from 0; the usual ones have 16 channels [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse channels, angles and pulse widths out of range."""
         with Checks(f"servo {self.name!r}", self) as check:
             check.whole("channel", 0, 1023)
             check.whole("board", 0, 61)
@@ -67,13 +68,16 @@ class ServoMap:
     """One for each of the robot's servos, in any order."""
 
     def __post_init__(self) -> None:
+        """Refuse a rate out of range, and two servos on one channel."""
         with Checks("servo map", self) as check:
             check.number("rate", 1.0, 1000.0, "Hz")
         places = [(line.board, line.channel) for line in self.servos]
         for line in self.servos:
             if places.count((line.board, line.channel)) > 1:
-                here = (line.board, line.channel)
-                sharing = ", ".join(other.name for other in self.servos if (other.board, other.channel) == here)
+                slot = (line.board, line.channel)
+                sharing = ", ".join(
+                    neighbour.name for neighbour in self.servos if (neighbour.board, neighbour.channel) == slot
+                )
                 raise InvalidDesign(
                     f"servo map {self.name!r} has {sharing} on channel {line.channel} of board {line.board}; one each "
                     "is allowed."
@@ -85,19 +89,21 @@ class ServoMap:
         Raises:
             InvalidDesign: a servo of the robot is missing, stands there twice, or is none of the robot's.
         """
-        wanted, names = layout(robot).servos, [line.name for line in self.servos]
-        missing = [name for name in wanted if name not in names]
-        unknown = [name for name in names if name not in wanted]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if missing or unknown or twice:
-            said = (("lacks", missing), ("has unknown", unknown), ("has more than once", twice))
-            text = "; it ".join(f"{verb} {', '.join(which)}" for verb, which in said if which)
+        servo_names, names = layout(robot).servos, [line.name for line in self.servos]
+        missing = [name for name in servo_names if name not in names]
+        unknown = [name for name in names if name not in servo_names]
+        duplicates = sorted({name for name in names if names.count(name) > 1})
+        if missing or unknown or duplicates:
+            problems = (("lacks", missing), ("has unknown", unknown), ("has more than once", duplicates))
+            text = "; it ".join(
+                f"{verb} {', '.join(problem_names)}" for verb, problem_names in problems if problem_names
+            )
             raise InvalidDesign(
                 f"servo map {self.name!r} {text}; every servo of robot {robot.name!r} is needed once: "
-                f"{', '.join(wanted)}."
+                f"{', '.join(servo_names)}."
             )
         by_name = {line.name: line for line in self.servos}
-        return tuple(by_name[name] for name in wanted)
+        return tuple(by_name[name] for name in servo_names)
 
 
 def straight(robot: Robot) -> ServoMap:
@@ -139,9 +145,9 @@ def read_map(path: str | Path, robot: Robot) -> ServoMap:
         InvalidDesign: it is not for the servos of this robot.
     """
     start = straight(robot)
-    found = blueprint.read(path, ServoMap, {start.name: start})
-    found.ordered(robot)
-    return found
+    servo_map = blueprint.read(path, ServoMap, {start.name: start})
+    servo_map.ordered(robot)
+    return servo_map
 
 
 def write_map(servo_map: ServoMap, path: str | Path) -> Path:
@@ -150,8 +156,8 @@ def write_map(servo_map: ServoMap, path: str | Path) -> Path:
     Raises:
         Unwritable: the place cannot be written to.
     """
-    about = meanings(ServoLine)
-    notes = [f"# {name}: {' '.join(about[name].split())}" for name in about]
+    descriptions = meanings(ServoLine)
+    notes = [f"# {name}: {' '.join(descriptions[name].split())}" for name in descriptions]
     lines = [
         f"# A servo's pulse is pulse_centre + pulse_per_radian (direction angle + offset).\n{chr(10).join(notes)}\n",
         f"name = {_value(servo_map.name)}",

@@ -1,4 +1,4 @@
-"""Which servos that are sold are enough for a robot, of one family on one bus and one supply: found by simulation."""
+"""Search for sufficient servos for a robot, of one family on one bus and one supply, by simulation."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -32,7 +32,7 @@ FACTORS = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServoFamily:
-    """Servos of one family in a robot, and whether they do."""
+    """Servos of one family in a robot, and whether they are sufficient."""
 
     name: str
     """Name of the family."""
@@ -49,19 +49,19 @@ class ServoFamily:
 
     @property
     def passes(self) -> bool:
-        """Whether it does, if need be with longer periods."""
+        """Whether it is sufficient, also with longer periods."""
         return not self.lacking
 
     @property
     def as_asked(self) -> bool:
-        """Whether it does at the gaits' own periods."""
+        """Whether it is sufficient at the gaits' own periods."""
         return self.passes and all(factor == 1.0 for factor in self.factors.values())
 
     @property
     def price(self) -> tuple[float, float]:
         """Least and greatest price of all servos together [EUR]."""
-        low, high = (sum(motor.price[i] for motor in self.chosen.values()) for i in (0, 1))
-        return low, high
+        min_price, max_price = (sum(motor.price[i] for motor in self.chosen.values()) for i in (0, 1))
+        return min_price, max_price
 
     @property
     def mass(self) -> float:
@@ -77,18 +77,20 @@ class ServoFamily:
         return hours * max((self.current(case) for case in self.loads), default=nan)
 
     def binding(self) -> list[tuple[str, str, float]]:
-        """Return each servo with the case that asks most of it and the use of what it has there, the greatest first."""
+        """Return each servo with its most demanding case and its use there, the greatest use first."""
         uses = {
             name: max((use(self.chosen[name], loads[name]), case) for case, loads in self.loads.items())
             for name in self.chosen
             if self.loads
         }
-        return sorted(((name, case, most) for name, (most, case) in uses.items()), key=lambda one: -one[2])
+        return sorted(
+            ((name, case, greatest_use) for name, (greatest_use, case) in uses.items()), key=lambda entry: -entry[2]
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sizing:
-    """What a robot's own servos bear, and which families of servos that are sold would do."""
+    """Loads of a robot's own servos, and sufficient families of servos that are sold."""
 
     robot: Robot
     """The robot as it is designed."""
@@ -101,91 +103,95 @@ class Sizing:
 
     @property
     def best(self) -> ServoFamily | None:
-        """The cheapest family that does at the gaits' own periods; else the cheapest that does at longer ones."""
+        """The cheapest family that is sufficient at the gaits' own periods; otherwise at longer ones."""
         passing = [family for family in self.families if family.as_asked] or [f for f in self.families if f.passes]
         return passing[0] if passing else None
 
     @property
     def slower(self) -> ServoFamily | None:
-        """A family that is cheaper than the best one and does at longer periods, if there is one."""
+        """A cheaper family that is sufficient at longer periods, if there is one."""
         best = self.best
         cheaper = [f for f in self.families if f.passes and best is not None and sum(f.price) < sum(best.price)]
         return cheaper[0] if cheaper else None
 
 
 def use(motor: Motor, load: ServoLoad) -> float:
-    """Return the part of what a servo has that is used: of torque at its speed or of heat, the greater [-]."""
+    """Return the greater part of a servo's capability that is used, of torque at its speed or of heat [-]."""
     return max(load.line / FULL_WOUND, load.rms / motor.continuous_torque)
 
 
 def why(motor: Motor, load: ServoLoad) -> str:
-    """Return what binds a servo, in words."""
+    """Return the limit that is nearest for a servo: heat, torque or torque at speed."""
     if load.rms / motor.continuous_torque >= load.line / FULL_WOUND:
         return "heat"
     return "torque" if load.torque > 0.9 * motor.stall_torque else "torque at speed"
 
 
 def families_of(motors: Mapping[str, Motor]) -> dict[str, tuple[float, list[Motor]]]:
-    """Return the families of some servos with their supply [V] and their servos, the cheapest first.
+    """Return the supply [V] of each family of servos, and its servos, the cheapest first.
 
-    The supply is the greatest at which the numbers of one of them hold.
+    The supply is the greatest nominal voltage of a servo of the family.
 
     Raises:
         InvalidDesign: a servo of a family does not bear the supply.
     """
-    found: dict[str, tuple[float, list[Motor]]] = {}
+    families: dict[str, tuple[float, list[Motor]]] = {}
     for family in dict.fromkeys(motor.family for motor in motors.values()):
-        ones = sorted((m for m in motors.values() if m.family == family), key=lambda m: (sum(m.price), m.stall_torque))
-        volts = max(motor.volts for motor in ones)
-        for motor in ones:
+        members = sorted(
+            (m for m in motors.values() if m.family == family), key=lambda m: (sum(m.price), m.stall_torque)
+        )
+        volts = max(motor.volts for motor in members)
+        for motor in members:
             if not motor.volts_range[0] <= volts <= motor.volts_range[1]:
                 raise InvalidDesign(
                     f"family {family!r} has a supply of {volts:g} V, and {motor.name} bears "
                     f"{motor.volts_range[0]:g} to {motor.volts_range[1]:g} V: give it another family."
                 )
-        found[family] = volts, ones
-    return found
+        families[family] = volts, members
+    return families
 
 
 def places(robot: Robot) -> list[tuple[str, ...]]:
-    """Return the servos that must be alike: left and right limbs of a girdle mirror each other.
+    """Return groups of servos that must be equal: those of left and right limbs of a girdle.
 
-    Linear actuators are left out: no servo that turns takes the place of one.
+    Linear actuators are left out: no turning servo can replace one.
     """
-    moved = {cable.name for cable in robot.cables if cable.linear is not None}
+    linear_cables = {cable.name for cable in robot.cables if cable.linear is not None}
     mirrored = {
         f"{side}{girdle.name}_{hinge.name}": (f"L{girdle.name}_{hinge.name}", f"R{girdle.name}_{hinge.name}")
         for girdle in robot.girdles
         for hinge in girdle.limb.hinges
         for side in "LR"
     }
-    return list(dict.fromkeys(mirrored.get(name, (name,)) for name in layout(robot).servos if name not in moved))
+    return list(
+        dict.fromkeys(mirrored.get(name, (name,)) for name in layout(robot).servos if name not in linear_cables)
+    )
 
 
-def fitted(robot: Robot, chosen: Mapping[str, Motor], volts: float) -> Robot:
-    """Return a robot with servos that are bought, with the gains and gears of its own."""
-    servos = {name: Servo.of(motor, volts, like=robot.servo(name)) for name, motor in chosen.items()}
+def fitted(robot: Robot, motors: Mapping[str, Motor], volts: float) -> Robot:
+    """Return a robot with servos that are sold, with the gains and gears of its own servos."""
+    servos = {name: Servo.of(motor, volts, like=robot.servo(name)) for name, motor in motors.items()}
     return with_named_servos(robot, servos)
 
 
 def size(
     robot: Robot,
-    asked: Sequence[LoadCase],
+    load_cases: Sequence[LoadCase],
     *,
     motors: Mapping[str, Motor] | None = None,
     family: str | None = None,
     progress: Progress = silent,
 ) -> Sizing:
-    """Find the servos that are enough for a robot, of each family of those that are sold.
+    """Find sufficient servos for a robot, in each family of those that are sold.
 
-    What a movement asks for is taken from servos four times as strong; of each family the cheapest servos are chosen
-    that give it at its speed and bear its heat. Then the robot is simulated with them, and where one is at its limit
-    for more than 2 % of the time or too warm for ever, the next one takes its place, until all do. A gait that is too
-    fast for all servos of a family is tried with a longer period.
+    The demand of a movement is measured with servos four times as strong. Of each family the cheapest servos are chosen
+    that supply this torque at its speed and bear its heat. Then the robot is simulated with them. A servo that is at
+    its limit for more than 2 % of the time, or too warm in the long run, is replaced by the next one, until all are
+    sufficient. A gait that is too fast for a family is tried with a longer period.
 
     Args:
         robot: who.
-        asked: what it shall do.
+        load_cases: what it shall do.
         motors: the servos that are sold; those that suchus knows if None.
         family: the only one that is looked at.
         progress: told the share that is done.
@@ -195,67 +201,69 @@ def size(
         Diverged: a simulation diverged.
         OutsideLimits: the joints cannot follow a gait.
     """
-    known = families_of(shipped() if motors is None else motors)
-    if family is not None and family not in known:
-        raise UnknownName("family of servos", family, list(known))
-    own = loads_of_each(robot, asked, progress=staged(progress, "its own servos", 0.0, 0.3))
-    search = _Search(robot, asked)
-    wanted = [family] if family is not None else list(known)
-    tried = []
-    for i, name in enumerate(wanted):
-        share = 0.3 + 0.7 * i / len(wanted)
+    families = families_of(shipped() if motors is None else motors)
+    if family is not None and family not in families:
+        raise UnknownName("family of servos", family, list(families))
+    own_loads = loads_of_each(robot, load_cases, progress=staged(progress, "its own servos", 0.0, 0.3))
+    search = _Search(robot, load_cases)
+    family_names = [family] if family is not None else list(families)
+    candidates = []
+    for i, name in enumerate(family_names):
+        share = 0.3 + 0.7 * i / len(family_names)
         progress(name, share)
-        tried.append(search.family(name, *known[name]))
+        candidates.append(search.family(name, *families[name]))
     progress("done", 1.0)
-    order = sorted(tried, key=lambda one: (not one.passes, not one.as_asked, sum(one.price)))
+    order = sorted(
+        candidates, key=lambda candidate: (not candidate.passes, not candidate.as_asked, sum(candidate.price))
+    )
     return Sizing(
         robot=robot,
-        cases=tuple(asked),
-        own=dict(zip([case.name for case in asked], own, strict=True)),
+        cases=tuple(load_cases),
+        own=dict(zip([case.name for case in load_cases], own_loads, strict=True)),
         families=tuple(order),
     )
 
 
 class _Search:
-    """Looks for servos of one family after the other; what movements ask for is simulated once for all."""
+    """Search through families of servos; the demand of each movement is simulated once."""
 
-    def __init__(self, robot: Robot, asked: Sequence[LoadCase]) -> None:
-        self._robot, self._asked, self._places = robot, tuple(asked), places(robot)
-        self._gaits = list(dict.fromkeys(case.gait.name for case in asked))
+    def __init__(self, robot: Robot, load_cases: Sequence[LoadCase]) -> None:
+        self._robot, self._load_cases, self._places = robot, tuple(load_cases), places(robot)
+        self._gaits = list(dict.fromkeys(case.gait.name for case in load_cases))
         self._demands: dict[tuple[str, float], xr.Dataset] = {}
 
     def family(self, name: str, volts: float, motors: Sequence[Motor]) -> ServoFamily:
-        """Return the cheapest servos of a family that do, with periods as long as they must be."""
+        """Return the cheapest sufficient servos of a family, with periods as long as necessary."""
         factors = dict.fromkeys(self._gaits, 1.0)
-        found = ServoFamily(name=name, volts=volts, chosen={}, factors=dict(factors), loads={})
+        best_family = ServoFamily(name=name, volts=volts, chosen={}, factors=dict(factors), loads={})
         while True:
             hopeless = self._hopeless(motors, factors)
             if hopeless is not None:
                 lacking = self._hopeless(motors, {**factors, hopeless[0]: FACTORS[-1]})
                 if lacking is not None:  # nor at the longest period
-                    return replace(found, lacking=lacking[1], factors=dict(factors))
-                short = hopeless
+                    return replace(best_family, lacking=lacking[1], factors=dict(factors))
+                shortfall = hopeless
             else:
-                found, weak = self._simulated(name, volts, motors, factors)
+                best_family, weak = self._simulated(name, volts, motors, factors)
                 if weak is None:
-                    return found
-                short = weak
-            gait, lacking_here = short
-            longer = [factor for factor in FACTORS if factor > factors[gait]]
-            if not longer or not self._can_wait(gait):
-                return replace(found, lacking=lacking_here, factors=dict(factors))
-            factors[gait] = longer[0]
+                    return best_family
+                shortfall = weak
+            gait, lacking_here = shortfall
+            longer_factors = [factor for factor in FACTORS if factor > factors[gait]]
+            if not longer_factors or not self._can_wait(gait):
+                return replace(best_family, lacking=lacking_here, factors=dict(factors))
+            factors[gait] = longer_factors[0]
 
     def _can_wait(self, gait: str) -> bool:
-        """Return whether a gait may have a longer period: all but swims, whose wave is that of the swim."""
-        return all(case.lake is None for case in self._asked if case.gait.name == gait)
+        """Return whether a gait may have a longer period: all but swims, whose wave depends on the period."""
+        return all(case.lake is None for case in self._load_cases if case.gait.name == gait)
 
-    def _slowed(self, factors: Mapping[str, float]) -> list[LoadCase]:
-        return [case.slower(factors[case.gait.name]) for case in self._asked]
+    def _slower_cases(self, factors: Mapping[str, float]) -> list[LoadCase]:
+        return [case.slower(factors[case.gait.name]) for case in self._load_cases]
 
     def demands(self, factors: Mapping[str, float]) -> list[xr.Dataset]:
-        """Return what strong servos give in each case, its gait's period so many times as long; each simulated once."""
-        cases = self._slowed(factors)
+        """Return the loads of strong servos in each case at a factor on the period; each is simulated once."""
+        cases = self._slower_cases(factors)
         keys = [(case.name, factors[case.gait.name]) for case in cases]
         new = [i for i, key in enumerate(keys) if key not in self._demands]
         if new:
@@ -265,7 +273,7 @@ class _Search:
         return [self._demands[key] for key in keys]
 
     def bears(self, motor: Motor, names: Sequence[str], demands: Sequence[xr.Dataset]) -> bool:
-        """Return whether a servo bears what is asked for in some places: its torque at standstill, and its heat."""
+        """Return whether a servo supplies the torque at standstill, and bears the heat, at some places."""
         for demand in demands:
             torque = demand.servo_torque.sel(servo=list(names)).values
             if np.quantile(np.abs(torque), 1.0 - AT_LIMIT, axis=0).max() > motor.stall_torque:
@@ -275,7 +283,7 @@ class _Search:
         return True
 
     def fits(self, motor: Motor, volts: float, names: Sequence[str], demands: Sequence[xr.Dataset]) -> bool:
-        """Return whether a servo gives what is asked for in some places at its speed, too."""
+        """Return whether a servo also supplies the torque at its speed, at some places."""
         servo = Servo.of(motor, volts, like=self._robot.servo(names[0]))
         return self.bears(motor, names, demands) and all(
             given_in(servo, demand.servo_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values)
@@ -285,24 +293,25 @@ class _Search:
         )
 
     def _hopeless(self, motors: Sequence[Motor], factors: Mapping[str, float]) -> tuple[str, str] | None:
-        """Return the first gait for which no servo of a family bears some place, and why; None if all are borne."""
-        for case, demand in zip(self._slowed(factors), self.demands(factors), strict=True):
+        """Return the first gait without a servo that bears it, and the reason; None without such a gait."""
+        for case, demand in zip(self._slower_cases(factors), self.demands(factors), strict=True):
             for names in self._places:
                 if not any(self.bears(motor, names, [demand]) for motor in motors):
                     return case.gait.name, self._lacks(names, case, demand)
         return None
 
     def _lacks(self, names: Sequence[str], case: LoadCase, demand: xr.Dataset) -> str:
-        one = demand.sel(servo=list(names))
-        torque, speed = float(np.abs(one.servo_torque).max()), float(np.abs(one.servo_velocity).max())
-        rms = float(np.sqrt((one.servo_torque**2).mean("time")).max())
+        """Return a sentence: no servo of a family is strong enough for some servos in a case."""
+        servo_demand = demand.sel(servo=list(names))
+        torque, speed = float(np.abs(servo_demand.servo_torque).max()), float(np.abs(servo_demand.servo_velocity).max())
+        rms = float(np.sqrt((servo_demand.servo_torque**2).mean("time")).max())
         return (
             f"none of it is enough for {names[0]} in {case.name} with a period of {case.gait.period:.3g} s, which asks "
             f"for up to {torque:.2f} N m, {rms:.2f} N m root mean square, and {speed:.1f} rad/s"
         )
 
     def _candidates(self, names: Sequence[str], volts: float, motors: Sequence[Motor], demands: Any) -> list[Motor]:
-        """Return the servos to try in some places, the cheapest first: those that fit, else those that bear it."""
+        """Return the servos to try at some places, the cheapest first: those that fit, else those that bear it."""
         fitting = [motor for motor in motors if self.fits(motor, volts, names, demands)]
         bearing = [motor for motor in motors if self.bears(motor, names, demands)]
         return fitting or bearing or [max(motors, key=lambda motor: motor.continuous_torque)]
@@ -310,29 +319,29 @@ class _Search:
     def _simulated(
         self, name: str, volts: float, motors: Sequence[Motor], factors: Mapping[str, float]
     ) -> tuple[ServoFamily, tuple[str, str] | None]:
-        """Return the servos of a family that do by simulation, or those tried last with a gait that they do not do."""
-        cases, demands = self._slowed(factors), self.demands(factors)
-        left = {names: self._candidates(names, volts, motors, demands) for names in self._places}
+        """Return sufficient servos of a family by simulation, or the last ones with the gait that failed."""
+        cases, demands = self._slower_cases(factors), self.demands(factors)
+        candidates = {names: self._candidates(names, volts, motors, demands) for names in self._places}
         while True:
-            chosen = {one: left[names][0] for names in self._places for one in names}
-            body = fitted(self._robot, chosen, volts)
+            chosen_motors = {servo: candidates[names][0] for names in self._places for servo in names}
+            body = fitted(self._robot, chosen_motors, volts)
             records = records_of_each([(cold(body), case) for case in cases])
             loads = {
-                case.name: {name: load for name, load in borne(body, record).items() if name in chosen}
+                case.name: {name: load for name, load in borne(body, record).items() if name in chosen_motors}
                 for case, record in zip(cases, records, strict=True)
             }
-            family = ServoFamily(name=name, volts=volts, chosen=chosen, factors=dict(factors), loads=loads)
+            family = ServoFamily(name=name, volts=volts, chosen=chosen_motors, factors=dict(factors), loads=loads)
             weak = self._weak(family)
             if not weak:
                 return family, None
-            at_end = [(names, case) for names, case in weak if len(left[names]) < 2]
+            at_end = [(names, case) for names, case in weak if len(candidates[names]) < 2]
             if at_end:
-                return family, self._short(family, *at_end[0])
-            left |= {names: left[names][1:] for names, _ in weak}
+                return family, self._shortfall(family, *at_end[0])
+            candidates |= {names: candidates[names][1:] for names, _ in weak}
 
-    def _short(self, family: ServoFamily, names: Sequence[str], name: str) -> tuple[str, str]:
-        """Return the gait of a case that the best servo of a family does not do, and why."""
-        case = next(one for one in self._slowed(family.factors) if one.name == name)
+    def _shortfall(self, family: ServoFamily, names: Sequence[str], name: str) -> tuple[str, str]:
+        """Return the gait of a case for which the best servo of a family is not sufficient, and the reason."""
+        case = next(slower_case for slower_case in self._slower_cases(family.factors) if slower_case.name == name)
         load, motor = family.loads[name][names[0]], family.chosen[names[0]]
         return case.gait.name, (
             f"{motor.name} at {names[0]} is at its limit for {100 * load.at_limit:.0f} % of {name} with a period of "
@@ -341,8 +350,8 @@ class _Search:
         )
 
     def _weak(self, family: ServoFamily) -> list[tuple[tuple[str, ...], str]]:
-        """Return the places whose servos do not do, each with the case that asks most of it."""
-        found = []
+        """Return the places whose servos are not sufficient, each with its most demanding case."""
+        weak_places = []
         for names in self._places:
             uses = [
                 (use(family.chosen[name], loads[name]), case)
@@ -351,21 +360,21 @@ class _Search:
                 if not does(family.chosen[name], loads[name])
             ]
             if uses:
-                found.append((names, max(uses)[1]))
-        return found
+                weak_places.append((names, max(uses)[1]))
+        return weak_places
 
 
 def does(motor: Motor, load: ServoLoad) -> bool:
-    """Return whether a servo does: below its limit for 98 % of the time, and never too warm."""
+    """Return whether a servo is sufficient: below its limit for 98 % of the time, and never too warm."""
     return load.at_limit <= AT_LIMIT and load.rms <= motor.continuous_torque
 
 
 def with_better(
     robot: Robot, case: LoadCase, loads: Mapping[str, ServoLoad], motors: Mapping[str, Motor] | None = None
 ) -> Mapping[str, ServoLoad]:
-    """Return loads in which each servo at its limit for too long names the cheapest servo that is sold and does.
+    """Return loads that name, for each overloaded servo, the cheapest servo that is sufficient.
 
-    Every one that is named has been simulated in its place.
+    Every named servo has been simulated in its position.
 
     Args:
         robot: who.
@@ -373,30 +382,30 @@ def with_better(
         loads: from ``loads_of_each``.
         motors: the servos that are sold; those that suchus knows if None.
     """
-    able = {name for names in places(robot) for name in names}
-    weak = [name for name, load in loads.items() if load.at_limit > AT_LIMIT and name in able]
+    replaceable = {name for names in places(robot) for name in names}
+    weak = [name for name, load in loads.items() if load.at_limit > AT_LIMIT and name in replaceable]
     if not weak:
         return loads
     sold = sorted((shipped() if motors is None else motors).values(), key=lambda motor: sum(motor.price))
     search = _Search(robot, [case])
     (demand,) = search.demands({case.gait.name: 1.0})
-    left = {
+    candidates = {
         name: [m for m in sold if m.stall_torque > loads[name].limit and search.fits(m, m.volts, [name], [demand])]
         for name in weak
     }
-    while any(left.values()):
-        chosen = {name: ones[0] for name, ones in left.items() if ones}
+    while any(candidates.values()):
+        trial_motors = {name: options[0] for name, options in candidates.items() if options}
         body = with_named_servos(
-            robot, {name: Servo.of(motor, like=robot.servo(name)) for name, motor in chosen.items()}
+            robot, {name: Servo.of(motor, like=robot.servo(name)) for name, motor in trial_motors.items()}
         )
         (record,) = records_of_each([(cold(body), case)])
         then = borne(body, record)
-        short = [name for name, motor in chosen.items() if not does(motor, then[name])]
-        if not short:
-            others = {
+        failing_servos = [name for name, motor in trial_motors.items() if not does(motor, then[name])]
+        if not failing_servos:
+            replacements = {
                 name: replace(loads[name], other=motor.name, other_torque=motor.stall_torque)
-                for name, motor in chosen.items()
+                for name, motor in trial_motors.items()
             }
-            return {**loads, **others}
-        left |= {name: left[name][1:] for name in short}
+            return {**loads, **replacements}
+        candidates |= {name: candidates[name][1:] for name in failing_servos}
     return loads

@@ -1,4 +1,4 @@
-"""``hardware.toml``: which servo hangs on which bus, read and written."""
+"""``hardware.toml``, the wiring of a robot: read and written."""
 
 from dataclasses import fields, replace
 from pathlib import Path
@@ -22,7 +22,9 @@ def read_wiring(path: str | Path, robot: Robot) -> Wiring:
     path = Path(path)
     wiring: Wiring = described(read_toml(path), Wiring, path.name)
     wiring.ordered(robot)
-    return replace(wiring, bus=tuple(replace(one, port=_beside(one.port, path)) for one in wiring.bus))
+    return replace(
+        wiring, bus=tuple(replace(bus_place, port=_resolve_port(bus_place.port, path)) for bus_place in wiring.bus)
+    )
 
 
 def write_wiring(wiring: Wiring, path: str | Path) -> Path:
@@ -35,7 +37,7 @@ def write_wiring(wiring: Wiring, path: str | Path) -> Path:
 
 
 def wiring_text(wiring: Wiring) -> str:
-    """Return a wiring as TOML: what each value means once, then a line for each bus, servo and board."""
+    """Return a wiring as TOML: the meaning of each value once, then a line for each bus, servo and board."""
     lines = [
         "# The angle of a joint is sign (steps - zero) 2 pi / 4096.",
         f"robot = {_value(wiring.robot)}",
@@ -44,8 +46,8 @@ def wiring_text(wiring: Wiring) -> str:
     for name, kind in (("bus", BusPlace), ("servo", ServoPlace), ("board", BoardPlace)):
         rows = getattr(wiring, name)
         if rows:
-            about = meanings(kind)
-            lines += ["", *(f"# {key}: {' '.join(about[key].split())}" for key in about), f"{name} = ["]
+            descriptions = meanings(kind)
+            lines += ["", *(f"# {key}: {' '.join(descriptions[key].split())}" for key in descriptions), f"{name} = ["]
             for row in rows:
                 items = ", ".join(f"{f.name} = {_value(getattr(row, f.name))}" for f in fields(row))
                 lines.append(f"  {{{items}}},")
@@ -53,7 +55,7 @@ def wiring_text(wiring: Wiring) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _beside(port: str, path: Path) -> str:
+def _resolve_port(port: str, path: Path) -> str:
     return port if "://" in port or Path(port).is_absolute() else str(path.parent / port)
 
 

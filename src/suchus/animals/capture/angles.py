@@ -1,8 +1,8 @@
 """From keypoints to the article's four bend angles, and to the bend at every point of the midline.
 
-Every segment of the midline looks forward: from the point behind to the point ahead. Lateral angles are taken in the
-ground plane, seen from above; vertical ones against it, which needs heights. Bends beyond half a turn fold over.
-Whether joints bend all at once or one after another is a standing wave or a travelling one.
+Every segment of the midline points forward: from the rear point to the front point. Lateral angles are taken in the
+ground plane, seen from above. Vertical angles are taken against the ground plane and need heights. Bends beyond half a
+turn are ambiguous. The phases of the joints show whether the body bends as a standing wave or as a travelling wave.
 """
 
 from itertools import pairwise
@@ -15,79 +15,85 @@ from suchus.animals.capture.tracks import Tracks
 from suchus.article.paper import BendAngles, JointSums, to_bend_angles
 
 
-def azimuth(tracks: Tracks, ahead: str, behind: str) -> Float[np.ndarray, " frame"]:
+def azimuth(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " frame"]:
     """Return the direction of a segment in the ground plane, a quarter turn from x to y [rad]."""
-    d = tracks.at(ahead) - tracks.at(behind)
+    d = tracks.at(front) - tracks.at(rear)
     return np.arctan2(d[:, 1], d[:, 0])
 
 
-def elevation(tracks: Tracks, ahead: str, behind: str) -> Float[np.ndarray, " frame"]:
-    """Return how far a segment looks up [rad]; NaN where no heights were seen."""
+def elevation(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " frame"]:
+    """Return the angle of a segment above the ground plane [rad]; NaN without heights."""
     if not tracks.upright:
         return np.full(len(tracks.time), np.nan)
-    d = tracks.at(ahead) - tracks.at(behind)
+    d = tracks.at(front) - tracks.at(rear)
     return np.arctan2(d[:, 2], np.hypot(d[:, 0], d[:, 1]))
 
 
 def bend_angles(tracks: Tracks, tail_share: float = 1.0) -> BendAngles:
     """Return the four angles of Figs 11 and 12 in the article's signs, each of shape (frame,) [rad].
 
-    The spine's is the whole trunk's: the direction of the front girdle (``neck`` or ``snout`` before ``shoulder``)
-    against that of the hind one (``hip`` before ``tail_base``), which equals the sum of the joint angles between
-    them. The tail's lateral angle is that of the tail against the hind girdle, at a share of the tail's length; its
-    vertical one is that of its first segment, the tail's pitch. Angles whose points were not tracked are NaN, as are
-    those to the sides where the camera stands beside the animal, and those up and down where no heights were seen.
+    The angle of the spine is that between the front girdle (``neck`` or ``snout`` to ``shoulder``) and the hind girdle
+    (``hip`` to ``tail_base``). It equals the sum of the joint angles between them. The lateral angle of the tail is
+    that between the tail and the hind girdle, at a fraction of the tail's length. The vertical angle of the tail is
+    that of its first segment. Angles of points that were not tracked are NaN. Lateral angles are NaN in a view from the
+    side, vertical angles without heights.
 
     Args:
         tracks: the keypoints.
         tail_share: where along the tail its direction is taken, 1 at the tip [-].
     """
-    nothing = np.full(len(tracks.time), np.nan)
+    nan_angles = np.full(len(tracks.time), np.nan)
     thorax, pelvis, root = tracks.thorax, tracks.pelvis, tracks.tail_chain[1:3]
-    aside = tracks.view == "top"
-    rises = elevation if aside else azimuth  # from the side, what lies in the picture is up and down
+    is_top_view = tracks.view == "top"
+    rises = elevation if is_top_view else azimuth  # from the side, what lies in the picture is up and down
     return to_bend_angles(
         JointSums(
             spine_yaw=wrapped(azimuth(tracks, *thorax) - azimuth(tracks, *pelvis))
-            if aside and thorax and pelvis
-            else nothing,
-            spine_pitch=rises(tracks, *pelvis) - rises(tracks, *thorax) if thorax and pelvis else nothing,
-            tail_yaw=_tail_yaw(tracks, tail_share) if aside and pelvis and tracks.has("tail_tip") else nothing,
-            tail_pitch=rises(tracks, *root) - rises(tracks, *pelvis) if pelvis and len(root) > 1 else nothing,
+            if is_top_view and thorax and pelvis
+            else nan_angles,
+            spine_pitch=rises(tracks, *pelvis) - rises(tracks, *thorax) if thorax and pelvis else nan_angles,
+            tail_yaw=_tail_yaw(tracks, tail_share) if is_top_view and pelvis and tracks.has("tail_tip") else nan_angles,
+            tail_pitch=rises(tracks, *root) - rises(tracks, *pelvis) if pelvis and len(root) > 1 else nan_angles,
         )
     )
 
 
-def _tail_yaw(tracks: Tracks, share: float) -> Float[np.ndarray, " frame"]:
-    """Return how far the tail looks left of the girdle, drawn through between the middles of its segments [rad]."""
+def _tail_yaw(tracks: Tracks, fraction: float) -> Float[np.ndarray, " frame"]:
+    """Return the angle of the tail to the left of the girdle, interpolated between its segments [rad]."""
     segments = list(pairwise(tracks.tail_chain[1:]))
-    apart = [np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1) for a, b in segments]
-    if not all(np.isfinite(size).any() for size in apart):  # a segment was never seen whole
+    frame_lengths = [np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1) for a, b in segments]
+    if not all(np.isfinite(size).any() for size in frame_lengths):  # a segment was never seen whole
         return np.full(len(tracks.time), np.nan)
-    lengths = np.array([np.nanmedian(size) for size in apart])
+    lengths = np.array([np.nanmedian(size) for size in frame_lengths])
     middles = np.cumsum(lengths) - lengths / 2
-    distance = share * lengths.sum()
+    distance = fraction * lengths.sum()
     pelvis = azimuth(tracks, "hip", "tail_base")
-    right = int(np.clip(np.searchsorted(middles, distance), 0, len(segments) - 1))
-    left = right if distance >= middles[-1] or right == 0 else right - 1
-    before, after = (wrapped(azimuth(tracks, *segments[i]) - pelvis) for i in (left, right))
-    weight = 0.0 if left == right else (distance - middles[left]) / (middles[right] - middles[left])
-    return wrapped(before + weight * wrapped(after - before))
+    rear_index = int(np.clip(np.searchsorted(middles, distance), 0, len(segments) - 1))
+    front_index = rear_index if distance >= middles[-1] or rear_index == 0 else rear_index - 1
+    front_yaw, rear_yaw = (wrapped(azimuth(tracks, *segments[i]) - pelvis) for i in (front_index, rear_index))
+    weight = (
+        0.0
+        if front_index == rear_index
+        else (distance - middles[front_index]) / (middles[rear_index] - middles[front_index])
+    )
+    return wrapped(front_yaw + weight * wrapped(rear_yaw - front_yaw))
 
 
 def joint_bends(tracks: Tracks, chain: tuple[str, ...]) -> Float[np.ndarray, "joint frame"]:
-    """Return the lateral bend at every point between two segments of a chain, front end left positive [rad].
+    """Return the lateral bend at every point between two segments of a chain, positive to the left [rad].
 
     Args:
         tracks: the keypoints.
         chain: points of the midline from front to back.
     """
-    looks = [azimuth(tracks, ahead, behind) for ahead, behind in pairwise(chain)]
-    return np.array([wrapped(front - back) for front, back in pairwise(looks)]).reshape(-1, len(tracks.time))
+    azimuths = [azimuth(tracks, front, rear) for front, rear in pairwise(chain)]
+    return np.array(
+        [wrapped(front_azimuth - rear_azimuth) for front_azimuth, rear_azimuth in pairwise(azimuths)]
+    ).reshape(-1, len(tracks.time))
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:
-    """Return an angle within half a turn of zero [rad]."""
+    """Return the equivalent angle between minus half a turn and half a turn [rad]."""
     return np.asarray(np.mod(angle + np.pi, 2 * np.pi) - np.pi)
 
 
@@ -98,8 +104,8 @@ STANDING = 0.8
 def standing_index(amplitude: ArrayLike, phase: ArrayLike) -> float:
     """Return 1 for a standing wave, 0 for a travelling one: ``|sum A exp(2 i phi)| / sum A`` [-].
 
-    Joints in antiphase count as in phase, since a standing wave may have a node. A straight line through the phases
-    cannot tell the two apart: a half turn at the node looks like a lag.
+    Joints in antiphase count as in phase, because a standing wave may have a node. A linear fit of the phases cannot
+    tell the two waves apart: half a turn at a node resembles a lag.
 
     Args:
         amplitude: of the bend at each joint, of any one unit.

@@ -1,4 +1,4 @@
-"""A made-up animal whose every angle is known: what the extraction must find on a body that is not our robot."""
+"""A synthetic animal with known angles, which tests the extraction on a body that is not our robot."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -52,6 +52,7 @@ class SyntheticAnimal:
     """Course of a foot in swing."""
 
     def __post_init__(self) -> None:
+        """Refuse lengths, times and angles that no animal has."""
         with Checks("animal", self) as check:
             for field in ("trunk", "tail", "stride", "outward"):
                 check.number(field, 0.001, 10.0, "m")
@@ -87,52 +88,60 @@ def film_animal(animal: SyntheticAnimal, camera: Camera, *, cycles: float, pace:
 
 
 def _midline(animal: SyntheticAnimal, time: np.ndarray) -> dict[str, np.ndarray]:
-    """Points from neck to tail tip: a chain whose bends are shared evenly among its joints."""
+    """Return the positions of the points from neck to tail tip, each of shape (frame, 3) [m].
+
+    Every joint of the trunk bends by the same angle, and so does every joint of the tail.
+    """
     phase = time / animal.period
     spine = animal.spine_bend * np.cos(2 * np.pi * (phase - animal.spine_rightmost))
     pelvis = spine / 2  # the girdles counter-rotate, so that the trunk looks straight on
     link, height = animal.trunk / (_JOINTS + 1), np.full_like(time, animal.lift)
     hip = np.stack([animal.stride * phase, np.zeros_like(time), height], axis=1)
-    points, at = {"hip": hip}, hip
+    points, position = {"hip": hip}, hip
     for i in range(1, _JOINTS + 2):
-        at = at + link * _direction(pelvis - spine * (i - 1) / _JOINTS)
-        points["shoulder" if i > _JOINTS else f"spine_{i}"] = at
-    points["neck"] = at + link * _direction(pelvis - spine)
-    points["tail_base"] = at = hip - link * _direction(pelvis)
+        position = position + link * _direction(pelvis - spine * (i - 1) / _JOINTS)
+        points["shoulder" if i > _JOINTS else f"spine_{i}"] = position
+    points["neck"] = position + link * _direction(pelvis - spine)
+    points["tail_base"] = position = hip - link * _direction(pelvis)
     for i in range(1, _TAIL + 1):
         bend = np.zeros_like(time)
         for j in range(i):
             lag = animal.spine_rightmost + animal.tail_lag + animal.tail_wave * j / (_TAIL - 1)
             bend += animal.tail_bend / _TAIL * np.cos(2 * np.pi * (phase - lag))
-        at = at - animal.tail / _TAIL * _direction(pelvis + bend)
-        points["tail_tip" if i == _TAIL else f"tail_{i}"] = at
+        position = position - animal.tail / _TAIL * _direction(pelvis + bend)
+        points["tail_tip" if i == _TAIL else f"tail_{i}"] = position
     return points
 
 
 def _foot(animal: SyntheticAnimal, leg: str, time: np.ndarray) -> np.ndarray:
-    """A foot that stands still, then goes on by a stride, without a jerk at either end."""
+    """Return the position of a foot, shape (frame, 3) [m]: it rests in stance and moves by one stride in swing."""
     phase = time / animal.period + animal.limb_phases[LEGS.index(leg)]
-    number, within = np.floor(phase), np.mod(phase, 1.0)
-    swing = np.clip(within / (1.0 - animal.duty_factor), 0.0, 1.0)
+    number, cycle_phase = np.floor(phase), np.mod(phase, 1.0)
+    swing = np.clip(cycle_phase / (1.0 - animal.duty_factor), 0.0, 1.0)
     # in the middle of its stance a foot is beside its girdle
-    middle = number - animal.duty_factor / 2 - animal.limb_phases[LEGS.index(leg)]
+    mid_stance = number - animal.duty_factor / 2 - animal.limb_phases[LEGS.index(leg)]
     girdle = animal.trunk if leg.endswith("F") else 0.0
-    x = girdle + animal.stride * (middle + _gone(animal.swing, swing))
+    x = girdle + animal.stride * (mid_stance + _swing_progress(animal.swing, swing))
     y = np.full_like(time, animal.outward if leg.startswith("L") else -animal.outward)
     return np.stack([x, y, animal.lift * np.sin(np.pi * swing) ** 2], axis=1)
 
 
-def _gone(swing: Swing, share: np.ndarray) -> np.ndarray:
-    """Share of its path that a foot has covered after a share of its swing."""
+def _swing_progress(swing: Swing, fraction: np.ndarray) -> np.ndarray:
+    """Return the fraction of its path that a foot has covered, 0 to 1 [-].
+
+    Args:
+        swing: speed profile of the swing.
+        fraction: time since lift-off over the duration of the swing, 0 to 1 [-].
+    """
     if swing == "cosine":
-        return np.asarray((1 - np.cos(np.pi * share)) / 2)
+        return np.asarray((1 - np.cos(np.pi * fraction)) / 2)
     if swing == "jerk_free":
-        return np.asarray(share**3 * (10 - 15 * share + 6 * share**2))
+        return np.asarray(fraction**3 * (10 - 15 * fraction + 6 * fraction**2))
     if swing == "hasty":
-        return np.asarray(share**2 * (6 - 8 * share + 3 * share**2))
+        return np.asarray(fraction**2 * (6 - 8 * fraction + 3 * fraction**2))
     edge, top = 0.25, 1 / 0.75
-    start, end = np.minimum(share, edge), np.maximum(share - (1 - edge), 0.0)
-    return np.asarray(top * (start**2 / (2 * edge) + np.maximum(share - edge, 0.0) - end**2 / (2 * edge)))
+    start, end = np.minimum(fraction, edge), np.maximum(fraction - (1 - edge), 0.0)
+    return np.asarray(top * (start**2 / (2 * edge) + np.maximum(fraction - edge, 0.0) - end**2 / (2 * edge)))
 
 
 def _direction(azimuth: np.ndarray) -> np.ndarray:

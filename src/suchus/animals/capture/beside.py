@@ -1,4 +1,4 @@
-"""The animal beside the robot: what every joint would have to do, what the gait makes it do, and why they differ."""
+"""Comparison of animal and robot for each joint: required motion, commanded motion, and reason for the difference."""
 
 from itertools import pairwise
 
@@ -13,17 +13,17 @@ from suchus.robot.design import LEGS, Robot, hips_ahead, layout, servo_ranges
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.motion import Gait, cycle_targets, movement
 
-_ALIKE = np.radians(2.0)  # a residual below this needs no reason
-_EVERY = 4  # phase at which limbs are compared
-_NEAR = 0.98  # share of its range from which on a joint is at the end of it
+_RESIDUAL_TOLERANCE = np.radians(2.0)  # a residual below this needs no reason
+_PHASE_STEP = 4  # phases of the table per phase at which limbs are compared
+_RANGE_END = 0.98  # fraction of its range from which on a joint is at its end
 
 
 def beside(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:
-    """Return for every joint of a robot how far the animal moves it, what its gait leaves of that, and why.
+    """Return for every joint of a robot the animal's angle, the residual of the gait, and the reason for the residual.
 
-    The animal's midline is divided among the hinges of trunk and tail by where they are along the part; its feet are
-    put as far ahead of their girdles as they are in proportion to the trunk, at the width and the height of the gait's.
-    Both clocks have LF's mid-stance in common.
+    The midline of the animal is divided among the hinges of trunk and tail by their positions. The feet have the
+    animal's forward offset in proportion to the trunk, and the width and height of the gait. Both clocks agree at the
+    mid-stance of LF.
 
     Args:
         walk: the measured walk, with all keypoints.
@@ -36,33 +36,33 @@ def beside(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:
         none would [-]; and ``why``, what most of the difference is.
     """
     rows = [*_axial(walk, robot, gait), *_limbs(walk, robot, gait)]
-    names, animal, residual, unreachable, why = (list(column) for column in zip(*rows, strict=True))
+    names, animal, residual, unreachable, reasons = (list(column) for column in zip(*rows, strict=True))
     data = xr.Dataset(coords={"joint": ("joint", names)})
-    about = {
+    variables = {
         "animal": (animal, "rad", "root mean square of the animal's angle about its mean"),
         "residual": (residual, "rad", "root mean square of the animal's angle less the robot's"),
         "unreachable": (unreachable, "1", "share of the cycle in which the limb cannot be where the animal's is"),
     }
-    for name, (values, unit, meaning) in about.items():
+    for name, (values, unit, meaning) in variables.items():
         data[name] = ("joint", np.array(values, dtype=float), {"units": unit, "long_name": meaning})
-    data["why"] = ("joint", why, {"long_name": "what most of the residual is"})
+    data["why"] = ("joint", reasons, {"long_name": "what most of the residual is"})
     return data
 
 
 def beside_lines(data: xr.Dataset, robot: str) -> list[str]:
-    """Return the comparison in lines that people read: a joint each, with what the robot cannot follow and why.
+    """Return the comparison as text, a line for each joint: amplitude, residual and reason.
 
     Args:
         data: as ``beside`` returns it.
         robot: its name.
     """
-    wide = max(len(str(name)) for name in data.joint.values)
+    name_width = max(len(str(name)) for name in data.joint.values)
     lines = [f"the animal beside {robot}, joint by joint: its swing, what the gait leaves of it [deg, r.m.s.], and why"]
     for i, name in enumerate(data.joint.values):
-        animal, left = np.degrees([data.animal.values[i], data.residual.values[i]])
-        shown = "   -" if np.isnan(left) else f"{left:4.1f}"
-        moved = "   -" if np.isnan(animal) else f"{animal:4.1f}"
-        lines.append(f"  {name!s:{wide}}  {moved}  {shown}  {data.why.values[i]}".rstrip())
+        animal, residual = np.degrees([data.animal.values[i], data.residual.values[i]])
+        residual_text = "   -" if np.isnan(residual) else f"{residual:4.1f}"
+        animal_text = "   -" if np.isnan(animal) else f"{animal:4.1f}"
+        lines.append(f"  {name!s:{name_width}}  {animal_text}  {residual_text}  {data.why.values[i]}".rstrip())
     return lines
 
 
@@ -82,49 +82,57 @@ def _axial(walk: Walk, robot: Robot, gait: Gait) -> list[_Row]:
     hinges, turn = plan.yaw.hinges, np.exp(2j * np.pi * _clock(walk, gait, phase))
     swings: Complex[np.ndarray, " hinge"] = plan.harmonics()[0]
     ranges = np.abs(servo_ranges(robot)).min(axis=1)
-    found = []
-    for part in ("trunk", "tail"):
-        among = hinges.within(part)
-        wanted = _shared(walk, part, [hinges.places[k] for k in among])
-        for k, angle in zip(among, wanted, strict=True):
+    rows = []
+    for region in ("trunk", "tail"):
+        hinge_indices = hinges.within(region)
+        animal_bends = _animal_bends(walk, region, [hinges.places[k] for k in hinge_indices])
+        for k, angle in zip(hinge_indices, animal_bends, strict=True):
             swing = complex(swings[k])
-            left = angle + (swing * turn).real  # the animal's is right positive, the hinge's left positive
-            near = hinges.servos[k] not in layout(robot).cables and abs(swing) > _NEAR * ranges[hinges.servos[k]]
-            why = _why(left, near) if np.std(left) > _ALIKE or abs(left.mean()) > _ALIKE else ""
-            found.append((hinges.names[k], float(np.std(angle)), float(np.sqrt(np.mean(left**2))), 0.0, why))
-    return found
+            residual = angle + (swing * turn).real  # the animal's is right positive, the hinge's left positive
+            is_at_range_end = (
+                hinges.servos[k] not in layout(robot).cables and abs(swing) > _RANGE_END * ranges[hinges.servos[k]]
+            )
+            reason = (
+                _explain_residual(residual, is_at_range_end)
+                if np.std(residual) > _RESIDUAL_TOLERANCE or abs(residual.mean()) > _RESIDUAL_TOLERANCE
+                else ""
+            )
+            rows.append((hinges.names[k], float(np.std(angle)), float(np.sqrt(np.mean(residual**2))), 0.0, reason))
+    return rows
 
 
-def _shared(walk: Walk, part: str, places: list[float]) -> list[np.ndarray]:
-    """Return the animal's bend within the stretch of the midline that each hinge of a part stands for [rad]."""
+def _animal_bends(walk: Walk, region: str, places: list[float]) -> list[np.ndarray]:
+    """Return the animal's bend in the section of the midline that belongs to each hinge [rad]."""
     if not places:
         return []
-    names, at = [str(name) for name in walk.phases.keypoint.values], walk.phases.place.values
+    names, positions = [str(name) for name in walk.phases.keypoint.values], walk.phases.place.values
     hip, bend = names.index("hip"), np.nan_to_num(walk.phases.bend.values)
-    inside = [i for i, name in enumerate(names) if (i <= hip if part == "trunk" else i > hip) and name != "neck"]
-    if part == "trunk":
-        front, rear = at[inside[0]], at[hip]
+    region_indices = [
+        i for i, name in enumerate(names) if (i <= hip if region == "trunk" else i > hip) and name != "neck"
+    ]
+    if region == "trunk":
+        front, rear = positions[region_indices[0]], positions[hip]
     else:
-        front, rear = at[hip], 1.0
+        front, rear = positions[hip], 1.0
         rear = front + walk.tail_share * (rear - front)
     middles = [(a + b) / 2 for a, b in pairwise(sorted(places))]
-    first, last = (places[0], places[-1]) if places[0] < places[-1] else (places[-1], places[0])
-    half = (last - first) / max(1, 2 * (len(places) - 1)) or 0.5
-    edges = (np.array([first - half, *middles, last + half]) - first + half) / (last - first + 2 * half)
-    stretch = front + edges * (rear - front)
-    found = []
-    stretch[0], stretch[-1] = -np.inf, np.inf
-    for low, high in pairwise(stretch):
-        mine = [i for i in inside if low <= at[i] < high]
-        found.append(bend[mine].sum(axis=0))
-    return found if places[0] <= places[-1] else found[::-1]
+    start, end = (places[0], places[-1]) if places[0] < places[-1] else (places[-1], places[0])
+    half = (end - start) / max(1, 2 * (len(places) - 1)) or 0.5
+    edges = (np.array([start - half, *middles, end + half]) - start + half) / (end - start + 2 * half)
+    boundaries = front + edges * (rear - front)
+    hinge_bends = []
+    boundaries[0], boundaries[-1] = -np.inf, np.inf
+    for lower_bound, upper_bound in pairwise(boundaries):
+        indices = [i for i in region_indices if lower_bound <= positions[i] < upper_bound]
+        hinge_bends.append(bend[indices].sum(axis=0))
+    return hinge_bends if places[0] <= places[-1] else hinge_bends[::-1]
 
 
-def _why(left: np.ndarray, at_the_end: bool) -> str:
-    """Say what most of a residual is."""
-    if at_the_end:
+def _explain_residual(residual: np.ndarray, is_at_range_end: bool) -> str:
+    """Return a sentence for the largest part of a residual: offset, fundamental or overtones."""
+    if is_at_range_end:
         return "the animal's bend is beyond the joint's range"
-    waves = np.fft.rfft(left) / len(left)
+    waves = np.fft.rfft(residual) / len(residual)
     parts = {
         "the animal is bent to one side on average, the gait is not": abs(waves[0]) ** 2,
         "the gait bends its part all at once and evenly, the animal here otherwise": 2 * abs(waves[1]) ** 2,
@@ -134,40 +142,43 @@ def _why(left: np.ndarray, at_the_end: bool) -> str:
 
 
 def _limbs(walk: Walk, robot: Robot, gait: Gait) -> list[_Row]:
-    """Compare the hinges of the limbs, by the postures that put feet where the animal's are."""
+    """Compare the hinges of the limbs, in postures that put the feet at the animal's positions."""
     plan, place = movement(robot, gait), layout(robot)
-    phase = walk.phases.phase.values[::_EVERY]
+    phase = walk.phases.phase.values[::_PHASE_STEP]
     clock = _clock(walk, gait, phase)
     targets = cycle_targets(robot, gait, np.mod(clock, 1.0))
     feet = plan.foot_places(clock[:, None] + np.array(gait.limb_phases))
     size = hips_ahead(robot, 0) / walk.value("trunk_length")
-    found = []
+    rows = []
     for i, (limb, leg) in enumerate(zip(place.limbs, LEGS, strict=True)):
-        design, aside = limb.girdle.limb, limb.girdle.aside
-        ahead = size * walk.phases.foot_ahead.sel(leg=leg).values[::_EVERY]
-        wanted = np.stack([ahead, feet[:, i, 0] - aside, -feet[:, i, 2]], axis=-1)
-        near, most = limb_kinematics.reach(design)
-        far = np.linalg.norm(wanted, axis=-1)
-        reached = (far >= near) & (far <= most)
+        design, lateral_offset = limb.girdle.limb, limb.girdle.aside
+        forward_offset = size * walk.phases.foot_ahead.sel(leg=leg).values[::_PHASE_STEP]
+        foot_positions = np.stack([forward_offset, feet[:, i, 0] - lateral_offset, -feet[:, i, 2]], axis=-1)
+        min_reach, max_reach = limb_kinematics.reach(design)
+        distance = np.linalg.norm(foot_positions, axis=-1)
+        is_reachable = (distance >= min_reach) & (distance <= max_reach)
         angles = np.full((len(phase), len(design.hinges)), np.nan)
         try:
-            if reached.any():
-                angles[reached] = limb_kinematics.inverse(design, wanted[reached])
+            if is_reachable.any():
+                angles[is_reachable] = limb_kinematics.inverse(design, foot_positions[is_reachable])
         except (Unreachable, NotConverged):
-            reached[:] = False
+            is_reachable[:] = False
         for j, hinge in enumerate(design.hinges):
             if hinge.servo is None:
                 continue
             servo = place.servos.index(f"{limb.name}_{hinge.name}")
-            ours = targets[:, servo]
-            left = np.angle(np.exp(1j * (angles[reached, j] - ours[reached])))
-            off = float(np.sqrt(np.mean(left**2))) if reached.any() else float("nan")
-            swing = float(np.std(angles[reached, j])) if reached.any() else float("nan")
-            missed = 1.0 - float(reached.mean())
-            why = (
-                "the gait's foot goes by half a cosine and a straight line, alike on all limbs" if off > _ALIKE else ""
+            gait_angles = targets[:, servo]
+            residual = np.angle(np.exp(1j * (angles[is_reachable, j] - gait_angles[is_reachable])))
+            residual_rms = float(np.sqrt(np.mean(residual**2))) if is_reachable.any() else float("nan")
+            swing = float(np.std(angles[is_reachable, j])) if is_reachable.any() else float("nan")
+            unreachable_fraction = 1.0 - float(is_reachable.mean())
+            reason = (
+                "the gait's foot goes by half a cosine and a straight line, alike on all limbs"
+                if residual_rms > _RESIDUAL_TOLERANCE
+                else ""
             )
-            if missed > 0.0:
-                why = f"the limb does not reach the animal's place of {leg} in {100 * missed:.0f} % of the cycle"
-            found.append((place.servos[servo], swing, off, missed, why))
-    return found
+            if unreachable_fraction > 0.0:
+                percent = 100 * unreachable_fraction
+                reason = f"the limb does not reach the animal's place of {leg} in {percent:.0f} % of the cycle"
+            rows.append((place.servos[servo], swing, residual_rms, unreachable_fraction, reason))
+    return rows

@@ -1,4 +1,4 @@
-"""The mean cycle of a quantity that repeats: its period, its harmonics, and what is left over."""
+"""The mean cycle of a periodic quantity: its period, its harmonics and its residual."""
 
 from dataclasses import dataclass
 
@@ -9,14 +9,14 @@ from scipy.optimize import minimize_scalar
 from suchus.animals.capture.tracks import UnusableTracks
 
 LEAST_CYCLES = 1.2
-"""How much of a cycle must be seen, so that its end can be told by its beginning coming again [cycle]."""
+"""Least duration of tracks: the beginning of a cycle must appear twice [cycle]."""
 LEAST_FRAMES = 12
-"""Frames in one cycle below which steps cannot be told apart [-]."""
+"""Least frames in one cycle: with fewer, steps cannot be separated [-]."""
 _FASTEST = 12.0  # [1/s]; the stride frequency of the fastest small lizards
-_REPEATS = 0.15  # share of the movement that one harmonic explains; of noise alone it explains less
-_PIECE = 6.0  # [cycle]; a pace that varies by a tenth has not drifted apart by then
-_ROUNDS = 3  # of leaving out points that jumped
-_JUMP = 8.0  # times the usual residual; what a body does in steps stays well below
+_REPEATS = 0.15  # least fraction of variance that one harmonic explains; in noise it explains less
+_PIECE = 6.0  # [cycle]; duration over which a pace that varies by a tenth stays coherent
+_ROUNDS = 3  # rounds of leaving out outliers
+_JUMP = 8.0  # outlier over the usual residual; steps of a body stay well below
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,9 +38,9 @@ class PeriodicFit:
 
     @property
     def noise(self) -> float:
-        """Standard deviation of what is left."""
-        seen = self.residual[np.isfinite(self.residual)]
-        return float(np.sqrt(np.sum(seen**2) / max(1, len(seen) - self._parameters)))
+        """Standard deviation of the residual."""
+        residual = self.residual[np.isfinite(self.residual)]
+        return float(np.sqrt(np.sum(residual**2) / max(1, len(residual) - self._parameters)))
 
     @property
     def error(self) -> float:
@@ -70,9 +70,9 @@ class PeriodicFit:
 
 
 def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, drift: int = 0) -> PeriodicFit:
-    """Fit mean, drift and harmonics by least squares to the frames that are seen; points that jumped are left out.
+    """Fit mean, drift and harmonics by least squares to the visible frames; outliers are left out.
 
-    Of what was never seen all is NaN.
+    The fit of a quantity that was never seen is NaN.
 
     Args:
         time: shape (frame,) [s].
@@ -88,16 +88,21 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
     X = np.hstack([np.power.outer(t, np.arange(drift + 1)), np.cos(angle), np.sin(angle)])
     use = np.isfinite(values)
     if not use.any():
-        lost = np.full(harmonics, np.nan + 0j)
+        nan_harmonics = np.full(harmonics, np.nan + 0j)
         return PeriodicFit(
-            period=period, mean=np.nan, drift=np.full(drift, np.nan), middle=middle, harmonics=lost, residual=values
+            period=period,
+            mean=np.nan,
+            drift=np.full(drift, np.nan),
+            middle=middle,
+            harmonics=nan_harmonics,
+            residual=values,
         )
     solution = np.zeros(X.shape[1])
     for _ in range(_ROUNDS):
         solution = np.linalg.lstsq(X[use].T @ X[use], X[use].T @ values[use], rcond=None)[0]
-        left = np.abs(values - X @ solution)
-        usual = 1.4826 * np.median(left[use]) + 1e-12
-        keep = np.isfinite(values) & (left <= _JUMP * usual + 1e-9)
+        abs_residual = np.abs(values - X @ solution)
+        residual_scale = 1.4826 * np.median(abs_residual[use]) + 1e-12
+        keep = np.isfinite(values) & (abs_residual <= _JUMP * residual_scale + 1e-9)
         if keep.sum() == use.sum() or keep.sum() < 2 * X.shape[1]:
             break
         use = keep
@@ -114,15 +119,15 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
 
 
 def harmonics_for(frames: int, frames_per_cycle: float, *, most: int) -> int:
-    """Return how many harmonics so many frames can carry: six frames for each, four per cycle."""
+    """Return how many harmonics a fit can have: at most one for six frames, and one for four frames a cycle."""
     return int(np.clip(min(frames // 6, frames_per_cycle // 4), 2, most))
 
 
 def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], source: str) -> float:
-    """Return the period that the signals share [s].
+    """Return the common period of signals [s].
 
-    A coarse search by one harmonic on a fine grid of frequencies, down to a cycle three times as long as the tracks,
-    then a refinement by three harmonics.
+    A coarse search fits one harmonic on a grid of frequencies, down to a cycle three times as long as the tracks. A
+    refinement fits three harmonics.
 
     Args:
         time: shape (frame,) [s].
@@ -140,26 +145,40 @@ def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], so
     spread = np.nanstd(scaled, axis=1, keepdims=True)
     weight = np.isfinite(scaled)
     y = np.where(weight, scaled / np.where(spread > 0, spread, 1.0), 0.0)
-    best, most = _coarse(time - time[0], y, weight.astype(float), trials)
-    if most < _REPEATS:
+    best_frequency, best_fraction = _coarse(time - time[0], y, weight.astype(float), trials)
+    if best_fraction < _REPEATS:
         raise UnusableTracks(
-            f"nothing in {source} repeats: the best cycle explains {100 * most:.0f} % of what trunk, tail and feet do, "
+            f"nothing in {source} repeats: the best cycle explains {100 * best_fraction:.0f} % of what trunk, tail "
+            "and feet do, "
             f"at least {100 * _REPEATS:.0f} % is needed; cut out the part in which the animal walks, with --start and "
             "--end."
         )
 
-    def missed(frequency: float) -> float:
+    def squared_residual(frequency: float) -> float:
         fits = [fit(time, row, 1.0 / frequency, harmonics=3) for row in np.where(weight, y, np.nan)]
-        return sum(float(np.nansum(one.residual**2)) for one in fits)
+        return sum(float(np.nansum(signal_fit.residual**2)) for signal_fit in fits)
 
-    width = min(0.3 / duration, 0.3 * best)
-    refined = minimize_scalar(missed, bounds=(best - width, best + width), method="bounded", options={"xatol": 1e-5})
+    width = min(0.3 / duration, 0.3 * best_frequency)
+    refined = minimize_scalar(
+        squared_residual,
+        bounds=(best_frequency - width, best_frequency + width),
+        method="bounded",
+        options={"xatol": 1e-5},
+    )
     period = 1.0 / float(refined.x)
     _check_period(period, duration, rate, source)
     return period
 
 
 def _check_period(period: float, duration: float, rate: float, source: str) -> None:
+    """Refuse tracks that show too little of a cycle, or too few frames in a cycle.
+
+    Args:
+        period: of the cycle [s].
+        duration: of the tracks [s].
+        rate: frames per second [1/s].
+        source: name of the tracks, for messages.
+    """
     if duration < LEAST_CYCLES * period:
         raise UnusableTracks(
             f"{source} lasts {duration:.2f} s, {duration / period:.1f} cycles of about {period:.2f} s; at least "
@@ -173,22 +192,28 @@ def _check_period(period: float, duration: float, rate: float, source: str) -> N
 
 
 def _coarse(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.ndarray) -> tuple[float, float]:
-    """Return the frequency that explains most, and the share; a long film in pieces, since pace does not stay."""
+    """Return the frequency whose first harmonic explains most of the variance, and the fraction that it explains.
+
+    A long film is divided into pieces, because the pace varies over a film.
+    """
     explained = _explained(time, y, weight, trials)
     pieces = int(time[-1] * trials[np.argmax(explained)] / _PIECE)
     if pieces > 1:
         parts = np.array_split(np.arange(len(time)), pieces)
-        shares = [_explained(time[part], y[:, part], weight[:, part], trials) for part in parts]
-        explained = np.mean(shares, axis=0)
+        fractions = [
+            _explained(time[frame_indices], y[:, frame_indices], weight[:, frame_indices], trials)
+            for frame_indices in parts
+        ]
+        explained = np.mean(fractions, axis=0)
     return float(trials[np.argmax(explained)]), float(explained.max())
 
 
 def _explained(time: np.ndarray, y: np.ndarray, weight: np.ndarray, trials: np.ndarray) -> np.ndarray:
-    """Return the share of the variance that mean and one harmonic explain, over all signals, shape (trial,)."""
+    """Return the fraction of the variance that the mean and one harmonic explain, over all signals, shape (trial,)."""
     angle = 2 * np.pi * np.multiply.outer(trials, time)
     c, s = np.cos(angle), np.sin(angle)
-    one = np.ones_like(c)
-    base = (one, c, s)
+    constant = np.ones_like(c)
+    base = (constant, c, s)
     G = np.stack(
         [np.stack([(a * b) @ weight.T for b in base], axis=-1) for a in base], axis=-1
     )  # (trial, signal, 3, 3)

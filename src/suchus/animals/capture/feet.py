@@ -1,4 +1,4 @@
-"""When feet stand, from how fast they move over the ground, and how far legs swing in their girdle's frame."""
+"""Stance and swing of feet by their speed over the ground, and their motion in the frame of the girdle."""
 
 from functools import cache
 from typing import NamedTuple
@@ -14,10 +14,10 @@ from suchus.animals.capture.tracks import Tracks
 
 GRID = 400
 """Phases of a cycle at which a foot is looked at [-]."""
-_DUTIES = np.round(np.arange(0.30, 0.91, 0.01), 2)  # that a path is compared with
-_TOP = 14  # harmonics of a foot's path; enough for the jerk of lifting off
-_SURE = 1.96  # standard errors to either side that hold the truth in 95 of 100 cases
-_BINS, _RARE = 40, 0.2  # of the cycle; share of the frames of a bin in which a hidden foot may be seen
+_DUTIES = np.round(np.arange(0.30, 0.91, 0.01), 2)  # duty factors of the paths with which a path is compared
+_TOP = 14  # greatest number of harmonics of a foot's path
+_Z_95 = 1.96  # standard errors in half a 95 % interval
+_BINS, _RARE = 40, 0.2  # bins of the cycle; greatest visible fraction of a bin with a hidden foot
 
 
 class FootContact(NamedTuple):
@@ -46,12 +46,12 @@ class FootContact(NamedTuple):
 
     @property
     def duty(self) -> float:
-        """Share of the cycle in which it stands [-]."""
+        """Fraction of the cycle in which the foot stands [-]."""
         return (self.lift_off - self.touch_down) % 1.0
 
 
 class FootSweep(NamedTuple):
-    """How one foot moves against its girdle over the mean cycle."""
+    """Motion of one foot relative to its girdle over the mean cycle."""
 
     forward: Float[np.ndarray, " grid"]
     """Distance by which it is ahead of the girdle [m or px]."""
@@ -66,25 +66,25 @@ class FootSweep(NamedTuple):
 
 
 def grid() -> Float[np.ndarray, " grid"]:
-    """Return the phases at which a foot is looked at [cycle]."""
+    """Return the phases at which the motion of a foot is evaluated [cycle]."""
     return np.arange(GRID) / GRID
 
 
 def forward_path(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
-    """Return how far a foot is ahead of the rear of the trunk along it, NaN where it was not seen [m or px]."""
+    """Return the position of a foot ahead of the rear of the trunk, NaN where it was not seen [m or px]."""
     front, rear = tracks.line
-    look = (tracks.at(front) - tracks.at(rear))[:, :2]
-    ahead = look / np.linalg.norm(look, axis=1, keepdims=True)
-    return np.asarray(((tracks.at(leg) - tracks.at(rear))[:, :2] * ahead).sum(axis=1))
+    trunk_vector = (tracks.at(front) - tracks.at(rear))[:, :2]
+    forward_axis = trunk_vector / np.linalg.norm(trunk_vector, axis=1, keepdims=True)
+    return np.asarray(((tracks.at(leg) - tracks.at(rear))[:, :2] * forward_axis).sum(axis=1))
 
 
 def steps(tracks: Tracks, leg: str, period: float) -> Middles:
-    """Return the middles of a foot's swings; the period need only be roughly right [s]."""
+    """Return the middles of a foot's swings; an approximate period is enough [s]."""
     return middles(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
 
 
 def contact(tracks: Tracks, leg: str, period: float) -> FootContact | None:
-    """Return when a foot stands in the mean cycle, or None where no swing was filmed from stance to stance.
+    """Return stance and swing of a foot in the mean cycle; None without a complete swing.
 
     Args:
         tracks: the keypoints, by a clock that follows the animal's pace.
@@ -95,31 +95,31 @@ def contact(tracks: Tracks, leg: str, period: float) -> FootContact | None:
     if swings is None:
         return None
     n = len(swings.phase)
-    whole = np.angle(np.mean(np.exp(2j * np.pi * swings.phase))) / (2 * np.pi)
-    apart = np.mod(swings.phase - whole + 0.5, 1.0) - 0.5
+    mean_phase = np.angle(np.mean(np.exp(2j * np.pi * swings.phase))) / (2 * np.pi)
+    phase_deviation = np.mod(swings.phase - mean_phase + 0.5, 1.0) - 0.5
     times = float(student.ppf(0.975, n - 1)) if n > 1 else float("nan")
     scatter = swings.scatter if n > 1 else float("nan")
     middle_error = (
-        np.hypot(_SURE * swings.middle_error, times * np.std(apart, ddof=1) / np.sqrt(n)) if n > 1 else np.nan
+        np.hypot(_Z_95 * swings.middle_error, times * np.std(phase_deviation, ddof=1) / np.sqrt(n)) if n > 1 else np.nan
     )
     phase, half = grid(), swings.share / 2
-    lift_off, touch_down = (whole + swings.skew - half) % 1.0, (whole + swings.skew + half) % 1.0
+    lift_off, touch_down = (mean_phase + swings.skew - half) % 1.0, (mean_phase + swings.skew + half) % 1.0
     return FootContact(
         speed=_speed(tracks, leg, period),
         stance=(phase - touch_down) % 1.0 < (lift_off - touch_down) % 1.0,
         lift_off=lift_off,
         touch_down=touch_down,
-        middle=(whole + 0.5) % 1.0,
+        middle=(mean_phase + 0.5) % 1.0,
         middle_error=float(middle_error),
-        duty_error=float(np.hypot(_SURE * swings.share_error, times * scatter / np.sqrt(n))),
+        duty_error=float(np.hypot(_Z_95 * swings.share_error, times * scatter / np.sqrt(n))),
         scatter=scatter,
-        hidden=_hidden(tracks, leg, period),
+        hidden=_hidden_fraction(tracks, leg, period),
         swings=swings,
     )
 
 
 def _speed(tracks: Tracks, leg: str, period: float) -> Float[np.ndarray, " grid"]:
-    """Return how fast a foot moves over the ground in the mean cycle [m/s or px/s]."""
+    """Return the speed of a foot over the ground in the mean cycle [m/s or px/s]."""
     count = _harmonics(tracks, leg, period, _TOP)
     fits = [
         fit(tracks.time, row, period, harmonics=count, drift=_drift(tracks, period)) for row in tracks.at(leg).T[:2]
@@ -127,19 +127,19 @@ def _speed(tracks: Tracks, leg: str, period: float) -> Float[np.ndarray, " grid"
     return np.asarray(np.hypot(*(path.swing(grid() * period, derivative=1) + path.drift[0] for path in fits)))
 
 
-def _hidden(tracks: Tracks, point: str, period: float) -> float:
-    """Return the share of the cycle in which a point is seen in less than a fifth of the frames [-]."""
+def _hidden_fraction(tracks: Tracks, point: str, period: float) -> float:
+    """Return the fraction of the cycle in which a point is seen in less than a fifth of the frames [-]."""
     bins = np.minimum((np.mod(tracks.time / period, 1.0) * _BINS).astype(int), _BINS - 1)
-    seen = np.isfinite(tracks.at(point)[:, 0])
-    filmed = np.bincount(bins, minlength=_BINS)
-    share = np.bincount(bins, weights=seen, minlength=_BINS) / np.maximum(filmed, 1)
-    return float(np.mean(share[filmed > 0] < _RARE))
+    is_seen = np.isfinite(tracks.at(point)[:, 0])
+    frame_counts = np.bincount(bins, minlength=_BINS)
+    seen_fraction = np.bincount(bins, weights=is_seen, minlength=_BINS) / np.maximum(frame_counts, 1)
+    return float(np.mean(seen_fraction[frame_counts > 0] < _RARE))
 
 
 def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
-    """Return how a foot moves in the frame of its girdle, whose direction is smoothed over the cycle.
+    """Return the motion of a foot in the frame of its girdle, whose direction is smoothed over the cycle.
 
-    It is None where the girdle's points were not tracked, or seen from the side.
+    It is None if the girdle's points were not tracked, or in a view from the side.
 
     Args:
         tracks: the keypoints.
@@ -150,10 +150,10 @@ def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
     if girdle is None or tracks.view == "side":
         return None
     origin = "shoulder" if leg.endswith("F") else "hip"
-    look = smooth_azimuth(tracks, *girdle, period)
+    heading = smooth_azimuth(tracks, *girdle, period)
     d = tracks.at(leg) - tracks.at(origin)
-    forward = d[:, 0] * np.cos(look) + d[:, 1] * np.sin(look)
-    outward = (d[:, 1] * np.cos(look) - d[:, 0] * np.sin(look)) * (1 if leg.startswith("L") else -1)
+    forward = d[:, 0] * np.cos(heading) + d[:, 1] * np.sin(heading)
+    outward = (d[:, 1] * np.cos(heading) - d[:, 0] * np.sin(heading)) * (1 if leg.startswith("L") else -1)
     if not np.isfinite(outward).any():  # never seen together with its girdle
         return None
     count = _harmonics(tracks, leg, period, 8)
@@ -166,7 +166,7 @@ def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
 
 
 def path_shape(duty: float) -> Float[np.ndarray, " grid"]:
-    """Return how far ahead a foot is in a gait of stroke one: half a cosine forward, then straight back [-].
+    """Return the forward position of a foot in a gait of stroke one: half a cosine forward, then a line back [-].
 
     Args:
         duty: share of the cycle in which it goes back [-].
@@ -176,11 +176,11 @@ def path_shape(duty: float) -> Float[np.ndarray, " grid"]:
     return np.where(phase < swing, -np.cos(np.pi * phase / swing), 1.0 - 2.0 * (phase - swing) / duty)
 
 
-def _fitting_path(ahead: Float[np.ndarray, " grid"]) -> tuple[float, float]:
-    """Return stroke and duty factor of the gait's path that comes nearest to a foot's, at whatever phase."""
+def _fitting_path(forward: Float[np.ndarray, " grid"]) -> tuple[float, float]:
+    """Return stroke and duty factor of the gait's path that is nearest to the path of a foot, at any phase."""
     shapes, power = _paths()
-    seen = np.fft.rfft(ahead - ahead.mean())
-    likeness = np.fft.irfft(seen * shapes, GRID).max(axis=1)
+    spectrum = np.fft.rfft(forward - forward.mean())
+    likeness = np.fft.irfft(spectrum * shapes, GRID).max(axis=1)
     best = int(np.argmax(likeness**2 / power))
     return float(likeness[best] / power[best]), float(_DUTIES[best])
 
@@ -193,27 +193,27 @@ def _paths() -> tuple[Complex[np.ndarray, "duty frequency"], Float[np.ndarray, "
     return np.conj(np.fft.rfft(shapes)), (shapes**2).sum(axis=1)
 
 
-def smooth_azimuth(tracks: Tracks, ahead: str, behind: str, period: float) -> Float[np.ndarray, " frame"]:
+def smooth_azimuth(tracks: Tracks, front: str, rear: str, period: float) -> Float[np.ndarray, " frame"]:
     """Return the direction of a segment as drift and six harmonics, in every frame [rad]."""
-    raw = continuous(azimuth(tracks, ahead, behind))
-    course = fit(tracks.time, raw, period, harmonics=_harmonics(tracks, ahead, period, 6), drift=_drift(tracks, period))
+    raw = continuous(azimuth(tracks, front, rear))
+    course = fit(tracks.time, raw, period, harmonics=_harmonics(tracks, front, period, 6), drift=_drift(tracks, period))
     return course.trend(tracks.time) + course.swing(tracks.time)
 
 
 def continuous(angle: Float[np.ndarray, " frame"]) -> Float[np.ndarray, " frame"]:
-    """Return an angle without jumps by full turns, NaN where it is [rad]."""
-    seen, out = np.isfinite(angle), angle.copy()
-    out[seen] = np.unwrap(angle[seen])
-    return out
+    """Return an angle without jumps by full turns; NaN stays NaN [rad]."""
+    is_seen, unwrapped = np.isfinite(angle), angle.copy()
+    unwrapped[is_seen] = np.unwrap(angle[is_seen])
+    return unwrapped
 
 
 def _drift(tracks: Tracks, period: float) -> int:
-    """A curved path needs two cycles to be distinguished from the cycle itself."""
+    """Return the power of time for a path: 2 if the tracks have two cycles, otherwise 1."""
     return 2 if tracks.time[-1] - tracks.time[0] >= 1.9 * period else 1
 
 
-def _harmonics(tracks: Tracks, point: str, period: float, most: int) -> int:
-    """So many that none swings freely where the point is hidden in every cycle."""
-    seen = int(np.isfinite(tracks.at(point)[:, 0]).sum())
-    gap = _hidden(tracks, point, period)
-    return min(harmonics_for(seen, tracks.rate * period, most=most), max(2, int(1.0 / max(gap, 1e-3))))
+def _harmonics(tracks: Tracks, point: str, period: float, max_harmonics: int) -> int:
+    """Return the number of harmonics for a point, few enough that gaps in its track leave none undetermined."""
+    frame_count = int(np.isfinite(tracks.at(point)[:, 0]).sum())
+    gap = _hidden_fraction(tracks, point, period)
+    return min(harmonics_for(frame_count, tracks.rate * period, most=max_harmonics), max(2, int(1.0 / max(gap, 1e-3))))

@@ -1,4 +1,4 @@
-"""Filming our own robot: from a record to the keypoints that a camera would have tracked. The extraction's proof."""
+"""Synthetic film of our own robot: the keypoints that a camera would track in a record. It proves the extraction."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -36,6 +36,7 @@ class Camera:
     """Seed of noise and losses."""
 
     def __post_init__(self) -> None:
+        """Refuse rates, noise, losses and scales out of range."""
         with Checks("camera", self) as check:
             check.number("rate", 1.0, 10000.0, "1/s")
             check.number("noise", 0.0, 0.1, "m")
@@ -56,8 +57,8 @@ def film(robot: Robot, record: xr.Dataset, camera: Camera, *, start: float = STA
         start: of the film [s].
     """
     times = np.arange(start, float(record.time[-1]) + 1e-9, 1.0 / camera.rate)
-    part = record[["position", "orientation", "joint_angle"]].sel(time=times, method="nearest")
-    return tracked(keypoints(robot, part), part.time.values, camera, source=f"the film of {robot.name}")
+    film_record = record[["position", "orientation", "joint_angle"]].sel(time=times, method="nearest")
+    return tracked(keypoints(robot, film_record), film_record.time.values, camera, source=f"the film of {robot.name}")
 
 
 def tracked(points: Mapping[str, np.ndarray], time: np.ndarray, camera: Camera, *, source: str) -> Tracks:
@@ -85,7 +86,7 @@ def tracked(points: Mapping[str, np.ndarray], time: np.ndarray, camera: Camera, 
 
 
 def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return where the keypoints of a robot are in the world, each of shape (time, 3) [m].
+    """Return the positions of a robot's keypoints in the world, each of shape (time, 3) [m].
 
     Args:
         robot: whose record it is.
@@ -97,38 +98,49 @@ def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
     limbs = layout(robot).limbs
     check_needs(robot, ("four_limbs", "trunk", "tail_yaw") if limbs else ("trunk", "tail_yaw"), "a made-up film")
     angles = record.joint_angle.values.astype(float)
-    place, found, marks = layout(robot), frames(robot, angles), landmarks(robot, angles)
+    place, body_frames, marks = layout(robot), frames(robot, angles), landmarks(robot, angles)
     points = {"snout": marks.snout}
     if limbs:
         front, hind = place.limbs[0].girdle, place.limbs[-1].girdle
-        points["neck"] = _on(found, place, front.segment, front.at + _NECK * hips_ahead(robot, 0))
-        points["shoulder"] = _on(found, place, front.segment, front.at)
-    spine = [found.places[:, _moved_by(place, place.servos[servo])] for servo in place.trunk_yaw]
+        points["neck"] = _midline_point(body_frames, place, front.segment, front.at + _NECK * hips_ahead(robot, 0))
+        points["shoulder"] = _midline_point(body_frames, place, front.segment, front.at)
+    spine = [body_frames.places[:, _body_of_hinge(place, place.servos[servo])] for servo in place.trunk_yaw]
     points |= {f"spine_{i}": spine[i - 1] for i in range(len(spine), 0, -1)}
-    points |= {"hip": _on(found, place, hind.segment, hind.at)} if limbs else {}
-    points |= _tail(place, found) | {"tail_tip": marks.tail}
+    points |= {"hip": _midline_point(body_frames, place, hind.segment, hind.at)} if limbs else {}
+    points |= _tail(place, body_frames) | {"tail_tip": marks.tail}
     points |= {limb.name: marks.feet[:, i] for i, limb in enumerate(place.limbs)}
-    R, at = rotation.matrix(record.orientation.values.astype(float)), record.position.values.astype(float)
-    return {name: at + np.einsum("tij,tj->ti", R, point) for name, point in points.items()}
+    R, root_position = rotation.matrix(record.orientation.values.astype(float)), record.position.values.astype(float)
+    return {name: root_position + np.einsum("tij,tj->ti", R, point) for name, point in points.items()}
 
 
-def _on(found: BodyFrames, place: Layout, segment: str, ahead: float) -> np.ndarray:
-    """Return a point on the midline of a segment, so far ahead of its origin, in the frame of the root [m]."""
-    body = [one.name for one in place.bodies].index(segment)
-    return np.asarray(found.places[:, body] + (place.bodies[body].shift + ahead) * found.turns[:, body, :, 0])
+def _midline_point(body_frames: BodyFrames, place: Layout, segment: str, forward_offset: float) -> np.ndarray:
+    """Return the position of a point on the midline of a segment, in the frame of the root, shape (frame, 3) [m].
+
+    Args:
+        body_frames: of all bodies of the robot.
+        place: layout of the robot.
+        segment: name of the body that carries the point.
+        forward_offset: distance of the point ahead of the segment's origin [m].
+    """
+    body = [segment_body.name for segment_body in place.bodies].index(segment)
+    return np.asarray(
+        body_frames.places[:, body] + (place.bodies[body].shift + forward_offset) * body_frames.turns[:, body, :, 0]
+    )
 
 
-def _moved_by(place: Layout, hinge: str) -> int:
-    """Return which body a hinge turns; its frame stands at the hinge."""
+def _body_of_hinge(place: Layout, hinge: str) -> int:
+    """Return the index of the body that a hinge turns; the body's frame lies at the hinge."""
     return next(i for i, body in enumerate(place.bodies) if any(name == hinge for _, name, _ in body.hinges))
 
 
-def _tail(place: Layout, found: BodyFrames) -> dict[str, np.ndarray]:
-    """Return the tail's first joint, every other joint that is driven sideways, both ends of the last of them [m]."""
-    driven = [place.servos[servo] for servo in place.tail_yaw]
-    driven += [hinge for servo in place.cables for hinge in place.cable(servo).hinges]
+def _tail(place: Layout, body_frames: BodyFrames) -> dict[str, np.ndarray]:
+    """Return the positions of the tail's base, every second lateral joint, and the ends of the last segment [m]."""
+    driven_hinges = [place.servos[servo] for servo in place.tail_yaw]
+    driven_hinges += [hinge for servo in place.cables for hinge in place.cable(servo).hinges]
     bodies = [next(i for i, body in enumerate(place.bodies) if body.name == name) for name in place.tail]
-    turned = sorted({_moved_by(place, hinge) for hinge in driven} & set(bodies))
-    marks = {*turned[::2], turned[-1], *(body for body in bodies if body == turned[-1] + 1)} - {bodies[0]}
-    named = {f"tail_{i}": found.places[:, body] for i, body in enumerate(sorted(marks), 1)}
-    return {"tail_base": found.places[:, bodies[0]], **named}
+    driven_bodies = sorted({_body_of_hinge(place, hinge) for hinge in driven_hinges} & set(bodies))
+    marks = {*driven_bodies[::2], driven_bodies[-1], *(body for body in bodies if body == driven_bodies[-1] + 1)} - {
+        bodies[0]
+    }
+    tail_points = {f"tail_{i}": body_frames.places[:, body] for i, body in enumerate(sorted(marks), 1)}
+    return {"tail_base": body_frames.places[:, bodies[0]], **tail_points}

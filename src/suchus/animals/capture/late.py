@@ -1,7 +1,7 @@
-"""Which keypoints of the midline run late: their frames are not those of the others.
+"""Keypoints of the midline whose frames are later than those of the others.
 
-Neighbours keep their distance. Where one of them is seen late they do not: their link varies as it turns, in every
-cycle again, and as the pace changes, from cycle to cycle. Each of the two is looked at for itself.
+Neighbours have a constant distance. If one of them is late, the distance varies: with the turn of the link in every
+cycle, and with the pace from cycle to cycle. Both effects are tested separately.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -17,65 +17,74 @@ from suchus.animals.capture.screen import beside
 from suchus.animals.capture.swings import Clock
 from suchus.animals.capture.tracks import Tracks
 
-_LATE, _LATEST = 0.015, 0.3  # [cycle]; least and most by which a keypoint may be found to run late
-_GAIN, _FRAMES = 18.0, 30  # twice the likelihood gained that makes it sure; frames that it takes
-_EXPLAINS = 0.5  # share of how the distance varies that may be left
-_GAIN_OF_TWO = 12.0  # the same of both links of a point, as they turn and by the pace, at one lag
-_TURNED, _EXPLAINS_OF_TWO = 7.0, 0.75  # of that by the turns, and share that may be left: enough without the pace
-_NEARLY = 0.08  # [cycle]; that lag at most: a longer one shows in one link alone, or is noise
-_PACED, _EACH = 3.0, 1.5  # standard errors of a lag by the pace that are enough without the turns, and by each link
-_SURE = 5.0  # the same of a point with one link
-_BENDS = 5  # powers of time that a path is drawn with at most
-_HARMONICS = 4  # of its mean cycle at most
-_SKIN = 0.01  # [link]; its least standard deviation
-_UNKNOWN = 1e9  # [s]; standard error of a lag of which too little is seen
-_EXACT = 1e-4  # [link]; no keypoint is placed better
-_EVEN = 0.3  # [cycle]; over which the velocity of a keypoint is smoothed
+_MIN_LAG, _MAX_LAG = 0.015, 0.3  # [cycle]; range of lags that are reported
+_GAIN, _FRAMES = 18.0, 30  # twice the gain of log-likelihood that is significant; least frames
+_EXPLAINS = 0.5  # greatest fraction of the distance's variance that may remain at the lag
+_GAIN_OF_TWO = 12.0  # the gain for both links of a point at one lag, by turns and pace together
+_MIN_TURN_GAIN = 7.0  # the part of that gain by the turns that is significant without the pace
+_EXPLAINS_OF_TWO = 0.75  # greatest fraction of the variance that may remain in both links
+_NEARLY = 0.08  # [cycle]; greatest lag by both links: a longer one is significant in one link alone, or noise
+_MIN_PACE_Z = 3.0  # lag by the pace that is significant without the turns [standard error]
+_MIN_LINK_Z = 1.5  # the same for each link alone
+_MIN_END_Z = 5.0  # the same for a point with one link
+_BENDS = 5  # greatest power of time in the fit of a path
+_HARMONICS = 4  # greatest number of harmonics in the fit of a path
+_SKIN = 0.01  # [link]; least standard deviation of a distance
+_UNKNOWN = 1e9  # [s]; standard error of a lag with too few frames
+_EXACT = 1e-4  # [link]; least error of a keypoint's position
+_SMOOTHING_WINDOW = 0.3  # [cycle]; for the velocity of a keypoint
 
 
 def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dict[str, str]:
-    """Return the midline points that run behind or ahead of the others; from the side that cannot be seen.
+    """Return the midline points that are later or earlier than the others; none in a view from the side.
 
-    The distance of neighbours stays. If one of them is seen late it does not, as the link turns and the pace changes;
-    the lag with which it stays most nearly the same is that of one behind the other.
+    The lag between two neighbours is the one at which their distance varies least.
 
     Args:
         tracks: the keypoints, by the clock.
         clock: on which strides last equally long.
         time: of the film, in each frame [s].
     """
-    chain, found = list(tracks.midline), dict[str, str]()
+    chain, reasons = list(tracks.midline), dict[str, str]()
     if tracks.view == "side":  # bends to the sides shorten what is seen of a link
-        return found
+        return reasons
     lags = _Lags(tracks, clock, time)
     while len(chain) >= 3:
         links = lags.links(list(pairwise(chain)))
-        seen = {pair: link.lag for pair, link in links.items()}
-        sure = [pair for pair in seen if seen[pair]]
-        if sure:
-            mine = {
-                name: [(1 if pair[1] == name else -1) * seen[pair] for pair in seen if name in pair] for name in chain
+        link_lags = {pair: link.lag for pair, link in links.items()}
+        lagging_pairs = [pair for pair in link_lags if link_lags[pair]]
+        if lagging_pairs:
+            point_lags = {
+                name: [(1 if pair[1] == name else -1) * link_lags[pair] for pair in link_lags if name in pair]
+                for name in chain
             }
-            within = [name for name in chain if len(mine[name]) == 2 and mine[name][0] * mine[name][1] > 0]
-            alone = [name for name in (chain[0], chain[-1]) if mine[name][0]]
-            least = min(sure, key=lambda pair: abs(seen[pair]))
-            either = within[:1] or alone[:1] or [name for name in lags.inner(chain, links) if name in least] or least
-            late_by = {name: max(mine[name], key=abs) for name in either}
+            inner_points = [
+                name for name in chain if len(point_lags[name]) == 2 and point_lags[name][0] * point_lags[name][1] > 0
+            ]
+            end_points = [name for name in (chain[0], chain[-1]) if point_lags[name][0]]
+            smallest_pair = min(lagging_pairs, key=lambda pair: abs(link_lags[pair]))
+            lagging_points = (
+                inner_points[:1]
+                or end_points[:1]
+                or [name for name in lags.inner(chain, links) if name in smallest_pair]
+                or smallest_pair
+            )
+            lag_by_point = {name: max(point_lags[name], key=abs) for name in lagging_points}
         else:
-            late_by = lags.inner(chain, links) or lags.at_an_end(chain)
-        if not late_by:
+            lag_by_point = lags.inner(chain, links) or lags.at_an_end(chain)
+        if not lag_by_point:
             break
-        for name, lag in late_by.items():
-            others = " and ".join(beside(chain, name))
-            found[name] = (
-                f"runs {abs(lag):.3f} s {'behind' if lag > 0 else 'ahead of'} {others}: its frames are not theirs"
+        for name, lag in lag_by_point.items():
+            neighbours = " and ".join(beside(chain, name))
+            reasons[name] = (
+                f"runs {abs(lag):.3f} s {'behind' if lag > 0 else 'ahead of'} {neighbours}: its frames are not theirs"
             )
             chain.remove(name)
-    return found
+    return reasons
 
 
 class _LaggedLink(NamedTuple):
-    """How the distance of two neighbours varies if one of them is seen otherwise late."""
+    """Variation of the distance of two neighbours with the lag between them."""
 
     varies: Float[np.ndarray, " lag"]
     """Variance of their distance over that of noise, by how much later the second one is seen [-]."""
@@ -86,161 +95,199 @@ class _LaggedLink(NamedTuple):
 
 
 class _Paced(NamedTuple):
-    """By how much a point runs behind its neighbours, by how their distance varies with the pace."""
+    """Lag of a point behind its neighbours, estimated from the variation of their distance with the pace."""
 
     lag: float
     """By its links together [s]."""
     error: float
     """Standard error of that [s]."""
-    sure: float
+    z_score: float
     """The lag in standard errors [-]."""
-    least: float
+    min_z_score: float
     """The same of that link which shows it least, negative where it shows the opposite [-]."""
 
 
 class _Lags:
-    """By how much one point of a link runs behind the other, by their courses over the mean cycle."""
+    """Lags between the points of links, estimated from their paths over the mean cycle."""
 
     def __init__(self, tracks: Tracks, clock: Clock, time: np.ndarray) -> None:
+        """Fit the path of every keypoint of the midline, and tabulate the lags that are tried.
+
+        Args:
+            tracks: the keypoints, by the clock.
+            clock: on which all strides have the same duration.
+            time: of the film, in each frame [s].
+        """
         self._tracks, period = tracks, clock.period
         cycles = (tracks.time[-1] - tracks.time[0]) / period
         turns = min(_BENDS, 1 + int(cycles / 2))  # of the path
         self._courses = {}
         for name in tracks.midline:
-            seen = int(np.isfinite(tracks.at(name)[:, 0]).sum())
-            count = harmonics_for(seen, tracks.rate * period, most=_HARMONICS)
+            frame_count = int(np.isfinite(tracks.at(name)[:, 0]).sum())
+            count = harmonics_for(frame_count, tracks.rate * period, most=_HARMONICS)
             rows = tracks.at(name)[:, :2].T
             self._courses[name] = [fit(tracks.time, row, period, harmonics=count, drift=turns) for row in rows]
         step = max(1.0 / tracks.rate, 0.01 * period)
-        self.lags = step * np.arange(-int(_LATEST * period / step), int(_LATEST * period / step) + 1)
-        self._now = len(self.lags) // 2
-        inside = (time > time[0] + _LATEST * period) & (time < time[-1] - _LATEST * period)
-        self._time, self._clock = time[inside], clock
+        self.lags = step * np.arange(-int(_MAX_LAG * period / step), int(_MAX_LAG * period / step) + 1)
+        self._zero_index = len(self.lags) // 2
+        is_interior = (time > time[0] + _MAX_LAG * period) & (time < time[-1] - _MAX_LAG * period)
+        self._time, self._clock = time[is_interior], clock
         chain = tracks.midline
         bends = np.nanmean(joint_bends(tracks, chain) ** 2, axis=1) if len(chain) > 2 else np.zeros(0)
-        self._bent = dict(zip(chain[1:-1], bends, strict=True))
+        self._mean_square_bends = dict(zip(chain[1:-1], bends, strict=True))
 
     def _places(self, names: Collection[str], lag: float) -> dict[str, np.ndarray]:
-        """Return where points are so much later than the frames say, shape (frame, 2) each."""
-        when = self._clock.read(self._time + lag)
-        turn = np.exp(2j * np.pi * np.multiply.outer(when, np.arange(1, _HARMONICS + 1)) / self._clock.period)
-        found = {}
+        """Return the positions of points at a lag after the frames' times, each of shape (frame, 2)."""
+        clock_time = self._clock.read(self._time + lag)
+        turn = np.exp(2j * np.pi * np.multiply.outer(clock_time, np.arange(1, _HARMONICS + 1)) / self._clock.period)
+        positions = {}
         for name in names:
             courses = self._courses[name]
-            harmonics = np.stack([one.harmonics for one in courses], axis=-1)
+            harmonics = np.stack([course.harmonics for course in courses], axis=-1)
             swings = (turn[:, : len(harmonics)] @ harmonics).real
-            found[name] = np.stack([one.trend(when) for one in courses], axis=-1) + swings
-        return found
+            positions[name] = np.stack([course.trend(clock_time) for course in courses], axis=-1) + swings
+        return positions
 
     def links(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], _LaggedLink]:
-        """Return how the distance of each pair varies with the lag of its second point; none in too short a film."""
+        """Return the variation of each pair's distance with the lag of its second point; none in too short a film."""
         if len(self._time) < _FRAMES:
             return {}
-        first = self._places({one for one, _ in pairs}, 0.0)
+        first_positions = self._places({first_name for first_name, _ in pairs}, 0.0)
         mean, varies = np.empty((2, len(pairs), len(self.lags)))
         for i, lag in enumerate(self.lags):  # the turns of the mean cycle are those of all points
-            second = self._places({other for _, other in pairs}, lag)
-            for j, (one, other) in enumerate(pairs):
-                long = np.linalg.norm(second[other] - first[one], axis=-1)
-                mean[j, i], varies[j, i] = np.mean(long), np.var(long)
+            second_positions = self._places({second_name for _, second_name in pairs}, lag)
+            for j, (first_name, second_name) in enumerate(pairs):
+                distance = np.linalg.norm(second_positions[second_name] - first_positions[first_name], axis=-1)
+                mean[j, i], varies[j, i] = np.mean(distance), np.var(distance)
         return {pair: self._link(pair, mean[j], varies[j]) for j, pair in enumerate(pairs)}
 
     def _link(self, pair: tuple[str, str], mean: np.ndarray, varies: np.ndarray) -> _LaggedLink:
-        residual = [one.residual for name in pair for one in self._courses[name]]
-        bent = np.mean([self._bent[name] for name in pair if name in self._bent] or [0.0])  # a chord of what bends
-        sways = float(mean[self._now]) * np.hypot(_SKIN, bent / 8)
-        noise = sum(float(np.nanvar(one)) for one in residual) / 2 + sways**2
-        chord = float((mean[self._now] * bent / 16) ** 2 / noise)
+        """Return how the distance of a pair varies with the lag, in units of the variance that noise explains.
+
+        Args:
+            pair: names of the keypoints.
+            mean: mean distance for each lag [m or px].
+            varies: variance of the distance for each lag.
+        """
+        residual = [course.residual for name in pair for course in self._courses[name]]
+        mean_square_bend = np.mean(
+            [self._mean_square_bends[name] for name in pair if name in self._mean_square_bends] or [0.0]
+        )  # a chord of what bends
+        sways = float(mean[self._zero_index]) * np.hypot(_SKIN, mean_square_bend / 8)
+        noise = sum(float(np.nanvar(series)) for series in residual) / 2 + sways**2
+        chord = float((mean[self._zero_index] * mean_square_bend / 16) ** 2 / noise)
         return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, _GAIN, _EXPLAINS)[0])
 
     def _surely(self, varies: np.ndarray, chord: float, gain: float, explains: float) -> tuple[float, float]:
-        """Return the lag with which a distance varies least, 0 where that is not sure [s], and what is gained."""
+        """Return the lag at which a distance varies least [s], 0 if it is not significant, and the gain."""
         best = int(np.argmin(varies))
-        less = float(varies[self._now] - varies[best])
-        gained = len(self._tracks.time) * less
-        sure = gained > gain and less > chord and varies[best] < explains * varies[self._now]
+        variance_drop = float(varies[self._zero_index] - varies[best])
+        gained = len(self._tracks.time) * variance_drop
+        is_significant = gained > gain and variance_drop > chord and varies[best] < explains * varies[self._zero_index]
         lag = float(self.lags[best])
-        return (lag if sure and abs(lag) > _LATE * self._clock.period else 0.0), gained
+        return (lag if is_significant and abs(lag) > _MIN_LAG * self._clock.period else 0.0), gained
 
     def inner(self, chain: Sequence[str], links: Mapping[tuple[str, str], _LaggedLink]) -> dict[str, float]:
-        """Return the point within a chain whose lag is sure by both of its links together, if there is one [s].
+        """Return the inner point of a chain whose lag is significant in both links together, if there is one [s].
 
-        A point that is late is as far behind the one as behind the other, in its turns and by the pace, so that each
-        alone may leave open what all together show.
+        A late point has the same lag behind both neighbours, by the turns and by the pace. All four estimates together
+        may be significant where each alone is not.
         """
-        found: dict[str, tuple[float, float]] = {}
-        for ahead, name, behind in zip(chain, chain[1:], chain[2:], strict=False) if links else ():
-            one, other, paced = links[ahead, name], links[name, behind], self._paced(chain, name)
-            both = one.varies, other.varies[::-1]
-            turned = len(self._tracks.time) * (sum(row[self._now] - row for row in both) - one.chord - other.chord)
-            turned[self._now] = 0.0
-            gained = turned + paced.sure**2 - ((self.lags - paced.lag) / paced.error) ** 2
-            at = int(np.argmax(gained))
-            lag, left = float(self.lags[at]), sum(row[at] for row in both) / sum(row[self._now] for row in both)
-            by_turns = turned[at] > _TURNED and left < _EXPLAINS_OF_TWO and abs(lag) < _NEARLY * self._clock.period
-            by_turns = by_turns and all(row[at] < row[self._now] for row in both)
-            by_pace = paced.sure > _PACED and paced.least > _EACH
-            if gained[at] > _GAIN_OF_TWO and abs(lag) > _LATE * self._clock.period and (by_turns or by_pace):
-                found[name] = lag, float(gained[at])
-        if not found:
+        candidates: dict[str, tuple[float, float]] = {}
+        for front, name, rear in zip(chain, chain[1:], chain[2:], strict=False) if links else ():
+            front_link, rear_link, paced = links[front, name], links[name, rear], self._paced(chain, name)
+            variances = front_link.varies, rear_link.varies[::-1]
+            turn_gain = len(self._tracks.time) * (
+                sum(row[self._zero_index] - row for row in variances) - front_link.chord - rear_link.chord
+            )
+            turn_gain[self._zero_index] = 0.0
+            gained = turn_gain + paced.z_score**2 - ((self.lags - paced.lag) / paced.error) ** 2
+            index = int(np.argmax(gained))
+            lag, remaining_fraction = (
+                float(self.lags[index]),
+                sum(row[index] for row in variances) / sum(row[self._zero_index] for row in variances),
+            )
+            by_turns = (
+                turn_gain[index] > _MIN_TURN_GAIN
+                and remaining_fraction < _EXPLAINS_OF_TWO
+                and abs(lag) < _NEARLY * self._clock.period
+            )
+            by_turns = by_turns and all(row[index] < row[self._zero_index] for row in variances)
+            by_pace = paced.z_score > _MIN_PACE_Z and paced.min_z_score > _MIN_LINK_Z
+            if gained[index] > _GAIN_OF_TWO and abs(lag) > _MIN_LAG * self._clock.period and (by_turns or by_pace):
+                candidates[name] = lag, float(gained[index])
+        if not candidates:
             return {}
-        name = max(found, key=lambda one: found[one][1])
-        return {name: found[name][0]}
+        name = max(candidates, key=lambda point_name: candidates[point_name][1])
+        return {name: candidates[name][0]}
 
     def at_an_end(self, chain: Sequence[str]) -> dict[str, float]:
-        """Return the first or last point of a chain if it is surely late by the pace [s]."""
-        found = {name: self._paced(chain, name) for name in (chain[0], chain[-1]) if len(self._time) >= _FRAMES}
-        sure = {name: one for name, one in found.items() if abs(one.lag) > _LATE * self._clock.period}
-        name = max(sure, key=lambda one: sure[one].sure, default="")
-        return {name: sure[name].lag} if name and sure[name].sure > _SURE else {}
+        """Return the first or last point of a chain if its lag by the pace is significant [s]."""
+        estimates = {name: self._paced(chain, name) for name in (chain[0], chain[-1]) if len(self._time) >= _FRAMES}
+        significant = {
+            name: estimate for name, estimate in estimates.items() if abs(estimate.lag) > _MIN_LAG * self._clock.period
+        }
+        name = max(significant, key=lambda point_name: significant[point_name].z_score, default="")
+        return {name: significant[name].lag} if name and significant[name].z_score > _MIN_END_Z else {}
 
     def _paced(self, chain: Sequence[str], name: str) -> _Paced:
-        """Return by how much a point of a chain runs behind its neighbours by the pace.
+        """Return the lag of a point of a chain behind its neighbours, by the pace.
 
-        A point that is late is off by its velocity times the lag: the faster the body goes, the longer is the link
-        ahead of it and the shorter the one behind. What repeats in every cycle is taken out of length and velocity, so
-        that neither skin that slides nor the chord of a body that bends looks like a lag.
+        A late point is off by its velocity times the lag. At higher speed the link ahead of it is longer, the link
+        behind it shorter. The periodic part of length and velocity is removed, so that sliding skin and the chord of a
+        bent body do not resemble a lag.
         """
-        half = max(2, round(_EVEN * self._clock.period * self._tracks.rate / 2))
-        lags, errors = np.transpose([self._by_pace(name, other, half) for other in beside(chain, name)])
+        half = max(2, round(_SMOOTHING_WINDOW * self._clock.period * self._tracks.rate / 2))
+        lags, errors = np.transpose([self._by_pace(name, neighbour, half) for neighbour in beside(chain, name)])
         error = float(np.sum(errors**-2.0) ** -0.5)
         lag = float(np.average(lags, weights=errors**-2.0))
         return _Paced(lag, error, abs(lag) / error, float(np.min(np.sign(lag) * lags / errors)))
 
-    def _by_pace(self, name: str, other: str, half: int) -> tuple[float, float]:
-        """Return by how much a point runs behind its neighbour, by the pace, and the standard error [s]."""
+    def _by_pace(self, name: str, neighbour: str, half: int) -> tuple[float, float]:
+        """Return the lag of a point behind one neighbour, by the pace, and its standard error [s]."""
         place = self._tracks.at(name)[:, :2]
-        apart = self._tracks.at(other)[:, :2] - place
-        long, toward = np.linalg.norm(apart, axis=-1), _line(apart, half)[0]  # smoothed, so that noise is not in both
-        gone = np.sum(self._tracks.rate * _line(place, half)[1] * toward, axis=-1) / np.linalg.norm(toward, axis=-1)
-        use = np.isfinite(gone) & np.isfinite(long)
+        link = self._tracks.at(neighbour)[:, :2] - place
+        link_length, link_direction = (
+            np.linalg.norm(link, axis=-1),
+            _moving_line(link, half)[0],
+        )  # smoothed, so that noise is not in both
+        axial_velocity = np.sum(
+            self._tracks.rate * _moving_line(place, half)[1] * link_direction, axis=-1
+        ) / np.linalg.norm(link_direction, axis=-1)
+        use = np.isfinite(axial_velocity) & np.isfinite(link_length)
         if use.sum() < _FRAMES:
             return 0.0, _UNKNOWN
         angle = 2 * np.pi * np.multiply.outer(self._tracks.time[use], np.arange(1, _HARMONICS + 1)) / self._clock.period
         X, _ = np.linalg.qr(np.hstack([np.ones((use.sum(), 1)), np.cos(angle), np.sin(angle)]))
-        x, y = (row[use] - X @ (X.T @ row[use]) for row in (gone, long))
+        x, y = (row[use] - X @ (X.T @ row[use]) for row in (axial_velocity, link_length))
         lag = float(x @ y / max(x @ x, 1e-300))
-        left = y - lag * x
-        alike = (left[1:] @ left[:-1]) * (x[1:] @ x[:-1]) / max((left @ left) * (x @ x), 1e-300)
-        wide = max(1.0, (1.0 + alike) / (1.0 - alike))  # what is left over may go on from frame to frame
+        residual = y - lag * x
+        autocorrelation = (
+            (residual[1:] @ residual[:-1]) * (x[1:] @ x[:-1]) / max((residual @ residual) * (x @ x), 1e-300)
+        )
+        variance_inflation = max(
+            1.0, (1.0 + autocorrelation) / (1.0 - autocorrelation)
+        )  # what is left over may go on from frame to frame
         count = max(1, use.sum() - X.shape[1] - 1)
-        noise = max(float(left @ left) / count, (_EXACT * float(np.mean(long[use]))) ** 2)
-        return lag, float(np.sqrt(wide * noise / max(x @ x, 1e-300)))
+        noise = max(float(residual @ residual) / count, (_EXACT * float(np.mean(link_length[use]))) ** 2)
+        return lag, float(np.sqrt(variance_inflation * noise / max(x @ x, 1e-300)))
 
 
-def _line(place: Float[np.ndarray, "frame axis"], half: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return where a straight line through each frame and ``half`` before and after it is, and its slope [1/frame].
+def _moving_line(place: Float[np.ndarray, "frame axis"], half: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return value and slope [1/frame] of a straight line through each frame and ``half`` frames on either side.
 
-    Points that were not seen are put between their neighbours. Both are NaN at the ends of the film, and where fewer
-    than half of these frames were seen.
+    Missing points are interpolated. Both are NaN at the ends of the film, and where fewer than half of these frames
+    were seen.
     """
     frames, (middle, slope) = np.arange(len(place)), np.full((2, *place.shape), np.nan)
     steps = np.arange(-half, half + 1)
     for i, row in enumerate(place.T):
-        seen = np.isfinite(row)
-        whole = np.interp(frames, frames[seen], row[seen])
-        enough = np.correlate(seen.astype(float), np.ones(len(steps)), mode="valid") > half
-        mean = np.correlate(whole, np.ones(len(steps)), mode="valid") / len(steps)
-        middle[half:-half, i] = np.where(enough, mean, np.nan)
-        slope[half:-half, i] = np.where(enough, np.correlate(whole, steps, mode="valid") / (steps @ steps), np.nan)
+        is_seen = np.isfinite(row)
+        filled_row = np.interp(frames, frames[is_seen], row[is_seen])
+        has_enough_frames = np.correlate(is_seen.astype(float), np.ones(len(steps)), mode="valid") > half
+        mean = np.correlate(filled_row, np.ones(len(steps)), mode="valid") / len(steps)
+        middle[half:-half, i] = np.where(has_enough_frames, mean, np.nan)
+        slope[half:-half, i] = np.where(
+            has_enough_frames, np.correlate(filled_row, steps, mode="valid") / (steps @ steps), np.nan
+        )
     return middle, slope

@@ -41,45 +41,51 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
         raise UnusableTracks(f"{path.name} holds no frame; at least one cycle is needed.")
     if not 0.0 < rate < np.inf:
         raise UnreadableFile(f"{path.name} says that it has {rate:g} frames a second; more than 0 are needed.")
-    ours = renamed(points, names, path.name)
+    point_names = renamed(points, names, path.name)
     return Tracks(
         time=np.arange(len(place)) / rate,
-        points=ours,
-        position=UNITS[unit] * upright(place, ours, path.name),
+        points=point_names,
+        position=UNITS[unit] * upright(place, point_names, path.name),
         unit="m",
         source=path.name,
     )
 
 
 def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray:
-    """Return the places with the axis that is up last, right-handed."""
+    """Return the positions with the vertical axis last, right-handed; the trunk is above the feet."""
     trunk = [points.index(point) for point in _TRUNK if point in points]
     feet = [points.index(leg) for leg in LEGS if leg in points]
     if not trunk or not feet:
         return place
-    seen = np.ma.masked_invalid(place)
-    middles = seen[:, trunk].mean(axis=1) - seen[:, feet].mean(axis=1)  # frame by frame: the animal goes on
-    above = np.nanmedian(middles.filled(np.nan), axis=0)
-    up = 1 if abs(above[1]) > abs(above[2]) else 2
-    if not above[up] > 0.0:
+    masked_positions = np.ma.masked_invalid(place)
+    middles = masked_positions[:, trunk].mean(axis=1) - masked_positions[:, feet].mean(
+        axis=1
+    )  # frame by frame: the animal goes on
+    trunk_offset = np.nanmedian(middles.filled(np.nan), axis=0)
+    up_axis = 1 if abs(trunk_offset[1]) > abs(trunk_offset[2]) else 2
+    if not trunk_offset[up_axis] > 0.0:
         raise UnusableTracks(
             f"in {name} the feet lie above the trunk along y and along z: the up axis must be y or z; turn the axes."
         )
-    return place if up == 2 else place[..., [2, 0, 1]]
+    return place if up_axis == 2 else place[..., [2, 0, 1]]
 
 
 def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
+    """Return keypoints, positions, frame rate and unit of length of a TRC file.
+
+    Positions have the shape (frame, point, 3) and are NaN where a marker is missing.
+    """
     lines = read_text(path).splitlines()
     if len(lines) < _HEADER or not lines[0].startswith("PathFileType"):
         raise UnreadableFile(f"{path} is no TRC file: its first line is not 'PathFileType 4 (X/Y/Z) ...'.")
-    about = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
+    header = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
     points = tuple(cell.strip() for cell in lines[3].split("\t")[2:] if cell.strip())
     try:
-        rate, unit = float(about["DataRate"]), about["Units"].strip()
+        rate, unit = float(header["DataRate"]), header["Units"].strip()
         rows = [line.split("\t") for line in lines[_HEADER:] if line.strip()]
         cells = [[float(cell) if cell.strip() else np.nan for cell in row[2 : 2 + 3 * len(points)]] for row in rows]
-        wide = [row + [np.nan] * (3 * len(points) - len(row)) for row in cells]
-        place = np.array(wide, dtype=float).reshape(len(wide), len(points), 3)
+        padded_rows = [row + [np.nan] * (3 * len(points) - len(row)) for row in cells]
+        place = np.array(padded_rows, dtype=float).reshape(len(padded_rows), len(points), 3)
     except (KeyError, ValueError) as error:
         raise UnreadableFile(
             f"{path} cannot be read as a TRC file: its second line is to name DataRate and Units, the line below is to "
@@ -92,6 +98,10 @@ def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
 
 
 def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
+    """Return keypoints, positions, frame rate and unit of length of a C3D file.
+
+    Positions have the shape (frame, point, 3) and are NaN where a marker is missing.
+    """
     try:
         import c3d  # noqa: PLC0415  an optional extra
     except ImportError as error:
@@ -107,7 +117,7 @@ def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
             rate, unit = float(reader.point_rate), str(reader.get("POINT:UNITS").string_value).strip().lower()
     except Exception as error:
         raise UnreadableFile(f"{path} cannot be read as a C3D file: {' '.join(str(error).split())}.") from error
-    seen = np.array(frames, dtype=float).reshape(len(frames), -1, 5)[:, : len(points)]
-    place = seen[..., :3].copy()
-    place[seen[..., 3] < 0.0] = np.nan
+    samples = np.array(frames, dtype=float).reshape(len(frames), -1, 5)[:, : len(points)]
+    place = samples[..., :3].copy()
+    place[samples[..., 3] < 0.0] = np.nan
     return points, place, rate, unit

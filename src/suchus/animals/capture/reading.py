@@ -61,12 +61,12 @@ def read_poses(
     data = _load(path, software or _guess(path), rate)
     if "time_unit" not in data.attrs or data.attrs["time_unit"] != "seconds":
         raise UnusableTracks(f"{path.name} does not give its frame rate; give it, as in --fps 50.")
-    data = _one(data, individual, path.name)
+    data = _select_individual(data, individual, path.name)
     dims = [d for d in data.position.dims if d not in ("time", "space")]
     position = data.position.transpose("time", *dims, "space").values.astype(float)
     if "confidence" in data:
-        sure = data.confidence.transpose("time", *dims).values
-        position[~(np.isnan(sure) | (sure >= confidence))] = np.nan
+        point_confidence = data.confidence.transpose("time", *dims).values
+        position[~(np.isnan(point_confidence) | (point_confidence >= confidence))] = np.nan
     position[np.isnan(position).any(axis=-1)] = np.nan
     if position.shape[-1] == 2 if y_down is None else y_down:
         position[..., 1] *= -1
@@ -81,6 +81,7 @@ def read_poses(
 
 
 def _load(path: Path, software: str, rate: float | None) -> Any:
+    """Return the data set that the ``movement`` library reads from a file of a pose estimator."""
     try:
         from movement.io import load_dataset  # noqa: PLC0415  an optional extra
     except ImportError as error:
@@ -102,6 +103,7 @@ def _load(path: Path, software: str, rate: float | None) -> Any:
 
 
 def _guess(path: Path) -> str:
+    """Return the software that wrote a file, by the ending of its name and its content."""
     suffix = path.suffix.lower()
     if suffix == ".slp":
         return "SLEAP"
@@ -125,11 +127,12 @@ def _is_anipose(path: Path) -> bool:
     return "fnum" in cells and any(cell.endswith("_ncams") for cell in cells)
 
 
-def _one(data: Any, individual: str | None, name: str) -> Any:
+def _select_individual(data: Any, individual: str | None, name: str) -> Any:
+    """Return the data of one individual; without a name, of the only one."""
     dim = next((d for d in data.position.dims if str(d).startswith("individual")), None)
     if dim is None:
         return data
-    names = [str(one) for one in data[dim].values]
+    names = [str(label) for label in data[dim].values]
     if individual is None and len(names) > 1:
         raise UnusableTracks(
             f"{name} holds {len(names)} individuals; choose one with --individual: {', '.join(names)}."
@@ -161,50 +164,53 @@ class ReadingOptions:
     """Unit of lengths in files that do not say it, as those of pose estimators: m, cm or mm; px is of unknown size."""
 
 
-def read_tracks(path: str | Path, how: ReadingOptions | None = None) -> Tracks:
+def read_tracks(path: str | Path, options: ReadingOptions | None = None) -> Tracks:
     """Read tracks from a CSV table, a TRC or C3D file, or one of DeepLabCut, SLEAP, LightningPose or Anipose.
 
     Args:
         path: the file.
-        how: how to read it.
+        options: how to read it.
 
     Raises:
         UnreadableFile: there is no such file, it is empty or broken, or the library that reads it is not installed.
         UnusableTracks: it holds not what is needed.
     """
-    how, path = how or ReadingOptions(), Path(path)
-    if how.software is not None and how.software not in SOFTWARE:
-        raise UnknownName("software", how.software, SOFTWARE)
+    options, path = options or ReadingOptions(), Path(path)
+    if options.software is not None and options.software not in SOFTWARE:
+        raise UnknownName("software", options.software, SOFTWARE)
     check_file(path)
     if path.stat().st_size == 0:
         raise UnreadableFile(f"{path} is empty; a header and one row per frame are needed.")
-    if how.unit is not None and how.unit not in UNITS:
-        raise UnknownName("unit", how.unit, tuple(UNITS))
-    if how.rate is not None and not 0.0 < how.rate < np.inf:
-        raise UnusableTracks(f"the frame rate is {how.rate:g}; a number above 0 is needed, in frames per second.")
-    tracks = _read(path, how)
-    if how.view == "side" and tracks.upright:
+    if options.unit is not None and options.unit not in UNITS:
+        raise UnknownName("unit", options.unit, tuple(UNITS))
+    if options.rate is not None and not 0.0 < options.rate < np.inf:
+        raise UnusableTracks(f"the frame rate is {options.rate:g}; a number above 0 is needed, in frames per second.")
+    tracks = _read_by_format(path, options)
+    if options.view == "side" and tracks.upright:
         raise UnusableTracks(f"{path.name} holds heights, so that it needs no view from the side; leave --view out.")
-    return replace(tracks, view=how.view)
+    return replace(tracks, view=options.view)
 
 
-def _read(path: Path, how: ReadingOptions) -> Tracks:
-    if how.software is None and path.suffix.lower() in SUFFIXES:
-        return read_markers(path, names=how.names)
-    if how.software is None and is_table(path):
-        return read_table(path, names=how.names, confidence=how.confidence, y_down=how.y_down, rate=how.rate)
+def _read_by_format(path: Path, options: ReadingOptions) -> Tracks:
+    """Read tracks with the reader for the file's format."""
+    if options.software is None and path.suffix.lower() in SUFFIXES:
+        return read_markers(path, names=options.names)
+    if options.software is None and is_table(path):
+        return read_table(
+            path, names=options.names, confidence=options.confidence, y_down=options.y_down, rate=options.rate
+        )
     tracks = read_poses(
         path,
-        software=how.software,
-        rate=how.rate,
-        individual=how.individual,
-        names=how.names,
-        confidence=how.confidence,
-        y_down=how.y_down,
+        software=options.software,
+        rate=options.rate,
+        individual=options.individual,
+        names=options.names,
+        confidence=options.confidence,
+        y_down=options.y_down,
     )
-    if how.unit in (None, "px"):
+    if options.unit in (None, "px"):
         return tracks
-    return replace(tracks, unit="m", position=UNITS[str(how.unit)] * tracks.position)
+    return replace(tracks, unit="m", position=UNITS[str(options.unit)] * tracks.position)
 
 
 def write_gait(captured: Captured, walk: Walk, path: str | Path) -> Path:
@@ -221,29 +227,30 @@ def write_gait(captured: Captured, walk: Walk, path: str | Path) -> Path:
 def summary(walk: Walk) -> list[str]:
     """Return what was seen, in lines that people read."""
 
-    def one(name: str, digits: int = 2, scale: float = 1.0) -> str:
+    def format_number(name: str, digits: int = 2, scale: float = 1.0) -> str:
+        """Return a number of the walk with half of its interval, or why it has none."""
         if name not in walk.numbers:
             return "(it does not bend)" if name.startswith(("spine", "tail")) and not walk.lacks else "(not seen)"
         value, _, error, _ = walk.numbers[name]
-        apart = f" ± {scale * error:.{digits}f}" if error == error and error > 0.0 else ""
-        return f"{scale * value:.{digits}f}{apart}"
+        error_text = f" ± {scale * error:.{digits}f}" if error == error and error > 0.0 else ""
+        return f"{scale * value:.{digits}f}{error_text}"
 
     turn = degrees(1.0)
     legs = [leg for leg in LEGS if f"duty_{leg}" in walk.numbers]
     feet = [
-        "stance share: " + ", ".join(f"{leg} {one(f'duty_{leg}')}" for leg in legs),
-        "limb phase [cycle]: " + ", ".join(f"{leg} {one(f'phase_{leg}', 3)}" for leg in legs),
+        "stance share: " + ", ".join(f"{leg} {format_number(f'duty_{leg}')}" for leg in legs),
+        "limb phase [cycle]: " + ", ".join(f"{leg} {format_number(f'phase_{leg}', 3)}" for leg in legs),
     ]
-    gone = f"{one('stride')} trunk lengths"
+    stride_text = f"{format_number('stride')} trunk lengths"
     if "stride" not in walk.numbers and "stride_length" in walk.numbers:
-        gone = f"{one('stride_length', 3)} {walk.numbers['stride_length'].unit}"
+        stride_text = f"{format_number('stride_length', 3)} {walk.numbers['stride_length'].unit}"
     return [
-        f"{walk.cycles:.1f} cycles of {walk.value('period'):.3f} s; {gone} per cycle",
+        f"{walk.cycles:.1f} cycles of {walk.value('period'):.3f} s; {stride_text} per cycle",
         *(feet if legs else ()),
-        f"spine: {one('spine_lateral', 1, turn)} degrees to either side, farthest right at phase "
-        f"{one('spine_rightmost', 3)}",
-        f"tail: {one('tail_lateral', 1, turn)} degrees to either side at {walk.tail_share:.2f} of its length, "
-        f"{one('tail_lag', 3)} cycles behind the spine",
-        f"standing index (1 standing, 0 travelling): trunk {one('standing_trunk')}, tail {one('standing_tail')}, "
-        f"body {one('standing_body')}",
+        f"spine: {format_number('spine_lateral', 1, turn)} degrees to either side, farthest right at phase "
+        f"{format_number('spine_rightmost', 3)}",
+        f"tail: {format_number('tail_lateral', 1, turn)} degrees to either side at {walk.tail_share:.2f} of its "
+        f"length, {format_number('tail_lag', 3)} cycles behind the spine",
+        f"standing index (1 standing, 0 travelling): trunk {format_number('standing_trunk')}, tail "
+        f"{format_number('standing_tail')}, body {format_number('standing_body')}",
     ]

@@ -1,4 +1,4 @@
-"""From what was seen of an animal to the gait of any robot: by feet and bends, or joint by joint as it was measured."""
+"""From a measured walk to the gait of any robot: by feet and bends, or by the measured angle of each joint."""
 
 import re
 from collections.abc import Sequence
@@ -45,7 +45,7 @@ Time = Literal["froude", "own"]
 NEEDED = ("four_limbs", "foot_paths")
 """What the walk of a four-limbed animal requires of a robot: names of ``design.NEEDS``."""
 _PAIRS = (LEGS[:2], LEGS[2:])
-_STILL = np.radians(1.0)  # a bend below this has no phase
+_MIN_BEND = np.radians(1.0)  # a bend below this has no phase
 _AXIS = re.compile(r"^axis (\d+)$", re.IGNORECASE)
 _LIMB = re.compile(r"^(left|right) (shoulder|hip)-(yaw|pitch|roll)$|^(left|right) (elbow|knee)$", re.IGNORECASE)
 _FRONT = ("shoulder", "elbow")
@@ -85,11 +85,11 @@ def to_gait(
     time: Time = "froude",
     trunk: float | None = None,
 ) -> Captured:
-    """Return the gait by which a robot walks as was measured.
+    """Return the gait by which a robot walks as the animal was measured.
 
     Phases and angles are taken as they are, lengths in proportion to the trunk from hip to shoulder. Trunk and tail
-    bend by their first harmonics, each shared evenly by its hinges. Quantities that were not measured are the base's.
-    What the robot's limits refuse is changed as little as needed.
+    bend by their first harmonics, and all hinges of a region bend equally. Quantities that were not measured are those
+    of the base gait. Quantities beyond the robot's limits are changed as little as possible.
 
     Args:
         walk: the measured walk.
@@ -109,11 +109,11 @@ def to_gait(
     """
     check_needs(robot, NEEDED, "a captured walk")
     if walk.lacks:
-        why = [note for note in walk.notes if note.partition(" ")[0] in (*walk.lacks, "neck", "snout")]
+        lacking_notes = [note for note in walk.notes if note.partition(" ")[0] in (*walk.lacks, "neck", "snout")]
         raise UnusableTracks(
             f"{walk.source} lacks the keypoint{'s' * (len(walk.lacks) > 1)} {', '.join(walk.lacks)} that a gait is "
-            f"read from{''.join(f'; {note}' for note in why)}: rename with --names THEIRS=OURS, or track them; suchus "
-            "capture --tables DIR measures what the others show."
+            f"read from{''.join(f'; {note}' for note in lacking_notes)}: rename with --names THEIRS=OURS, or track "
+            "them; suchus capture --tables DIR measures what the others show."
         )
     if not {"spine_lateral", "tail_lateral"} <= set(walk.bends):
         raise UnusableTracks(
@@ -128,39 +128,41 @@ def to_gait(
         )
     notes: list[str] = []
     factor, timing = time_scale(walk, robot, time, trunk)
-    gait = _timed(walk, replace(base, name=name, curves=(), coupling=()), duty, factor, notes)
-    gait = _bent(walk, robot, gait, notes)
-    gait = _stepping(walk, robot, gait, base, girdles, notes)
-    gait = _slowed(robot, gait, notes)
-    return Captured(gait=gait, timing=timing, notes=(*walk.notes, *notes, *_unheld(walk)))
+    gait = _with_timing(walk, replace(base, name=name, curves=(), coupling=()), duty, factor, notes)
+    gait = _with_bends(walk, robot, gait, notes)
+    gait = _with_steps(walk, robot, gait, base, girdles, notes)
+    gait = _with_feasible_period(robot, gait, notes)
+    return Captured(gait=gait, timing=timing, notes=(*walk.notes, *notes, *_unrepresented_notes(walk)))
 
 
 def driven_share(robot: Robot) -> float:
-    """Return where along its tail, from its first joint, a robot's last driven segment has its middle [-].
+    """Return the position of the middle of the last driven tail segment, as a fraction of the tail's length [-].
 
-    The end beyond it is passive: it follows by itself, and no command holds it. It is 1 without such an end.
+    The segments behind it are passive: no command holds them. The fraction is 1 if all segments are driven.
     """
     place = layout(robot)
-    driven = {place.servos[i] for i in place.tail_yaw}
-    driven |= {name for servo in place.cables for name in place.cable(servo).hinges}
-    behind = robot.axis[robot.root_place :]
-    bent = [i for i, segment in enumerate(behind) if any(hinge.name in driven for hinge in segment.hinges)]
-    lengths = [segment.front + segment.rear for segment in behind[1:]]
-    if not bent or bent[-1] + 1 >= len(lengths):
+    driven_names = {place.servos[i] for i in place.tail_yaw}
+    driven_names |= {name for servo in place.cables for name in place.cable(servo).hinges}
+    tail_segments = robot.axis[robot.root_place :]
+    driven_indices = [
+        i for i, segment in enumerate(tail_segments) if any(hinge.name in driven_names for hinge in segment.hinges)
+    ]
+    lengths = [segment.front + segment.rear for segment in tail_segments[1:]]
+    if not driven_indices or driven_indices[-1] + 1 >= len(lengths):
         return 1.0
-    return (sum(lengths[: bent[-1]]) + lengths[bent[-1]] / 2) / sum(lengths)
+    return (sum(lengths[: driven_indices[-1]]) + lengths[driven_indices[-1]] / 2) / sum(lengths)
 
 
 def mean_of(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
-    """Return the mean of a number over legs, leaving out duty factors that are not sure."""
-    known = [leg for leg in legs if stem != "duty" or not walk.numbers[f"duty_{leg}"].error > UNSURE]
-    return float(np.mean([walk.value(f"{stem}_{leg}") for leg in known or legs]))
+    """Return the mean of a number over legs; uncertain duty factors are left out."""
+    reliable_legs = [leg for leg in legs if stem != "duty" or not walk.numbers[f"duty_{leg}"].error > UNSURE]
+    return float(np.mean([walk.value(f"{stem}_{leg}") for leg in reliable_legs or legs]))
 
 
 def time_scale(walk: Walk, robot: Robot, time: Time, trunk: float | None) -> tuple[float, str]:
-    """Return by what the robot's period is longer than the animal's, and a sentence that says why [-].
+    """Return the period of the robot over that of the animal [-], and a sentence that gives the reason.
 
-    Bodies of different size walk alike at equal Froude number, where time goes with the square root of length.
+    Bodies of different size walk alike at equal Froude number: time is proportional to the square root of length.
 
     Args:
         walk: the measured walk.
@@ -173,118 +175,145 @@ def time_scale(walk: Walk, robot: Robot, time: Time, trunk: float | None) -> tup
     """
     if trunk is not None and not 0.0 < trunk < np.inf:
         raise UnusableTracks(f"the animal's trunk is {trunk:g} m long; a length above 0 is needed.")
-    own, long = walk.value("period"), walk.numbers.get("trunk_length")
-    animal = trunk if trunk is not None else long.value if long is not None and long.unit == "m" else None
+    animal_period, trunk_number = walk.value("period"), walk.numbers.get("trunk_length")
+    animal = (
+        trunk
+        if trunk is not None
+        else trunk_number.value
+        if trunk_number is not None and trunk_number.unit == "m"
+        else None
+    )
     if time == "own":
-        return 1.0, f"time: the animal's own, a cycle of {own:.3f} s"
+        return 1.0, f"time: the animal's own, a cycle of {animal_period:.3f} s"
     if animal is None:
         return 1.0, (
-            f"time: the animal's own, a cycle of {own:.3f} s, since a film in pixels does not show how long the animal "
+            f"time: the animal's own, a cycle of {animal_period:.3f} s, since a film in pixels does not show how "
+            "long the animal "
             "is; with --trunk METRES, its length from hip to shoulder, time goes with the square root of length"
         )
-    ours = hips_ahead(robot, 0)
-    factor = float(np.sqrt(ours / animal))
+    robot_trunk = hips_ahead(robot, 0)
+    factor = float(np.sqrt(robot_trunk / animal))
     return factor, (
-        f"time: scaled by {factor:.3f}, the square root of lengths ({ours:.3f} m of {robot.name}, {animal:.3f} m of "
-        f"the animal, hip to shoulder): the cycle of {own:.3f} s becomes {factor * own:.3f} s; --time own keeps it"
+        f"time: scaled by {factor:.3f}, the square root of lengths ({robot_trunk:.3f} m of {robot.name}, "
+        f"{animal:.3f} m of "
+        f"the animal, hip to shoulder): the cycle of {animal_period:.3f} s becomes {factor * animal_period:.3f} s; "
+        "--time own keeps it"
     )
 
 
-def _timed(walk: Walk, gait: Gait, duty: Duty, factor: float, notes: list[str]) -> Gait:
+def _with_timing(walk: Walk, gait: Gait, duty: Duty, factor: float, notes: list[str]) -> Gait:
+    """Return the gait with the period, the duty factor and the limb phases of the walk.
+
+    Args:
+        walk: the measured walk.
+        gait: whose other fields are kept.
+        duty: fraction that becomes the duty factor, see ``Duty``.
+        factor: period of the robot over that of the animal [-].
+        notes: sentences for the user, to which this function appends.
+    """
     stem = "duty" if duty == "contact" else "retraction"
-    share = mean_of(walk, stem)
-    other = mean_of(walk, "retraction" if duty == "contact" else "duty")
-    if abs(share - other) > 0.05:
+    duty_fraction = mean_of(walk, stem)
+    other_duty = mean_of(walk, "retraction" if duty == "contact" else "duty")
+    if abs(duty_fraction - other_duty) > 0.05:
         notes.append(
             f"feet rest on the ground for {mean_of(walk, 'duty'):.2f} of the cycle and go back along the body for "
             f"{mean_of(walk, 'retraction'):.2f} of it; a gait has one duty factor, the {duty} share was taken"
         )
-    apart = {leg: walk.value(f"{stem}_{leg}") for leg in LEGS}
-    if np.ptp(list(apart.values())) > 0.05:
-        shares = ", ".join(f"{leg} {value:.2f}" for leg, value in apart.items())
+    leg_duties = {leg: walk.value(f"{stem}_{leg}") for leg in LEGS}
+    if np.ptp(list(leg_duties.values())) > 0.05:
+        shares = ", ".join(f"{leg} {value:.2f}" for leg, value in leg_duties.items())
         notes.append(f"the legs' {duty} shares differ ({shares}); the gait holds their mean")
     phases = tuple(_rounded((walk.value(f"phase_{leg}") + 0.05) % 1.0 - 0.05) for leg in LEGS)
     return replace(
-        gait, period=_rounded(factor * walk.value("period")), duty_factor=_rounded(share), limb_phases=phases
+        gait, period=_rounded(factor * walk.value("period")), duty_factor=_rounded(duty_fraction), limb_phases=phases
     )
 
 
-def _bent(walk: Walk, robot: Robot, gait: Gait, notes: list[str]) -> Gait:
-    """Give trunk and tail the first harmonics that were measured; steady bends up and down stay the base's."""
+def _with_bends(walk: Walk, robot: Robot, gait: Gait, notes: list[str]) -> Gait:
+    """Return the gait with the first harmonics of the measured bends; vertical bends stay those of the base."""
     # both clocks have LF's mid-stance in common: the gait's begins half the difference of the duty factors off
     clock = np.exp(1j * np.pi * (gait.duty_factor - mean_of(walk, "duty")))
     touch_down = 0.75 - gait.duty_factor / 2
     bends = [bend for bend in gait.axis if bend.turn == "pitch"]
     parts: tuple[tuple[Literal["trunk", "tail"], str], ...] = (("trunk", "spine"), ("tail", "tail"))
-    for part, word in parts:
-        seen = clock * walk.bends[f"{word}_lateral"]
-        most = _most(robot, part)
-        if not most:
-            notes.append(f"robot {robot.name} has no {part} that bends; {degrees(abs(seen)):.0f} degrees were seen")
+    for region, word in parts:
+        bend_harmonic = clock * walk.bends[f"{word}_lateral"]
+        hinge_limits = _bend_limits(robot, region)
+        if not hinge_limits:
+            notes.append(
+                f"robot {robot.name} has no {region} that bends; {degrees(abs(bend_harmonic)):.0f} degrees were seen"
+            )
             continue
-        straight = walk.value(f"{word}_lateral") < _STILL
+        straight = walk.value(f"{word}_lateral") < _MIN_BEND
         if straight:
-            notes.append(f"the {word} hardly bends ({degrees(abs(seen)):.1f} degrees): its phase has no meaning")
+            notes.append(
+                f"the {word} hardly bends ({degrees(abs(bend_harmonic)):.1f} degrees): its phase has no meaning"
+            )
         # concave on the right by |seen| cos 2 pi (phase of LF - its delay), which is what a bend says of the left
-        lag = 0.0 if straight else _within_half(-float(np.angle(seen)) / (2 * np.pi) - touch_down)
-        amplitude_seen = _rounded(abs(seen))
-        limits = [floor(1e4 * len(most) * limit) / 1e4 for limit in most]
+        lag = 0.0 if straight else _within_half(-float(np.angle(bend_harmonic)) / (2 * np.pi) - touch_down)
+        amplitude_seen = _rounded(abs(bend_harmonic))
+        limits = [floor(1e4 * len(hinge_limits) * limit) / 1e4 for limit in hinge_limits]
         if min(limits) < amplitude_seen:
             notes.append(
-                f"the {part} would bend by {degrees(amplitude_seen):.0f} degrees, more than its joints' ranges: of "
+                f"the {region} would bend by {degrees(amplitude_seen):.0f} degrees, more than its joints' ranges: of "
                 f"{len(limits)} joints, those that cannot follow bend as far as they can"
             )
         amplitude = tuple(min(amplitude_seen, limit) for limit in limits)
         bends.append(
-            Bend(part=part, amplitude=amplitude if len(set(amplitude)) > 1 else amplitude[:1], lag=(_rounded(lag),))
+            Bend(part=region, amplitude=amplitude if len(set(amplitude)) > 1 else amplitude[:1], lag=(_rounded(lag),))
         )
     return replace(gait, axis=tuple(bends))
 
 
-def _most(robot: Robot, part: Literal["trunk", "tail"]) -> list[float]:
-    """Return how far each hinge that bends a part sideways can bend it to either side [rad]."""
+def _bend_limits(robot: Robot, region: Literal["trunk", "tail"]) -> list[float]:
+    """Return the greatest lateral bend of each hinge of trunk or tail, to either side [rad]."""
     place, ranges, hinges = layout(robot), np.abs(servo_ranges(robot)).min(axis=1), yaw_hinges(robot)
     cables = {servo: place.cable(servo).bend_limit / place.cable(servo).joints for servo in place.cables}
-    return [cables.get(hinges.servos[k], float(ranges[hinges.servos[k]])) for k in hinges.within(part)]
+    return [cables.get(hinges.servos[k], float(ranges[hinges.servos[k]])) for k in hinges.within(region)]
 
 
-def _stepping(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]) -> Gait:
-    """Give the feet the measured paths in proportion to the trunk; what the limbs cannot follow becomes the base's."""
+def _with_steps(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]) -> Gait:
+    """Return the gait with the measured foot paths, scaled by the length of the trunk.
+
+    Paths that the limbs cannot follow are replaced by those of the base gait, with strokes as long as possible.
+    """
     reaches = [girdle.limb.reach for girdle in robot.girdles]
-    lent = [_feet_of(limb, reach) for limb, reach in zip(base.limbs, reaches, strict=True)]
-    feet = _feet(walk, robot, lent, girdles, notes)
+    base_feet = [_feet_of(limb, reach) for limb, reach in zip(base.limbs, reaches, strict=True)]
+    feet = _feet(walk, robot, base_feet, girdles, notes)
     if walk.upright:
         notes.append(f"markers lie on the skin, so that height is that of {base.name}")
         if layout(robot).tail_pitch:
-            low, high = np.sum([servo_range(robot, layout(robot).servos[i]) for i in layout(robot).tail_pitch], axis=0)
-            pitch = float(np.clip(_rounded(walk.value("tail_vertical_steady")), low, high))
+            lower_bound, upper_bound = np.sum(
+                [servo_range(robot, layout(robot).servos[i]) for i in layout(robot).tail_pitch], axis=0
+            )
+            pitch = float(np.clip(_rounded(walk.value("tail_vertical_steady")), lower_bound, upper_bound))
             gait = gait.with_numbers(tail_pitch=pitch)
     else:
         notes.append(f"heights were not seen: lift, height and tail_pitch are those of {base.name}")
-    whole = _placed(robot, gait, feet)
-    if whole is not None:
-        return whole
+    full_gait = _with_feet(robot, gait, feet)
+    if full_gait is not None:
+        return full_gait
     notes.append(f"the limbs of {robot.name} do not reach the feet's places: those and the lift are {base.name}'s")
-    strokes = [one.stroke for one in feet]
-    for share in np.linspace(1.0, 0.1, 19):
-        shorter = [one._replace(stroke=share * stroke) for one, stroke in zip(lent, strokes, strict=True)]
-        placed = _placed(robot, gait, shorter)
-        if placed is not None:
-            if share < 1.0:
-                said = " and ".join(f"{1000 * stroke:.0f} mm" for stroke in dict.fromkeys(strokes))
-                taken = " and ".join(f"{1000 * share * stroke:.0f} mm" for stroke in dict.fromkeys(strokes))
-                notes.append(f"half strokes of {said} are beyond the limbs; {taken} was taken")
-            return placed
-    still = replace(gait, limbs=base.limbs)
-    check_limits(robot, still)
+    strokes = [foot.stroke for foot in feet]
+    for fraction in np.linspace(1.0, 0.1, 19):
+        shorter = [foot._replace(stroke=fraction * stroke) for foot, stroke in zip(base_feet, strokes, strict=True)]
+        shorter_gait = _with_feet(robot, gait, shorter)
+        if shorter_gait is not None:
+            if fraction < 1.0:
+                requested_text = " and ".join(f"{1000 * stroke:.0f} mm" for stroke in dict.fromkeys(strokes))
+                applied_text = " and ".join(f"{1000 * fraction * stroke:.0f} mm" for stroke in dict.fromkeys(strokes))
+                notes.append(f"half strokes of {requested_text} are beyond the limbs; {applied_text} was taken")
+            return shorter_gait
+    standing_gait = replace(gait, limbs=base.limbs)
+    check_limits(robot, standing_gait)
     raise OutsideLimits(
         f"robot {robot.name!r} cannot follow a tenth of the strokes that were seen, {1000 * max(strokes):.0f} mm at "
         f"its size, in the posture of gait {base.name!r}: name another one with --base."
     )
 
 
-def _feet(walk: Walk, robot: Robot, lent: Sequence[_Feet], girdles: Girdles, notes: list[str]) -> list[_Feet]:
-    """Return the measured paths of the feet at the robot's size."""
+def _feet(walk: Walk, robot: Robot, base_feet: Sequence[_Feet], girdles: Girdles, notes: list[str]) -> list[_Feet]:
+    """Return the measured foot paths, scaled to the robot [m]."""
     trunk, sides = hips_ahead(robot, 0), [girdle.aside for girdle in robot.girdles]
     strokes, stroke = [trunk * mean_of(walk, "stroke", legs) for legs in _PAIRS], trunk * mean_of(walk, "stroke")
     if girdles == "alike" and abs(strokes[0] - strokes[1]) > 0.1 * stroke:
@@ -294,11 +323,11 @@ def _feet(walk: Walk, robot: Robot, lent: Sequence[_Feet], girdles: Girdles, not
         )
     feet = []
     for i, legs in enumerate(_PAIRS):
-        among = LEGS if girdles == "alike" else legs
+        pooled_legs = LEGS if girdles == "alike" else legs
         feet.append(
             _Feet(
                 stroke=stroke if girdles == "alike" else strokes[i],
-                lift=abs(trunk * mean_of(walk, "lift", among)) if walk.upright else lent[i].lift,
+                lift=abs(trunk * mean_of(walk, "lift", pooled_legs)) if walk.upright else base_feet[i].lift,
                 outward=trunk * mean_of(walk, "outward", legs) - sides[i],
                 ahead=trunk * mean_of(walk, "ahead", legs),
             )
@@ -312,8 +341,8 @@ def _feet_of(limb: object, reach: float) -> _Feet:
     return _Feet(*(reach * getattr(limb, field) for field in _Feet._fields))
 
 
-def _placed(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
-    """Return the gait with these paths of the feet; None where the robot cannot follow it."""
+def _with_feet(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
+    """Return the gait with these foot paths, or None where the robot cannot follow it."""
     reaches = [girdle.limb.reach for girdle in robot.girdles]
     try:
         limbs = tuple(
@@ -322,46 +351,48 @@ def _placed(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
         )
     except InvalidDesign:  # a path longer than the limb
         return None
-    placed = replace(gait, limbs=limbs)
-    return placed if suits(robot, placed) else None
+    candidate = replace(gait, limbs=limbs)
+    return candidate if suits(robot, candidate) else None
 
 
-def _slowed(robot: Robot, gait: Gait, notes: list[str]) -> Gait:
-    """Return the gait with a period in which no servo has to turn faster than it can."""
-    needed, slow = shortest_period(robot, gait)
-    if needed <= gait.period:
+def _with_feasible_period(robot: Robot, gait: Gait, notes: list[str]) -> Gait:
+    """Return the gait with a period in which no servo exceeds its speed."""
+    min_period, slowest_joint = shortest_period(robot, gait)
+    if min_period <= gait.period:
         return gait
     notes.append(
-        f"in a cycle of {gait.period:.4g} s {slow} would have to turn faster than its servo can; the period is "
-        f"{needed:.4g} s"
+        f"in a cycle of {gait.period:.4g} s {slowest_joint} would have to turn faster than its servo can; the period "
+        f"is {min_period:.4g} s"
     )
-    return replace(gait, period=round(needed + 5e-5, 4))  # never rounded to below what is needed
+    return replace(gait, period=round(min_period + 5e-5, 4))  # never rounded to below what is needed
 
 
-def _unheld(walk: Walk) -> list[str]:
-    """Note what was measured and is not in the gait."""
+def _unrepresented_notes(walk: Walk) -> list[str]:
+    """Return a sentence for each measured quantity that the gait cannot represent."""
     notes = []
-    for part in ("trunk", "tail"):
-        index = walk.value(f"standing_{part}")
+    for region in ("trunk", "tail"):
+        index = walk.value(f"standing_{region}")
         if index < STANDING:
             notes.append(
-                f"the {part} bends as a travelling wave (standing index {index:.2f}); the gait bends it all at once"
+                f"the {region} bends as a travelling wave (standing index {index:.2f}); the gait bends it all at once"
             )
-    for part in ("spine", "tail"):
-        steady, beyond = walk.value(f"{part}_lateral_steady"), walk.value(f"{part}_lateral_overtones")
+    for region in ("spine", "tail"):
+        steady, overtone_ratio = walk.value(f"{region}_lateral_steady"), walk.value(f"{region}_lateral_overtones")
         if abs(steady) > np.radians(3.0):
             side = "right" if steady > 0 else "left"
             notes.append(
-                f"the {part} is bent {abs(degrees(steady)):.0f} degrees to the {side} on average; in the gait it is not"
+                f"the {region} is bent {abs(degrees(steady)):.0f} degrees to the {side} on average; in the gait it "
+                "is not"
             )
-        if beyond > 0.2 and walk.value(f"{part}_lateral") > _STILL:
+        if overtone_ratio > 0.2 and walk.value(f"{region}_lateral") > _MIN_BEND:
             notes.append(
-                f"the {part}'s overtones are {100 * beyond:.0f} % of its swing; in the gait it swings as a cosine"
+                f"the {region}'s overtones are {100 * overtone_ratio:.0f} % of its swing; in the gait it swings as a "
+                "cosine"
             )
-        name = f"{part}_vertical"
+        name = f"{region}_vertical"
         if name in walk.numbers and walk.value(name) > np.radians(3.0):
             notes.append(
-                f"the {part} swings up and down by {degrees(walk.value(name)):.0f} degrees; in the gait it does not"
+                f"the {region} swings up and down by {degrees(walk.value(name)):.0f} degrees; in the gait it does not"
             )
     return notes
 
@@ -386,25 +417,25 @@ def to_curves(cycle: AngleCycle, robot: Robot, *, name: str, period: float) -> G
     """
     place, parts = layout(robot), servo_parts(robot)
     columns = [_servo(place, joint) for joint in cycle.joints]
-    numbers = [number for number, _ in columns]
-    twice = next((number for number in numbers if numbers.count(number) > 1), None)
-    if twice is not None:
-        raise OutsideLimits(f"{cycle.source} has two columns for servo {place.servos[twice]}; leave one of them.")
+    servo_indices = [servo_index for servo_index, _ in columns]
+    duplicate = next((servo_index for servo_index in servo_indices if servo_indices.count(servo_index) > 1), None)
+    if duplicate is not None:
+        raise OutsideLimits(f"{cycle.source} has two columns for servo {place.servos[duplicate]}; leave one of them.")
     count = 2 * cycle.harmonics.shape[1] - 1  # as many samples as the harmonics have numbers
     angles = cycle.at(np.arange(count) / count)
     curves = tuple(
         Curve(
-            servo=place.servos[number],
-            part=parts[place.servos[number]],
+            servo=place.servos[servo_index],
+            part=parts[place.servos[servo_index]],
             angles=tuple(round(float(angle), 3) for angle in sign * angles[:, i]),
         )
-        for i, (number, sign) in enumerate(columns)
+        for i, (servo_index, sign) in enumerate(columns)
     )
-    played = Gait(name=name, period=period, limb_phases=(0.0,) * len(place.limbs), curves=curves)
-    swings = [_swing(robot, played, limb) for limb in place.limbs]
+    gait = Gait(name=name, period=period, limb_phases=(0.0,) * len(place.limbs), curves=curves)
+    swings = [_swing(robot, gait, limb) for limb in place.limbs]
     duty = 1.0 - float(np.mean([share for _, share in swings])) if swings else 0.5
     return replace(
-        played,
+        gait,
         duty_factor=round(min(max(duty, 0.05), 0.95), 3),
         limb_phases=tuple(round((1.0 - start) % 1.0, 3) for start, _ in swings),
     )
@@ -420,14 +451,16 @@ def _servo(place: Layout, joint: str) -> tuple[int, float]:
         number = int(axis[1]) - 1
         return place.axial_yaw[number], -place.axial_left[number]
     if limb and place.limbs:
-        side, part, turn = limb[1] or limb[4], limb[2] or limb[5], limb[3]
-        girdle = 0 if part.lower() in _FRONT else place.limbs[-1].number
-        mine = next(leg for leg in place.limbs if leg.number == girdle and (leg.side > 0) == (side.lower() == "left"))
-        hinges = mine.girdle.limb.hinges
+        side, joint_name, turn = limb[1] or limb[4], limb[2] or limb[5], limb[3]
+        girdle = 0 if joint_name.lower() in _FRONT else place.limbs[-1].number
+        leg_place = next(
+            leg for leg in place.limbs if leg.number == girdle and (leg.side > 0) == (side.lower() == "left")
+        )
+        hinges = leg_place.girdle.limb.hinges
         names = [hinge.name for hinge in hinges if turn is None or hinge.turn == turn.lower()]
-        wanted = f"{mine.name}_{names[0] if turn else names[-1]}" if names else ""
-        if wanted in place.servos:
-            return place.servos.index(wanted), 1.0
+        servo_name = f"{leg_place.name}_{names[0] if turn else names[-1]}" if names else ""
+        if servo_name in place.servos:
+            return place.servos.index(servo_name), 1.0
     raise UnknownName(f"joint of robot {place.robot.name!r}", joint, (*place.servos, *_spelled(place)))
 
 
@@ -438,15 +471,15 @@ def _spelled(place: Layout) -> tuple[str, ...]:
 
 
 def _swing(robot: Robot, gait: Gait, limb: LimbPlace) -> tuple[float, float]:
-    """Return when the foot of a limb begins to go forward, and for which share of the cycle it does [cycle]."""
+    """Return the phase at which a foot begins its swing, and the duration of the swing [cycle]."""
     clock = np.arange(_STEPS) / _STEPS
     design, place = limb.girdle.limb, layout(robot)
     targets, angles = cycle_targets(robot, gait, clock), np.zeros((_STEPS, len(design.hinges)))
     for i, hinge in enumerate(design.hinges):
         if hinge.servo is not None:
             angles[:, i] = targets[:, place.servos.index(f"{limb.name}_{hinge.name}")]
-    ahead = limb_kinematics.forward(design, angles)[:, 0]
-    start, end = int(np.argmin(ahead)), int(np.argmax(ahead))
+    forward_position = limb_kinematics.forward(design, angles)[:, 0]
+    start, end = int(np.argmin(forward_position)), int(np.argmax(forward_position))
     return start / _STEPS, ((end - start) % _STEPS) / _STEPS
 
 

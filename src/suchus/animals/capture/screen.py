@@ -1,9 +1,9 @@
-"""Which keypoints are to be trusted: what was tracked is held against what a body can do, and what is wrong is named.
+"""Plausibility of keypoints: tracks are compared with what a body can do, and faults are named.
 
-Neighbours on the midline keep their distance and follow each other from front to back; feet stay within reach of their
-girdles; from one frame to the next nothing leaps. A keypoint that breaks this throughout is left out, one that does so
-in some frames is lost there, and a sentence says so. What only the user can mend, as two keypoints whose names are
-exchanged, is refused.
+Neighbours on the midline keep their distance and their order. Feet stay within reach of their girdles. No point jumps
+from one frame to the next. A keypoint that violates this throughout is left out. One that violates it in some frames is
+treated as lost there, and a sentence reports it. Faults that only the user can correct, such as exchanged names, are
+refused.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -16,26 +16,26 @@ from jaxtyping import Bool, Float
 
 from suchus.animals.capture.tracks import LOST, Tracks, UnusableTracks
 
-_SWAY = 0.1  # share of its length by which a link between neighbours may vary: skin slides over bones
-_NOISES = 4.0  # standard deviations of noise that it may vary beyond that
-_ASTRAY = 0.25  # the same share in a single frame
-_FOLDED = 0.5  # the same of points that are not neighbours: a body that bends by two radians between them
-_ROUNDS = 4  # keypoints that may be elsewhere in one frame, and still be told from the others
-_TOLD = 0.02  # share of the frames in which a keypoint leaps or is elsewhere from which on it is named
-_SHAKES = 3.0  # times the usual noise from which on a keypoint is named
-_QUIET = 0.003  # [trunk]; noise that is never named
-_HIDES = 0.15  # [trunk]; noise in which nothing is seen
-_BLUNT = 0.5  # [link]; noise from which on a link has no direction
-_SHORTER = 0.03  # share by which the midline must be shorter if two points change their names
-_LONGER = 1.3  # times the midline without two points; with points that belong to it, it is hardly longer
-_NEARER = 0.25  # [trunk]; how much nearer feet must be to their girdles if they do
-_REACH = 2.0  # [trunk]; no foot is usually farther from its girdle
-_STRETCHED = 2.0  # times its usual distance from its girdle; a foot that is farther off is elsewhere
-_STANDS = 0.15  # [trunk]; a body that goes and comes by less, over a whole film, stands
+_SWAY = 0.1  # fraction of its length by which a link between neighbours may vary: skin slides over bones
+_NOISES = 4.0  # standard deviations of noise by which it may vary in addition
+_ASTRAY = 0.25  # the same fraction in a single frame
+_FOLDED = 0.5  # the same fraction for points that are not neighbours: a body that bends by two radians between them
+_ROUNDS = 4  # greatest number of stray keypoints in one frame that can be identified
+_MIN_REPORT_FRACTION = 0.02  # fraction of frames with jumps or strays from which on a keypoint is reported
+_SHAKES = 3.0  # noise over the usual noise from which on a keypoint is reported
+_QUIET = 0.003  # [trunk]; noise that is never reported
+_HIDES = 0.15  # [trunk]; noise that hides all motion
+_MAX_LINK_NOISE = 0.5  # [link]; noise that hides the direction of a link
+_SHORTER = 0.03  # fraction by which the midline must shorten if the names of two points are exchanged
+_MAX_LENGTH_RATIO = 1.3  # length of the midline over that without two points, if both belong to it
+_MIN_GIRDLE_GAIN = 0.25  # [trunk]; decrease of the distance of feet from girdles if their names are exchanged
+_REACH = 2.0  # [trunk]; greatest median distance of a foot from its girdle
+_STRETCHED = 2.0  # greatest distance of a foot from its girdle over the median distance
+_STANDS = 0.15  # [trunk]; least displacement of a body that walks
 
 
 class Screened(NamedTuple):
-    """Tracks that can be trusted, and what was found to be wrong."""
+    """Plausible tracks, and the faults of the others."""
 
     tracks: Tracks
     """Without the keypoints that are wrong throughout; others are lost where they are wrong."""
@@ -46,114 +46,116 @@ class Screened(NamedTuple):
 
 
 def screened(tracks: Tracks) -> Screened:
-    """Return what can be trusted of tracks.
+    """Return the plausible part of tracks.
 
     Raises:
         UnusableTracks: names of keypoints are exchanged, those that are left do not show where the trunk heads, or the
             animal stands.
     """
-    source, wrong, notes = tracks, _lost(tracks), []
-    tracks = _left(source, wrong)
+    source, faults, notes = tracks, _lost_keypoints(tracks), []
+    tracks = _trusted_tracks(source, faults)
     noise = {name: _noise(tracks.at(name)) for name in tracks.points}
     scale = _scale(tracks)
-    wrong |= _shaken(tracks, noise, scale)
-    tracks = _left(source, wrong)
+    faults |= _shaky_keypoints(tracks, noise, scale)
+    tracks = _trusted_tracks(source, faults)
     unsteady = _unsteady(tracks, noise, scale)
     _check_exchanged(tracks, unsteady, noise, scale)
-    wrong |= unsteady
-    tracks = _left(source, wrong)
-    wrong |= _out_of_reach(tracks, scale)
-    tracks = _left(source, wrong)
+    faults |= unsteady
+    tracks = _trusted_tracks(source, faults)
+    faults |= _unreachable_feet(tracks, scale)
+    tracks = _trusted_tracks(source, faults)
     _check_order(tracks, scale)
     tracks, leaps = _without_jumps(tracks, scale)
     tracks, strays = _without_strays(tracks, noise, scale)
-    wrong |= _lost(tracks, "is elsewhere than its neighbours allow, or lost,")
-    tracks = _left(source, wrong, tracks)
+    faults |= _lost_keypoints(tracks, "is elsewhere than its neighbours allow, or lost,")
+    tracks = _trusted_tracks(source, faults, tracks)
     if tracks.view == "top":
-        wrong |= _astride(tracks, scale)
-        tracks = _left(source, wrong, tracks)
+        faults |= _astride(tracks, scale)
+        tracks = _trusted_tracks(source, faults, tracks)
         _check_sides(tracks)
     _check_moves(tracks, noise, scale)
-    notes += _named("leap and are left out there", leaps, tracks)
-    notes += _named("are not where their neighbours allow and are left out there", strays, tracks)
+    notes += _frame_notes("leap and are left out there", leaps, tracks)
+    notes += _frame_notes("are not where their neighbours allow and are left out there", strays, tracks)
     notes += _noisy(tracks, noise, scale)
-    return Screened(tracks, wrong, tuple(notes))
+    return Screened(tracks, faults, tuple(notes))
 
 
-def _left(source: Tracks, wrong: Collection[str], tracks: Tracks | None = None) -> Tracks:
-    """Return the tracks of the keypoints that are not wrong; those that are left must show where the trunk heads."""
-    left = (tracks or source).without(wrong)
-    if len(left.trunk_chain) < 2:
-        said = "; ".join(f"{name} {why}" for name, why in wrong.items()) if isinstance(wrong, Mapping) else ""
-        raise UnusableTracks(
-            f"in {source.source} too few keypoints of the trunk can be trusted to see where the body heads: {said}; "
-            "track them again."
+def _trusted_tracks(source: Tracks, faults: Collection[str], tracks: Tracks | None = None) -> Tracks:
+    """Return the tracks without faulty keypoints; the rest must show the direction of the trunk."""
+    trusted_tracks = (tracks or source).without(faults)
+    if len(trusted_tracks.trunk_chain) < 2:
+        reason_text = (
+            "; ".join(f"{name} {reason}" for name, reason in faults.items()) if isinstance(faults, Mapping) else ""
         )
-    return left
+        raise UnusableTracks(
+            f"in {source.source} too few keypoints of the trunk can be trusted to see where the body heads: "
+            f"{reason_text}; track them again."
+        )
+    return trusted_tracks
 
 
-def _lost(tracks: Tracks, how: str = "is lost") -> dict[str, str]:
+def _lost_keypoints(tracks: Tracks, phrase: str = "is lost") -> dict[str, str]:
     """Return the keypoints that are hardly ever seen."""
-    share = {name: float(np.mean(np.isnan(tracks.at(name)).any(axis=-1))) for name in tracks.points}
+    lost_fractions = {name: float(np.mean(np.isnan(tracks.at(name)).any(axis=-1))) for name in tracks.points}
     return {
-        name: f"{how} in {100 * lost:.0f} % of the frames; at most {100 * LOST:.0f} % may be: track it again, or lower "
-        "the confidence that is asked for"
-        for name, lost in share.items()
-        if lost > LOST
+        name: f"{phrase} in {100 * lost_fraction:.0f} % of the frames; at most {100 * LOST:.0f} % may be: track it "
+        "again, or lower the confidence that is asked for"
+        for name, lost_fraction in lost_fractions.items()
+        if lost_fraction > LOST
     }
 
 
 def _noise(place: np.ndarray) -> float:
-    """Return the standard deviation of a coordinate from frame to frame [m or px]; NaN where too little is seen.
+    """Return the standard deviation of a coordinate from frame to frame [m or px]; NaN if too little is seen.
 
-    Each place is held against the cubic through the two before and the two after, which a body follows.
+    Each position is compared with the cubic through the two positions before and the two after it.
     """
     if len(place) < 5:
         return float("nan")
-    apart = place[2:-2] - (4 * (place[1:-3] + place[3:-1]) - place[:-4] - place[4:]) / 6
-    seen = np.abs(apart[np.isfinite(apart)])
-    return float(1.4826 * np.median(seen) / np.sqrt(70 / 36)) if len(seen) >= 4 else float("nan")
+    deviation = place[2:-2] - (4 * (place[1:-3] + place[3:-1]) - place[:-4] - place[4:]) / 6
+    abs_deviation = np.abs(deviation[np.isfinite(deviation)])
+    return float(1.4826 * np.median(abs_deviation) / np.sqrt(70 / 36)) if len(abs_deviation) >= 4 else float("nan")
 
 
 def _scale(tracks: Tracks) -> float:
-    """Return about how long the trunk is, whatever one keypoint does [m or px]."""
+    """Return an estimate of the trunk's length that does not depend on any single keypoint [m or px]."""
     chain = tracks.midline
-    links = [float(np.nanmedian(_apart(tracks, a, b))) for a, b in pairwise(chain)]
+    links = [float(np.nanmedian(_distance(tracks, a, b))) for a, b in pairwise(chain)]
     front, rear = tracks.line
     return float(np.median(links)) * max(1, chain.index(rear) - chain.index(front))
 
 
-def _apart(tracks: Tracks, one: str, other: str) -> Float[np.ndarray, " frame"]:
-    return np.asarray(np.linalg.norm(tracks.at(one) - tracks.at(other), axis=-1))
+def _distance(tracks: Tracks, first_point: str, second_point: str) -> Float[np.ndarray, " frame"]:
+    return np.asarray(np.linalg.norm(tracks.at(first_point) - tracks.at(second_point), axis=-1))
 
 
-def _usual(noise: Mapping[str, float], scale: float) -> float:
-    known = [one for one in noise.values() if np.isfinite(one)]
-    return max(float(np.median(known)) if known else 0.0, _QUIET * scale)
+def _typical_noise(noise: Mapping[str, float], scale: float) -> float:
+    finite_levels = [level for level in noise.values() if np.isfinite(level)]
+    return max(float(np.median(finite_levels)) if finite_levels else 0.0, _QUIET * scale)
 
 
-def _shaken(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[str, str]:
-    """Return the keypoints whose noise hides what they do, while others are seen well."""
-    chain, usual = tracks.midline, _usual(noise, scale)
-    link = float(np.median([np.nanmedian(_apart(tracks, a, b)) for a, b in pairwise(chain)]))
-    found = {}
+def _shaky_keypoints(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[str, str]:
+    """Return the keypoints whose noise hides their motion, while others are seen well."""
+    chain, typical_noise = tracks.midline, _typical_noise(noise, scale)
+    link = float(np.median([np.nanmedian(_distance(tracks, a, b)) for a, b in pairwise(chain)]))
+    faults = {}
     for name in tracks.points:
-        most = min(_HIDES * scale, _BLUNT * link) if name in chain else _HIDES * scale
-        if noise[name] > max(most, _SHAKES * usual):
-            found[name] = (
-                f"shakes by {_length(noise[name], tracks)} from frame to frame, others by {_length(usual, tracks)}: "
-                "track it again"
+        max_noise = min(_HIDES * scale, _MAX_LINK_NOISE * link) if name in chain else _HIDES * scale
+        if noise[name] > max(max_noise, _SHAKES * typical_noise):
+            faults[name] = (
+                f"shakes by {_length(noise[name], tracks)} from frame to frame, others by "
+                f"{_length(typical_noise, tracks)}: track it again"
             )
-    return found
+    return faults
 
 
 def _noisy(tracks: Tracks, noise: Mapping[str, float], scale: float) -> list[str]:
-    """Name the keypoints that are seen much worse than others."""
-    usual = _usual(noise, scale)
-    loud = [name for name in tracks.points if noise[name] > _SHAKES * usual]
+    """Return a sentence that names keypoints with much more noise than usual."""
+    typical_noise = _typical_noise(noise, scale)
+    loud = [name for name in tracks.points if noise[name] > _SHAKES * typical_noise]
     shakes = ", ".join(f"{name} by {_length(noise[name], tracks)}" for name in loud)
-    told = f"{shakes}, the others by {_length(usual, tracks)} or less; intervals are as wide as that makes them"
-    return [f"more noise than usual from frame to frame: {told}"] if loud else []
+    text = f"{shakes}, the others by {_length(typical_noise, tracks)} or less; intervals are as wide as that makes them"
+    return [f"more noise than usual from frame to frame: {text}"] if loud else []
 
 
 def _length(value: float, tracks: Tracks) -> str:
@@ -161,99 +163,116 @@ def _length(value: float, tracks: Tracks) -> str:
 
 
 class _Links:
-    """The distances between neighbours on the midline, and between every other one, frame by frame."""
+    """Distances between neighbours on the midline, and between every second point, frame by frame."""
 
     def __init__(self, tracks: Tracks, noise: Mapping[str, float], scale: float) -> None:
         self._tracks, self._noise, self._scale = tracks, noise, scale
-        self._known: dict[tuple[str, str], np.ndarray] = {}
+        self._distances: dict[tuple[str, str], np.ndarray] = {}
 
     def pairs(self, chain: Sequence[str]) -> list[tuple[str, str]]:
         return [*pairwise(chain), *zip(chain[:-2], chain[2:], strict=True)]
 
-    def apart(self, pair: tuple[str, str]) -> np.ndarray:
-        if pair not in self._known:
-            self._known[pair] = _apart(self._tracks, *pair)
-        return self._known[pair]
+    def distance(self, pair: tuple[str, str]) -> np.ndarray:
+        if pair not in self._distances:
+            self._distances[pair] = _distance(self._tracks, *pair)
+        return self._distances[pair]
 
-    def most(self, pair: tuple[str, str], share: float) -> float:
-        """Return by how much the distance of a pair may differ from what it usually is."""
+    def max_deviation(self, pair: tuple[str, str], fraction: float) -> float:
+        """Return the tolerance for the distance of a pair about its median."""
         noises = np.nan_to_num([self._noise[name] for name in pair])
-        usual = min(float(np.nanmedian(self.apart(pair))), self._scale)
-        return float(share * usual + _NOISES * np.hypot(*noises)) + 1e-9
+        typical_distance = min(float(np.nanmedian(self.distance(pair))), self._scale)
+        return float(fraction * typical_distance + _NOISES * np.hypot(*noises)) + 1e-9
 
     def excess(self, pair: tuple[str, str]) -> float:
-        """Return how far the distance of a pair varies beyond what it may, in units of that; 0 where it does not."""
-        seen = self.apart(pair)
-        spread = float(1.4826 * np.nanmedian(np.abs(seen - np.nanmedian(seen))))
-        return max(0.0, spread / self.most(pair, _SWAY) - 1.0)
+        """Return the spread of a pair's distance over its tolerance, minus one; 0 within the tolerance [-]."""
+        distance = self.distance(pair)
+        spread = float(1.4826 * np.nanmedian(np.abs(distance - np.nanmedian(distance))))
+        return max(0.0, spread / self.max_deviation(pair, _SWAY) - 1.0)
 
-    def strays(self, pair: tuple[str, str], share: float = _ASTRAY) -> Bool[np.ndarray, " frame"]:
-        """Return in which frames the distance of a pair is not what it usually is, by more than a share of it."""
-        seen = self.apart(pair)
+    def strays(self, pair: tuple[str, str], fraction: float = _ASTRAY) -> Bool[np.ndarray, " frame"]:
+        """Return the frames in which the distance of a pair differs from its median by more than a tolerance."""
+        distance = self.distance(pair)
         with np.errstate(invalid="ignore"):
-            return np.abs(seen - np.nanmedian(seen)) > self.most(pair, share)
+            return np.abs(distance - np.nanmedian(distance)) > self.max_deviation(pair, fraction)
 
 
 def _unsteady(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[str, str]:
-    """Return the midline points that do not keep their distance from their neighbours: the fewest that explain it.
+    """Return the fewest midline points that explain all varying distances between neighbours.
 
     Raises:
         UnusableTracks: it cannot be told which ones are wrong.
     """
-    links, chain, found = _Links(tracks, noise, scale), list(tracks.midline), dict[str, str]()
+    links, chain, faults = _Links(tracks, noise, scale), list(tracks.midline), dict[str, str]()
     while True:
         excess = {pair: links.excess(pair) for pair in links.pairs(chain)}
         if not any(excess[pair] for pair in pairwise(chain)):
-            return found
+            return faults
         blame = {name: [excess[pair] for pair in excess if name in pair] for name in chain}
-        score = {name: (sum(one > 0 for one in each), sum(each)) for name, each in blame.items()}
-        worst = max(chain, key=lambda name: score[name])
+        score = {
+            name: (sum(pair_excess > 0 for pair_excess in pair_excesses), sum(pair_excesses))
+            for name, pair_excesses in blame.items()
+        }
+        worst_point = max(chain, key=lambda name: score[name])
         a, b = max((pair for pair in pairwise(chain) if excess[pair]), key=lambda pair: excess[pair])
-        if len(chain) <= 3 or len(found) > len(tracks.midline) // 3:
-            named = " and ".join(dict.fromkeys((*found, a, b)))
+        if len(chain) <= 3 or len(faults) > len(tracks.midline) // 3:
+            names = " and ".join(dict.fromkeys((*faults, a, b)))
             raise UnusableTracks(
-                f"in {tracks.source} the keypoints {named} do not belong to one body: the distance of {a} and {b} "
-                f"varies by {_length(links.most((a, b), _SWAY) * (1 + excess[a, b]), tracks)}; track them again."
+                f"in {tracks.source} the keypoints {names} do not belong to one body: the distance of {a} and {b} "
+                f"varies by {_length(links.max_deviation((a, b), _SWAY) * (1 + excess[a, b]), tracks)}; track them "
+                "again."
             )
-        found[worst] = (
+        faults[worst_point] = (
             "does not move with its neighbours: its distance from "
-            f"{' and '.join(beside(chain, worst))} does not stay; track it again"
+            f"{' and '.join(beside(chain, worst_point))} does not stay; track it again"
         )
-        chain.remove(worst)
+        chain.remove(worst_point)
 
 
 def beside(chain: Sequence[str], name: str) -> list[str]:
     """Return the neighbours of a keypoint on the midline, the front one first."""
-    at = chain.index(name)
-    return [chain[i] for i in (at - 1, at + 1) if 0 <= i < len(chain)]
+    index = chain.index(name)
+    return [chain[i] for i in (index - 1, index + 1) if 0 <= i < len(chain)]
 
 
-def _check_exchanged(source: Tracks, wrong: Mapping[str, str], noise: Mapping[str, float], scale: float) -> None:
+def _check_exchanged(source: Tracks, faults: Mapping[str, str], noise: Mapping[str, float], scale: float) -> None:
     """Refuse tracks in which a midline point that is wrong would be right under the name of another one.
 
     Raises:
         UnusableTracks: it names both.
     """
-    for name, other in ((one, two) for one in wrong for two in (*wrong, *source.legs) if one != two):
+    for name, substitute in (
+        (faulty_name, substitute_name)
+        for faulty_name in faults
+        for substitute_name in (*faults, *source.legs)
+        if faulty_name != substitute_name
+    ):
         position = source.position.copy()
-        i, j = source.points.index(name), source.points.index(other)
+        i, j = source.points.index(name), source.points.index(substitute)
         position[:, [i, j]] = position[:, [j, i]]
-        mended = replace(source, position=position).without([one for one in wrong if one not in (name, other)])
-        theirs = {**noise, name: noise[other], other: noise[name]}
-        links, chain = _Links(mended, theirs, scale), mended.midline
-        mine = [pair for pair in links.pairs(chain) if {name, other} & set(pair)]
-        if other not in chain and np.nanmedian(_apart(mended, other, _girdle(mended, other))) > _REACH * scale:
+        swapped_tracks = replace(source, position=position).without(
+            [point for point in faults if point not in (name, substitute)]
+        )
+        swapped_noise = {**noise, name: noise[substitute], substitute: noise[name]}
+        links, chain = _Links(swapped_tracks, swapped_noise, scale), swapped_tracks.midline
+        affected_pairs = [pair for pair in links.pairs(chain) if {name, substitute} & set(pair)]
+        if (
+            substitute not in chain
+            and np.nanmedian(_distance(swapped_tracks, substitute, _girdle(swapped_tracks, substitute)))
+            > _REACH * scale
+        ):
             continue
-        straight = _chain_length(mended) < _LONGER * _chain_length(mended.without((name, other)))
-        if straight and not any(links.excess(pair) for pair in mine):
+        straight = _chain_length(swapped_tracks) < _MAX_LENGTH_RATIO * _chain_length(
+            swapped_tracks.without((name, substitute))
+        )
+        if straight and not any(links.excess(pair) for pair in affected_pairs):
             raise UnusableTracks(
-                f"in {source.source} the keypoints {name} and {other} are exchanged: each keeps its distance from the "
-                f"neighbours of the other; give --names {name}={other} {other}={name}."
+                f"in {source.source} the keypoints {name} and {substitute} are exchanged: each keeps its distance "
+                f"from the neighbours of the other; give --names {name}={substitute} {substitute}={name}."
             )
 
 
 def _chain_length(tracks: Tracks) -> float:
-    return sum(float(np.nanmedian(_apart(tracks, a, b))) for a, b in pairwise(tracks.midline))
+    return sum(float(np.nanmedian(_distance(tracks, a, b))) for a, b in pairwise(tracks.midline))
 
 
 def _check_order(tracks: Tracks, scale: float) -> None:
@@ -263,77 +282,85 @@ def _check_order(tracks: Tracks, scale: float) -> None:
         UnusableTracks: it names both.
     """
     chain = tracks.midline
-    apart = {frozenset(pair): float(np.nanmedian(_apart(tracks, *pair))) for pair in combinations(tracks.points, 2)}
+    distances = {
+        frozenset(pair): float(np.nanmedian(_distance(tracks, *pair))) for pair in combinations(tracks.points, 2)
+    }
 
-    def long(names: Sequence[str]) -> float:
-        return sum(apart[frozenset(pair)] for pair in pairwise(names))
+    def chain_length(names: Sequence[str]) -> float:
+        return sum(distances[frozenset(pair)] for pair in pairwise(names))
 
-    whole, best, names = long(chain), np.inf, ("", "")
+    length, best_length, names = chain_length(chain), np.inf, ("", "")
     for a, b in combinations((*chain, *tracks.legs), 2):
         if a in chain:
-            other = long([{a: b, b: a}.get(name, name) for name in chain])
-            if other < best:
-                best, names = other, (a, b)
-    if best < (1 - _SHORTER) * whole:
+            swapped_length = chain_length([{a: b, b: a}.get(name, name) for name in chain])
+            if swapped_length < best_length:
+                best_length, names = swapped_length, (a, b)
+    if best_length < (1 - _SHORTER) * length:
         raise UnusableTracks(
             f"in {tracks.source} the keypoints {names[0]} and {names[1]} are exchanged: with their names changed the "
-            f"midline is {100 * (1 - best / whole):.0f} % shorter; give --names {names[0]}={names[1]} "
+            f"midline is {100 * (1 - best_length / length):.0f} % shorter; give --names {names[0]}={names[1]} "
             f"{names[1]}={names[0]}."
         )
     girdles = {leg: "shoulder" if leg.endswith("F") else "hip" for leg in tracks.legs}
     if len(tracks.legs) < 2 or not tracks.has("shoulder", "hip"):
         return
-    cost = {(leg, girdle): apart[frozenset((leg, girdle))] for leg in tracks.legs for girdle in ("shoulder", "hip")}
-    mine = sum(cost[leg, girdles[leg]] for leg in tracks.legs)
+    cost = {(leg, girdle): distances[frozenset((leg, girdle))] for leg in tracks.legs for girdle in ("shoulder", "hip")}
+    total_cost = sum(cost[leg, girdles[leg]] for leg in tracks.legs)
     orders = [dict(zip(tracks.legs, order, strict=True)) for order in permutations(tracks.legs)]
     best_order = min(
-        orders, key=lambda to: (sum(cost[leg, girdles[to[leg]]] for leg in to), sum(a != b for a, b in to.items()))
+        orders,
+        key=lambda assignment: (
+            sum(cost[leg, girdles[assignment[leg]]] for leg in assignment),
+            sum(a != b for a, b in assignment.items()),
+        ),
     )
-    if sum(cost[leg, girdles[best_order[leg]]] for leg in best_order) < mine - _NEARER * scale:
-        moved = [leg for leg in tracks.legs if best_order[leg] != leg]
-        renamed = " ".join(f"{leg}={best_order[leg]}" for leg in moved)
+    if sum(cost[leg, girdles[best_order[leg]]] for leg in best_order) < total_cost - _MIN_GIRDLE_GAIN * scale:
+        swapped_legs = [leg for leg in tracks.legs if best_order[leg] != leg]
+        renamed = " ".join(f"{leg}={best_order[leg]}" for leg in swapped_legs)
         raise UnusableTracks(
-            f"in {tracks.source} the feet {' and '.join(moved)} are exchanged: each is nearer to the other's girdle; "
-            f"give --names {renamed}."
+            f"in {tracks.source} the feet {' and '.join(swapped_legs)} are exchanged: each is nearer to the other's "
+            f"girdle; give --names {renamed}."
         )
 
 
-_AROUND = 3  # frames before and after, whose median a point is held against
-_FAR = 0.2  # [trunk]; less is noise, which the fits take care of
-_USUAL, _SHARE = 3.0, 90.0  # times what is not exceeded in so many per cent of the frames
+_MEDIAN_HALF_WINDOW = 3  # frames on either side in the window of the median
+_MIN_JUMP = 0.2  # [trunk]; smaller deviations are noise
+_JUMP_FACTOR, _JUMP_PERCENTILE = 3.0, 90.0  # jump over this percentile of the deviations
 
 
 def _without_jumps(tracks: Tracks, scale: float) -> tuple[Tracks, dict[str, np.ndarray]]:
-    """Return the tracks with points lost where they are far from where they were just before and just after, and where.
+    """Return the tracks without points that jumped, and the frames of the jumps by keypoint.
 
-    Far is beyond a fifth of the trunk, and beyond three times what 90 % of the frames of that point stay below, so that
-    a fast foot in a slow film is none. This is Hampel's identifier with a window of seven frames and a quantile that
-    holds where a foot stands still most of the time. Longer mistakes, as two feet exchanged for a while, are no jumps.
+    A jump is a distance of more than a fifth of the trunk from the median of the seven frames around it. It must also
+    exceed three times the distance that 90 % of the frames stay below, so that a fast foot in a slow film is no jump.
+    This is Hampel's identifier with a quantile that is valid for a foot that rests most of the time. Longer faults,
+    such as two exchanged feet, are no jumps.
     """
     position = tracks.position.copy()
-    padded = np.pad(position, ((_AROUND, _AROUND), (0, 0), (0, 0)), constant_values=np.nan)
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _AROUND + 1, axis=0)
-    seen = np.isfinite(windows).all(axis=2).sum(axis=-1)  # (frame, point)
-    usual = np.full_like(position, np.nan)
-    known = seen >= _AROUND
-    usual[known] = np.nanmedian(windows[known], axis=-1)
-    apart = np.linalg.norm(position - usual, axis=-1)
-    found = {}
+    padded = np.pad(position, ((_MEDIAN_HALF_WINDOW, _MEDIAN_HALF_WINDOW), (0, 0), (0, 0)), constant_values=np.nan)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _MEDIAN_HALF_WINDOW + 1, axis=0)
+    seen_count = np.isfinite(windows).all(axis=2).sum(axis=-1)  # (frame, point)
+    median_position = np.full_like(position, np.nan)
+    has_median = seen_count >= _MEDIAN_HALF_WINDOW
+    median_position[has_median] = np.nanmedian(windows[has_median], axis=-1)
+    deviation = np.linalg.norm(position - median_position, axis=-1)
+    jumps = {}
     for i, name in enumerate(tracks.points):
-        far = apart[:, i]
-        found[name] = np.zeros(len(far), dtype=bool)
-        if np.isfinite(far).any():
-            found[name] = far > max(_FAR * scale, _USUAL * float(np.nanpercentile(far, _SHARE)))
-            position[found[name], i] = np.nan
-    return replace(tracks, position=position), found
+        point_deviation = deviation[:, i]
+        jumps[name] = np.zeros(len(point_deviation), dtype=bool)
+        if np.isfinite(point_deviation).any():
+            jumps[name] = point_deviation > max(
+                _MIN_JUMP * scale, _JUMP_FACTOR * float(np.nanpercentile(point_deviation, _JUMP_PERCENTILE))
+            )
+            position[jumps[name], i] = np.nan
+    return replace(tracks, position=position), jumps
 
 
 def _without_strays(tracks: Tracks, noise: Mapping[str, float], scale: float) -> tuple[Tracks, dict[str, np.ndarray]]:
-    """Return the tracks with midline points lost where they are not at their usual distance from neighbours, and where.
+    """Return the tracks without midline points at a wrong distance from neighbours, and their frames by keypoint.
 
-    In every frame the point goes that most of the wrong distances have in common, then the next; so do feet that are
-    much farther from their girdles than they usually are, where the girdles are where they belong. A point that its
-    neighbour has passed may be as far from it as ever; then it is not as far from the next but one.
+    In every frame the point with most wrong distances is removed, then the next. Feet much farther from their girdles
+    than usual are removed too. Distances between every second point reveal a point that passed its neighbour.
     """
     links, chain = _Links(tracks, noise, scale), tracks.midline
     pairs = links.pairs(chain)
@@ -341,78 +368,84 @@ def _without_strays(tracks: Tracks, noise: Mapping[str, float], scale: float) ->
     member = np.array([[name in pair for name in chain] for pair in pairs], dtype=float)
     adjacent = np.array([pair in set(pairwise(chain)) for pair in pairs])
     surely = np.array([bad[i] if adjacent[i] else links.strays(pair, _FOLDED) for i, pair in enumerate(pairs)])
-    gone = np.zeros((len(chain), len(tracks.time)), dtype=bool)
+    is_stray = np.zeros((len(chain), len(tracks.time)), dtype=bool)
     for _ in range(_ROUNDS):
         frames = np.flatnonzero(surely.any(axis=0))
         if not len(frames):
             break
         votes = member.T @ bad[:, frames]
-        worst = np.argmax(votes + 0.5 * votes / member.sum(axis=0)[:, None], axis=0)  # of equals who is at fewer pairs
-        gone[worst, frames] = True
-        bad[:, frames] &= member[:, worst] == 0
-        surely[:, frames] &= member[:, worst] == 0
-    position, found = tracks.position.copy(), dict(zip(chain, gone, strict=True))
+        worst_points = np.argmax(
+            votes + 0.5 * votes / member.sum(axis=0)[:, None], axis=0
+        )  # of equals who is at fewer pairs
+        is_stray[worst_points, frames] = True
+        bad[:, frames] &= member[:, worst_points] == 0
+        surely[:, frames] &= member[:, worst_points] == 0
+    position, strays = tracks.position.copy(), dict(zip(chain, is_stray, strict=True))
     for leg in tracks.legs:
         girdle = _girdle(tracks, leg)
-        far = np.where(found[girdle], np.nan, _apart(tracks, leg, girdle))
+        foot_distance = np.where(strays[girdle], np.nan, _distance(tracks, leg, girdle))
         with np.errstate(invalid="ignore"):
-            found[leg] = far > _STRETCHED * np.nanmedian(far) + _NOISES * np.nan_to_num(noise[leg])
-    for name, frames in found.items():
+            strays[leg] = foot_distance > _STRETCHED * np.nanmedian(foot_distance) + _NOISES * np.nan_to_num(noise[leg])
+    for name, frames in strays.items():
         position[frames, tracks.points.index(name)] = np.nan
-    return replace(tracks, position=position), found
+    return replace(tracks, position=position), strays
 
 
 def _girdle(tracks: Tracks, leg: str) -> str:
-    """Return the point of the trunk that is nearest to where a limb begins."""
+    """Return the point of the trunk that is nearest to the base of a limb."""
     front = leg.endswith("F")
-    wanted = "shoulder" if front else "hip"
-    return wanted if wanted in tracks.points else tracks.line[0 if front else 1]
+    girdle_point = "shoulder" if front else "hip"
+    return girdle_point if girdle_point in tracks.points else tracks.line[0 if front else 1]
 
 
-def _named(what: str, frames: Mapping[str, np.ndarray], tracks: Tracks) -> list[str]:
-    """Say which keypoints do something in how many frames, where these are more than a few."""
-    told = []
-    for name, where in frames.items():
-        if where.mean() >= _TOLD / 4 and where.sum() >= 3:
-            first = tracks.time[np.argmax(where)] if name in tracks.points else np.nan
-            since = f", first at {first:.2f} s" if where.mean() >= _TOLD else ""
-            told.append(f"{name} in {100 * where.mean():.1f} % of the frames{since}")
-    return [f"keypoints that {what}: {'; '.join(told)}"] if told else []
+def _frame_notes(phrase: str, frames: Mapping[str, np.ndarray], tracks: Tracks) -> list[str]:
+    """Return a sentence on keypoints with a fault in more than a few frames; empty without one."""
+    notes = []
+    for name, is_affected in frames.items():
+        if is_affected.mean() >= _MIN_REPORT_FRACTION / 4 and is_affected.sum() >= 3:
+            first_time = tracks.time[np.argmax(is_affected)] if name in tracks.points else np.nan
+            since = f", first at {first_time:.2f} s" if is_affected.mean() >= _MIN_REPORT_FRACTION else ""
+            notes.append(f"{name} in {100 * is_affected.mean():.1f} % of the frames{since}")
+    return [f"keypoints that {phrase}: {'; '.join(notes)}"] if notes else []
 
 
-def _out_of_reach(tracks: Tracks, scale: float) -> dict[str, str]:
+def _unreachable_feet(tracks: Tracks, scale: float) -> dict[str, str]:
     """Return the feet that are usually too far from their girdles."""
-    found = {}
+    faults = {}
     for leg in tracks.legs:
         girdle = _girdle(tracks, leg)
-        far = float(np.nanmedian(_apart(tracks, leg, girdle))) / scale
-        if far > _REACH:
-            found[leg] = f"lies {far:.1f} trunk lengths from {girdle}, farther than a limb reaches: track it again"
-    return found
+        distance = float(np.nanmedian(_distance(tracks, leg, girdle))) / scale
+        if distance > _REACH:
+            faults[leg] = (
+                f"lies {distance:.1f} trunk lengths from {girdle}, farther than a limb reaches: track it again"
+            )
+    return faults
 
 
 def _check_moves(tracks: Tracks, noise: Mapping[str, float], scale: float) -> None:
-    """Refuse an animal that neither goes nor moves a foot.
+    """Refuse an animal that moves neither its trunk nor a foot.
 
     Raises:
         UnusableTracks: it stands.
     """
     names = (*tracks.line, *tracks.legs)
     moves = {name: np.nanpercentile(tracks.at(name), [2, 98], axis=0) for name in names}
-    most = {name: float(np.linalg.norm(high - low)) for name, (low, high) in moves.items()}
-    if all(most[name] < max(_STANDS * scale, 6 * np.nan_to_num(noise[name])) for name in names):
+    ranges = {
+        name: float(np.linalg.norm(upper_bound - lower_bound)) for name, (lower_bound, upper_bound) in moves.items()
+    }
+    if all(ranges[name] < max(_STANDS * scale, 6 * np.nan_to_num(noise[name])) for name in names):
         raise UnusableTracks(
             f"in {tracks.source} the animal stands: in {tracks.time[-1] - tracks.time[0]:.1f} s no foot and no part of "
-            f"the trunk moves by more than {max(most.values()) / scale:.2f} trunk lengths; cut out the part in which "
+            f"the trunk moves by more than {max(ranges.values()) / scale:.2f} trunk lengths; cut out the part in which "
             "it walks, with --start and --end."
         )
 
 
-_BESIDE = 0.1  # [trunk]; so far on the wrong side of the midline a foot is wrong
-_ALWAYS = 0.9  # share of the frames that counts as always
-_IN_A_ROW = 0.5  # share of these frames that follow each other, below which it is noise
-_OFTEN = 0.1  # share of the frames in which noise may do so
-_SOMETIMES = 0.02  # share that a point's noise does not explain
+_MAX_SIDE_OFFSET = 0.1  # [trunk]; greatest distance of a foot on the wrong side
+_ALWAYS = 0.9  # fraction of frames that counts as always
+_IN_A_ROW = 0.5  # fraction of successive frames among these; noise has less
+_OFTEN = 0.1  # greatest fraction of frames with feet exchanged by noise
+_SOMETIMES = 0.02  # fraction of frames that noise does not explain
 
 
 def _check_sides(tracks: Tracks) -> None:
@@ -423,28 +456,30 @@ def _check_sides(tracks: Tracks) -> None:
     """
     girdles = {("LF", "RF"): tracks.thorax, ("LH", "RH"): tracks.pelvis}
     pairs = {pair: girdle or tracks.line for pair, girdle in girdles.items() if tracks.has(*pair)}
-    crossed = {pair: _crossed(tracks, *pair, *look) for pair, look in pairs.items()}
-    shares = {pair: float(np.nanmean(seen)) for pair, seen in crossed.items() if np.isfinite(seen).any()}
+    crossed = {pair: _crossed(tracks, *pair, *segment) for pair, segment in pairs.items()}
+    shares = {
+        pair: float(np.nanmean(is_crossed)) for pair, is_crossed in crossed.items() if np.isfinite(is_crossed).any()
+    }
     if len(shares) == 2 and min(shares.values()) > _ALWAYS:
         raise UnusableTracks(
             f"in {tracks.source} LF and LH lie on the right of the body, RF and RH on the left: left and right are "
             "swapped in both pairs, or y points the other way; rename the feet, or give --y-axis up or down "
             "(images have it down)."
         )
-    for (left, right), share in shares.items():
+    for (left_leg, right_leg), share in shares.items():
         if share > _ALWAYS:
             raise UnusableTracks(
-                f"in {tracks.source} {left} lies on the right of the body and {right} on the left, in "
+                f"in {tracks.source} {left_leg} lies on the right of the body and {right_leg} on the left, in "
                 f"{100 * share:.0f} % of the frames: left and right of this pair are swapped; give --names "
-                f"{left}={right} {right}={left}."
+                f"{left_leg}={right_leg} {right_leg}={left_leg}."
             )
         if share > _SOMETIMES:
-            frames = np.flatnonzero(crossed[left, right] == 1)
+            frames = np.flatnonzero(crossed[left_leg, right_leg] == 1)
             if np.mean(np.diff(frames) == 1) < _IN_A_ROW:
-                _check_noise(tracks, left, right, share)
+                _check_noise(tracks, left_leg, right_leg, share)
                 continue
             raise UnusableTracks(
-                f"in {tracks.source} {left} and {right} are swapped in {len(frames)} frames, first in frame "
+                f"in {tracks.source} {left_leg} and {right_leg} are swapped in {len(frames)} frames, first in frame "
                 f"{frames[0] + 1} at {tracks.time[frames[0]]:.2f} s and last in frame {frames[-1] + 1}: exchange "
                 "them there."
             )
@@ -453,34 +488,37 @@ def _check_sides(tracks: Tracks) -> None:
 def _astride(tracks: Tracks, scale: float) -> dict[str, str]:
     """Return the feet that lie on the other side of the body, while their partners are where they belong."""
     front, rear = tracks.line
-    look = tracks.at(front) - tracks.at(rear)
-    look = look / np.linalg.norm(look, axis=-1, keepdims=True)
-    aside = {}
+    trunk_axis = tracks.at(front) - tracks.at(rear)
+    trunk_axis = trunk_axis / np.linalg.norm(trunk_axis, axis=-1, keepdims=True)
+    lateral_offsets = {}
     for leg in tracks.legs:
         d = tracks.at(leg) - tracks.at(rear)
-        left = float(np.nanmedian(look[:, 0] * d[:, 1] - look[:, 1] * d[:, 0])) / scale
-        aside[leg] = left if leg.startswith("L") else -left
-    found = {}
+        left_offset = float(np.nanmedian(trunk_axis[:, 0] * d[:, 1] - trunk_axis[:, 1] * d[:, 0])) / scale
+        lateral_offsets[leg] = left_offset if leg.startswith("L") else -left_offset
+    faults = {}
     for leg in tracks.legs:
         partner = {"L": "R", "R": "L"}[leg[0]] + leg[1]
-        if aside[leg] < -_BESIDE and aside.get(partner, 1.0) > 0.0:
+        if lateral_offsets[leg] < -_MAX_SIDE_OFFSET and lateral_offsets.get(partner, 1.0) > 0.0:
             side = "right" if leg.startswith("L") else "left"
-            found[leg] = f"lies on the {side} of the body, {-aside[leg]:.2f} trunk lengths off: track it again"
-    return found
+            faults[leg] = (
+                f"lies on the {side} of the body, {-lateral_offsets[leg]:.2f} trunk lengths off: track it again"
+            )
+    return faults
 
 
-def _check_noise(tracks: Tracks, left: str, right: str, share: float) -> None:
-    """Refuse feet that change sides from frame to frame, if they do so often."""
-    if share > _OFTEN:
+def _check_noise(tracks: Tracks, left_leg: str, right_leg: str, fraction: float) -> None:
+    """Refuse feet that change sides in many frames."""
+    if fraction > _OFTEN:
         raise UnusableTracks(
-            f"in {tracks.source} {left} lies right of {right} in {100 * share:.0f} % of the frames, now here and now "
+            f"in {tracks.source} {left_leg} lies right of {right_leg} in {100 * fraction:.0f} % of the frames, now "
+            "here and now "
             f"there; up to {100 * _OFTEN:.0f} % is allowed: noise hides the feet; track them again, or film nearer."
         )
 
 
-def _crossed(tracks: Tracks, left: str, right: str, ahead: str, behind: str) -> np.ndarray:
+def _crossed(tracks: Tracks, left_leg: str, right_leg: str, front: str, rear: str) -> np.ndarray:
     """Return 1 in frames in which the left foot lies right of the right one, 0 where it does not, NaN where lost."""
-    look = tracks.at(ahead) - tracks.at(behind)
-    across = tracks.at(left) - tracks.at(right)
-    side = look[:, 0] * across[:, 1] - look[:, 1] * across[:, 0]
+    trunk_vector = tracks.at(front) - tracks.at(rear)
+    lateral_vector = tracks.at(left_leg) - tracks.at(right_leg)
+    side = trunk_vector[:, 0] * lateral_vector[:, 1] - trunk_vector[:, 1] * lateral_vector[:, 0]
     return np.where(np.isnan(side), np.nan, side < 0)

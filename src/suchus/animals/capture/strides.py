@@ -1,8 +1,8 @@
-"""A walk stride by stride, and over the phase of its mean cycle: what a table of measurements is made of.
+"""The strides of a walk, and its mean cycle over the phase: the tables of measurements.
 
-A stride lasts from one lift-off of LF to the next (of the first foot that there is, without feet from the film's
-beginning). An interval, from ``NAME_low`` to ``NAME_high``, holds the truth in 95 of 100 cases: in a single stride it
-comes from the noise of the keypoints, over all strides from how they differ as well.
+A stride begins with a lift-off of LF, or of the first tracked foot, or without feet at the beginning of the film. An
+interval from ``NAME_low`` to ``NAME_high`` has 95 % confidence. For a single stride it follows from the noise of the
+keypoints, for all strides also from their differences.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,23 +19,24 @@ from suchus.animals.capture.feet import FootContact, FootSweep, continuous
 from suchus.animals.capture.swings import Clock
 from suchus.animals.capture.tracks import Tracks
 
-_SURE = 1.96  # standard errors to either side that hold the truth in 95 of 100 cases
-_SLOPE = np.sqrt(12.0)  # standard errors of a mean in that of a slope over the whole stride
-_TAKEN = float((1 - 12 / (2 * np.pi**2) * sum(1 / k**2 for k in (1, 2, 3))) ** -0.5)  # times as uncertain is a slope
-# beside three harmonics of the same stride, which explain most of a straight line
-_SHARED = 1.5  # cycles that count as one: neighbours share the marks of the clock, and so its errors
-_LEAST = 8  # frames of a stride that are needed
+_Z_95 = 1.96  # standard errors in half a 95 % interval
+_SLOPE = np.sqrt(12.0)  # standard error of a slope over a whole stride, over that of a mean
+# Standard error of a slope fitted with three harmonics of the same stride, over that of a slope alone:
+# the harmonics explain most of a straight line.
+_SLOPE_INFLATION = float((1 - 12 / (2 * np.pi**2) * sum(1 / k**2 for k in (1, 2, 3))) ** -0.5)
+_SHARED = 1.5  # cycles per independent cycle: neighbours share marks of the clock, and their errors
+_MIN_FRAMES = 8  # least frames of a stride
 PHASES = 100
 """Phases of the mean cycle in tables [-]."""
 
 
 def times(n: int) -> float:
-    """Return how many standard errors of n values hold the truth in 95 of 100 cases."""
+    """Return the factor on the standard error of n values that gives a 95 % interval."""
     return float(student.ppf(0.975, n - 1)) if n > 1 else float("nan")
 
 
 def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
-    """Return what every whole stride was like, over ``stride`` and ``leg``, with intervals by the noise of keypoints.
+    """Return the measurements of every complete stride, over ``stride`` and ``leg``, with intervals.
 
     Args:
         tracks: the keypoints, by the clock.
@@ -44,17 +45,17 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], ze
         zero: phase at which strides begin [cycle].
     """
     period = clock.period
-    first = int(np.ceil(tracks.time[0] / period - zero - 1e-6))
-    last = int(np.floor(tracks.time[-1] / period - zero + 1e-6))
-    numbers = np.arange(first, last)
-    ends = clock.seconds(np.arange(first, last + 1) + zero)
-    parts = [tracks.between((k + zero) * period, (k + zero + 1) * period) for k in numbers]
+    first_stride = int(np.ceil(tracks.time[0] / period - zero - 1e-6))
+    last_stride = int(np.floor(tracks.time[-1] / period - zero + 1e-6))
+    numbers = np.arange(first_stride, last_stride)
+    ends = clock.seconds(np.arange(first_stride, last_stride + 1) + zero)
+    stride_list = [tracks.between((k + zero) * period, (k + zero + 1) * period) for k in numbers]
     lasts, jitter = np.diff(ends), _jitter(feet)
-    rows = [_body(part, period) for part in parts]
+    rows = [_body(stride_tracks, period) for stride_tracks in stride_list]
     data = xr.Dataset(coords={"stride": ("stride", np.arange(1, len(numbers) + 1), {"units": "1"})})
-    data["start"] = ("stride", ends[:-1], _about("s", "time at which the stride begins"))
+    data["start"] = ("stride", ends[:-1], _attributes("s", "time at which the stride begins"))
     error = np.full(len(lasts), jitter * period)
-    _put(data, "period", ("stride",), lasts, error, "s", "duration of the stride")
+    _add_with_interval(data, "period", ("stride",), lasts, error, "s", "duration of the stride")
     unit = tracks.unit
     kinds = {
         "stride_length": (unit, "distance by which the trunk goes on"),
@@ -68,72 +69,74 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], ze
         pairs = np.array([row.get(name, (np.nan, np.nan)) for row in rows]).reshape(-1, 2)
         if np.isfinite(pairs[:, 0]).any():
             error = np.hypot(pairs[:, 1], jitter * pairs[:, 0]) if name == "stride_length" else pairs[:, 1]
-            _put(data, name, ("stride",), pairs[:, 0], error, unit_of, meaning)
+            _add_with_interval(data, name, ("stride",), pairs[:, 0], error, unit_of, meaning)
             if name == "stride_length":
                 speed, error = (pairs / lasts[:, None]).T
-                _put(data, "speed", ("stride",), speed, error, f"{unit}/s", "mean speed of the trunk")
+                _add_with_interval(data, "speed", ("stride",), speed, error, f"{unit}/s", "mean speed of the trunk")
     if feet:
         _put_feet(data, clock, feet, zero, numbers, unit)
     return data
 
 
 def _jitter(feet: Mapping[str, FootContact]) -> float:
-    """Return half the interval of how long a stride lasts, by how feet differ on the clock that cuts them [cycle]."""
-    apart = []
+    """Return the half width of the interval of a stride's duration, from differences between the feet [cycle]."""
+    deviations = []
     for foot in feet.values():
         phases = foot.swings.phase
         mean = np.angle(np.mean(np.exp(2j * np.pi * phases))) / (2 * np.pi)
-        apart += list((phases - mean + 0.5) % 1.0 - 0.5)
-    return float(_SURE * np.sqrt(2) * np.std(apart)) if len(apart) > 2 else 0.0
+        deviations += list((phases - mean + 0.5) % 1.0 - 0.5)
+    return float(_Z_95 * np.sqrt(2) * np.std(deviations)) if len(deviations) > 2 else 0.0
 
 
-def _body(part: Tracks, period: float) -> dict[str, tuple[float, float]]:
-    """Return how far the trunk goes and turns in one stride, and how it bends, each with half its interval."""
-    found: dict[str, tuple[float, float]] = {}
-    went, noise, seen = [], [], 0
-    for name in part.trunk_chain:
-        place = part.at(name)[:, :2]
+def _body(stride_tracks: Tracks, period: float) -> dict[str, tuple[float, float]]:
+    """Return advance, turn and bends of the trunk in one stride, each with the half width of its interval."""
+    quantities: dict[str, tuple[float, float]] = {}
+    advances, noise, point_count = [], [], 0
+    for name in stride_tracks.trunk_chain:
+        place = stride_tracks.at(name)[:, :2]
         n = int(np.isfinite(place[:, 0]).sum())
-        if n >= _LEAST:
-            count = harmonics_for(n, part.rate * period, most=3)
-            courses = [fit(part.time, row, period, harmonics=count, drift=1) for row in place.T]
-            went.append([course.drift[0] * period for course in courses])
+        if n >= _MIN_FRAMES:
+            count = harmonics_for(n, stride_tracks.rate * period, most=3)
+            courses = [fit(stride_tracks.time, row, period, harmonics=count, drift=1) for row in place.T]
+            advances.append([course.drift[0] * period for course in courses])
             noise.append(float(np.linalg.norm([course.noise for course in courses]) / np.sqrt(2 * n)))
-            seen += 1
-    if went:
-        mean = np.mean(went, axis=0)
-        error = _SURE * _TAKEN * _SLOPE * float(np.linalg.norm(noise)) / seen
-        found["stride_length"] = float(np.hypot(*mean)), error
-    if part.view == "top":
-        front, rear = part.line
-        look = continuous(azimuth(part, front, rear))
-        found |= _swung("turning", look, part, period, drift=1)
-    for name, series in bend_angles(part)._asdict().items():
-        found |= _swung(f"{name}_amplitude", series, part, period)
-    return found
+            point_count += 1
+    if advances:
+        mean = np.mean(advances, axis=0)
+        error = _Z_95 * _SLOPE_INFLATION * _SLOPE * float(np.linalg.norm(noise)) / point_count
+        quantities["stride_length"] = float(np.hypot(*mean)), error
+    if stride_tracks.view == "top":
+        front, rear = stride_tracks.line
+        heading = continuous(azimuth(stride_tracks, front, rear))
+        quantities |= _amplitude_row("turning", heading, stride_tracks, period, drift=1)
+    for name, series in bend_angles(stride_tracks)._asdict().items():
+        quantities |= _amplitude_row(f"{name}_amplitude", series, stride_tracks, period)
+    return quantities
 
 
-def _swung(
-    name: str, series: np.ndarray, part: Tracks, period: float, drift: int = 0
+def _amplitude_row(
+    name: str, series: np.ndarray, stride_tracks: Tracks, period: float, drift: int = 0
 ) -> dict[str, tuple[float, float]]:
-    """Return the amplitude of an angle, or by how much it drifts over the stride, with half its interval [rad]."""
+    """Return amplitude or drift of an angle over a stride, with the half width of its interval [rad]."""
     n = int(np.isfinite(series).sum())
-    if n < _LEAST:
+    if n < _MIN_FRAMES:
         return {}
-    course = fit(part.time, series, period, harmonics=harmonics_for(n, part.rate * period, most=3), drift=drift)
+    course = fit(
+        stride_tracks.time, series, period, harmonics=harmonics_for(n, stride_tracks.rate * period, most=3), drift=drift
+    )
     if drift:
-        return {name: (course.drift[0] * period, _SURE * _TAKEN * _SLOPE * course.noise / np.sqrt(n))}
-    return {name: (float(abs(course.harmonics[0])), _SURE * course.error)}
+        return {name: (course.drift[0] * period, _Z_95 * _SLOPE_INFLATION * _SLOPE * course.noise / np.sqrt(n))}
+    return {name: (float(abs(course.harmonics[0])), _Z_95 * course.error)}
 
 
 def _put_feet(
     data: xr.Dataset, clock: Clock, feet: Mapping[str, FootContact], zero: float, numbers: np.ndarray, unit: str
 ) -> None:
-    """Put when each foot lifts off and touches down into the strides in which it does, and where."""
+    """Add times of lift-off and touchdown, duty factors, phases and step lengths of each foot to the strides."""
     data.coords["leg"] = ("leg", list(feet))
     shape = (len(numbers), len(feet))
     names = ("lift_off", "touch_down", "duty", "limb_phase", "step_length")
-    found = {name: (np.full(shape, np.nan), np.full(shape, np.nan)) for name in names}
+    columns = {name: (np.full(shape, np.nan), np.full(shape, np.nan)) for name in names}
     middles = np.full(shape, np.nan)
     for j, foot in enumerate(feet.values()):
         swings = foot.swings
@@ -142,50 +145,50 @@ def _put_feet(
             if not 0 <= row < len(numbers):
                 continue
             half, edge = swings.shares[i] / 2, np.hypot(swings.phases_error[i], swings.shares_error[i] / 2)
-            off, on = phase + swings.skew - half, phase + swings.skew + half
-            now, later = clock.seconds(np.array([off, on]))
-            found["lift_off"][0][row, j], found["touch_down"][0][row, j] = now, later
+            lift_off, touch_down = phase + swings.skew - half, phase + swings.skew + half
+            lift_off_time, touch_down_time = clock.seconds(np.array([lift_off, touch_down]))
+            columns["lift_off"][0][row, j], columns["touch_down"][0][row, j] = lift_off_time, touch_down_time
             for name in ("lift_off", "touch_down"):
-                found[name][1][row, j] = _SURE * edge * clock.period
-            found["duty"][0][row, j] = 1.0 - swings.shares[i]
-            found["duty"][1][row, j] = _SURE * swings.shares_error[i]
-            found["step_length"][0][row, j] = swings.paths[i]
-            found["step_length"][1][row, j] = _SURE * swings.paths_error[i]
-            middles[row, j], found["limb_phase"][1][row, j] = phase, _SURE * swings.phases_error[i]
+                columns[name][1][row, j] = _Z_95 * edge * clock.period
+            columns["duty"][0][row, j] = 1.0 - swings.shares[i]
+            columns["duty"][1][row, j] = _Z_95 * swings.shares_error[i]
+            columns["step_length"][0][row, j] = swings.paths[i]
+            columns["step_length"][1][row, j] = _Z_95 * swings.paths_error[i]
+            middles[row, j], columns["limb_phase"][1][row, j] = phase, _Z_95 * swings.phases_error[i]
     if "LF" in feet:
         lead = list(feet).index("LF")
-        found["limb_phase"][0][:] = (middles[:, lead, None] - middles) % 1.0
-        errors = found["limb_phase"][1]
+        columns["limb_phase"][0][:] = (middles[:, lead, None] - middles) % 1.0
+        errors = columns["limb_phase"][1]
         errors[:] = np.where(np.arange(len(feet)) == lead, 0.0, np.hypot(errors[:, lead, None], errors))
     else:
-        del found["limb_phase"]
-    about = {
+        del columns["limb_phase"]
+    attributes = {
         "lift_off": ("s", "time at which the foot leaves the ground"),
         "touch_down": ("s", "time at which the foot comes to rest"),
         "duty": ("1", "share of the stride in which the foot stands"),
         "limb_phase": ("cycle", "how much earlier than LF the foot is in the middle of its stance"),
         "step_length": (unit, "distance over the ground from one place of the foot to the next"),
     }
-    for name, (value, error) in found.items():
-        _put(data, name, ("stride", "leg"), value, error, *about[name])
+    for name, (value, error) in columns.items():
+        _add_with_interval(data, name, ("stride", "leg"), value, error, *attributes[name])
 
 
 def over_phase(
     tracks: Tracks,
     angles: Mapping[str, PeriodicFit],
     sweeps: Mapping[str, FootSweep],
-    each: Sequence[tuple[Mapping[str, PeriodicFit], Mapping[str, FootSweep]]],
+    cycle_fits: Sequence[tuple[Mapping[str, PeriodicFit], Mapping[str, FootSweep]]],
     period: float,
     zero: float,
     unsure: float,
 ) -> xr.Dataset:
-    """Return angles and curvature over the phase of the mean cycle, with intervals by how cycles differ.
+    """Return angles and curvature over the phase of the mean cycle, with intervals from the variation of cycles.
 
     Args:
         tracks: the keypoints, by the clock.
         angles: of trunk and tail over all cycles.
         sweeps: of the feet over all cycles.
-        each: the same of every cycle by itself.
+        cycle_fits: the same of every cycle by itself.
         period: of a cycle [s].
         zero: phase at which the cycle begins [cycle].
         unsure: half the width of the interval of that [cycle].
@@ -194,113 +197,131 @@ def over_phase(
     time = (phase + zero) * period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"})})
     for name, angle in angles.items():
-        ones = [one[name] for one, _ in each if name in one]
-        curves = np.array([one.mean + one.swing(time) for one in ones]).reshape(-1, PHASES)
+        angle_fits = [cycle_angles[name] for cycle_angles, _ in cycle_fits if name in cycle_angles]
+        curves = np.array([angle_fit.mean + angle_fit.swing(time) for angle_fit in angle_fits]).reshape(-1, PHASES)
         value = angle.mean + angle.swing(time)
         side = "right" if name.endswith("lateral") else "down"
         meaning = f"{name.replace('_', ' ')} angle, {side} positive"
-        _put(data, name, ("phase",), value, half_width(value, curves, unsure), "rad", meaning)
+        _add_with_interval(data, name, ("phase",), value, half_width(value, curves, unsure), "rad", meaning)
     if sweeps:
         data.coords["leg"] = ("leg", list(sweeps))
-        value = np.array([_ahead(one, zero) for one in sweeps.values()])
-        curves = np.array([[_ahead(one[leg], zero) for leg in sweeps] for _, one in each if set(sweeps) <= set(one)])
+        value = np.array([_forward_offset(foot_sweep, zero) for foot_sweep in sweeps.values()])
+        curves = np.array(
+            [
+                [_forward_offset(cycle_sweeps[leg], zero) for leg in sweeps]
+                for _, cycle_sweeps in cycle_fits
+                if set(sweeps) <= set(cycle_sweeps)
+            ]
+        )
         error = half_width(value, curves.reshape(-1, *value.shape), unsure)
-        _put(
+        _add_with_interval(
             data, "foot_ahead", ("leg", "phase"), value, error, tracks.unit, "distance of the foot ahead of its girdle"
         )
-        value = np.array([_protraction(one, zero) for one in sweeps.values()])
+        value = np.array([_protraction(foot_sweep, zero) for foot_sweep in sweeps.values()])
         curves = np.array(
-            [[_protraction(one[leg], zero) for leg in sweeps] for _, one in each if set(sweeps) <= set(one)]
+            [
+                [_protraction(cycle_sweeps[leg], zero) for leg in sweeps]
+                for _, cycle_sweeps in cycle_fits
+                if set(sweeps) <= set(cycle_sweeps)
+            ]
         )
         error = half_width(value, curves.reshape(-1, *value.shape), unsure)
-        _put(
+        _add_with_interval(
             data, "protraction", ("leg", "phase"), value, error, "rad", "angle of the foot ahead of abreast its girdle"
         )
-    _put_curvature(data, tracks, period, zero, unsure, len(each))
+    _put_curvature(data, tracks, period, zero, unsure, len(cycle_fits))
     return data
 
 
 def _protraction(path: FootSweep, zero: float) -> Float[np.ndarray, " phase"]:
-    """Return how far a foot is turned forward from abreast its girdle, over the phase of tables [rad]."""
-    return np.arctan2(_ahead(path, zero), path.outward)
+    """Return the angle of a foot ahead of the direction abreast of its girdle, over the phase of tables [rad]."""
+    return np.arctan2(_forward_offset(path, zero), path.outward)
 
 
-def _ahead(path: FootSweep, zero: float) -> Float[np.ndarray, " phase"]:
-    """Return how far a foot is ahead of its girdle, over the phase of tables [m or px]."""
+def _forward_offset(path: FootSweep, zero: float) -> Float[np.ndarray, " phase"]:
+    """Return the position of a foot ahead of its girdle, over the phase of tables [m or px]."""
     grid = np.arange(len(path.forward)) / len(path.forward)
     return np.interp(np.arange(PHASES) / PHASES + zero, grid, path.forward, period=1.0)
 
 
 def _put_curvature(data: xr.Dataset, tracks: Tracks, period: float, zero: float, unsure: float, count: int) -> None:
-    """Put the curvature at each point between two segments of the midline, right or down positive."""
+    """Add the curvature at each point between two segments of the midline, positive to the right or down."""
     chain = tracks.midline
     if len(chain) < 3:
         return
     links = np.array(
         [float(np.nanmedian(np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1))) for a, b in pairwise(chain)]
     )
-    along = np.cumsum(links)[:-1] / links.sum()
+    positions = np.cumsum(links)[:-1] / links.sum()
     bends = -joint_bends(tracks, chain) / ((links[1:] + links[:-1]) / 2)[:, None]
     time = (np.arange(PHASES) / PHASES + zero) * period
     value, error = np.full((2, len(bends), PHASES), np.nan)
     size, size_error = np.full((2, len(bends)), np.nan)
     for i, series in enumerate(bends):
         n = int(np.isfinite(series).sum())
-        if n < _LEAST:
+        if n < _MIN_FRAMES:
             continue
-        whole = fit(tracks.time, series, period, harmonics=harmonics_for(n, tracks.rate * period, most=4))
-        ones = []
+        mean_fit = fit(tracks.time, series, period, harmonics=harmonics_for(n, tracks.rate * period, most=4))
+        cycle_fits = []
         for k in range(count):
             use = (tracks.time >= tracks.time[0] + k * period) & (tracks.time < tracks.time[0] + (k + 1) * period)
             m = int(np.isfinite(series[use]).sum())
-            if m >= _LEAST:
-                ones.append(
+            if m >= _MIN_FRAMES:
+                cycle_fits.append(
                     fit(tracks.time[use], series[use], period, harmonics=harmonics_for(m, tracks.rate * period, most=4))
                 )
-        value[i] = whole.mean + whole.swing(time)
+        value[i] = mean_fit.mean + mean_fit.swing(time)
         error[i] = half_width(
-            value[i], np.array([one.mean + one.swing(time) for one in ones]).reshape(-1, PHASES), unsure
+            value[i],
+            np.array([cycle_fit.mean + cycle_fit.swing(time) for cycle_fit in cycle_fits]).reshape(-1, PHASES),
+            unsure,
         )
-        size[i] = abs(whole.harmonics[0])
-        size_error[i] = half_width(size[i], np.array([abs(one.harmonics[0]) for one in ones]), 0.0)
-    about = {"units": "1", "long_name": "distance from the front end of the midline, 1 at its rear end"}
-    data.coords["place"] = ("place", along, about)
+        size[i] = abs(mean_fit.harmonics[0])
+        size_error[i] = half_width(size[i], np.array([abs(cycle_fit.harmonics[0]) for cycle_fit in cycle_fits]), 0.0)
+    attributes = {"units": "1", "long_name": "distance from the front end of the midline, 1 at its rear end"}
+    data.coords["place"] = ("place", positions, attributes)
     data["keypoint"] = ("place", list(chain[1:-1]), {"long_name": "keypoint at which the midline bends"})
     side = "right" if tracks.view == "top" else "down"
     unit = f"1/{tracks.unit}"
     lengths = ((links[1:] + links[:-1]) / 2)[:, None]
-    data["bend"] = (("place", "phase"), value * lengths, _about("rad", f"angle between both segments, {side} positive"))
-    _put(
+    data["bend"] = (
+        ("place", "phase"),
+        value * lengths,
+        _attributes("rad", f"angle between both segments, {side} positive"),
+    )
+    _add_with_interval(
         data, "curvature", ("place", "phase"), value, error, unit, f"curvature of the midline, concave {side} positive"
     )
-    _put(data, "curvature_amplitude", ("place",), size, size_error, unit, "amplitude of the curvature, first harmonic")
+    _add_with_interval(
+        data, "curvature_amplitude", ("place",), size, size_error, unit, "amplitude of the curvature, first harmonic"
+    )
 
 
-def half_width(value: np.ndarray | float, ones: np.ndarray, unsure: float) -> np.ndarray:
-    """Return half the width of the interval of a mean by how single cycles differ.
+def half_width(value: np.ndarray | float, cycle_values: np.ndarray, unsure: float) -> np.ndarray:
+    """Return the half width of a mean's 95 % interval, from the variation of single cycles.
 
-    That the mean of all is not the mean of single cycles, since their phases do, is a part of it; so is that the phase
-    at which the cycle begins is not sure.
+    It contains the difference between the fit to all cycles and the mean of single cycles, and the uncertainty of the
+    phase at which the cycle begins.
 
     Args:
         value: over all cycles, any shape; where ``unsure`` is given, phases are the last axis.
-        ones: of single cycles, their number first.
+        cycle_values: of single cycles, their number first.
         unsure: half the width of the interval of the cycle's beginning [cycle].
     """
-    n = len(ones)
+    n = len(cycle_values)
     if n < 2:
         return np.full(np.shape(value), np.nan)
-    spread = times(n) * np.std(ones, axis=0, ddof=1) / np.sqrt(n / _SHARED)
-    off = np.mean(ones, axis=0) - value
+    spread = times(n) * np.std(cycle_values, axis=0, ddof=1) / np.sqrt(n / _SHARED)
+    bias = np.mean(cycle_values, axis=0) - value
     slope = 0.0 if np.ndim(value) == 0 or not unsure else np.gradient(value, axis=-1) * np.shape(value)[-1]
-    return np.asarray(np.sqrt(spread**2 + off**2 + (slope * unsure) ** 2))
+    return np.asarray(np.sqrt(spread**2 + bias**2 + (slope * unsure) ** 2))
 
 
-def _about(unit: str, meaning: str) -> dict[str, str]:
+def _attributes(unit: str, meaning: str) -> dict[str, str]:
     return {"units": unit, "long_name": meaning}
 
 
-def _put(
+def _add_with_interval(
     data: xr.Dataset,
     name: str,
     dims: tuple[str, ...],
@@ -309,7 +330,7 @@ def _put(
     unit: str,
     meaning: str,
 ) -> None:
-    """Put a number and both ends of its interval into a table."""
-    data[name] = (dims, value, _about(unit, meaning))
-    data[f"{name}_low"] = (dims, value - error, _about(unit, f"lower end of the 95 % interval of {name}"))
-    data[f"{name}_high"] = (dims, value + error, _about(unit, f"upper end of the 95 % interval of {name}"))
+    """Add a quantity and both ends of its interval to a dataset."""
+    data[name] = (dims, value, _attributes(unit, meaning))
+    data[f"{name}_low"] = (dims, value - error, _attributes(unit, f"lower end of the 95 % interval of {name}"))
+    data[f"{name}_high"] = (dims, value + error, _attributes(unit, f"upper end of the 95 % interval of {name}"))

@@ -102,14 +102,15 @@ def write_table(tracks: Tracks, path: str | Path) -> Path:
     position = scale * tracks.position
     position[..., 1] *= sign
     text = StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(["time [s]", *headings])
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time [s]", *headings])
     for time, row in zip(tracks.time, position.reshape(len(tracks.time), -1), strict=True):
-        out.writerow([f"{time:.4f}", *("" if np.isnan(x) else f"{x:.1f}" for x in row)])
+        writer.writerow([f"{time:.4f}", *("" if np.isnan(x) else f"{x:.1f}" for x in row)])
     return write(path, text.getvalue())
 
 
 def _rows(path: Path) -> list[list[str]]:
+    """Return the non-empty rows of a CSV table, header included."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
@@ -127,8 +128,9 @@ def _rows(path: Path) -> list[list[str]]:
 
 
 def _columns(header: list[str], name: str) -> tuple[list[_Column], str]:
-    first = header[0].strip().lower()
-    if first != "time [s]" and not _FRAME.fullmatch(first):
+    """Return the columns of a table by its header, and the unit of length that all of them share."""
+    first_heading = header[0].strip().lower()
+    if first_heading != "time [s]" and not _FRAME.fullmatch(first_heading):
         raise UnreadableFile(
             f"the first column of {name} is {header[0].strip()!r}; 'time [s]' is needed, or 'frame' and --fps, as in: "
             f"{_EXAMPLE}"
@@ -149,8 +151,8 @@ def _columns(header: list[str], name: str) -> tuple[list[_Column], str]:
     if len(units) > 1:
         raise UnreadableFile(f"{name} has lengths in {' and in '.join(sorted(units))}; one unit for all is needed.")
     if len(set(columns)) < len(columns):
-        twice = next(c for c in columns if columns.count(c) > 1)
-        raise UnreadableFile(f"{name} has the column {twice.point}_{twice.axis} twice.")
+        duplicate = next(c for c in columns if columns.count(c) > 1)
+        raise UnreadableFile(f"{name} has the column {duplicate.point}_{duplicate.axis} twice.")
     if not units:
         raise UnreadableFile(f"{name} has no column with a position; they look like this: {_EXAMPLE}")
     return columns, units.pop()
@@ -177,6 +179,7 @@ def _numbers(rows: list[list[str]], name: str) -> np.ndarray:
 
 
 def _is_number(cell: str) -> bool:
+    """Return whether a cell holds a number or is empty."""
     try:
         float(cell or "nan")
     except ValueError:
@@ -238,12 +241,12 @@ def read_angles(path: str | Path, *, harmonics: int = MOST_HARMONICS) -> AngleCy
         raise UnreadableFile(f"{path} is no table of joint angles: a header and rows of numbers are needed.") from error
     if values.ndim != 2 or not names or rows[0][0].strip() != "time" or not np.isfinite(values).all():
         raise UnreadableFile(f"{path} is no table of joint angles: 'time' and finite angles of joints are needed.")
-    phase, most = values[:, 0], 1.0 / (2 * harmonics + 1)
+    phase, max_step = values[:, 0], 1.0 / (2 * harmonics + 1)
     steps = np.diff(np.append(phase, phase[0] + 1.0))
-    if steps.min() <= 0.0 or steps.max() > most:
+    if steps.min() <= 0.0 or steps.max() > max_step:
         raise UnreadableFile(
-            f"in {path} the time does not go through one cycle, 0 to 1, in steps of at most {most:.2f} for {harmonics} "
-            "harmonics."
+            f"in {path} the time does not go through one cycle, 0 to 1, in steps of at most {max_step:.2f} for "
+            f"{harmonics} harmonics."
         )
     k = 2 * np.pi * np.multiply.outer(phase, np.arange(1, harmonics + 1))
     X = np.hstack([np.ones((len(phase), 1)), np.cos(k), np.sin(k)])

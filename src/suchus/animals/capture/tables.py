@@ -38,19 +38,25 @@ def tables(walk: Walk) -> xr.Dataset:
         walk: the measured walk.
     """
     names = list(walk.numbers)
-    seen = [walk.numbers[name] for name in names]
-    value, spread, error = (np.array([one[i] for one in seen], dtype=float) for i in range(3))
+    measurements = [walk.numbers[name] for name in names]
+    value, spread, error = (np.array([measurement[i] for measurement in measurements], dtype=float) for i in range(3))
     data = xr.Dataset(coords={"quantity": ("quantity", names)})
     data["value"] = ("quantity", value, {"long_name": "over all cycles"})
     data["low"] = ("quantity", value - error, {"long_name": "lower end of the 95 % interval"})
     data["high"] = ("quantity", value + error, {"long_name": "upper end of the 95 % interval"})
     data["spread"] = ("quantity", spread, {"long_name": "standard deviation from cycle to cycle"})
-    data["unit"] = ("quantity", [one.unit for one in seen], {"long_name": "unit of the quantity"})
+    data["unit"] = (
+        "quantity",
+        [measurement.unit for measurement in measurements],
+        {"long_name": "unit of the quantity"},
+    )
     data["meaning"] = ("quantity", [_meaning(name) for name in names], {"long_name": "what it is"})
     legs = [str(leg) for leg in walk.cycle.leg.values]
-    strides, phases = (part.reindex(leg=legs) if "leg" in part.dims else part for part in (walk.strides, walk.phases))
-    every = walk.cycle.sizes["phase"] // phases.sizes["phase"]
-    cycle = walk.cycle[["stance", "foot_speed"]].isel(phase=slice(None, None, every))
+    strides, phases = (
+        table.reindex(leg=legs) if "leg" in table.dims else table for table in (walk.strides, walk.phases)
+    )
+    phase_step = walk.cycle.sizes["phase"] // phases.sizes["phase"]
+    cycle = walk.cycle[["stance", "foot_speed"]].isel(phase=slice(None, None, phase_step))
     cycle["stance"] = cycle.stance.astype(int).assign_attrs(units="1", long_name="1 where the foot stands")
     cycle["foot_speed"] = cycle.foot_speed.assign_attrs(long_name="speed of the foot over the ground")
     data = xr.merge(
@@ -71,19 +77,19 @@ def angle_tables(cycle: AngleCycle) -> xr.Dataset:
     Args:
         cycle: as ``read_angles`` returns it.
     """
-    phase, first = np.arange(PHASES) / PHASES, cycle.harmonics[:, 1]
+    phase, first_harmonic = np.arange(PHASES) / PHASES, cycle.harmonics[:, 1]
     data = xr.Dataset(coords={"joint": ("joint", list(cycle.joints)), "phase": ("phase", phase, {"units": "1"})})
-    about = {
+    variables = {
         "mean": (cycle.harmonics[:, 0].real, "rad", "mean angle"),
-        "amplitude": (np.abs(first), "rad", "amplitude of the first harmonic"),
+        "amplitude": (np.abs(first_harmonic), "rad", "amplitude of the first harmonic"),
         "phase_of_peak": (
-            -np.angle(first) / (2 * np.pi) % 1.0,
+            -np.angle(first_harmonic) / (2 * np.pi) % 1.0,
             "cycle",
             "phase at which the first harmonic is greatest",
         ),
         "residual": (cycle.residual, "rad", "root mean square of what the harmonics leave of the table"),
     }
-    for name, (value, unit, meaning) in about.items():
+    for name, (value, unit, meaning) in variables.items():
         data[name] = ("joint", value, {"units": unit, "long_name": meaning})
     data["angle"] = (("joint", "phase"), cycle.at(phase).T, {"units": "rad", "long_name": "angle over the mean cycle"})
     data.attrs["title"] = f"joint angles of {cycle.source}"
@@ -91,14 +97,15 @@ def angle_tables(cycle: AngleCycle) -> xr.Dataset:
 
 
 def _meaning(name: str) -> str:
+    """Return what a number of a walk is, for tables; empty for a name without an entry."""
     stem = name.partition("_")[0]
     if name in _MEANINGS:
         return _MEANINGS[name]
     if stem in ("spine", "tail"):
-        part, turn = name.split("_")[:2]
+        region, turn = name.split("_")[:2]
         side = "right" if turn == "lateral" else "down"
-        what = {"steady": "mean of", "overtones": "share of overtones in"}.get(
+        statistic = {"steady": "mean of", "overtones": "share of overtones in"}.get(
             name.rsplit("_", maxsplit=1)[-1], "amplitude of"
         )
-        return f"{what} the {part}'s {turn} angle, {side} positive"
+        return f"{statistic} the {region}'s {turn} angle, {side} positive"
     return _MEANINGS.get(stem, "")

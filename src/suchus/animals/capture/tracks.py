@@ -18,7 +18,7 @@ NEEDED = ("shoulder", "hip", "tail_base", "tail_tip", *LEGS)
 UNITS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": float("nan")}
 """Units of length and what they are in metres; pixels are of unknown size."""
 
-_FEW = 4  # frames; where their steps are even, none is longer than all the rest
+_MIN_FRAMES = 4  # frames; where their steps are even, none is longer than all the rest
 _RATE = (5.0, 5000.0)  # [1/s]; slower cannot show a step, faster is no camera
 _TRUNK = (0.01, 5.0)  # [m]; from a hatchling lizard to a crocodile longer than any measured
 _JUMPED = 3.0  # times the usual length of a link; longer, and one of its points is somewhere else
@@ -97,13 +97,13 @@ class Tracks:
     def trunk_chain(self) -> tuple[str, ...]:
         """Midline points from the front girdle to the tail's base, front to back."""
         head = "neck" if "neck" in self.points else "snout"
-        chain = (head, "shoulder", *self._numbered("spine")[::-1], "hip", "tail_base")
+        chain = (head, "shoulder", *self._series_points("spine")[::-1], "hip", "tail_base")
         return tuple(name for name in chain if name in self.points)
 
     @property
     def tail_chain(self) -> tuple[str, ...]:
         """Midline points from the hind girdle to the tail's tip, front to back."""
-        chain = ("hip", "tail_base", *self._numbered("tail"), "tail_tip")
+        chain = ("hip", "tail_base", *self._series_points("tail"), "tail_tip")
         return tuple(name for name in chain if name in self.points)
 
     @property
@@ -115,8 +115,8 @@ class Tracks:
     @property
     def line(self) -> tuple[str, str]:
         """Two points that show where the trunk heads, the front one first: shoulder and hip, or what comes nearest."""
-        between = ("shoulder", *self._numbered("spine")[::-1], "hip")
-        inner = [name for name in between if name in self.points]
+        trunk_points = ("shoulder", *self._series_points("spine")[::-1], "hip")
+        inner = [name for name in trunk_points if name in self.points]
         chain = inner if len(inner) > 1 else self.trunk_chain
         return chain[0], chain[-1]
 
@@ -152,14 +152,14 @@ class Tracks:
         """
         if not self.has("shoulder", "hip"):
             return float("nan")
-        chain = ("shoulder", *self._numbered("spine")[::-1], "hip")
+        chain = ("shoulder", *self._series_points("spine")[::-1], "hip")
         links = [self.at(a) - self.at(b) for a, b in pairwise(chain)]
         if len(links) > 1:
             return sum(_length(link) for link in links)
         # a chord without points between is as long as the trunk only while the trunk is straight
         return float(np.nanpercentile(np.linalg.norm(links[0], axis=-1), 95))
 
-    def _numbered(self, stem: str) -> tuple[str, ...]:
+    def _series_points(self, stem: str) -> tuple[str, ...]:
         names = [name for name in self.points if re.fullmatch(rf"{stem}_\d+", name)]
         return tuple(sorted(names, key=lambda name: int(name.rpartition("_")[2])))
 
@@ -178,12 +178,14 @@ def _length(link: np.ndarray) -> float:
     size = np.linalg.norm(link, axis=-1)
     if not np.isfinite(size).any():
         return float("nan")
-    usual = float(np.nanmedian(size))
-    kept = np.where((size <= _JUMPED * usual)[:, None], link, np.nan)
-    later = [np.sum(kept[ahead:] * kept[:-ahead], axis=-1) for ahead in (1, 2)]
-    one, two = (float(np.nanmean(seen)) if np.isfinite(seen).any() else np.nan for seen in later)
-    square = (4 * one - two) / 3
-    return float(np.sqrt(square)) if square > 0 else usual
+    median_length = float(np.nanmedian(size))
+    valid_links = np.where((size <= _JUMPED * median_length)[:, None], link, np.nan)
+    lag_products = [np.sum(valid_links[lag:] * valid_links[:-lag], axis=-1) for lag in (1, 2)]
+    first_product, second_product = (
+        float(np.nanmean(lag_product)) if np.isfinite(lag_product).any() else np.nan for lag_product in lag_products
+    )
+    square = (4 * first_product - second_product) / 3
+    return float(np.sqrt(square)) if square > 0 else median_length
 
 
 def known_name(name: str) -> str:
@@ -208,11 +210,11 @@ def renamed(points: tuple[str, ...], names: Mapping[str, str], source: str) -> t
     unknown = [name for name in names if name not in points]
     if unknown:
         raise UnusableTracks(f"{source} holds no keypoint {unknown[0]!r}; it holds {', '.join(points)}.")
-    ours = tuple(names.get(name) or known_name(name) for name in points)
-    twice = sorted({name for name in ours if ours.count(name) > 1})
-    if twice:
-        raise UnusableTracks(f"{source} holds more than one keypoint {twice[0]!r}; each needs a name of its own.")
-    return ours
+    point_names = tuple(names.get(name) or known_name(name) for name in points)
+    duplicates = sorted({name for name in point_names if point_names.count(name) > 1})
+    if duplicates:
+        raise UnusableTracks(f"{source} holds more than one keypoint {duplicates[0]!r}; each needs a name of its own.")
+    return point_names
 
 
 def check_tracks(tracks: Tracks) -> None:
@@ -252,25 +254,27 @@ def lacking(points: Collection[str]) -> tuple[str, ...]:
 
 
 def _check_time(tracks: Tracks) -> None:
+    """Refuse times that do not increase, frame rates out of range, and a gap longer than the rest of the film."""
     n = len(tracks.time)
     if n < 2:
         raise UnusableTracks(f"{tracks.source} holds {n} frame{'s' * (n != 1)}; at least one cycle is needed.")
     steps = np.diff(tracks.time)
     if not (np.isfinite(tracks.time).all() and np.all(steps > 0)):
-        at = int(np.argmin(np.where(np.isfinite(steps), steps, -np.inf))) + 1
+        frame = int(np.argmin(np.where(np.isfinite(steps), steps, -np.inf))) + 1
         raise UnusableTracks(
-            f"in {tracks.source} the time does not increase from frame {at} to frame {at + 1}; every frame needs a "
-            "later time than the one before."
+            f"in {tracks.source} the time does not increase from frame {frame} to frame {frame + 1}; every frame "
+            "needs a later time than the one before."
         )
     if not _RATE[0] <= tracks.rate <= _RATE[1]:
         raise UnusableTracks(
             f"in {tracks.source} frames are {np.median(steps):.4g} s apart; {1 / _RATE[1]:g} to {1 / _RATE[0]:g} s is "
             "allowed: the time seems to be in milliseconds or frames, seconds are needed."
         )
-    longest = int(steps.argmax())
-    if n >= _FEW and steps[longest] > np.delete(steps, longest).sum():
-        at = longest + 1
+    longest_step = int(steps.argmax())
+    if n >= _MIN_FRAMES and steps[longest_step] > np.delete(steps, longest_step).sum():
+        frame = longest_step + 1
         raise UnusableTracks(
-            f"in {tracks.source} nothing was filmed from frame {at} to frame {at + 1}, for {steps.max():.4g} s, longer "
+            f"in {tracks.source} nothing was filmed from frame {frame} to frame {frame + 1}, for {steps.max():.4g} "
+            "s, longer "
             "than all the rest lasts: mend that time, or give what is before it and what is behind as two tables."
         )

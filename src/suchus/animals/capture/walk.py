@@ -1,4 +1,4 @@
-"""What was seen of a walk: its mean cycle, its numbers with their spread, and what kind of wave it is."""
+"""A measured walk: its mean cycle, its numbers with their spread, and the kind of its wave."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,16 +19,17 @@ from suchus.core.checks import require
 from suchus.robot.design import LEGS
 
 UNSURE = 0.1
-"""Half the width of the interval of a duty factor from which on a foot does not count for the gait's [-]."""
-_BLIND = 0.25  # the same from which on a walk is refused, if no foot is better
-_STRAIGHT = 1e-6  # [rad]; what bends less has no phase
-_BINS = 20  # of phase, for the spread
-_SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
-_TOGETHER = 0.25  # least share of frames in which all points of a signal are seen
-_LATE, _ALIKE = 0.015, 0.35  # [cycle], share; a foot that is later, and by about as much behind, was seen late
-_PLACED = 0.005  # share of a step by which the unknown shape of the swing may move the places of a foot
-_PLACES = 0.7  # share of the frames of a cycle in which a point must be seen to tell how far it comes in it
-_ADVANCE = 0.3  # share of the distance that feet sweep below which the body does not advance
+"""Half width of a duty factor's interval above which the foot is left out of the gait's duty factor [-]."""
+_BLIND = 0.25  # the same above which a walk is refused, if all feet exceed it
+_STRAIGHT = 1e-6  # [rad]; smaller bends have no phase
+_BINS = 20  # bins of phase, for the spread
+_SHARP = 3.0  # least amplitude of a bend over its standard error
+_MIN_VISIBLE_FRACTION = 0.25  # least fraction of frames with all points of a signal
+_MIN_LAG = 0.015  # [cycle]; phase lag of a foot that may be late in the film
+_LAG_TOLERANCE = 0.35  # relative difference between its phase lag and its lag in position
+_PLACE_ERROR = 0.005  # error of a step by the unknown shape of the swing, over its length
+_PLACES = 0.7  # least fraction of frames with a point, for its advance in a cycle
+_ADVANCE = 0.3  # least advance of the body over the distance that feet sweep
 
 
 class Seen(NamedTuple):
@@ -111,52 +112,58 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     """
     require("observe", "tail_share", tail_share, 0.05, 1.0, "")
     check_tracks(tracks)
-    seen = screened(tracks)
-    wrong = dict(seen.wrong)
-    last = tracks.tail_chain[-2:]
+    screening = screened(tracks)
+    faults = dict(screening.wrong)
+    tail_end = tracks.tail_chain[-2:]
     while True:
-        if len(last) == 2 and last[0] in wrong and tail_share > 0.5 and "tail_tip" not in wrong:
-            wrong["tail_tip"] = f"does not show how the tail bends without {last[0]}"
-        filmed = seen.tracks.without(wrong)
-        tracks, clock, period = _timed(filmed)
-        runs_late = late(tracks, clock, filmed.time)
+        if len(tail_end) == 2 and tail_end[0] in faults and tail_share > 0.5 and "tail_tip" not in faults:
+            faults["tail_tip"] = f"does not show how the tail bends without {tail_end[0]}"
+        trusted_tracks = screening.tracks.without(faults)
+        tracks, clock, period = _timed(trusted_tracks)
+        runs_late = late(tracks, clock, trusted_tracks.time)
         if not runs_late:
             break
-        wrong |= runs_late
-        if len(seen.tracks.without(wrong).trunk_chain) < 2:
-            names = ", ".join(f"{name} {why}" for name, why in runs_late.items())
+        faults |= runs_late
+        if len(screening.tracks.without(faults).trunk_chain) < 2:
+            names = ", ".join(f"{name} {reason}" for name, reason in runs_late.items())
             raise UnusableTracks(f"in {tracks.source} frames of one keypoint are not those of others: {names}.")
-    whole = _read(tracks, period, tail_share)
+    mean_reading = _fit_reading(tracks, period, tail_share)
     feet: dict[str, FootContact] = {}
     for leg in tracks.legs:
-        found = contact(tracks, leg, period)
-        if found is None:
-            wrong[leg] = (
+        foot_contact = contact(tracks, leg, period)
+        if foot_contact is None:
+            faults[leg] = (
                 "makes no step that can be seen from one stance to the next: film more cycles, or track it again"
             )
         else:
-            feet[leg] = found
-    tracks = tracks.without(wrong)
+            feet[leg] = foot_contact
+    tracks = tracks.without(faults)
     count = int((tracks.time[-1] - tracks.time[0]) / period + 0.05)
-    each = [_read(_cycle(tracks, i, period), period, tail_share) for i in range(count)]
-    gone = [one.advance for one in each if np.isfinite(one.advance)] or [whole.advance]
-    whole = whole._replace(advance=float(np.mean(gone)))  # along a path that may be curved
-    _check_advance(whole, tracks.source)
+    cycle_readings = [_fit_reading(_cycle(tracks, i, period), period, tail_share) for i in range(count)]
+    advances = [cycle_reading.advance for cycle_reading in cycle_readings if np.isfinite(cycle_reading.advance)] or [
+        mean_reading.advance
+    ]
+    mean_reading = mean_reading._replace(advance=float(np.mean(advances)))  # along a path that may be curved
+    _check_advance(mean_reading, tracks.source)
     _check_feet(feet, tracks.source)
     zero = _zero(feet)
     strides = per_stride(tracks, clock, feet, zero)
-    numbers = _seen(whole, each, feet, zero, clock, tracks.time[0])
-    if np.isfinite(whole.trunk):
-        lengths = np.array([one.trunk for one in each if np.isfinite(one.trunk)])
+    numbers = _measurements(mean_reading, cycle_readings, feet, zero, clock, tracks.time[0])
+    if np.isfinite(mean_reading.trunk):
+        lengths = np.array(
+            [cycle_reading.trunk for cycle_reading in cycle_readings if np.isfinite(cycle_reading.trunk)]
+        )
         spread = float(np.std(lengths, ddof=1)) if len(lengths) > 1 else float("nan")
-        numbers["trunk_length"] = Seen(whole.trunk, spread, float(half_width(whole.trunk, lengths, 0.0)), tracks.unit)
-    numbers |= _paced(strides, numbers["period"], whole, tracks.unit)
+        numbers["trunk_length"] = Seen(
+            mean_reading.trunk, spread, float(half_width(mean_reading.trunk, lengths, 0.0)), tracks.unit
+        )
+    numbers |= _paced(strides, numbers["period"], mean_reading, tracks.unit)
     unsure = 0.0  # of where the cycle begins
     if feet:
         lead = feet.get("LF") or next(iter(feet.values()))
         duties = float(np.mean([foot.duty_error for foot in feet.values()])) / 2
         unsure = float(np.hypot(lead.middle_error, duties))
-    unlike = _unlike(numbers)
+    unlike = _widen_late_phases(numbers)
     for name, chain in _chains(tracks).items():
         numbers[f"standing_{name}"] = Seen(_index(tracks, chain, period), float("nan"), float("nan"), "-")
     return Walk(
@@ -165,35 +172,41 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         upright=tracks.upright,
         tail_share=tail_share,
         numbers=numbers,
-        bends={name: complex(_first(whole.angles[name], zero)) for name in whole.angles},
-        wrong=tuple(wrong),
+        bends={name: complex(_first_harmonic(mean_reading.angles[name], zero)) for name in mean_reading.angles},
+        wrong=tuple(faults),
         lacks=lacking(tracks.points),
         notes=(
-            *(f"{name} {why}" for name, why in wrong.items()),
-            *_unseen(tracks),
-            *seen.notes,
+            *(f"{name} {reason}" for name, reason in faults.items()),
+            *_missing_point_notes(tracks),
+            *screening.notes,
             *unlike,
-            *_unknown(feet, (tracks.time[-1] - tracks.time[0]) / period),
+            *_uncertain_feet_notes(feet, (tracks.time[-1] - tracks.time[0]) / period),
         ),
         strides=strides,
         phases=over_phase(
-            tracks, whole.angles, whole.sweeps, [(one.angles, one.sweeps) for one in each], period, zero, unsure
+            tracks,
+            mean_reading.angles,
+            mean_reading.sweeps,
+            [(cycle_reading.angles, cycle_reading.sweeps) for cycle_reading in cycle_readings],
+            period,
+            zero,
+            unsure,
         ),
-        cycle=_mean_cycle(tracks, whole, feet, zero),
+        cycle=_mean_cycle(tracks, mean_reading, feet, zero),
     )
 
 
 def _timed(tracks: Tracks) -> tuple[Tracks, Clock, float]:
-    """Return the tracks by a clock on which strides last equally long, that clock, and the period [s]."""
+    """Return the tracks on a clock with equal strides, that clock, and the period [s]."""
     check_size(tracks)
     tracks = tracks.ahead()
     signals = _swinging(tracks)
-    rough = find_period(tracks.time, np.array(list(signals.values())), tracks.source)
-    clock = paced({leg: steps(tracks, leg, rough) for leg in tracks.legs}, rough)
+    rough_period = find_period(tracks.time, np.array(list(signals.values())), tracks.source)
+    clock = paced({leg: steps(tracks, leg, rough_period) for leg in tracks.legs}, rough_period)
     return replace(tracks, time=clock.read(tracks.time)), clock, clock.period
 
 
-_SHOWN = {
+_KEYPOINTS_NEEDED = {
     "the spine's bend": ("neck or snout", "shoulder", "hip", "tail_base"),
     "the tail's bend": ("hip", "tail_base", "tail_tip"),
     "the trunk's length, and lengths in trunk lengths": ("shoulder", "hip"),
@@ -201,15 +214,15 @@ _SHOWN = {
 }
 
 
-def _unseen(tracks: Tracks) -> list[str]:
-    """Say what keypoints that are not there leave unknown."""
+def _missing_point_notes(tracks: Tracks) -> list[str]:
+    """Return sentences on what is unknown because keypoints are missing."""
     missing = set(lacking(tracks.points))
     missing |= {"neck or snout"} if "neck (or snout)" in missing else set()
     notes, footless = [], not tracks.legs
-    for what, points in _SHOWN.items():
-        gone = [name for name in points if name in missing]
-        if gone and not (footless and gone == ["LF"]):
-            notes.append(f"without {' and '.join(gone)}, unknown: {what}")
+    for quantity, points in _KEYPOINTS_NEEDED.items():
+        missing_points = [name for name in points if name in missing]
+        if missing_points and not (footless and missing_points == ["LF"]):
+            notes.append(f"without {' and '.join(missing_points)}, unknown: {quantity}")
     if footless:
         notes.append(
             "no foot is tracked, as of a body without limbs or one that swims: phases count from the film's beginning"
@@ -222,20 +235,24 @@ def _unseen(tracks: Tracks) -> list[str]:
     return notes
 
 
-def _seen(
-    whole: _Reading,
-    each: Sequence[_Reading],
+def _measurements(
+    mean_reading: _Reading,
+    cycle_readings: Sequence[_Reading],
     feet: Mapping[str, FootContact],
     zero: float,
     clock: Clock,
     start: float,
 ) -> dict[str, Seen]:
     """Return every number with its spread and its interval."""
-    count, ones, numbers = len(each), [_numbers(one, zero) for one in each], {}
-    for name, value in _numbers(whole, zero).items():
-        apart = _apart(name, value, ones)
-        spread = float(np.std(apart, ddof=1)) if len(apart) > 1 else float("nan")
-        error = float(half_width(0.0, apart, 0.0))
+    count, cycle_numbers, numbers = (
+        len(cycle_readings),
+        [_numbers(cycle_reading, zero) for cycle_reading in cycle_readings],
+        {},
+    )
+    for name, value in _numbers(mean_reading, zero).items():
+        deviations = _deviations(name, value, cycle_numbers)
+        spread = float(np.std(deviations, ddof=1)) if len(deviations) > 1 else float("nan")
+        error = float(half_width(0.0, deviations, 0.0))
         if name == "spine_rightmost":  # its phase counts from a foot
             if "LF" not in feet:
                 continue
@@ -246,94 +263,116 @@ def _seen(
         numbers[f"duty_{leg}"] = Seen(foot.duty, foot.scatter, foot.duty_error, "-")
         if "LF" not in feet:
             continue
-        first = feet["LF"]
-        error = float(np.hypot(first.middle_error, foot.middle_error)) if leg != "LF" else 0.0
-        numbers[f"phase_{leg}"] = Seen((first.middle - foot.middle) % 1.0, float("nan"), error, "cycle")
-    lasts = np.diff(clock.seconds(start / whole.period + np.arange(count + 1)))
-    spread = float(np.std(lasts, ddof=1)) if count >= 2 else float("nan")
+        lead_foot = feet["LF"]
+        error = float(np.hypot(lead_foot.middle_error, foot.middle_error)) if leg != "LF" else 0.0
+        numbers[f"phase_{leg}"] = Seen((lead_foot.middle - foot.middle) % 1.0, float("nan"), error, "cycle")
+    durations = np.diff(clock.seconds(start / mean_reading.period + np.arange(count + 1)))
+    spread = float(np.std(durations, ddof=1)) if count >= 2 else float("nan")
     error = times(count) * spread / np.sqrt(count) if count >= 2 else float("nan")
-    numbers["period"] = Seen(whole.period, spread, error, "s")
+    numbers["period"] = Seen(mean_reading.period, spread, error, "s")
     return numbers
 
 
-def _unlike(numbers: dict[str, Seen]) -> list[str]:
-    """Widen the phases of feet that step late and lie as far behind their partners, and say so.
+def _widen_late_phases(numbers: dict[str, Seen]) -> list[str]:
+    """Widen the intervals of the phases of feet that may be late in the film, and return notes.
 
-    A foot whose frames come late does both at once: the body has gone on by as much of a stride.
+    A foot with late frames has a late phase, and lies behind its partner by the distance that the body advances in that
+    time.
     """
     notes = []
-    for left, right in (LEGS[:2], LEGS[2:]):
-        phases, ahead = [f"phase_{leg}" for leg in (left, right)], [f"ahead_{leg}" for leg in (left, right)]
-        if not {*phases, *ahead, "stride"} <= set(numbers):
+    for left_leg, right_leg in (LEGS[:2], LEGS[2:]):
+        phase_names, offset_names = (
+            [f"phase_{leg}" for leg in (left_leg, right_leg)],
+            [f"ahead_{leg}" for leg in (left_leg, right_leg)],
+        )
+        if not {*phase_names, *offset_names, "stride"} <= set(numbers):
             continue
-        early = (numbers[phases[1]].value - numbers[phases[0]].value) % 1.0 - 0.5
-        error = max(numbers[name].error for name in phases)
-        forward = (numbers[ahead[1]].value - numbers[ahead[0]].value) / max(numbers["stride"].value, 1e-9)
-        if abs(early) > max(_LATE, 3 * error) and abs(early - forward) < _ALIKE * abs(early) + error:
-            slow, other = (right, left) if early < 0 else (left, right)
+        phase_lead = (numbers[phase_names[1]].value - numbers[phase_names[0]].value) % 1.0 - 0.5
+        error = max(numbers[name].error for name in phase_names)
+        relative_offset = (numbers[offset_names[1]].value - numbers[offset_names[0]].value) / max(
+            numbers["stride"].value, 1e-9
+        )
+        if (
+            abs(phase_lead) > max(_MIN_LAG, 3 * error)
+            and abs(phase_lead - relative_offset) < _LAG_TOLERANCE * abs(phase_lead) + error
+        ):
+            late_leg, partner = (right_leg, left_leg) if phase_lead < 0 else (left_leg, right_leg)
             notes.append(
-                f"{slow} steps {abs(early):.3f} cycles after half a cycle from {other} and lies as far behind it as "
-                f"the body goes on in that time: either it limps, or the frames of {slow} or {other} are not those of "
-                "the other keypoints; phases are that uncertain"
+                f"{late_leg} steps {abs(phase_lead):.3f} cycles after half a cycle from {partner} and lies as far "
+                "behind it as "
+                f"the body goes on in that time: either it limps, or the frames of {late_leg} or {partner} are not "
+                "those of the other keypoints; phases are that uncertain"
             )
-            touched = (*(f"phase_{leg}" for leg in LEGS[1:]), "spine_rightmost") if "LF" in (left, right) else phases
-            for name in touched:
+            affected_names = (
+                (*(f"phase_{leg}" for leg in LEGS[1:]), "spine_rightmost")
+                if "LF" in (left_leg, right_leg)
+                else phase_names
+            )
+            for name in affected_names:
                 if name in numbers:
-                    numbers[name] = numbers[name]._replace(error=float(numbers[name].error + 1.2 * abs(early)))
+                    numbers[name] = numbers[name]._replace(error=float(numbers[name].error + 1.2 * abs(phase_lead)))
     return notes
 
 
-def _paced(strides: xr.Dataset, period: Seen, whole: _Reading, unit: str) -> dict[str, Seen]:
+def _paced(strides: xr.Dataset, period: Seen, mean_reading: _Reading, unit: str) -> dict[str, Seen]:
     """Return how far and how fast the body goes, and how it turns: means over all cycles, intervals over strides."""
     numbers = {}
     for name, size in (("stride_length", unit), ("speed", f"{unit}/s"), ("turning", "rad")):
         if name in strides:
-            ones = strides[name].values
-            ones = ones[np.isfinite(ones)]
-            mean = float(np.mean(ones))
-            value = {"stride_length": whole.advance, "speed": whole.advance / period.value}.get(name, mean)
-            spread = float(np.std(ones, ddof=1)) if len(ones) > 1 else float("nan")
-            error = float(half_width(value, ones, 0.0))
+            stride_values = strides[name].values
+            stride_values = stride_values[np.isfinite(stride_values)]
+            mean = float(np.mean(stride_values))
+            value = {"stride_length": mean_reading.advance, "speed": mean_reading.advance / period.value}.get(
+                name, mean
+            )
+            spread = float(np.std(stride_values, ddof=1)) if len(stride_values) > 1 else float("nan")
+            error = float(half_width(value, stride_values, 0.0))
             if name == "speed":  # the mean of the speeds of strides is not the mean speed
                 error = float(np.hypot(error, value * period.error / period.value))
             numbers[name] = Seen(value, spread, error, size)
     for leg in strides.leg.values if "step_length" in strides else ():
-        ones = strides.step_length.sel(leg=leg).values
-        ones = ones[np.isfinite(ones)]
-        if len(ones):
-            error = float(np.hypot(half_width(float(np.mean(ones)), ones, 0.0), _PLACED * np.mean(ones)))
-            spread = float(np.std(ones, ddof=1)) if len(ones) > 1 else float("nan")
-            numbers[f"step_length_{leg}"] = Seen(float(np.mean(ones)), spread, error, unit)
+        stride_values = strides.step_length.sel(leg=leg).values
+        stride_values = stride_values[np.isfinite(stride_values)]
+        if len(stride_values):
+            error = float(
+                np.hypot(
+                    half_width(float(np.mean(stride_values)), stride_values, 0.0), _PLACE_ERROR * np.mean(stride_values)
+                )
+            )
+            spread = float(np.std(stride_values, ddof=1)) if len(stride_values) > 1 else float("nan")
+            numbers[f"step_length_{leg}"] = Seen(float(np.mean(stride_values)), spread, error, unit)
     return numbers
 
 
 def _check_feet(feet: Mapping[str, FootContact], source: str) -> None:
-    """Refuse feet of which it cannot be seen whether they stand or swing."""
-    known = {leg: foot.duty_error for leg, foot in feet.items() if np.isfinite(foot.duty_error)}
-    if known and min(known.values()) > _BLIND:
-        leg = min(known, key=lambda name: known[name])
+    """Refuse tracks in which noise hides stance and swing of all feet."""
+    duty_errors = {leg: foot.duty_error for leg, foot in feet.items() if np.isfinite(foot.duty_error)}
+    if duty_errors and min(duty_errors.values()) > _BLIND:
+        leg = min(duty_errors, key=lambda name: duty_errors[name])
         raise UnusableTracks(
-            f"in {source} noise hides the steps: even the duty factor of {leg} is known to ±{known[leg]:.2f} only, at "
-            f"most ±{_BLIND:g} may be; film more cycles, faster, or nearer."
+            f"in {source} noise hides the steps: even the duty factor of {leg} is known to ±{duty_errors[leg]:.2f} "
+            f"only, at most ±{_BLIND:g} may be; film more cycles, faster, or nearer."
         )
 
 
-def _unknown(feet: Mapping[str, FootContact], cycles: float) -> tuple[str, ...]:
-    """Say of which feet too little is seen, and how many more cycles would show enough."""
+def _uncertain_feet_notes(feet: Mapping[str, FootContact], cycles: float) -> tuple[str, ...]:
+    """Return sentences on feet with uncertain steps, and the number of cycles that would be enough."""
     notes = []
-    alone = [leg for leg, foot in feet.items() if not np.isfinite(foot.duty_error)]
-    if alone:
-        named = " and ".join(alone)
+    single_step_legs = [leg for leg, foot in feet.items() if not np.isfinite(foot.duty_error)]
+    if single_step_legs:
+        leg_names = " and ".join(single_step_legs)
         notes.append(
-            f"one step of {named} was filmed from stance to stance, which has no interval: film one more cycle"
+            f"one step of {leg_names} was filmed from stance to stance, which has no interval: film one more cycle"
         )
     for leg, foot in feet.items():
         if foot.duty_error > UNSURE:
-            why = f"is hidden in {100 * foot.hidden:.0f} % of every cycle" if foot.hidden > 0.1 else "is seen too badly"
+            reason = (
+                f"is hidden in {100 * foot.hidden:.0f} % of every cycle" if foot.hidden > 0.1 else "is seen too badly"
+            )
             unsure = f"±{foot.duty_error:.2f} of the cycle"
-            more = int(np.ceil(cycles * ((foot.duty_error / UNSURE) ** 2 - 1)))
-            more_said = "" if foot.hidden > 0.1 else f"; about {more} more cycles would make that ±{UNSURE:g}"
-            notes.append(f"{leg} {why}: when it lifts off and touches down is known to {unsure} only{more_said}")
+            extra_cycles = int(np.ceil(cycles * ((foot.duty_error / UNSURE) ** 2 - 1)))
+            extra_text = "" if foot.hidden > 0.1 else f"; about {extra_cycles} more cycles would make that ±{UNSURE:g}"
+            notes.append(f"{leg} {reason}: when it lifts off and touches down is known to {unsure} only{extra_text}")
     return tuple(notes)
 
 
@@ -343,39 +382,48 @@ def _swinging(tracks: Tracks) -> dict[str, np.ndarray]:
     Points that are lost in turns may leave no frame in which a bend can be seen.
     """
     angles = bend_angles(tracks)
-    aside = tracks.view == "top"
+    is_top_view = tracks.view == "top"
     signals = {
-        "the spine's bend": angles.spine_lateral if aside else angles.spine_vertical,
-        "the tail's bend": angles.tail_lateral if aside else angles.tail_vertical,
+        "the spine's bend": angles.spine_lateral if is_top_view else angles.spine_vertical,
+        "the tail's bend": angles.tail_lateral if is_top_view else angles.tail_vertical,
         **{f"the path of {leg}": forward_path(tracks, leg) for leg in tracks.legs},
     }
-    shown = {
+    has_points = {
         "the spine's bend": tracks.thorax and tracks.pelvis,
         "the tail's bend": tracks.pelvis and tracks.has("tail_tip"),
     }
-    found = {}
+    visible_signals = {}
     for name, series in signals.items():
-        seen = np.isfinite(series).mean()
-        if seen >= _TOGETHER:
-            found[name] = series
-        elif shown.get(name, True):
+        visible_fraction = np.isfinite(series).mean()
+        if visible_fraction >= _MIN_VISIBLE_FRACTION:
+            visible_signals[name] = series
+        elif has_points.get(name, True):
             raise UnusableTracks(
-                f"in {tracks.source} {name} can be seen in {100 * seen:.0f} % of the frames, at least "
-                f"{100 * _TOGETHER:.0f} % are needed: its points are lost in turns; track them again."
+                f"in {tracks.source} {name} can be seen in {100 * visible_fraction:.0f} % of the frames, at least "
+                f"{100 * _MIN_VISIBLE_FRACTION:.0f} % are needed: its points are lost in turns; track them again."
             )
-    if not found:  # a midline without girdles and feet: it sways
+    if not visible_signals:  # a midline without girdles and feet: it sways
         front, rear = tracks.line
-        found["the trunk's direction"] = continuous(azimuth(tracks, front, rear))
-    return found
+        visible_signals["the trunk's direction"] = continuous(azimuth(tracks, front, rear))
+    return visible_signals
 
 
-def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
+def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
+    """Fit the angles, the advance and the foot paths of tracks over their mean cycle.
+
+    Args:
+        tracks: the keypoints, by the clock.
+        period: of the cycle [s].
+        tail_share: fraction of the tail's length at which its lateral angle is taken [-].
+    """
     angles = bend_angles(tracks, tail_share)._asdict()
     fits = {}
     for name, series in angles.items():
-        seen = int(np.isfinite(series).sum())
-        if seen:
-            fits[name] = fit(tracks.time, series, period, harmonics=harmonics_for(seen, tracks.rate * period, most=6))
+        frame_count = int(np.isfinite(series).sum())
+        if frame_count:
+            fits[name] = fit(
+                tracks.time, series, period, harmonics=harmonics_for(frame_count, tracks.rate * period, most=6)
+            )
     place, advance = tracks.at(tracks.line[1]), float("nan")
     if np.isfinite(place[:, 0]).mean() >= _PLACES:
         advanced = [fit(tracks.time, place[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
@@ -383,7 +431,7 @@ def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
     sweeps = {leg: sweep(tracks, leg, period) for leg in tracks.legs}
     return _Reading(
         fits,
-        {leg: one for leg, one in sweeps.items() if one is not None},
+        {leg: foot_sweep for leg, foot_sweep in sweeps.items() if foot_sweep is not None},
         advance,
         tracks.trunk_length(),
         period,
@@ -392,7 +440,13 @@ def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
 
 
 def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
-    bends = {name: _first(reading.angles[name], zero) for name in reading.angles}
+    """Return the numbers of a reading by name: lengths over the trunk's [-], angles [rad], phases [cycle].
+
+    Args:
+        reading: fits over the mean cycle.
+        zero: phase of the tracks' clock at which the gait begins [cycle].
+    """
+    bends = {name: _first_harmonic(reading.angles[name], zero) for name in reading.angles}
     spine, tail = (bends.get(name, 0j) for name in ("spine_lateral", "tail_lateral"))
     numbers = {"stride": reading.advance / reading.trunk}
     for leg, path in reading.sweeps.items():
@@ -414,19 +468,20 @@ def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
 
 
 def _zero(feet: Mapping[str, FootContact]) -> float:
-    """Phase of the tracks' clock at which the gait begins: LF's mid-stance, back by swing and half of stance.
+    """Return the phase of the tracks' clock at which the gait begins [cycle].
 
-    Without LF it is the same of the first foot that there is; without feet it is where the clock begins.
+    It is the mid-stance of LF minus the swing and half of the stance. Without LF the first tracked foot takes its
+    place. Without feet it is 0.
     """
     if not feet:
         return 0.0
     duty = float(np.mean([foot.duty for foot in feet.values()]))
-    first = feet.get("LF") or next(iter(feet.values()))
-    return first.touch_down + first.duty / 2 - (1.0 - duty / 2)
+    lead_foot = feet.get("LF") or next(iter(feet.values()))
+    return lead_foot.touch_down + lead_foot.duty / 2 - (1.0 - duty / 2)
 
 
-def _first(one: PeriodicFit, zero: float) -> complex:
-    return complex(one.harmonics[0] * np.exp(2j * np.pi * zero))
+def _first_harmonic(angle_fit: PeriodicFit, zero: float) -> complex:
+    return complex(angle_fit.harmonics[0] * np.exp(2j * np.pi * zero))
 
 
 def _cycle(tracks: Tracks, number: int, period: float) -> Tracks:
@@ -434,13 +489,14 @@ def _cycle(tracks: Tracks, number: int, period: float) -> Tracks:
     return tracks.between(start, start + period)
 
 
-def _apart(name: str, value: float, each: Sequence[Mapping[str, float]]) -> np.ndarray:
-    """Return how far a number of each cycle is from that of all, around the cycle where it is a phase."""
-    apart = np.array([numbers[name] for numbers in each if name in numbers]) - value
-    return wrapped(2 * np.pi * apart) / (2 * np.pi) if _unit(name) == "cycle" else apart
+def _deviations(name: str, value: float, cycle_numbers: Sequence[Mapping[str, float]]) -> np.ndarray:
+    """Return the differences between a number of each cycle and that of all cycles; phases are wrapped."""
+    deviations = np.array([numbers[name] for numbers in cycle_numbers if name in numbers]) - value
+    return wrapped(2 * np.pi * deviations) / (2 * np.pi) if _unit(name) == "cycle" else deviations
 
 
 def _unit(name: str) -> str:
+    """Return the unit of a number of ``_numbers``."""
     stem = name.partition("_")[0]
     if stem in ("phase",) or name in ("spine_rightmost", "tail_lag"):
         return "cycle"
@@ -455,7 +511,7 @@ def _chains(tracks: Tracks) -> dict[str, tuple[str, ...]]:
 
 
 def _index(tracks: Tracks, chain: tuple[str, ...], period: float) -> float:
-    """Standing index of a chain, over the joints whose bend stands out of the noise; NaN with fewer than two."""
+    """Return the standing index of a chain, over joints whose bend exceeds the noise; NaN with fewer than two."""
     amplitude, phase = [], []
     for series in joint_bends(tracks, chain):
         bend = fit(tracks.time, series, period, harmonics=3)
@@ -466,7 +522,7 @@ def _index(tracks: Tracks, chain: tuple[str, ...], period: float) -> float:
 
 
 def _check_advance(reading: _Reading, source: str) -> None:
-    """On ground at rest the body goes farther in a cycle than a foot sweeps back."""
+    """Refuse tracks in which the body advances less per cycle than a foot sweeps back."""
     if not reading.sweeps:
         return
     swept = 2 * float(np.mean([path.stroke for path in reading.sweeps.values()]))
@@ -479,6 +535,14 @@ def _check_advance(reading: _Reading, source: str) -> None:
 
 
 def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
+    """Return angles, foot speeds and stance over the phase of the mean cycle, with the scatter of the frames.
+
+    Args:
+        tracks: the keypoints, by the clock.
+        reading: fits over the mean cycle.
+        feet: contact of each foot.
+        zero: phase of the tracks' clock at which the gait begins [cycle].
+    """
     phase = np.arange(GRID) / GRID
     time = (phase + zero) * reading.period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(feet)})
@@ -487,7 +551,7 @@ def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, FootContac
         data[name] = ("phase", angle.mean + angle.swing(time), attrs)
         data[f"{name}_spread"] = (
             "phase",
-            _left_over(tracks, angle, phase, zero),
+            _residual_spread(tracks, angle, phase, zero),
             {"units": "rad", "long_name": "standard deviation of the frames about the mean, camera noise included"},
         )
     back = -round(zero * GRID)
@@ -501,12 +565,12 @@ def _positive(name: str) -> str:
     return "right" if name.endswith("lateral") else "down"
 
 
-def _left_over(tracks: Tracks, one: PeriodicFit, phase: np.ndarray, zero: float) -> np.ndarray:
-    """Standard deviation of the frames about the mean cycle, in bins of phase, drawn through [rad]."""
-    phases = np.mod(tracks.time / one.period - zero, 1.0)
+def _residual_spread(tracks: Tracks, angle_fit: PeriodicFit, phase: np.ndarray, zero: float) -> np.ndarray:
+    """Return the standard deviation of the frames about the mean cycle, over the phase [rad]."""
+    phases = np.mod(tracks.time / angle_fit.period - zero, 1.0)
     bins = np.minimum((phases * _BINS).astype(int), _BINS - 1)
-    use = np.isfinite(one.residual)
+    use = np.isfinite(angle_fit.residual)
     count = np.bincount(bins[use], minlength=_BINS)
-    power = np.bincount(bins[use], weights=one.residual[use] ** 2, minlength=_BINS)
-    spread = np.where(count > 1, np.sqrt(power / np.maximum(count, 1)), one.noise)
+    power = np.bincount(bins[use], weights=angle_fit.residual[use] ** 2, minlength=_BINS)
+    spread = np.where(count > 1, np.sqrt(power / np.maximum(count, 1)), angle_fit.noise)
     return np.asarray(np.interp(phase, (np.arange(_BINS) + 0.5) / _BINS, spread, period=1.0))

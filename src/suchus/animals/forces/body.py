@@ -21,10 +21,10 @@ RUNGS: tuple[Rung, ...] = get_args(Rung)
 DRAWS = 39
 """Choices beside the most likely one [-]: whatever their distribution, a fortieth answer lies between the least and the
 greatest of 39 in 95 of 100 cases."""
-_SURE = float(norm.ppf(0.975))  # standard errors in half a 95 % interval
+_Z_95 = float(norm.ppf(0.975))  # standard errors in half a 95 % interval
 _POSITIVE = ("stride", "stride_length", "period", "trunk_length", "lift", "stroke", "spine_lateral", "tail_lateral")
 _SHARES = ("duty", "retraction")
-_ASKED, _ASKED_OF_FEET = ("period", "speed"), ("duty", "phase")  # numbers that must have an interval
+_REQUIRED_NUMBERS, _REQUIRED_FOOT_NUMBERS = ("period", "speed"), ("duty", "phase")  # numbers that must have an interval
 _SEED = 35
 
 
@@ -56,17 +56,19 @@ class Unknown:
     """Choices beside the most likely one [-]; see ``DRAWS``."""
 
     def __post_init__(self) -> None:
+        """Refuse ranges out of bounds or in the wrong order."""
         with Checks("unknown", self) as check:
             check.whole("draws", 3, 10_000)
-            for name, low, high in (
+            for name, lower_bound, upper_bound in (
                 ("mass", 1e-6, 1e5), ("friction", 0.01, 5.0), ("lift", 0.0, 5.0), ("height", 0.2, 3.0),
                 ("cross_drag", 0.0, 10.0), ("thickening", 0.0, 100.0), ("added_mass", 0.0, 10.0),
                 ("shedding", 0.0, 10.0), ("viscosity", 1e-9, 1.0),
             ):  # fmt: skip
-                ends = getattr(self, name)
+                bounds = getattr(self, name)
                 check.that(
-                    ends is None or (len(ends) == 2 and low <= ends[0] <= ends[1] <= high),
-                    f"unknown.{name} is {ends}; a range is two numbers from {low:g} to {high:g}, the lower one first",
+                    bounds is None or (len(bounds) == 2 and lower_bound <= bounds[0] <= bounds[1] <= upper_bound),
+                    f"unknown.{name} is {bounds}; a range is two numbers from {lower_bound:g} to {upper_bound:g}, "
+                    "the lower one first",
                 )
 
     def masses(self, body: Robot) -> tuple[float, float]:
@@ -79,9 +81,9 @@ def middle(ends: tuple[float, float]) -> float:
     return 0.5 * (ends[0] + ends[1])
 
 
-def even(ends: tuple[float, float], share: float) -> float:
-    """Return the value at a share of a range, 0 to 1."""
-    return float(ends[0] + share * (ends[1] - ends[0]))
+def even(ends: tuple[float, float], fraction: float) -> float:
+    """Return the value at a fraction of a range, 0 to 1."""
+    return float(ends[0] + fraction * (ends[1] - ends[0]))
 
 
 def choices(names: Sequence[str], count: int) -> list[dict[str, float]]:
@@ -96,8 +98,8 @@ def choices(names: Sequence[str], count: int) -> list[dict[str, float]]:
 
 
 def errors(share: float) -> float:
-    """Return how many half widths of a 95 % interval a number is off at a share of its normal distribution [-]."""
-    return float(norm.ppf(np.clip(share, 1e-6, 1 - 1e-6))) / _SURE
+    """Return the deviation at a quantile of the normal distribution, in half widths of a 95 % interval [-]."""
+    return float(norm.ppf(np.clip(share, 1e-6, 1 - 1e-6))) / _Z_95
 
 
 def unsure(walk: Walk) -> tuple[str, ...]:
@@ -106,9 +108,11 @@ def unsure(walk: Walk) -> tuple[str, ...]:
     Raises:
         UnusableTracks: one that forces rest on has none, since too few cycles were seen.
     """
-    names = tuple(name for name, seen in walk.numbers.items() if np.isfinite(seen.error))
-    asked = [name for name in walk.numbers if name in _ASKED or name.partition("_")[0] in _ASKED_OF_FEET]
-    lacking = [name for name in asked if name not in names]
+    names = tuple(name for name, measurement in walk.numbers.items() if np.isfinite(measurement.error))
+    required = [
+        name for name in walk.numbers if name in _REQUIRED_NUMBERS or name.partition("_")[0] in _REQUIRED_FOOT_NUMBERS
+    ]
+    lacking = [name for name in required if name not in names]
     if lacking:
         raise UnusableTracks(
             f"{walk.source} shows {walk.cycles:.1f} cycles, by which {' and '.join(lacking)} "
@@ -118,80 +122,91 @@ def unsure(walk: Walk) -> tuple[str, ...]:
 
 
 def drawn(walk: Walk, shares: Mapping[str, float]) -> Walk:
-    """Return a walk as it may have been: each number somewhere in its interval.
+    """Return a possible walk: each number is at a quantile of its distribution.
 
     Args:
         walk: the measured one.
         shares: of the distribution of each of ``unsure(walk)``.
     """
     numbers = dict(walk.numbers)
-    for name, seen in walk.numbers.items():
-        if name in shares and np.isfinite(seen.error):
-            numbers[name] = seen._replace(value=_allowed(name, seen, errors(shares[name])))
+    for name, measurement in walk.numbers.items():
+        if name in shares and np.isfinite(measurement.error):
+            numbers[name] = measurement._replace(value=_deviate(name, measurement, errors(shares[name])))
     bends = dict(walk.bends)
-    for part in ("spine", "tail"):
-        name = f"{part}_lateral"
+    for region in ("spine", "tail"):
+        name = f"{region}_lateral"
         if name in bends and name in numbers and abs(bends[name]) > 0.0:
             turn = bends[name] / abs(bends[name])
-            turn *= np.exp(-2j * np.pi * _moved(walk, numbers, "spine_rightmost"))
-            turn *= np.exp(-2j * np.pi * _moved(walk, numbers, "tail_lag")) if part == "tail" else 1.0
+            turn *= np.exp(-2j * np.pi * _change(walk, numbers, "spine_rightmost"))
+            turn *= np.exp(-2j * np.pi * _change(walk, numbers, "tail_lag")) if region == "tail" else 1.0
             bends[name] = complex(numbers[name].value * turn)
     return replace(walk, numbers=numbers, bends=bends)
 
 
-def _moved(walk: Walk, numbers: Mapping[str, Seen], name: str) -> float:
+def _change(walk: Walk, numbers: Mapping[str, Seen], name: str) -> float:
     return numbers[name].value - walk.numbers[name].value if name in numbers else 0.0
 
 
-def _allowed(name: str, seen: Seen, off: float) -> float:
-    value, stem = seen.value + off * seen.error, name.partition("_")[0]
+def _deviate(name: str, measurement: Seen, deviation: float) -> float:
+    """Return a number at some standard errors from its mean, within the range that is possible for it.
+
+    Args:
+        name: of the number.
+        measurement: the measured number.
+        deviation: from the mean [standard error].
+    """
+    value, stem = measurement.value + deviation * measurement.error, name.partition("_")[0]
     if stem in _SHARES:
         return float(np.clip(value, 0.05, 0.95))
     if stem in _POSITIVE or name in _POSITIVE:
-        return float(max(value, 0.02 * seen.value))
+        return float(max(value, 0.02 * measurement.value))
     return float(value)
 
 
 def sized(robot: Robot, length: float, mass: float | None = None) -> Robot:
-    """Return a body so many times as long, everything else in proportion, and as heavy as is asked for.
+    """Return a body scaled in length, and in mass.
 
     Args:
         robot: the body.
         length: factor on its lengths [-].
         mass: of the whole body [kg]; in proportion to the cube of the length if None.
     """
-    alike = abs(length - 1.0) < 1e-12 and mass is None
-    return robot if alike else scaled(robot, length_factor=length, mass_factor=mass and mass / robot.mass)
+    is_unchanged = abs(length - 1.0) < 1e-12 and mass is None
+    return robot if is_unchanged else scaled(robot, length_factor=length, mass_factor=mass and mass / robot.mass)
 
 
 def widened(robot: Robot, volume: float) -> Robot:
-    """Return a body whose axis is so much wider and higher that it has a volume, its length as it is.
+    """Return a body with a given volume and the same length; width and height of its axis are scaled.
 
     Args:
         robot: the body.
         volume: of the whole body [m3].
     """
     for _ in range(30):
-        now = sum(volumes(robot).values())
-        if abs(now / volume - 1.0) < 1e-9:
+        current_volume = sum(volumes(robot).values())
+        if abs(current_volume / volume - 1.0) < 1e-9:
             break
-        factor = (volume / now) ** 0.5
+        factor = (volume / current_volume) ** 0.5
         robot = replace(robot, axis=tuple(_wider(segment, factor) for segment in robot.axis))
     return robot
 
 
 def _wider(segment: Segment, factor: float) -> Segment:
-    def across(place: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return a segment whose sections are larger by a factor and whose length is the same."""
+
+    def scale_section(place: tuple[float, float, float]) -> tuple[float, float, float]:
         return place[0], factor * place[1], factor * place[2]
 
     shapes: list[Rod | Shell] = []
     for shape in segment.shapes:
         if isinstance(shape, Shell):
             half = shape.half[0], factor * shape.half[1], factor * shape.half[2]
-            shapes.append(replace(shape, at=across(shape.at), half=half))
+            shapes.append(replace(shape, at=scale_section(shape.at), half=half))
         else:
             shapes.append(
-                replace(shape, start=across(shape.start), end=across(shape.end), radius=factor * shape.radius)
+                replace(
+                    shape, start=scale_section(shape.start), end=scale_section(shape.end), radius=factor * shape.radius
+                )
             )
     return replace(segment, shapes=tuple(shapes))
 
@@ -201,18 +216,18 @@ def put(
     name: str,
     dims: tuple[str, ...],
     answers: np.ndarray,
-    about: tuple[str, str],
+    description: tuple[str, str],
 ) -> None:
-    """Put the first of some answers into a dataset, and the least and the greatest of all as ends of its interval.
+    """Add the first of several results to a dataset, with the least and the greatest as ends of its interval.
 
     Args:
         data: the dataset.
         name: of the variable.
         dims: of a value.
         answers: each as ``dims`` say, the most likely one first.
-        about: its unit and what it is.
+        description: its unit and what it is.
     """
-    unit, meaning = about
+    unit, meaning = description
     ends = {"": answers[0], "_low": np.min(answers, axis=0), "_high": np.max(answers, axis=0)}
     ending = {"": "", "_low": ", lower end of the 95 % interval", "_high": ", upper end of the 95 % interval"}
     for end, value in ends.items():
@@ -238,16 +253,20 @@ class Quantities:
             meaning: what it is.
             published: of animals, its standard deviation over trials, and the source.
         """
-        known = np.asarray(answers, dtype=float)
-        known = known if np.isfinite(known).any() else np.zeros(1) * np.nan
-        low, high = (float(np.nanmin(known)), float(np.nanmax(known))) if np.isfinite(known).any() else (np.nan,) * 2
-        self._rows.append((name, float(known[0]), low, high, unit, meaning, *published))
+        finite_answers = np.asarray(answers, dtype=float)
+        finite_answers = finite_answers if np.isfinite(finite_answers).any() else np.zeros(1) * np.nan
+        lower_bound, upper_bound = (
+            (float(np.nanmin(finite_answers)), float(np.nanmax(finite_answers)))
+            if np.isfinite(finite_answers).any()
+            else (np.nan,) * 2
+        )
+        self._rows.append((name, float(finite_answers[0]), lower_bound, upper_bound, unit, meaning, *published))
 
     def dataset(self) -> xr.Dataset:
         """Return the rows, over ``quantity``."""
         columns = list(zip(*self._rows, strict=True))
         data = xr.Dataset(coords={"quantity": ("quantity", list(columns[0]))})
-        about = {
+        meanings = {
             "value": "with the most likely numbers",
             "low": "lower end of the 95 % interval",
             "high": "upper end of the 95 % interval",
@@ -257,7 +276,7 @@ class Quantities:
             "animals_spread": "its standard deviation over trials",
             "source": "where that is published",
         }
-        for (name, meaning), column in zip(about.items(), columns[1:], strict=True):
+        for (name, meaning), column in zip(meanings.items(), columns[1:], strict=True):
             values = list(column) if isinstance(column[0], str) else np.array(column, dtype=float)
             data[name] = ("quantity", values, {"long_name": meaning})
         return data

@@ -1,7 +1,7 @@
-"""Forces under single feet of a walk that was filmed: the animal's body walks as it was seen, in every choice.
+"""Forces on single feet of a filmed walk: the animal's body repeats the walk in simulations.
 
-The film gives when and where feet stand and how the body bends; the body's own weight, the ground and the stiffness of
-joints decide which of the feet that stand carries how much. So the body walks, and the forces are read from its feet.
+The film gives stance, swing and bends. Weight, ground and stiffness of the joints determine how the feet share the
+load. So the body is simulated, and the forces are taken from its feet.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,13 +33,13 @@ SETTLE, CYCLES = 1, 3
 """Cycles that are walked before anything is measured, and that are [-]."""
 LOADED = 0.15
 """Vertical force from which a foot counts as standing [body weight], as in ``suchus run salamander``."""
-_CALLED = {"vertical": "up", "sideways": "toward the midline of the course", "foreaft": "forward along the course"}
-_FEW = 0.8  # share of the choices that must be possible
-_HELD = 0.05  # [cycle]; a force that lasts as long is no strike
-_STRONGER = 4.0  # times a robot's torque and speed that the animal's joints have: the film shows what they do
-_LONGER = tuple(1.0 + 0.1 * step for step in range(16))  # times as long limbs that are tried
-_REACHED = 0.005  # [trunk]; as near a foot is to where it was seen
-_HALVES = (1.0, 0.5, 0.25, 0.0)  # shares of a change that are tried where limbs do not follow all of it
+_DIRECTIONS = {"vertical": "up", "sideways": "toward the midline of the course", "foreaft": "forward along the course"}
+_MIN_SUCCESS_FRACTION = 0.8  # least fraction of choices that can be walked
+_HOLD_TIME = 0.05  # [cycle]; duration of a force that is no strike
+_STRONGER = 4.0  # factor on torque and speed of a robot's servos: the film shows that the animal is strong enough
+_LIMB_FACTORS = tuple(1.0 + 0.1 * step for step in range(16))  # factors on the length of limbs that are tried
+_REACH_TOLERANCE = 0.005  # [trunk]; greatest error of a foot path
+_HALVES = (1.0, 0.5, 0.25, 0.0)  # fractions of a change that are tried, the greatest first
 
 
 class _Try(NamedTuple):
@@ -48,10 +48,10 @@ class _Try(NamedTuple):
     gait: Gait
     friction: float  # [-]
     mass: float  # [kg]
-    behind: float  # of the gait's clock behind that of the tables [cycle]
+    phase_lag: float  # of the gait's clock behind that of the tables [cycle]
 
 
-class _Felt(NamedTuple):
+class _GroundResponse(NamedTuple):
     """What the ground did in one choice; forces in body weights."""
 
     feet: Float[np.ndarray, "leg part phase"]
@@ -59,7 +59,7 @@ class _Felt(NamedTuple):
     tail: Float[np.ndarray, " phase"]
     steps: tuple[FootStep, ...]
     speed: float  # [m/s]
-    missed: float  # [rad]
+    joint_error: float  # [rad]
 
 
 def walked_forces(
@@ -101,30 +101,32 @@ def walked_forces(
     """
     check_needs(robot, NEEDED, "forces of a filmed walk")
     names, unknown = unsure(walk), unknown or Unknown()
-    long = trunk if trunk is not None else _trunk(walk)
-    body = sized(robot, long / hips_ahead(robot, 0))
-    lent = base or own_gait(robot)
-    body, notes = _able(sized(body, 1.0, middle(unknown.masses(body))), walk, lent, long)
-    rest = 0.0 if duty == "retraction" else 1.0
-    likely = dict.fromkeys((*names, "friction", "mass", "lift", "height"), 0.5) | {"rests": rest}
-    made: list[_Try] = []
+    trunk_length = trunk if trunk is not None else _trunk(walk)
+    body = sized(robot, trunk_length / hips_ahead(robot, 0))
+    base_gait = base or own_gait(robot)
+    body, notes = _fit_body(sized(body, 1.0, middle(unknown.masses(body))), walk, base_gait, trunk_length)
+    rest_fraction = 0.0 if duty == "retraction" else 1.0
+    likely = dict.fromkeys((*names, "friction", "mass", "lift", "height"), 0.5) | {"rests": rest_fraction}
+    trials: list[_Try] = []
     for i, shares in enumerate([likely, *choices(list(likely), unknown.draws)]):
         progress("reading gaits", 0.1 * i / (unknown.draws + 1))
         try:
-            made.append(_try(walk, body, lent, unknown, shares, long))
+            trials.append(_try(walk, body, base_gait, unknown, shares, trunk_length))
         except OutsideLimits:
             if i == 0:
                 raise
-    if len(made) < _FEW * (unknown.draws + 1):
+    if len(trials) < _MIN_SUCCESS_FRACTION * (unknown.draws + 1):
         raise UnusableTracks(
-            f"only {len(made)} of {unknown.draws + 1} choices of what {walk.source} leaves open can be walked by the "
+            f"only {len(trials)} of {unknown.draws + 1} choices of what {walk.source} leaves open can be walked by the "
             f"body of {robot.name}: film more cycles, or name another body with --robot."
         )
-    felt = _walked(body, made, lambda stage, share: progress(stage, 0.1 + 0.9 * share))
+    responses = _simulate_trials(body, trials, lambda stage, share: progress(stage, 0.1 + 0.9 * share))
     film = walk.numbers.get("speed")
-    scale = 1.0 if film is None or film.unit == "m/s" else long / walk.value("trunk_length")
-    seen = () if film is None else tuple(scale * (film.value + off) for off in (0.0, -film.error, film.error))
-    data = _told(body, [one.mass for one in made], felt, seen)
+    scale = 1.0 if film is None or film.unit == "m/s" else trunk_length / walk.value("trunk_length")
+    film_speeds = (
+        () if film is None else tuple(scale * (film.value + deviation) for deviation in (0.0, -film.error, film.error))
+    )
+    data = _forces_dataset(body, [trial.mass for trial in trials], responses, film_speeds)
     return data.assign_attrs(
         title=f"forces of the ground on the animal of {walk.source}", medium="land", body=robot.name,
         notes="\n".join([*notes, *_left_open(walk, unknown)]),
@@ -132,75 +134,87 @@ def walked_forces(
 
 
 def _trunk(walk: Walk) -> float:
-    long = walk.numbers.get("trunk_length")
-    if long is None or long.unit != "m":
+    """Return the length of the animal's trunk from hip to shoulder [m]."""
+    trunk_length = walk.numbers.get("trunk_length")
+    if trunk_length is None or trunk_length.unit != "m":
         raise UnusableTracks(
             f"{walk.source} is in pixels, which do not show how long the animal is, and forces grow with the cube of "
             "it: give its length from hip to shoulder, as in --trunk 0.12."
         )
-    return long.value
+    return trunk_length.value
 
 
-def _able(body: Robot, walk: Walk, base: Gait, trunk: float) -> tuple[Robot, list[str]]:
-    """Return the body with limbs as long and joints as strong and fast as what it was seen to do asks, and notes.
+def _fit_body(body: Robot, walk: Walk, base: Gait, trunk: float) -> tuple[Robot, list[str]]:
+    """Return the body with limbs long enough and joints strong enough for the filmed walk, and notes.
 
-    A robot's limbs and servos are those of its own task. An animal's do what is on the film.
+    A robot's limbs and servos are made for its own task; the animal's do what the film shows.
     """
-    strong = with_servos(body, _stronger)
-    for longer in _LONGER:
-        able = strong if longer == 1.0 else replace(strong, girdles=tuple(_long(one, longer) for one in strong.girdles))
-        captured = to_gait(walk, able, base, name="filmed", girdles="apart", time="own", trunk=trunk)
-        if _reaches(able, walk, captured.gait, trunk):
-            told = (
-                [] if longer == 1.0 else [f"limbs are {longer:.2g} times as long as {body.name}'s, so that feet reach"]
+    strong_body = with_servos(body, _stronger)
+    for limb_factor in _LIMB_FACTORS:
+        candidate = (
+            strong_body
+            if limb_factor == 1.0
+            else replace(
+                strong_body, girdles=tuple(_lengthen_limb(girdle, limb_factor) for girdle in strong_body.girdles)
             )
-            return able, told
-    return strong, [note for note in captured.notes if note not in walk.notes]
+        )
+        captured = to_gait(walk, candidate, base, name="filmed", girdles="apart", time="own", trunk=trunk)
+        if _reaches(candidate, walk, captured.gait, trunk):
+            limb_notes = (
+                []
+                if limb_factor == 1.0
+                else [f"limbs are {limb_factor:.2g} times as long as {body.name}'s, so that feet reach"]
+            )
+            return candidate, limb_notes
+    return strong_body, [note for note in captured.notes if note not in walk.notes]
 
 
 def _stronger(servo: Servo) -> Servo:
     return replace(with_full_torque(servo), torque=_STRONGER * servo.torque, speed=_STRONGER * servo.speed)
 
 
-def _long(girdle: Girdle, factor: float) -> Girdle:
+def _lengthen_limb(girdle: Girdle, factor: float) -> Girdle:
     return replace(girdle, limb=scaled(girdle.limb, length_factor=factor, mass_factor=1.0))
 
 
 def _reaches(body: Robot, walk: Walk, gait: Gait, trunk: float) -> bool:
-    """Return whether feet go where they were seen to go."""
+    """Return whether the feet follow the measured paths."""
     for girdle, limb, legs in zip(body.girdles, gait.limbs, (LEGS[:2], LEGS[2:]), strict=True):
-        seen = {"stroke": mean_of(walk, "stroke", legs), "outward": mean_of(walk, "outward", legs)}
-        asked = {"stroke": trunk * seen["stroke"], "outward": trunk * seen["outward"] - girdle.aside}
-        made = {name: getattr(limb, name) * girdle.limb.reach for name in asked}
-        if any(abs(made[name] - asked[name]) > _REACHED * trunk for name in asked):
+        film_ratios = {"stroke": mean_of(walk, "stroke", legs), "outward": mean_of(walk, "outward", legs)}
+        target_lengths = {
+            "stroke": trunk * film_ratios["stroke"],
+            "outward": trunk * film_ratios["outward"] - girdle.aside,
+        }
+        gait_lengths = {name: getattr(limb, name) * girdle.limb.reach for name in target_lengths}
+        if any(abs(gait_lengths[name] - target_lengths[name]) > _REACH_TOLERANCE * trunk for name in target_lengths):
             return False
     return True
 
 
 def _try(walk: Walk, body: Robot, base: Gait, unknown: Unknown, shares: Mapping[str, float], trunk: float) -> _Try:
     """Return the choice at shares of the distributions of all that is not known."""
-    one = drawn(walk, shares)
-    numbers = dict(one.numbers)
+    sample = drawn(walk, shares)
+    numbers = dict(sample.numbers)
     for leg in (str(leg) for leg in walk.cycle.leg.values):
-        back, rest = numbers[f"retraction_{leg}"], numbers[f"duty_{leg}"].value
-        numbers[f"retraction_{leg}"] = back._replace(value=even((back.value, rest), shares["rests"]))
-    one = replace(one, numbers=numbers)
-    gait = to_gait(one, body, base, name="filmed", girdles="apart", time="own", trunk=trunk).gait
+        retraction, duty = numbers[f"retraction_{leg}"], numbers[f"duty_{leg}"].value
+        numbers[f"retraction_{leg}"] = retraction._replace(value=even((retraction.value, duty), shares["rests"]))
+    sample = replace(sample, numbers=numbers)
+    gait = to_gait(sample, body, base, name="filmed", girdles="apart", time="own", trunk=trunk).gait
     if not walk.upright:
-        gait = _changed(body, gait, "lift", even(unknown.lift, shares["lift"]))
-    gait = _changed(body, gait, "height", even(unknown.height, shares["height"]))
-    behind = (gait.duty_factor - mean_of(walk, "duty")) / 2  # both have LF's mid-stance in common
+        gait = _scale_parameter(body, gait, "lift", even(unknown.lift, shares["lift"]))
+    gait = _scale_parameter(body, gait, "height", even(unknown.height, shares["height"]))
+    phase_lag = (gait.duty_factor - mean_of(walk, "duty")) / 2  # both have LF's mid-stance in common
     mass = even(unknown.masses(body), shares["mass"])
-    return _Try(gait, even(unknown.friction, shares["friction"]), mass, behind)
+    return _Try(gait, even(unknown.friction, shares["friction"]), mass, phase_lag)
 
 
-def _changed(body: Robot, gait: Gait, name: str, factor: float) -> Gait:
-    """Return a gait one of whose numbers is a multiple of what it is, as far as the limbs follow."""
-    now = gait.number(name)
-    for share in _HALVES if now else ():
-        other = gait.with_numbers(**{name: now * (1.0 + share * (factor - 1.0))})
-        if suits(body, other):
-            return other
+def _scale_parameter(body: Robot, gait: Gait, name: str, factor: float) -> Gait:
+    """Return a gait with one number scaled, as far as the limbs can follow."""
+    original = gait.number(name)
+    for fraction in _HALVES if original else ():
+        candidate = gait.with_numbers(**{name: original * (1.0 + fraction * (factor - 1.0))})
+        if suits(body, candidate):
+            return candidate
     return gait
 
 
@@ -212,10 +226,10 @@ def played_forces(
     unknown: Unknown | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
-    """Return the same of a walk of which a table gives the joint angles, played on a robot.
+    """Return the forces of a walk whose joint angles are given by a table, on the body of a robot.
 
-    The table shows neither size nor time: the body has the robot's own size, and each joint is uncertain by what the
-    harmonics leave of its angles.
+    The table gives neither size nor time: the body has the robot's size. Each joint is uncertain by the residual of its
+    harmonics.
 
     Args:
         cycle: the table.
@@ -233,21 +247,21 @@ def played_forces(
     unknown = unknown or Unknown()
     gait = to_curves(cycle, robot, name="filmed", period=period)
     body = sized(robot, 1.0, middle(unknown.masses(robot)))
-    waves = [f"{part} {curve.servo}" for curve in gait.curves for part in ("cosine", "sine")]
+    waves = [f"{component} {curve.servo}" for curve in gait.curves for component in ("cosine", "sine")]
     likely = dict.fromkeys((*waves, "friction", "mass"), 0.5)
-    left = {curve.servo: float(size) for curve, size in zip(gait.curves, cycle.residual, strict=True)}
-    made = []
+    residuals = {curve.servo: float(size) for curve, size in zip(gait.curves, cycle.residual, strict=True)}
+    trials = []
     for shares in [likely, *choices(list(likely), unknown.draws)]:
-        curves = tuple(_waved(curve, left[curve.servo], shares) for curve in gait.curves)
+        curves = tuple(_waved(curve, residuals[curve.servo], shares) for curve in gait.curves)
         mass = even(unknown.masses(robot), shares["mass"])
-        made.append(_Try(replace(gait, curves=curves), even(unknown.friction, shares["friction"]), mass, 0.0))
-    felt = _walked(body, made, progress)
+        trials.append(_Try(replace(gait, curves=curves), even(unknown.friction, shares["friction"]), mass, 0.0))
+    responses = _simulate_trials(body, trials, progress)
     notes = [
         f"the table shows no size: the body is {robot.name}'s, {body.length:.3g} m long",
         *_ALWAYS,
         f"friction is somewhere from {unknown.friction[0]:g} to {unknown.friction[1]:g}",
     ]
-    data = _told(body, [one.mass for one in made], felt, ())
+    data = _forces_dataset(body, [trial.mass for trial in trials], responses, ())
     return data.assign_attrs(
         title=f"forces of the ground on the animal of {cycle.source}", medium="land", body=robot.name,
         notes="\n".join(notes),
@@ -255,116 +269,142 @@ def played_forces(
 
 
 def _waved(curve: Curve, size: float, shares: Mapping[str, float]) -> Curve:
-    """Return a curve with a first harmonic added that is as large as what the table's harmonics leave of it [rad]."""
+    """Return a curve with an added first harmonic as large as the residual of the table's harmonics [rad]."""
     turn = 2 * np.pi * np.arange(len(curve.angles)) / len(curve.angles)
-    parts = [2.0 * size * errors(shares[f"{part} {curve.servo}"]) for part in ("cosine", "sine")]
-    off = parts[0] * np.cos(turn) + parts[1] * np.sin(turn)
-    return replace(curve, angles=tuple(float(angle) for angle in curve.angles + off))
+    parts = [2.0 * size * errors(shares[f"{component} {curve.servo}"]) for component in ("cosine", "sine")]
+    correction = parts[0] * np.cos(turn) + parts[1] * np.sin(turn)
+    return replace(curve, angles=tuple(float(angle) for angle in curve.angles + correction))
 
 
-def _walked(body: Robot, made: Sequence[_Try], progress: Progress) -> list[_Felt]:
-    """Let the body walk every choice, and return what the ground did."""
-    own = body.contact.foot_friction
-    runs = [Run(robot=body, gait=one.gait, ground=Ground(friction_scale=one.friction / own)) for one in made]
-    longest = max(one.gait.period for one in made)
-    record = whole(simulate(runs, duration=START + (SETTLE + CYCLES) * longest + 0.1 * longest, progress=progress))
-    return [_felt(record.isel(run=i), one) for i, one in enumerate(made)]
+def _simulate_trials(body: Robot, trials: Sequence[_Try], progress: Progress) -> list[_GroundResponse]:
+    """Simulate the walk of every choice, and return the response of the ground."""
+    foot_friction = body.contact.foot_friction
+    runs = [
+        Run(robot=body, gait=trial.gait, ground=Ground(friction_scale=trial.friction / foot_friction))
+        for trial in trials
+    ]
+    longest_period = max(trial.gait.period for trial in trials)
+    record = whole(
+        simulate(runs, duration=START + (SETTLE + CYCLES) * longest_period + 0.1 * longest_period, progress=progress)
+    )
+    return [_ground_response(record.isel(run=i), trial) for i, trial in enumerate(trials)]
 
 
-def _felt(record: xr.Dataset, one: _Try) -> _Felt:
-    period = one.gait.period
-    when = Window(START + SETTLE * period, period, CYCLES)
-    force = stance_forces(record, when)
-    clock = np.arange(PHASES) / PHASES - one.behind
+def _ground_response(record: xr.Dataset, trial: _Try) -> _GroundResponse:
+    """Return contact forces over the phase of the walk's tables, steps, speed and joint error of a choice."""
+    period = trial.gait.period
+    window = Window(START + SETTLE * period, period, CYCLES)
+    force = stance_forces(record, window)
+    clock = np.arange(PHASES) / PHASES - trial.phase_lag
 
-    def at(values: np.ndarray) -> np.ndarray:
+    def resample(values: np.ndarray) -> np.ndarray:
         grid = np.arange(values.shape[-1]) / values.shape[-1]
         rows = values.reshape(-1, values.shape[-1])
         return np.array([np.interp(clock, grid, row, period=1.0) for row in rows]).reshape(*values.shape[:-1], PHASES)
 
-    carried = {
-        "belly": mean_cycle(record.belly_force.sel(xyz="z").sum("segment"), *when),
-        "tail": mean_cycle(record.tail_force.sel(xyz="z"), *when),
+    carried_load = {
+        "belly": mean_cycle(record.belly_force.sel(xyz="z").sum("segment"), *window),
+        "tail": mean_cycle(record.tail_force.sel(xyz="z"), *window),
     }
     servos = [str(name) for name in record.servo.values if name in record.joint.values]
-    missed = record.joint_angle.sel(joint=servos).values - record.servo_target.sel(servo=servos).values
-    part = record.time.values > when.start
-    return _Felt(
-        feet=at(force.transpose("leg", "part", "phase").values),
-        belly=at(carried["belly"].values / weight(record)),
-        tail=at(carried["tail"].values / weight(record)),
+    joint_errors = record.joint_angle.sel(joint=servos).values - record.servo_target.sel(servo=servos).values
+    is_in_window = record.time.values > window.start
+    return _GroundResponse(
+        feet=resample(force.transpose("leg", "part", "phase").values),
+        belly=resample(carried_load["belly"].values / weight(record)),
+        tail=resample(carried_load["tail"].values / weight(record)),
         steps=tuple(step(force.sel(leg=leg), LOADED) for leg in force.leg.values),
-        speed=float(np.hypot(*advance(record, when))) / period,
-        missed=float(np.sqrt(np.mean(missed[part] ** 2))),
+        speed=float(np.hypot(*advance(record, window))) / period,
+        joint_error=float(np.sqrt(np.mean(joint_errors[is_in_window] ** 2))),
     )
 
 
-def _told(body: Robot, masses: Sequence[float], felt: Sequence[_Felt], film: tuple[float, ...]) -> xr.Dataset:
+def _forces_dataset(
+    body: Robot, masses: Sequence[float], responses: Sequence[_GroundResponse], film: tuple[float, ...]
+) -> xr.Dataset:
     """Return forces and quantities of all choices as one dataset."""
     place = layout(body)
     legs = [limb.name for limb in place.limbs]
     data = xr.Dataset(
         coords={"phase": ("phase", np.arange(PHASES) / PHASES, {"units": "1"}), "leg": ("leg", legs)},
     )
-    feet = np.array([one.feet for one in felt])
+    feet = np.array([response.feet for response in responses])
     newtons = GRAVITY * np.array(masses)[:, None, None]
-    for i, part in enumerate(PARTS):
-        meaning = f"force of the ground on the foot, {_CALLED[part]}"
-        put(data, part, ("leg", "phase"), newtons * feet[:, :, i], ("N", meaning))
-        put(data, f"{part}_bw", ("leg", "phase"), feet[:, :, i], ("body weight", meaning))
+    for i, direction in enumerate(PARTS):
+        meaning = f"force of the ground on the foot, {_DIRECTIONS[direction]}"
+        put(data, direction, ("leg", "phase"), newtons * feet[:, :, i], ("N", meaning))
+        put(data, f"{direction}_bw", ("leg", "phase"), feet[:, :, i], ("body weight", meaning))
     for name in ("belly", "tail"):
-        carried = np.array([getattr(one, name) for one in felt])
-        put(data, f"{name}_bw", ("phase",), carried, ("body weight", f"force of the ground on the {name}, up"))
+        loads = np.array([getattr(response, name) for response in responses])
+        put(data, f"{name}_bw", ("phase",), loads, ("body weight", f"force of the ground on the {name}, up"))
     table = Quantities()
     table.add("mass", masses, "kg", "of the animal")
     table.add("length", [body.length], "m", "of the whole body")
     if film:
         table.add("speed_filmed", film, "m/s", "of the trunk on the film")
-        table.add("speed_to_filmed", [one.speed / film[0] for one in felt], "-", "speed of the body over that filmed")
-    table.add("speed", [one.speed for one in felt], "m/s", "of the body that walks as was filmed")
-    table.add("angle_missed", [one.missed for one in felt], "rad", "root mean square by which joints miss the film's")
-    _peaks(table, body, felt)
+        table.add(
+            "speed_to_filmed",
+            [response.speed / film[0] for response in responses],
+            "-",
+            "speed of the body over that filmed",
+        )
+    table.add("speed", [response.speed for response in responses], "m/s", "of the body that walks as was filmed")
+    table.add(
+        "angle_missed",
+        [response.joint_error for response in responses],
+        "rad",
+        "root mean square by which joints miss the film's",
+    )
+    _peaks(table, body, responses)
     for j, leg in enumerate(legs):
         mean = feet[:, j, PARTS.index("vertical")].mean(axis=-1)
         table.add(f"carried_{leg}", list(mean), "body weight", f"mean vertical force on {leg} over the cycle")
     for name in ("belly", "tail"):
-        table.add(f"carried_{name}", [float(getattr(one, name).mean()) for one in felt], "body weight",
+        table.add(f"carried_{name}", [float(getattr(response, name).mean()) for response in responses], "body weight",
                   f"mean vertical force on the {name} over the cycle")  # fmt: skip
     return data.merge(table.dataset())
 
 
-def _peaks(table: Quantities, body: Robot, felt: Sequence[_Felt]) -> None:
-    """Add what stands out in the forces on fore and hind feet, the mean of left and right, beside the salamanders'."""
+def _peaks(table: Quantities, body: Robot, responses: Sequence[_GroundResponse]) -> None:
+    """Add the peak forces on fore and hind feet, means of left and right, and those of salamanders."""
     limbs = layout(body).limbs
     for pair, number in (("fore", 0), ("hind", limbs[-1].number)):
-        mine = [i for i, limb in enumerate(limbs) if limb.number == number]
-        steps = [[one.steps[i] for i in mine] for one in felt]
+        limb_indices = [i for i, limb in enumerate(limbs) if limb.number == number]
+        steps = [[response.steps[i] for i in limb_indices] for response in responses]
         rows: dict[str, tuple[list[float], str, str]] = {
-            "net": ([_mean(step.net for step in one) for one in steps], "body weight", "greatest net force"),
-            "time": ([_mean(step.time for step in one) for one in steps], "stance", "when, as a share of stance, net"),
+            "net": (
+                [_mean(step.net for step in limb_steps) for limb_steps in steps],
+                "body weight",
+                "greatest net force",
+            ),
+            "time": (
+                [_mean(step.time for step in limb_steps) for limb_steps in steps],
+                "stance",
+                "when, as a share of stance, net",
+            ),
         }
-        called = {"vertical": "peak", "sideways": "sideways", "foreaft": "foreaft"}
-        for part in PARTS:
-            values = [_mean(step.parts[part] for step in one) for one in steps]
-            rows[called[part]] = values, "body weight", f"force at that instant, {_CALLED[part]},"
+        quantity_names = {"vertical": "peak", "sideways": "sideways", "foreaft": "foreaft"}
+        for direction in PARTS:
+            values = [_mean(step.parts[direction] for step in limb_steps) for limb_steps in steps]
+            rows[quantity_names[direction]] = values, "body weight", f"force at that instant, {_DIRECTIONS[direction]},"
         for name, (values, unit, meaning) in rows.items():
             animal = ANIMAL[f"foot_force_{name}_{pair}"]
             table.add(f"foot_force_{name}_{pair}", values, unit, f"{meaning} of a {pair} foot",
                       (animal.value, animal.spread, animal.source))  # fmt: skip
-        held = [[_held(one.feet[i]) for i in mine] for one in felt]
+        held_forces = [[_sustained_force(response.feet[i]) for i in limb_indices] for response in responses]
         net = ANIMAL[f"foot_force_net_{pair}"]
-        table.add(f"foot_force_held_{pair}", [_mean(one) for one in held], "body weight",
-                  f"greatest net force on a {pair} foot that lasts {_HELD:g} cycles, longer than a strike",
+        table.add(f"foot_force_held_{pair}", [_mean(net_forces) for net_forces in held_forces], "body weight",
+                  f"greatest net force on a {pair} foot that lasts {_HOLD_TIME:g} cycles, longer than a strike",
                   (net.value, net.spread, net.source))  # fmt: skip
-        loaded = [one.feet[mine, PARTS.index("vertical")] > LOADED for one in felt]
-        standing = [float(np.mean(one)) for one in loaded]
+        loaded = [response.feet[limb_indices, PARTS.index("vertical")] > LOADED for response in responses]
+        standing = [float(np.mean(is_loaded)) for is_loaded in loaded]
         table.add(f"stance_share_{pair}", standing, "cycle", f"in which a {pair} foot carries {LOADED:g} body weights")
 
 
-def _held(foot: Float[np.ndarray, "part phase"]) -> float:
-    """Return the greatest net force on a foot that lasts for ``_HELD`` of the cycle [body weight]."""
+def _sustained_force(foot: Float[np.ndarray, "part phase"]) -> float:
+    """Return the greatest net force on a foot that lasts for ``_HOLD_TIME`` of the cycle [body weight]."""
     net = np.linalg.norm(foot, axis=0)
-    return float(np.min([np.roll(net, -i) for i in range(round(_HELD * len(net)))], axis=0).max())
+    return float(np.min([np.roll(net, -i) for i in range(round(_HOLD_TIME * len(net)))], axis=0).max())
 
 
 def _mean(values: Any) -> float:
@@ -378,15 +418,15 @@ _ALWAYS = (
 
 
 def _left_open(walk: Walk, unknown: Unknown) -> list[str]:
-    """Say what cannot be known from the film, and what was taken instead."""
+    """Return sentences on what the film does not show, and the assumptions about it."""
     notes = list(_ALWAYS)
     notes.append(f"friction is somewhere from {unknown.friction[0]:g} to {unknown.friction[1]:g}")
     if unknown.mass is None:
         notes.append("mass: 0.7 to 1.4 times the named body's at this length; forces in body weights do not need it")
     if not walk.upright:
-        (least, most), (low, high) = unknown.lift, unknown.height
+        (min_lift, max_lift), (min_height, max_height) = unknown.lift, unknown.height
         notes.append(
-            f"heights were not seen: feet are lifted {least:g} to {most:g} times as high, and hips are {low:g} to "
-            f"{high:g} times as high, as in the gait that lends them"
+            f"heights were not seen: feet are lifted {min_lift:g} to {max_lift:g} times as high, and hips are "
+            f"{min_height:g} to {max_height:g} times as high, as in the gait that lends them"
         )
     return notes

@@ -1,8 +1,8 @@
-"""Force and power of the water on a body that swims as it was filmed: by sections, in a slice, in space.
+"""Force and power of the water on a body that swims as filmed: by the section model, in a slice, in space.
 
-On every rung the same happens: the joints follow the first harmonics of the film, nothing else holds the body, which is
-as heavy as the water that it displaces, in the plane, deep below the surface, its limbs left out. Speed, sway and
-turning are what the water makes of it, so that the speed can be held against the film's.
+In every model the joints follow the first harmonics of the film. The body is free, as heavy as the water that it
+displaces, in a plane deep below the surface, without limbs. Speed, sway and turning are results; the speed can be
+compared with the film.
 """
 
 from collections.abc import Mapping, Sequence
@@ -109,34 +109,34 @@ def swum_forces(
     unsure(walk)
     unknown = unknown or Unknown()
     _check_bends(walk)
-    body = sized(robot, _long(walk, length) / robot.length)
+    body = sized(robot, _body_length(walk, length) / robot.length)
     body = body if unknown.mass is None else widened(body, middle(unknown.mass) / WATER_DENSITY)
-    seen = _Bends(walk, body)
-    names = (*seen.unsure, "cross_drag", "thickening", "added_mass", "shedding", "viscosity")
+    bends = _Bends(walk, body)
+    names = (*bends.unsure, "cross_drag", "thickening", "added_mass", "shedding", "viscosity")
     likely = dict.fromkeys(names, 0.5)
     all_shares = [likely, *choices(names, unknown.draws)]
-    gaits = [seen.gait(shares) for shares in all_shares]
-    solved = [rung for rung in rungs if rung != "sections"]
-    finer = {rung: _cells(body, rung) for rung in solved} | dict(cells or {})
-    thick = {rung: _viscosity(body, gaits[0], finer[rung]) for rung in solved}
-    work = 1 + len(solved) * 4
-    found: dict[str, list[_Swum]] = {"sections": []}
+    gaits = [bends.gait(shares) for shares in all_shares]
+    flow_rungs = [rung for rung in rungs if rung != "sections"]
+    cells_by_rung = {rung: _cells(body, rung) for rung in flow_rungs} | dict(cells or {})
+    viscosities = {rung: _viscosity(body, gaits[0], cells_by_rung[rung]) for rung in flow_rungs}
+    work = 1 + len(flow_rungs) * 4
+    swims: dict[str, list[_Swum]] = {"sections": []}
     for i, (gait, shares) in enumerate(zip(gaits, all_shares, strict=True)):
         portion(progress, 0, work)("sections", i / len(gaits))
-        found["sections"].append(_by_sections(body, gait, _lake(body, unknown, shares)))
-    if solved:
-        water = Water(viscosity=max(thick.values()), cross_drag=middle(unknown.cross_drag), thickening=1.0)
+        swims["sections"].append(_by_sections(body, gait, _lake(body, unknown, shares)))
+    if flow_rungs:
+        water = Water(viscosity=max(viscosities.values()), cross_drag=middle(unknown.cross_drag), thickening=1.0)
         lake = replace(_lake(body, unknown, likely), water=water)
-        found[THICK] = [_by_sections(body, gaits[0], lake)]
-    for number, rung in enumerate(solved):
-        part = portion(progress, 1 + 4 * number, work)
-        found[rung] = [_by_flow(body, gaits[0], rung, finer[rung], max(thick.values()), part)]
-    order = [name for name in ("sections", THICK, "slice", "space") if name in found]
+        swims[THICK] = [_by_sections(body, gaits[0], lake)]
+    for number, rung in enumerate(flow_rungs):
+        rung_progress = portion(progress, 1 + 4 * number, work)
+        swims[rung] = [_by_flow(body, gaits[0], rung, cells_by_rung[rung], max(viscosities.values()), rung_progress)]
+    order = [name for name in ("sections", THICK, "slice", "space") if name in swims]
     if "sections" not in rungs:
         order.remove("sections")
-    data = _told(walk, body, gaits[0], {name: _spread(found[name], found["sections"]) for name in order})
+    data = _forces_dataset(walk, body, gaits[0], {name: _spread(swims[name], swims["sections"]) for name in order})
     data.attrs["gait_frequency"] = gaits[0].frequency
-    notes = [*seen.notes, *_left_open(body, max(thick.values(), default=0.0), unknown)]
+    notes = [*bends.notes, *_left_open(body, max(viscosities.values(), default=0.0), unknown)]
     return data.assign_attrs(
         title=f"forces of the water on the animal of {walk.source}", medium="water", body=robot.name,
         notes="\n".join(notes),
@@ -153,23 +153,23 @@ def swim_gait(walk: Walk, robot: Robot) -> Gait:
     Raises:
         UnusableTracks: too few bends were seen.
     """
-    seen = _Bends(walk, robot)
-    return seen.gait(dict.fromkeys(seen.unsure, 0.5))
+    bends = _Bends(walk, robot)
+    return bends.gait(dict.fromkeys(bends.unsure, 0.5))
 
 
-def _long(walk: Walk, length: float | None) -> float:
-    """Return how long the animal is [m]."""
+def _body_length(walk: Walk, length: float | None) -> float:
+    """Return the length of the animal [m]."""
     if length is not None:
         if not 0.0 < length < np.inf:
             raise UnusableTracks(f"the animal is {length:g} m long; a length above 0 is needed.")
         return length
-    long = _midline(walk)
-    if long is None:
+    midline_length = _midline(walk)
+    if midline_length is None:
         raise UnusableTracks(
             f"{walk.source} is in pixels, which do not show how long the animal is: give its whole length, as in "
             "--length 0.4."
         )
-    return long
+    return midline_length
 
 
 def _midline(walk: Walk) -> float | None:
@@ -206,78 +206,89 @@ class _Bends:
     """The bends of a midline as those of a body's joints."""
 
     def __init__(self, walk: Walk, body: Robot) -> None:
+        """Take the first harmonic of the bend at every keypoint from the walk, and its standard error."""
         _check_bends(walk)
         phases, self._body, self._period = walk.phases, body, walk.numbers["period"]
         turn = np.exp(-2j * np.pi * phases.phase.values)
         bend = np.nan_to_num(phases.bend.values)
-        self._first: Complex[np.ndarray, " place"] = -2.0 * (bend * turn).mean(axis=1)  # left positive
-        wide = np.nan_to_num(phases.curvature_high.values - phases.curvature_low.values) / 2
-        self._error = np.sqrt(np.mean(wide**2, axis=1)) * np.nan_to_num(_arms(walk))
+        self._first_harmonic: Complex[np.ndarray, " place"] = -2.0 * (bend * turn).mean(axis=1)  # left positive
+        curvature_error = np.nan_to_num(phases.curvature_high.values - phases.curvature_low.values) / 2
+        self._error = np.sqrt(np.mean(curvature_error**2, axis=1)) * np.nan_to_num(_arms(walk))
         self._places, self._names = phases.place.values, [str(name) for name in phases.keypoint.values]
-        self.unsure = ("period", *(f"{part} {name}" for name in self._names for part in ("cosine", "sine")))
-        left = bend + (self._first[:, None] * np.conj(turn)).real
-        over = float(np.sqrt((left - left.mean(axis=1, keepdims=True)).var() / max(bend.var(), 1e-300)))
-        self.notes = (f"overtones, {100 * over:.0f} % of the bends, and bends to one side on average are left out",)
+        self.unsure = ("period", *(f"{component} {name}" for name in self._names for component in ("cosine", "sine")))
+        residual = bend + (self._first_harmonic[:, None] * np.conj(turn)).real
+        overtone_ratio = float(
+            np.sqrt((residual - residual.mean(axis=1, keepdims=True)).var() / max(bend.var(), 1e-300))
+        )
+        self.notes = (
+            f"overtones, {100 * overtone_ratio:.0f} % of the bends, and bends to one side on average are left out",
+        )
 
     def gait(self, shares: Mapping[str, float]) -> Gait:
         """Return the swim at shares of the distributions of period and bends."""
         period = self._period.value + self._period.error * errors(shares["period"])
-        off = np.array([
+        deviation = np.array([
             errors(shares[f"cosine {name}"]) - 1j * errors(shares[f"sine {name}"]) for name in self._names
         ])  # fmt: skip
-        first = self._first + self._error * off
+        first_harmonic = self._first_harmonic + self._error * deviation
         hinges, servos = yaw_hinges(self._body), layout(self._body).servos
-        each = _shared(first, self._places, hinges.places)
+        hinge_harmonics = _shared(first_harmonic, self._places, hinges.places)
         lateral = lateral_servos(self._body)
-        whole = [sum(each[k] for k in range(len(each)) if servos[hinges.servos[k]] == name) for name in lateral]
+        servo_harmonics = [
+            sum(hinge_harmonics[k] for k in range(len(hinge_harmonics)) if servos[hinges.servos[k]] == name)
+            for name in lateral
+        ]
         return swimming_gait(
             self._body,
             name="filmed",
             frequency=1.0 / period,
-            amplitude=[min(abs(one), 3.1415) for one in whole],
-            lag=[-float(np.angle(one)) / (2 * np.pi) for one in whole],
+            amplitude=[min(abs(harmonic), 3.1415) for harmonic in servo_harmonics],
+            lag=[-float(np.angle(harmonic)) / (2 * np.pi) for harmonic in servo_harmonics],
         )
 
 
 def _shared(
-    first: Complex[np.ndarray, " place"], places: Float[np.ndarray, " place"], hinges: Sequence[float]
+    harmonics: Complex[np.ndarray, " place"], places: Float[np.ndarray, " place"], hinges: Sequence[float]
 ) -> list[complex]:
-    """Return the bend of each hinge: that of the midline halfway to its neighbours.
+    """Return the bend of each hinge: that of the midline between the middles to its neighbours.
 
-    Between keypoints a midline is evenly curved: each keypoint's bend is that of the halves of the segments beside it.
+    The midline has constant curvature between keypoints. The bend of a keypoint is that of the adjacent halves of its
+    segments.
 
     Args:
-        first: harmonics of the bends at keypoints [rad].
+        harmonics: harmonics of the bends at keypoints [rad].
         places: of the keypoints along the midline, 0 to 1 [-].
         hinges: places of the hinges along the body, 0 to 1 [-].
     """
     ends = np.concatenate([[0.0], places, [1.0]])
     middles = (ends[1:] + ends[:-1]) / 2
-    turned = np.concatenate([[0.0], np.cumsum(first)])
-    at = np.asarray(hinges)
-    edges = np.concatenate([[0.0], (at[1:] + at[:-1]) / 2, [1.0]])
-    direction = np.interp(edges, middles, turned.real) + 1j * np.interp(edges, middles, turned.imag)
-    return [complex(one) for one in np.diff(direction)]
+    cumulative_bend = np.concatenate([[0.0], np.cumsum(harmonics)])
+    hinge_positions = np.asarray(hinges)
+    edges = np.concatenate([[0.0], (hinge_positions[1:] + hinge_positions[:-1]) / 2, [1.0]])
+    direction = np.interp(edges, middles, cumulative_bend.real) + 1j * np.interp(edges, middles, cumulative_bend.imag)
+    return [complex(bend) for bend in np.diff(direction)]
 
 
 def _lake(body: Robot, unknown: Unknown, shares: Mapping[str, float]) -> Lake:
-    chosen = {name: even(getattr(unknown, name), shares[name])
+    """Return the lake with the coefficients of the water at fractions of their ranges."""
+    coefficients = {name: even(getattr(unknown, name), shares[name])
               for name in ("cross_drag", "thickening", "added_mass", "shedding", "viscosity")}  # fmt: skip
     water = Water(
-        viscosity=chosen["viscosity"], cross_drag=chosen["cross_drag"], thickening=chosen["thickening"]
+        viscosity=coefficients["viscosity"],
+        cross_drag=coefficients["cross_drag"], thickening=coefficients["thickening"]
     )  # fmt: skip
     return Lake(
-        level=2 * body.length, water=water, added_mass=chosen["added_mass"], shedding=chosen["shedding"]
+        level=2 * body.length, water=water, added_mass=coefficients["added_mass"], shedding=coefficients["shedding"]
     )  # fmt: skip
 
 
 def _by_sections(body: Robot, gait: Gait, lake: Lake) -> _Swum:
-    swum = free_sections(body, gait, lake, CYCLES)
-    rows = [_even(swum.phase.values, swum[f"last_{name}"].values) for name, _, _ in _KINDS]
-    return _Swum(np.array(rows), float(swum.speed[-1]))
+    swim = free_sections(body, gait, lake, CYCLES)
+    rows = [_resample(swim.phase.values, swim[f"last_{name}"].values) for name, _, _ in _KINDS]
+    return _Swum(np.array(rows), float(swim.speed[-1]))
 
 
-def _even(phase: np.ndarray, values: np.ndarray) -> np.ndarray:
+def _resample(phase: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.interp(np.arange(PHASES) / PHASES, phase, values, period=1.0)
 
 
@@ -291,18 +302,18 @@ def _viscosity(body: Robot, gait: Gait, cells: int) -> float:
 
 
 def _cells(body: Robot, rung: str) -> int:
-    """Return the cells per body length of a flow: as many as show the body, in a slice as it is thickened."""
-    wide, _ = Outline(body, 65).silhouette
-    needed = 1.02 * THINNEST * body.length / (2.0 * float(np.max(wide)))
-    return CELLS[rung] if rung == "slice" else max(CELLS[rung], int(np.ceil(needed)))
+    """Return the cells per body length of a flow, enough to resolve the thickness of the body."""
+    half_widths, _ = Outline(body, 65).silhouette
+    min_cells = 1.02 * THINNEST * body.length / (2.0 * float(np.max(half_widths)))
+    return CELLS[rung] if rung == "slice" else max(CELLS[rung], int(np.ceil(min_cells)))
 
 
 def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, progress: Progress) -> _Swum:
-    """Return a swim in a flow; that of a slice as deep as it displaces what the body does."""
+    """Return a swim in a flow; a slice has the depth at which it displaces as much water as the body."""
     outline = Outline(body, cells + 1)
-    blunt = 1.75 if rung == "slice" else 0.0
+    bluntness = 1.75 if rung == "slice" else 0.0
     setting = SwimSetting(
-        axes=2 if rung == "slice" else 3, cells=cells, viscosity=viscosity, cycles=FLOW_CYCLES, blunt=blunt
+        axes=2 if rung == "slice" else 3, cells=cells, viscosity=viscosity, cycles=FLOW_CYCLES, blunt=bluntness
     )
     swim = ResolvedSwim(robot=body, motion=undulation(outline, gait), setting=setting)
     swim.check()
@@ -312,40 +323,50 @@ def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, p
         sim.run((i + 1) * swim.end / quarters, progress=False)
         progress(rung, (i + 1) / quarters)
     series = sim.record.after(swim.end - 1.05 * swim.period)
-    when = (series.time - 0.5 * series.step - swim.end + swim.period) / swim.period
-    wide, _ = outline.silhouette
-    deep = displaced(outline, 1.0) / float(np.trapezoid(2 * wide, outline.s)) if rung == "slice" else 1.0
+    phase = (series.time - 0.5 * series.step - swim.end + swim.period) / swim.period
+    half_widths, _ = outline.silhouette
+    depth = displaced(outline, 1.0) / float(np.trapezoid(2 * half_widths, outline.s)) if rung == "slice" else 1.0
     force = series.force()
     columns = (-force[:, 0], force[:, 1], series.column("power"))
     clock = (np.arange(PHASES) + 0.5) / PHASES
-    rows = [deep * _even(clock, np.interp(clock, when, values)) for values in columns]
-    last = series.time > swim.end - swim.period
-    speed = -float(np.average(series.column("velocity_x")[last], weights=series.step[last]))
+    rows = [depth * _resample(clock, np.interp(clock, phase, values)) for values in columns]
+    is_last_cycle = series.time > swim.end - swim.period
+    speed = -float(np.average(series.column("velocity_x")[is_last_cycle], weights=series.step[is_last_cycle]))
     return _Swum(np.array(rows), speed)
 
 
-def _spread(mine: Sequence[_Swum], sections: Sequence[_Swum]) -> list[_Swum]:
-    """Return answers that span the interval of a rung: its own, or the sections' in proportion to its size."""
-    if len(mine) > 1:
-        return list(mine)
-    (one,) = mine
+def _spread(swims: Sequence[_Swum], sections: Sequence[_Swum]) -> list[_Swum]:
+    """Return swims that span the interval of a model of the water.
+
+    A model that was run once gets the relative interval of the section model, scaled by the size of its forces.
+
+    Args:
+        swims: of the model, one or one for each choice.
+        sections: the same choices by the section model.
+    """
+    if len(swims) > 1:
+        return list(swims)
+    (swim,) = swims
     size = np.abs(sections[0].force).max(axis=1, keepdims=True)
-    scale = np.abs(one.force).max(axis=1, keepdims=True) / np.maximum(size, 1e-300)
-    first = sections[0]
-    pace = one.speed / first.speed if first.speed else 1.0
+    scale = np.abs(swim.force).max(axis=1, keepdims=True) / np.maximum(size, 1e-300)
+    likely_sections = sections[0]
+    pace = swim.speed / likely_sections.speed if likely_sections.speed else 1.0
     return [
-        _Swum(one.force + scale * (other.force - first.force), one.speed + pace * (other.speed - first.speed))
-        for other in sections
+        _Swum(
+            swim.force + scale * (section_swim.force - likely_sections.force),
+            swim.speed + pace * (section_swim.speed - likely_sections.speed),
+        )
+        for section_swim in sections
     ]
 
 
-def _told(walk: Walk, body: Robot, gait: Gait, found: Mapping[str, Sequence[_Swum]]) -> xr.Dataset:
+def _forces_dataset(walk: Walk, body: Robot, gait: Gait, swims: Mapping[str, Sequence[_Swum]]) -> xr.Dataset:
     """Return forces and quantities of all rungs as one dataset."""
     data = xr.Dataset(
-        coords={"phase": ("phase", np.arange(PHASES) / PHASES, {"units": "1"}), "rung": ("rung", list(found))}
+        coords={"phase": ("phase", np.arange(PHASES) / PHASES, {"units": "1"}), "rung": ("rung", list(swims))}
     )
-    forces = np.array([[one.force for one in row] for row in found.values()])  # rung answer kind phase
-    speeds = np.array([[one.speed for one in row] for row in found.values()])
+    forces = np.array([[swim.force for swim in row] for row in swims.values()])  # rung answer kind phase
+    speeds = np.array([[swim.speed for swim in row] for row in swims.values()])
     for i, (name, unit, meaning) in enumerate(_KINDS):
         put(data, name, ("rung", "phase"), np.swapaxes(forces[:, :, i], 0, 1), (unit, meaning))
     put(data, "speed", ("rung",), speeds.T, ("m/s", "speed of the body that swims as was filmed"))
@@ -360,9 +381,9 @@ def _told(walk: Walk, body: Robot, gait: Gait, found: Mapping[str, Sequence[_Swu
     table.add("displaced", [displaces], "kg", "water that the body displaces, and so its mass where it hovers")
     film = walk.numbers.get("speed")
     if film is not None and film.unit == "m/s":
-        seen = [film.value + off for off in (0.0, -film.error, film.error)]
-        table.add("speed_filmed", seen, "m/s", "of the trunk on the film")
-        for rung, row in zip(found, speeds, strict=True):
+        film_speeds = [film.value + deviation for deviation in (0.0, -film.error, film.error)]
+        table.add("speed_filmed", film_speeds, "m/s", "of the trunk on the film")
+        for rung, row in zip(swims, speeds, strict=True):
             table.add(f"speed_to_filmed_{rung.replace(', ', '_').replace(' ', '_')}", list(row / film.value), "-",
                       f"speed over that filmed, {rung}")  # fmt: skip
     return data.merge(_numbers(body, gait, speeds[0], table).dataset())
@@ -373,30 +394,30 @@ def _numbers(body: Robot, gait: Gait, speeds: np.ndarray, table: Quantities) -> 
     outline, water = Outline(body, 65), Water()
     motion = undulation(outline, gait)
     swing = float(np.ptp(cycle(outline, motion, *recoil(outline, motion, 0.0, water)).y[:, -1]))
-    each = [
+    similarities = [
         swim_numbers(
             speed=float(speed), length=body.length, frequency=gait.frequency, swing=swing, viscosity=water.viscosity
         )
         for speed in speeds
     ]
-    for name, what in SIMILARITY.items():
-        answers = list(dict.fromkeys(getattr(one, name) for one in each))
-        table.add(name, answers, "-", f"{what}, in fresh water by the first model")
+    for name, meaning in SIMILARITY.items():
+        answers = list(dict.fromkeys(getattr(similarity, name) for similarity in similarities))
+        table.add(name, answers, "-", f"{meaning}, in fresh water by the first model")
     return table
 
 
-def _left_open(body: Robot, thick: float, unknown: Unknown) -> list[str]:
-    """Say what cannot be known from the film, and what was taken instead."""
+def _left_open(body: Robot, viscosity: float, unknown: Unknown) -> list[str]:
+    """Return sentences on what the film does not show, and the assumptions about it."""
     notes = [
         f"sections, fins and limbs are not on the film: the body is that of {body.name}, its limbs left out",
         "the body swims deep below the surface, in a plane; near the surface waves take power, which is not in it",
     ]
     if unknown.mass is None:
         notes.append("the volume is the named body's at this length; with --mass it is that of so much water")
-    if thick:
+    if viscosity:
         notes.append(
-            f"the flows are of water with {thick / Water().viscosity:.3g} times the viscosity, the least that their "
-            f"grids carry; the sections stand beside them in the same water ({THICK})"
+            f"the flows are of water with {viscosity / Water().viscosity:.3g} times the viscosity, the least that "
+            f"their grids carry; the sections stand beside them in the same water ({THICK})"
         )
         notes.append("a flow is computed once: its intervals are the sections', in proportion to its forces")
     return notes

@@ -1,7 +1,7 @@
-"""What is known of the animals, as data: a few published numbers that can be set beside the robot's.
+"""Published numbers of animals, with which those of the robot can be compared.
 
-Only what was read in a paper's text or abstract stands here. Numbers that were wanted and not found in readable
-form (Reilly and Elias 1998 on the high walk, Fish 1984 on swimming) are left out rather than remembered.
+All numbers were read in the text or the abstract of a paper. Numbers that were not found in readable form are left out
+(Reilly and Elias 1998 on the high walk, Fish 1984 on swimming).
 """
 
 from collections.abc import Mapping

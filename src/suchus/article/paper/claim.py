@@ -38,6 +38,8 @@ class Claim:
         return f"{self.of}, {self.where}" if self.of else self.where
 
 
-def said(key: str, where: str, quantity: str, sense: str, quote: str) -> Claim:
+def said(key: str, location: str, quantity: str, sense: str, quote: str) -> Claim:
     """Return a claim without a number: a statement that holds or does not."""
-    return Claim(key=key, where=where, quantity=quantity, value=None, unit="-", rounding=0.0, sense=sense, quote=quote)
+    return Claim(
+        key=key, where=location, quantity=quantity, value=None, unit="-", rounding=0.0, sense=sense, quote=quote
+    )

@@ -11,6 +11,14 @@ from suchus.article.paper.tables import C1, C2, K
 
 
 def _constant(key: str, name: str, value: float, digit: float) -> Claim:
+    """Return the claim about a constant of the body wave (20).
+
+    Args:
+        key: of the claim.
+        name: of the constant.
+        value: as printed.
+        digit: unit of the last printed digit.
+    """
     return Claim(
         key=key,
         where="IV.B, eq. (20)",

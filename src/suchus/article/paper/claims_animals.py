@@ -1,6 +1,6 @@
-"""What other publications state of animals and of models of them, beside which experiments of suchus stand.
+"""Claims of other publications on animals and their models, with which experiments of suchus are compared.
 
-Only what was read stands here: numbers of public data, and abstracts.
+All were read: they are numbers of public data, and abstracts.
 """
 
 from dataclasses import replace
@@ -13,6 +13,14 @@ IJSPEERT = "Ijspeert et al. 2007, Science 315, 1416"
 
 
 def _force(pair: str, value: float, spread: float, trials: int) -> Claim:
+    """Return the claim about the greatest force on the feet of walking salamanders.
+
+    Args:
+        pair: fore or hind.
+        value: mean over the trials [body weight].
+        spread: standard deviation over the trials [body weight].
+        trials: number of trials [-].
+    """
     return Claim(
         key=f"salamander_{pair}_force",
         of=KAWANO,

@@ -14,10 +14,11 @@ LENGTH_READING = 0.005
 """For a length printed in centimetres: half of the last digit [m]."""
 
 
-def _count(key: str, where: str, quantity: str, value: int, sense: str, quote: str) -> Claim:
+def _count(key: str, location: str, quantity: str, value: int, sense: str, quote: str) -> Claim:
+    """Return a claim about a number of things."""
     return Claim(
         key=key,
-        where=where,
+        where=location,
         quantity=quantity,
         value=float(value),
         unit="-",

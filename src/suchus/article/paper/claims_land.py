@@ -13,6 +13,7 @@ PERCENT = 0.005
 
 
 def _fault(key: str, figure: int, joint: str, trunk: bool, change: float, sense: str, quote: str) -> Claim:
+    """Return the claim about the displacement with a failed joint, with and without a moving trunk."""
     return Claim(
         key=f"fault_{key}_{'coordinated' if trunk else 'limbs_only'}",
         where=f"IV.C, Fig. {figure}",

@@ -1,4 +1,4 @@
-"""What is published of walking salamanders, as numbers beside which those of a run stand."""
+"""Published numbers of walking salamanders, with which those of a run are compared."""
 
 from collections.abc import Mapping
 from math import nan

@@ -1,4 +1,4 @@
-"""Verdicts on the article's claims: rules as data, what they say of measures, and how many designs agree."""
+"""Verdicts on the article's claims: rules as data, their application to measures, and the fraction of designs."""
 
 from suchus.article.verdict.judging import SHARES, TOO_FEW, Examples, Share, TooFew, Verdict, Word, judge, word_of
 from suchus.article.verdict.rule import (

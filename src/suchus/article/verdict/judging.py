@@ -1,6 +1,6 @@
-"""From a rule and measures to a verdict, and in how many plausible designs the claim holds.
+"""From a rule and measures to a verdict, and the fraction of plausible designs in which the claim holds.
 
-The latter is the table that a run of ``suchus study claims`` left.
+The fractions are those of the table that ``suchus study claims`` wrote.
 """
 
 import hashlib
@@ -28,7 +28,7 @@ _FILE = "claims.json"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Share:
-    """In how many plausible designs the statement of a claim holds."""
+    """Fraction of plausible designs in which the statement of a claim holds."""
 
     claim: str
     """Its key."""
@@ -51,18 +51,18 @@ class Share:
     rule: str = ""
     """Digest of the rule that judged the designs, ``Rule.asked``."""
 
-    def robust(self, held: bool) -> bool:
+    def robust(self, is_held: bool) -> bool:
         """Return whether enough designs agree with a verdict.
 
         Args:
-            held: whether the statement held in the run that was judged.
+            is_held: whether the statement held in the run that was judged.
         """
-        return (self.share if held else 1.0 - self.share) >= ROBUST
+        return (self.share if is_held else 1.0 - self.share) >= ROBUST
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TooFew:
-    """What plausible designs say of a claim that too few of them could judge to know a share."""
+    """Answers of plausible designs to a claim that too few of them can judge to give a fraction."""
 
     claim: str
     """Its key."""
@@ -73,27 +73,29 @@ class TooFew:
     rule: str
     """Digest of the rule that judged the designs, ``Rule.asked``."""
 
-    def robust(self, held: bool) -> bool:
-        """Return whether enough of those few designs that have a word agree with a verdict.
+    def robust(self, is_held: bool) -> bool:
+        """Return whether enough of the designs that can judge the claim agree with a verdict.
 
         Args:
-            held: whether the statement held in the run that was judged.
+            is_held: whether the statement held in the run that was judged.
         """
-        answers = [(_HELD[word] is held, count) for word, count in self.words.items() if word in _HELD]
-        return sum(count for same, count in answers if same) >= ROBUST * sum(count for _, count in answers)
+        answers = [
+            (_HOLDS_BY_WORD[word] is is_held, count) for word, count in self.words.items() if word in _HOLDS_BY_WORD
+        ]
+        return sum(count for agrees, count in answers if agrees) >= ROBUST * sum(count for _, count in answers)
 
     def __str__(self) -> str:
-        """Return it as a sentence."""
-        told = listed([f"{self.words[word]} {word}" for word in WORDS if word in self.words])
+        """Return the counts of the answers as a sentence."""
+        counts_text = listed([f"{self.words[word]} {word}" for word in WORDS if word in self.words])
         number = sum(self.words.values())
-        return f"Asked of {number} plausible designs, too few of which could judge it to know a share: {told}."
+        return f"Asked of {number} plausible designs, too few of which could judge it to know a share: {counts_text}."
 
 
 _Row = TypeVar("_Row", Share, TooFew)
 
 
 def _shipped() -> Mapping[str, Mapping[str, Any]]:
-    """Return the rows of the table that stands beside this module, none where it was not made yet."""
+    """Return the rows of the table beside this module; none if it does not exist yet."""
     file = resources.files("suchus.article.verdict") / _FILE
     if not file.is_file():
         return MappingProxyType({})
@@ -102,7 +104,7 @@ def _shipped() -> Mapping[str, Mapping[str, Any]]:
 
 
 def digest(claims: Mapping[str, Mapping[str, object]]) -> str:
-    """Return the SHA-256 of a table's rows, which stands in the table beside them."""
+    """Return the SHA-256 of a table's rows, which the table also contains."""
     return hashlib.sha256(json.dumps(claims, sort_keys=True).encode()).hexdigest()
 
 
@@ -129,7 +131,7 @@ an input, a count or a commanded shape that is read back, or an identity of form
 chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
-_HELD: Mapping[str, bool] = MappingProxyType({"reproduced": True, "same sense": True, "contradicted": False})
+_HOLDS_BY_WORD: Mapping[str, bool] = MappingProxyType({"reproduced": True, "same sense": True, "contradicted": False})
 """Whether the statement held, by the words that say so of a run."""
 Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]
 """By claim: measures, and the word that its rule must say of them, on both sides of everything that it looks at."""
@@ -137,7 +139,7 @@ Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What became of one claim of the article."""
+    """Result of one claim of the article."""
 
     claim: Claim
     """The article's statement."""
@@ -162,15 +164,15 @@ class Verdict:
 
     @property
     def fragile(self) -> bool:
-        """Whether other plausible designs give another answer too often to rely on this one.
+        """Whether too many other plausible designs give another answer than this verdict.
 
-        What was chosen for one design, or follows from how it was made, is no answer that others could shake.
+        Values that were chosen for one design, or follow from its construction, are not fragile.
         """
         return fragile(self.rule, self.verdict, self.share or self.too_few)
 
 
 def fragile(rule: Rule, word: str, designs: Share | TooFew | None) -> bool:
-    """Return whether other plausible designs give another answer too often to rely on a word.
+    """Return whether too many other plausible designs give another answer than a verdict.
 
     Args:
         rule: the claim's.
@@ -179,8 +181,8 @@ def fragile(rule: Rule, word: str, designs: Share | TooFew | None) -> bool:
     """
     if rule.kind not in ("measured", "animals") or designs is None or designs.rule not in ("", rule.asked):
         return False
-    held = _HELD.get(word)
-    return held is not None and not designs.robust(held)
+    is_held = _HOLDS_BY_WORD.get(word)
+    return is_held is not None and not designs.robust(is_held)
 
 
 def judge(
@@ -206,76 +208,78 @@ def judge(
         raise IncompatibleRecord(
             f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
         )
-    said = ladder.voices(rule, measures, unable)
-    value, low, high = _value(rule, measures, said), None, None
-    why = " ".join(part for part in (rule.reason(measures), rule.unable(measures)) if part)
-    if said:
-        _, least, greatest = ladder.spread(said)
-        low, high = (least, greatest) if isfinite(value) else (None, None)
-        why = f"{why} {ladder.sentence(said, rule.form)}"
+    model_voices = ladder.voices(rule, measures, unable)
+    value, lower_bound, upper_bound = _value(rule, measures, model_voices), None, None
+    reason = " ".join(text for text in (rule.reason(measures), rule.unable(measures)) if text)
+    if model_voices:
+        _, min_value, max_value = ladder.spread(model_voices)
+        lower_bound, upper_bound = (min_value, max_value) if isfinite(value) else (None, None)
+        reason = f"{reason} {ladder.sentence(model_voices, rule.form)}"
     elif rule.measure in rule.spread and isfinite(value):
-        low, high = interval(rule.measure, measures, rule.spread)
+        lower_bound, upper_bound = interval(rule.measure, measures, rule.spread)
     return Verdict(
         claim=claim,
         rule=rule,
         measured=value if isfinite(value) else None,
-        low=low,
-        high=high,
-        verdict=_word(rule, claim, value, measures, said),
-        why=why,
-        share=_of_this(rule, shares.get(rule.claim)),
-        voices=said,
-        too_few=_of_this(rule, TOO_FEW.get(rule.claim)),
+        low=lower_bound,
+        high=upper_bound,
+        verdict=_word(rule, claim, value, measures, model_voices),
+        why=reason,
+        share=_of_rule(rule, shares.get(rule.claim)),
+        voices=model_voices,
+        too_few=_of_rule(rule, TOO_FEW.get(rule.claim)),
     )
 
 
 def word_of(rule: Rule, measures: Mapping[str, float]) -> Word:
-    """Return the word of a rule on measures, those that it needs alone.
+    """Return the verdict's word for measures, without any others than the rule needs.
 
     Args:
         rule: the claim's.
         measures: those of ``Rule.needs``.
     """
-    said = ladder.voices(rule, measures)
-    return _word(rule, CLAIMS[rule.claim], _value(rule, measures, said), measures, said)
+    model_voices = ladder.voices(rule, measures)
+    return _word(rule, CLAIMS[rule.claim], _value(rule, measures, model_voices), measures, model_voices)
 
 
-def _near(printed: float, rounding: float, value: float) -> bool:
-    """Return whether a measured number is the printed one, as rounded.
+def _is_printed_value(printed_value: float, rounding: float, value: float) -> bool:
+    """Return whether a measured number equals the printed one within its rounding.
 
-    Asked is the middle alone, of an ensemble or of models. A wide interval would reach more printed numbers, so that
-    little knowledge would make a word kinder; of a narrow one that shrinks to the printed number the same could be said
-    of much.
+    Only the middle of an ensemble or of several models counts, not its interval. With the interval, less knowledge
+    would agree with more printed numbers.
     """
-    slack = 1e-9 * max(1.0, abs(printed))  # a value on the edge of its own rounding is inside
-    return abs(value - printed) <= rounding + slack
+    slack = 1e-9 * max(1.0, abs(printed_value))  # a value on the edge of its own rounding is inside
+    return abs(value - printed_value) <= rounding + slack
 
 
-def _value(rule: Rule, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> float:
-    return ladder.spread(said)[0] if said else float(measures[rule.measure])
+def _value(rule: Rule, measures: Mapping[str, float], model_voices: Sequence[ladder.Voice]) -> float:
+    return ladder.spread(model_voices)[0] if model_voices else float(measures[rule.measure])
 
 
-def _of_this(rule: Rule, row: _Row | None) -> _Row | None:
-    """Return a row if it is of this rule; one that another rule made says nothing of it."""
+def _of_rule(rule: Rule, row: _Row | None) -> _Row | None:
+    """Return a row if it was made with this rule, otherwise None."""
     return None if row is None or row.rule not in ("", rule.asked) else row
 
 
-def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> Word:
+def _word(
+    rule: Rule, claim: Claim, value: float, measures: Mapping[str, float], model_voices: Sequence[ladder.Voice]
+) -> Word:
+    """Return the word of a verdict, such as ``reproduced``, ``contradicted`` or ``undecided``."""
     testable = rule.testable(measures)
     if not isfinite(value) or testable is False:
         return "not testable"
-    if ladder.disagree(said):
+    if ladder.disagree(model_voices):
         return "models disagree"
-    held = ladder.agreed(said) if said else rule.held(measures)
-    if held is None or testable is None:
+    is_held = ladder.agreed(model_voices) if model_voices else rule.held(measures)
+    if is_held is None or testable is None:
         return "undecided"
     if rule.kind == "animals":  # a robot resembles an animal or not; it says nothing of the animal itself
-        return "same sense" if held else "not testable"
-    if not held:
+        return "same sense" if is_held else "not testable"
+    if not is_held:
         return "contradicted"
-    near = claim.value is None or _near(claim.value, claim.rounding, value)
+    is_printed = claim.value is None or _is_printed_value(claim.value, claim.rounding, value)
     if rule.kind == "construction":
-        return "by construction" if near else "contradicted"
-    if not near:
+        return "by construction" if is_printed else "contradicted"
+    if not is_printed:
         return "same sense"
     return "fitted" if rule.kind == "fitted" else "reproduced"

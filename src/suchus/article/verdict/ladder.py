@@ -43,8 +43,8 @@ class Voice:
         """Return its number with its spread, in a form of ``Reading``; a dash where there is none."""
         if not isfinite(self.value):
             return "–"
-        low, value, high = (format(Reading(one), form) for one in (self.low, self.value, self.high))
-        return value if low == high else f"{value} ({low} to {high})"
+        lower_text, value, upper_text = (format(Reading(number), form) for number in (self.low, self.value, self.high))
+        return value if lower_text == upper_text else f"{value} ({lower_text} to {upper_text})"
 
 
 def voices(rule: Rule, measures: Mapping[str, float], unable: Mapping[str, str] = NOTHING) -> tuple[Voice, ...]:
@@ -59,69 +59,77 @@ def voices(rule: Rule, measures: Mapping[str, float], unable: Mapping[str, str] 
 
 
 def _voice(rule: Rule, rung: Rung, measures: Mapping[str, float], unable: str) -> Voice:
-    value, low, high = (measures.get(f"{rule.measure}_{rung.name}{end}", nan) for end in ("", "_low", "_high"))
+    """Return the answer of one model to a claim, with its number and interval."""
+    value, lower_bound, upper_bound = (
+        measures.get(f"{rule.measure}_{rung.name}{end}", nan) for end in ("", "_low", "_high")
+    )
     silent = unable if rung.carries else rung.why
-    told: tuple[Says, bool | None, str] = ("no word", None, silent) if silent else _answer(rule, rung, measures)
-    return Voice(rung=rung, value=value, low=low, high=high, says=told[0], leans=told[1], why=told[2])
+    answer: tuple[Says, bool | None, str] = ("no word", None, silent) if silent else _answer(rule, rung, measures)
+    return Voice(
+        rung=rung, value=value, low=lower_bound, high=upper_bound, says=answer[0], leans=answer[1], why=answer[2]
+    )
 
 
 def _answer(rule: Rule, rung: Rung, measures: Mapping[str, float]) -> tuple[Says, bool | None, str]:
-    asked = [f"{name}_{rung.name}" for name in dict.fromkeys((rule.measure, *(one.measure for one in rule.holds)))]
-    if not all(isfinite(measures[name + end]) for name in asked for end in ("", "_low", "_high", "_apart")):
+    """Return the answer of a model, whether the statement holds in it, and the reason."""
+    measure_names = [
+        f"{name}_{rung.name}" for name in dict.fromkeys((rule.measure, *(clause.measure for clause in rule.holds)))
+    ]
+    if not all(isfinite(measures[name + end]) for name in measure_names for end in ("", "_low", "_high", "_apart")):
         return "no word", None, "It has not swum enough cycles, or not at all, to show that it is settled."
-    apart = max(measures[f"{name}_apart"] for name in asked)
-    clauses = tuple(_of(clause, rung) for clause in rule.holds)
-    held = replace(rule, holds=clauses, spread=tuple(asked)).held(measures)
-    if apart > rule.settled:
-        why = f"Not settled: halves and starting sides are {apart:.2g} apart; {rule.settled:g} is allowed."
-        return "no word", held, why
-    if held is None:
-        return "undecided", held, "It holds in a part of its halves, starting sides and grids only."
-    return ("holds" if held else "does not hold"), held, rung.why
+    difference = max(measures[f"{name}_apart"] for name in measure_names)
+    clauses = tuple(_clause_for_rung(clause, rung) for clause in rule.holds)
+    is_held = replace(rule, holds=clauses, spread=tuple(measure_names)).held(measures)
+    if difference > rule.settled:
+        reason = f"Not settled: halves and starting sides are {difference:.2g} apart; {rule.settled:g} is allowed."
+        return "no word", is_held, reason
+    if is_held is None:
+        return "undecided", is_held, "It holds in a part of its halves, starting sides and grids only."
+    return ("holds" if is_held else "does not hold"), is_held, rung.why
 
 
-def _of(clause: Clause, rung: Rung) -> Clause:
-    """Return a clause that asks a rung's measures."""
+def _clause_for_rung(clause: Clause, rung: Rung) -> Clause:
+    """Return a clause with the measures of one model."""
     bound = f"{clause.bound}_{rung.name}" if isinstance(clause.bound, str) else clause.bound
     return replace(clause, measure=f"{clause.measure}_{rung.name}", bound=bound)
 
 
-def _answers(said: Sequence[Voice]) -> set[Says]:
-    return {voice.says for voice in said} - {"no word", "undecided"}
+def _answers(model_voices: Sequence[Voice]) -> set[Says]:
+    return {voice.says for voice in model_voices} - {"no word", "undecided"}
 
 
-def disagree(said: Sequence[Voice]) -> bool:
-    """Return whether the statement holds in one rung and not in another."""
-    return len(_answers(said)) > 1
+def disagree(model_voices: Sequence[Voice]) -> bool:
+    """Return whether the statement holds in one model and fails in another."""
+    return len(_answers(model_voices)) > 1
 
 
-def contested(said: Sequence[Voice]) -> bool:
-    """Return whether one rung alone has an answer, and one that is not settled says otherwise in all of its spread.
+def contested(model_voices: Sequence[Voice]) -> bool:
+    """Return whether one model alone has an answer, and an unsettled model contradicts it in all of its spread.
 
-    No word rests on one model where another stands beside it. This was added after a first result had been seen; it
-    can only take a word away.
+    One model alone does not decide if another one contradicts it. This rule was added after a first result had been
+    seen; it can only take a word away.
     """
-    heard = [voice for voice in said if voice.says in ("holds", "does not hold")]
-    others = {voice.leans for voice in said if voice.says == "no word"}
-    return len(heard) == 1 and (not heard[0].leans) in others
+    answering_voices = [voice for voice in model_voices if voice.says in ("holds", "does not hold")]
+    unsettled_leanings = {voice.leans for voice in model_voices if voice.says == "no word"}
+    return len(answering_voices) == 1 and (not answering_voices[0].leans) in unsettled_leanings
 
 
-def agreed(said: Sequence[Voice]) -> bool | None:
-    """Return on what the rungs agree that have an answer; None if none has one, they disagree, or one is contested."""
-    answers = _answers(said)
-    if contested(said):
+def agreed(model_voices: Sequence[Voice]) -> bool | None:
+    """Return the common answer of the models that have one; None if none has one, they disagree or one is contested."""
+    answers = _answers(model_voices)
+    if contested(model_voices):
         return None
     return answers == {"holds"} if len(answers) == 1 else None
 
 
-def spread(said: Sequence[Voice]) -> tuple[float, float, float]:
-    """Return the middle value of the rungs that have a word, and the least and the greatest of all; NaN of none."""
-    heard = [voice for voice in said if voice.says != "no word"]
-    if not heard:
+def spread(model_voices: Sequence[Voice]) -> tuple[float, float, float]:
+    """Return the median number of the models that have a word, and the least and greatest of all; NaN without one."""
+    voices_with_word = [voice for voice in model_voices if voice.says != "no word"]
+    if not voices_with_word:
         return nan, nan, nan
-    values = sorted(voice.value for voice in heard)
+    values = sorted(voice.value for voice in voices_with_word)
     middle = 0.5 * (values[(len(values) - 1) // 2] + values[len(values) // 2])
-    return middle, min(voice.low for voice in heard), max(voice.high for voice in heard)
+    return middle, min(voice.low for voice in voices_with_word), max(voice.high for voice in voices_with_word)
 
 
 _SENTENCES: Mapping[Says, str] = MappingProxyType(
@@ -129,18 +137,18 @@ _SENTENCES: Mapping[Says, str] = MappingProxyType(
 )
 
 
-def sentence(said: Sequence[Voice], form: str) -> str:
-    """Return in a sentence or two on which rungs a claim holds, on which not, and which have no word."""
+def sentence(model_voices: Sequence[Voice], form: str) -> str:
+    """Return sentences that name the models in which a claim holds, those in which it fails, and the rest."""
     parts = []
     for says, words in _SENTENCES.items():
-        number = {voice.rung.name: f" ({voice.written(form)})" * (says != "no word") for voice in said}
-        named = [voice.rung.model + number[voice.rung.name] for voice in said if voice.says == says]
-        parts += [f"{words} {listed(named)}."] if named else []
-    if contested(said):
+        number = {voice.rung.name: f" ({voice.written(form)})" * (says != "no word") for voice in model_voices}
+        model_texts = [voice.rung.model + number[voice.rung.name] for voice in model_voices if voice.says == says]
+        parts += [f"{words} {listed(model_texts)}."] if model_texts else []
+    if contested(model_voices):
         parts.append("That is one model alone, and one that is not settled says otherwise in all of its spread.")
     return " ".join(parts)
 
 
-def rows(said: Sequence[Voice], form: str) -> list[dict[str, str]]:
+def rows(model_voices: Sequence[Voice], form: str) -> list[dict[str, str]]:
     """Return the ladder as rows of a table: model, number with spread, what it says, and why."""
-    return [{"model": v.rung.model, "number": v.written(form), "says": v.says, "why": v.why} for v in said]
+    return [{"model": v.rung.model, "number": v.written(form), "says": v.says, "why": v.why} for v in model_voices]

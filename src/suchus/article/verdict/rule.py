@@ -30,24 +30,26 @@ class Reading(float):
         return format(float(self), form)
 
 
-def compared(value: float, other: float, *, less: str, more: str, same: str = "the same", within: float = 0.0) -> str:
-    """Return the word for how a value stands to another one.
+def compared(
+    value: float, reference: float, *, less: str, more: str, same: str = "the same", within: float = 0.0
+) -> str:
+    """Return the word for the relation of a value to a reference, for sentences.
 
     Args:
         value: the one that is spoken of.
-        other: what it is compared with.
+        reference: what it is compared with.
         less: the word where it is smaller.
         more: the word where it is greater.
         same: the word where both differ by at most ``within``.
         within: greatest difference that counts as none, as a share of the larger size [-].
     """
-    if abs(value - other) <= within * max(abs(value), abs(other)):
+    if abs(value - reference) <= within * max(abs(value), abs(reference)):
         return same
-    return less if value < other else more
+    return less if value < reference else more
 
 
 def listed(items: Sequence[str]) -> str:
-    """Return items as a list in a sentence: ``a, b and c``."""
+    """Return words as a list in a sentence: ``a, b and c``."""
     if len(items) < 2:
         return "".join(items)
     return f"{', '.join(items[:-1])} and {items[-1]}"
@@ -95,7 +97,7 @@ class Clause:
         if not all(map(isfinite, (*value, *bound))):
             return False
         relation = _RELATIONS[self.relation]
-        answers = {relation(one, other) for one in value for other in bound}
+        answers = {relation(value_end, bound_end) for value_end in value for bound_end in bound}
         return answers.pop() if len(answers) == 1 else None
 
     def __str__(self) -> str:
@@ -105,18 +107,18 @@ class Clause:
 
 def interval(name: str, measures: Mapping[str, float], spread: Collection[str]) -> tuple[float, float]:
     """Return the ends of a measure's interval, ``NAME_low`` and ``NAME_high``; twice its value where it has none."""
-    low, high = (f"{name}_low", f"{name}_high") if name in spread else (name, name)
-    return measures[low], measures[high]
+    lower_name, upper_name = (f"{name}_low", f"{name}_high") if name in spread else (name, name)
+    return measures[lower_name], measures[upper_name]
 
 
-def between(name: str, low: float, high: float) -> dict[str, float]:
-    """Return a measure with its interval, for the examples of a rule: the middle and the two ends."""
-    return {name: 0.5 * (low + high), f"{name}_low": low, f"{name}_high": high}
+def between(name: str, lower_bound: float, upper_bound: float) -> dict[str, float]:
+    """Return a measure with its interval, for the examples of a rule: middle, lower and upper end."""
+    return {name: 0.5 * (lower_bound + upper_bound), f"{name}_low": lower_bound, f"{name}_high": upper_bound}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlGroup:
-    """The control group that a claim speaks of: with what it compares, or who alone does what it says."""
+    """The control group of a claim: the designs with which the claim compares, or which alone show the effect."""
 
     group: str
     """Name of its runs, as in the record."""
@@ -174,59 +176,61 @@ class Rule:
 
     @property
     def asked(self) -> str:
-        """Digest of what decides whether the statement holds: a share of designs is of this rule or of another."""
-        clauses = [f"{one.measure} {one.relation} {one.bound}" for one in (*self.holds, *self._able)]
-        rungs = [f"{one.name} {one.carries}" for one in self.rungs]
+        """Hash of the rule's inputs. A stored fraction of designs is valid only for the rule with the same hash."""
+        clauses = [
+            f"{clause.measure} {clause.relation} {clause.bound}" for clause in (*self.holds, *self._control_clauses)
+        ]
+        rungs = [f"{rung.name} {rung.carries}" for rung in self.rungs]
         text = "\n".join([self.experiment, self.measure, *clauses, *rungs, f"{self.settled}" * bool(rungs)])
         return sha256(text.encode()).hexdigest()[:12]
 
     @property
     def needs(self) -> set[str]:
         """Names of the measures that decide, those of the sentence not counted."""
-        clauses = (*self.holds, *self._able)
-        needed = {self.measure, *(clause.measure for clause in clauses)}
+        clauses = (*self.holds, *self._control_clauses)
+        measures = {self.measure, *(clause.measure for clause in clauses)}
         bounds = {clause.bound for clause in clauses if isinstance(clause.bound, str)}
         if self.rungs:
             ends, carrying = ("", "_low", "_high", "_apart"), [rung.name for rung in self.rungs if rung.carries]
-            spread = {f"{name}_{rung}{end}" for name in needed for rung in carrying for end in ends}
+            spread = {f"{name}_{rung}{end}" for name in measures for rung in carrying for end in ends}
             return spread | {f"{name}_{rung}" for name in bounds for rung in carrying}
-        return needed | bounds | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
+        return measures | bounds | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
 
     def reason(self, measures: Mapping[str, float]) -> str:
         """Return what decided it, with its numbers."""
         return " ".join(self.why.format_map({name: Reading(value) for name, value in measures.items()}).split())
 
     def held(self, measures: Mapping[str, float]) -> bool | None:
-        """Return whether the statement, apart from its number, holds.
+        """Return whether the statement holds, apart from its number.
 
-        It fails if one clause fails for sure; None where none does and intervals leave some undecided.
+        It fails if one clause fails surely. It is None if no clause fails surely and intervals leave some undecided.
         """
-        return self._all(self.holds, measures)
+        return self._holds_all(self.holds, measures)
 
     def testable(self, measures: Mapping[str, float]) -> bool | None:
         """Return whether the control group does what the claim needs; None where intervals leave that undecided."""
-        return self._all(self._able, measures)
+        return self._holds_all(self._control_clauses, measures)
 
     def unable(self, measures: Mapping[str, float]) -> str:
-        """Return in a sentence what of it the control group does not, or not for sure; empty where it does all."""
-        lacking = [str(one) for one in self._able if one.holds(measures, self.spread) is not True]
+        """Return a sentence that names the properties that the control group lacks; empty if it has all of them."""
+        lacking = [str(clause) for clause in self._control_clauses if clause.holds(measures, self.spread) is not True]
         return f"The control group, {self.control.group}, lacks {listed(lacking)}." if self.control and lacking else ""
 
     @property
-    def _able(self) -> tuple[Clause, ...]:
+    def _control_clauses(self) -> tuple[Clause, ...]:
         return self.control.needs if self.control else ()
 
-    def _all(self, clauses: Sequence[Clause], measures: Mapping[str, float]) -> bool | None:
+    def _holds_all(self, clauses: Sequence[Clause], measures: Mapping[str, float]) -> bool | None:
         answers = [clause.holds(measures, self.spread) for clause in clauses]
         return False if False in answers else None if None in answers else True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Varied:
-    """How an experiment is asked again with other plausible designs and settings, to see in how many a claim holds.
+    """Variation of designs and settings of an experiment, which gives the fraction of designs in which a claim holds.
 
-    It is declared as ``VARIED`` beside the rules of an experiment, and answers what the walks of
-    ``suchus study claims`` cannot: those have no rough ground, no feedback, no water.
+    It is declared as ``VARIED`` beside the rules of an experiment. It is for experiments that the walks of ``suchus
+    study claims`` cannot replace: those walks have no rough ground, no feedback and no water.
     """
 
     claims: tuple[str, ...]

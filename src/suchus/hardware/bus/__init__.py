@@ -1,4 +1,4 @@
-"""The wire: packets of servo buses, control tables, ports, and which servo hangs where."""
+"""Servo buses: packets, control tables, ports, and the wiring of servos."""
 
 from suchus.hardware.bus.bus import WAIT, Bus, Counts, NoAnswer
 from suchus.hardware.bus.packets import BROADCAST, Decoder, Framing, Instruction, Packet

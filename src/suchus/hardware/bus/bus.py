@@ -1,4 +1,4 @@
-"""One bus as its host sees it: requests out, replies in, each by a deadline; what goes wrong is counted."""
+"""One bus at the host: requests, replies with deadlines, and counters of errors."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ _STEPPING = 60.0
 
 
 class NoAnswer(BusFailure):
-    """A servo that did not answer, or not in a way that could be understood."""
+    """A servo gave no reply, or none that can be decoded."""
 
 
 @dataclass(slots=True)
 class Counts:
-    """What went wrong on a bus."""
+    """Counters of errors on a bus."""
 
     missing: int = 0
     """Replies that did not come in time [-]."""
@@ -45,12 +45,13 @@ class Bus:
     """
 
     def __init__(self, port: Port, framing: Framing, *, wait: float = WAIT, clocked: bool = False) -> None:
+        """Take an open port and the protocol that is spoken on it."""
         self.port, self.framing, self.wait, self.clocked = port, framing, wait, clocked
         self.counts = Counts()
         self._decoder = framing.replies()
         self._quiet_from = 0.0
-        self._asked: dict[int, int] = {}  # whom ``begin`` asked for how many bytes
-        self._kept: dict[int, Packet] = {}  # replies to that which came too late
+        self._requested_lengths: dict[int, int] = {}  # whom ``begin`` asked for how many bytes
+        self._late_replies: dict[int, Packet] = {}  # replies to that which came too late
         self.late: frozenset[int] = frozenset()
         """Whose replies of the last ``end`` were late ones to the question before."""
 
@@ -66,11 +67,11 @@ class Bus:
 
     @property
     def settled(self) -> bool:
-        """Whether no late reply is to be expected any more."""
+        """Whether no late reply can come any more."""
         return self.clocked or monotonic() >= self._quiet_from
 
     def settle(self) -> None:
-        """Take what still comes until the bus has been silent for twice the wait."""
+        """Read late replies until the bus has been silent for twice the wait."""
         while not self.settled:
             if self.port.receive(max(self._quiet_from - monotonic(), 0.0)):
                 self.counts.stale += 1
@@ -78,7 +79,7 @@ class Bus:
         self._decoder.clear()
 
     def send(self, data: bytes) -> None:
-        """Send a request that nobody answers."""
+        """Send a request without a reply."""
         self.port.send(data, max(self.wait, 0.05))
 
     def ask(self, request: bytes, servo: int, length: int | None = None, wait: float | None = None) -> Packet:
@@ -95,24 +96,24 @@ class Bus:
         """
         self.settle()
         self.send(request)
-        found = self._collect((servo,), length, self.wait if wait is None else wait)
-        if servo not in found:
+        replies = self._collect((servo,), length, self.wait if wait is None else wait)
+        if servo not in replies:
             raise NoAnswer(f"number {servo} on {self.port.name} does not answer.")
-        return found[servo]
+        return replies[servo]
 
     def begin(self, servos: Collection[int], address: int, length: int) -> None:
-        """Ask several servos for the same bytes; ``end`` returns what they say."""
+        """Request the same bytes of several servos; ``end`` returns the replies."""
         if not self.clocked:
             for packet in self._decoder.feed(self.port.receive(0.0)):
                 self._keep(packet)
-        self._asked |= dict.fromkeys(servos, length)
-        asked = [*servos, CLOCK] if self.clocked else [*servos]
-        self.send(self.framing.sync_read(asked, address, length))
+        self._requested_lengths |= dict.fromkeys(servos, length)
+        servo_ids = [*servos, CLOCK] if self.clocked else [*servos]
+        self.send(self.framing.sync_read(servo_ids, address, length))
 
     def end(self, servos: Collection[int], length: int, wait: float | None = None) -> dict[int, Packet]:
         """Return the replies to ``begin`` that come in time, by servo.
 
-        A servo whose reply is missing has a late one to the same question as before taken for it, if there is one.
+        A missing reply is replaced by a late reply to the same question, if there is one.
 
         Args:
             servos: that were asked.
@@ -120,40 +121,47 @@ class Bus:
             wait: for them; that of the bus if None [s].
         """
         wait = self.wait if wait is None else wait
-        found = self._collect(servos, length, _STEPPING if self.clocked else wait, told=self.clocked)
-        late = {servo: self._kept.pop(servo) for servo in servos if servo in self._kept}
-        self.late = frozenset(late) - frozenset(found)
-        return late | found
+        replies = self._collect(servos, length, _STEPPING if self.clocked else wait, has_end_marker=self.clocked)
+        late_replies = {servo: self._late_replies.pop(servo) for servo in servos if servo in self._late_replies}
+        self.late = frozenset(late_replies) - frozenset(replies)
+        return late_replies | replies
 
     def _keep(self, packet: Packet) -> None:
-        """Keep a reply that was not waited for any more, if it can only be one to ``begin``."""
-        if self._asked.get(packet.id) == len(packet.data):
-            self._kept[packet.id] = packet
+        """Store a late reply, if it can only be a reply to ``begin``."""
+        if self._requested_lengths.get(packet.id) == len(packet.data):
+            self._late_replies[packet.id] = packet
         else:
             self.counts.stale += 1
 
     def _collect(
-        self, servos: Collection[int], length: int | None, wait: float, *, told: bool = False
+        self, servos: Collection[int], length: int | None, wait: float, *, has_end_marker: bool = False
     ) -> dict[int, Packet]:
-        """Return replies by servo; where the end of the answers is told, until then."""
-        found: dict[int, Packet] = {}
+        """Return replies by servo, until all have come, the deadline, or the end marker.
+
+        Args:
+            servos: that were asked.
+            length: of the data in each reply; None for any [byte].
+            wait: time until the deadline [s].
+            has_end_marker: whether the clock of an emulator marks the end of the replies.
+        """
+        replies: dict[int, Packet] = {}
         end = monotonic() + wait
-        while told or len(found) < len(servos):
+        while has_end_marker or len(replies) < len(servos):
             data = self.port.receive(max(end - monotonic(), 0.0))
             for packet in self._decoder.feed(data):
-                if told and packet.id == CLOCK:
-                    self.counts.missing += len(servos) - len(found)
-                    return found
+                if has_end_marker and packet.id == CLOCK:
+                    self.counts.missing += len(servos) - len(replies)
+                    return replies
                 if packet.id in servos and length in (None, len(packet.data)):
-                    found[packet.id] = packet
+                    replies[packet.id] = packet
                 else:
                     self._keep(packet)
             if not data:
                 break
-        if len(found) < len(servos):
-            self.counts.missing += len(servos) - len(found)
+        if len(replies) < len(servos):
+            self.counts.missing += len(servos) - len(replies)
             self._quiet_from = monotonic() + 2 * self.wait
-        return found
+        return replies
 
     def ping(self, servo: int) -> Packet | None:
         """Return the reply of a servo to the question whether it is there; None if none comes."""
@@ -179,18 +187,20 @@ class Bus:
             BusFailure: the servo refused it.
         """
         reply = self.ask(self.framing.write(servo, register.address, register.encode(value)), servo)
-        why = self.framing.refusal(reply.code)
-        if why:
-            raise BusFailure(f"number {servo} on {self.port.name} refused {register.name} = {value}: {why}.")
+        refusal = self.framing.refusal(reply.code)
+        if refusal:
+            raise BusFailure(f"number {servo} on {self.port.name} refused {register.name} = {value}: {refusal}.")
         return reply
 
     def write_all(self, register: Register, values: Mapping[int, int]) -> None:
         """Write a register of several servos at once; none answers."""
         if values:
-            self.send(self.framing.sync_write(register.address, {one: register.encode(v) for one, v in values.items()}))
+            self.send(
+                self.framing.sync_write(register.address, {servo: register.encode(v) for servo, v in values.items()})
+            )
 
     def pass_until(self, tick: int) -> None:
-        """Let an emulator's robot move until a tick, counted from when the emulator began.
+        """Let the robot of an emulator move until a tick, counted from the start of the emulator.
 
         Raises:
             NoAnswer: there is no such clock on the bus, or the robot cannot go on.

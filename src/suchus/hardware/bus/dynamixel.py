@@ -20,11 +20,12 @@ REFUSALS = {
     7: "the register cannot be written, or not while torque is on",
 }
 """What the number in a reply's error means."""
-_LONGEST = 1024
+_MAX_FRAME_LENGTH = 1024
 """Greatest length that a frame may name [byte]; a longer one is noise that looks like a header."""
 
 
 def _table() -> tuple[int, ...]:
+    """Return the 256 values of the table by which the CRC-16 of the protocol is computed."""
     rows = []
     for byte in range(256):
         value = byte << 8
@@ -59,29 +60,30 @@ class _DynamixelFrames(Decoder):
         super().__init__()
         self._replies = replies
 
-    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
+    def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
+        """Return the number of bytes used and their packet, None for noise; None if a frame is not complete."""
         start = data.find(_HEADER)
         if start < 0:
-            kept = next((n for n in (3, 2, 1) if data.endswith(_HEADER[:n])), 0)
-            return (len(data) - kept, None) if len(data) > kept else None
+            header_length = next((n for n in (3, 2, 1) if data.endswith(_HEADER[:n])), 0)
+            return (len(data) - header_length, None) if len(data) > header_length else None
         if start > 0:
             return start, None
         if len(data) < 7:
             return None
         length = int.from_bytes(data[5:7], "little")
-        if not 3 <= length <= _LONGEST:
+        if not 3 <= length <= _MAX_FRAME_LENGTH:
             return 1, None
         if len(data) < 7 + length:
             return None
-        whole = data[: 7 + length]
-        if int.from_bytes(whole[-2:], "little") != crc(whole[:-2]):
+        frame = data[: 7 + length]
+        if int.from_bytes(frame[-2:], "little") != crc(frame[:-2]):
             self.broken += 1
             return 1, None
-        body = whole[7:-2].replace(_STUFFED, _PLAIN)
+        body = frame[7:-2].replace(_STUFFED, _PLAIN)
         if (body[0] == _STATUS) != self._replies or (self._replies and len(body) < 2):
-            return len(whole), None  # the echo of our own request, or what a servo says to somebody else
-        packet = Packet(whole[4], body[1], body[2:]) if self._replies else Packet(whole[4], body[0], body[1:])
-        return len(whole), packet
+            return len(frame), None  # the echo of our own request, or what a servo says to somebody else
+        packet = Packet(frame[4], body[1], body[2:]) if self._replies else Packet(frame[4], body[0], body[1:])
+        return len(frame), packet
 
 
 class Dynamixel(Framing):

@@ -17,11 +17,12 @@ def checksum(data: bytes) -> int:
 class _FeetechFrames(Decoder):
     """Takes frames of either direction, which look alike."""
 
-    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
+    def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
+        """Return the number of bytes used and their packet, None for noise; None if a frame is not complete."""
         start = data.find(_HEADER)
         if start < 0:
-            kept = int(data.endswith(b"\xff"))
-            return (len(data) - kept, None) if len(data) > kept else None
+            header_length = int(data.endswith(b"\xff"))
+            return (len(data) - header_length, None) if len(data) > header_length else None
         if start > 0:
             return start, None
         if len(data) < 4:
@@ -30,11 +31,11 @@ class _FeetechFrames(Decoder):
             return 1, None
         if len(data) < 4 + data[3]:
             return None
-        whole = data[: 4 + data[3]]
-        if whole[-1] != checksum(whole[2:-1]):
+        frame = data[: 4 + data[3]]
+        if frame[-1] != checksum(frame[2:-1]):
             self.broken += 1
             return 1, None
-        return len(whole), Packet(whole[2], whole[4], whole[5:-1])
+        return len(frame), Packet(frame[2], frame[4], frame[5:-1])
 
 
 class Feetech(Framing):

@@ -19,7 +19,7 @@ from collections.abc import Iterator, Sequence
 from suchus.hardware.bus.dynamixel import ALERT, REFUSALS, crc
 from suchus.hardware.bus.packets import BROADCAST, Decoder, Framing, Instruction, Packet
 
-_LONGEST = 4096  # bytes of a line; what is longer is noise
+_MAX_LINE_LENGTH = 4096  # bytes of a line; what is longer is noise
 _TAIL = 5  # bytes of the star and the CRC
 _WORDS = {Instruction.PING: "p", Instruction.READ: "r", Instruction.WRITE: "w", Instruction.REBOOT: "b"}
 _INSTRUCTIONS = {word: instruction for instruction, word in _WORDS.items()}
@@ -27,8 +27,9 @@ _SEVERAL = {Instruction.READ: Instruction.SYNC_READ, Instruction.WRITE: Instruct
 
 
 def _line(text: str) -> bytes:
-    said = text.encode("ascii")
-    return said + f"*{crc(said):04X}\n".encode("ascii")
+    """Return a text with its checksum and a line feed, as bytes."""
+    payload = text.encode("ascii")
+    return payload + f"*{crc(payload):04X}\n".encode("ascii")
 
 
 def _numbers(data: bytes) -> list[int]:
@@ -42,11 +43,11 @@ def _bytes(numbers: Sequence[int]) -> bytes:
     Raises:
         OverflowError: one does not fit 16 bits.
     """
-    return b"".join(one.to_bytes(2, "little", signed=True) for one in numbers)
+    return b"".join(number.to_bytes(2, "little", signed=True) for number in numbers)
 
 
-def _whole(text: str) -> list[int]:
-    return [int(one) for one in text.split(",")]
+def _integers(text: str) -> list[int]:
+    return [int(token) for token in text.split(",")]
 
 
 def _address(number: int) -> bytes:
@@ -61,28 +62,28 @@ def _request(text: str) -> Packet:
         KeyError: the same.
         OverflowError: the same.
     """
-    word, ids, *rest = text.split(" ")
-    instruction, servos = _INSTRUCTIONS[word], _whole(ids)
-    if not all(0 <= one <= BROADCAST for one in servos) or (len(servos) > 1 and instruction not in _SEVERAL):
+    word, ids, *arguments = text.split(" ")
+    instruction, servos = _INSTRUCTIONS[word], _integers(ids)
+    if not all(0 <= servo_id <= BROADCAST for servo_id in servos) or (len(servos) > 1 and instruction not in _SEVERAL):
         raise ValueError(text)
     if instruction in (Instruction.PING, Instruction.REBOOT):
-        () = rest
+        () = arguments
         return Packet(servos[0], instruction)
-    start, values = rest
+    start, values = arguments
     if instruction == Instruction.READ:
         data = _address(int(start)) + _address(int(values))
         if len(servos) == 1:
             return Packet(servos[0], instruction, data)
         return Packet(BROADCAST, Instruction.SYNC_READ, data + bytes(servos))
-    numbers = _whole(values)
+    numbers = _integers(values)
     if len(servos) == 1:
         return Packet(servos[0], instruction, _address(int(start)) + _bytes(numbers))
-    each = len(numbers) // len(servos)
-    if each * len(servos) != len(numbers):
+    register_count = len(numbers) // len(servos)
+    if register_count * len(servos) != len(numbers):
         raise ValueError(text)
-    data = _address(int(start)) + _address(each)
+    data = _address(int(start)) + _address(register_count)
     for i, servo in enumerate(servos):
-        data += bytes([servo]) + _bytes(numbers[i * each : (i + 1) * each])
+        data += bytes([servo]) + _bytes(numbers[i * register_count : (i + 1) * register_count])
     return Packet(BROADCAST, Instruction.SYNC_WRITE, data)
 
 
@@ -93,7 +94,7 @@ def _reply(text: str) -> Packet:
         ValueError: it is none.
         OverflowError: the same.
     """
-    servo, error, *values = (int(one) for one in text.split(" "))
+    servo, error, *values = (int(token) for token in text.split(" "))
     if not (0 <= servo <= BROADCAST and 0 <= error <= 255):
         raise ValueError(text)
     return Packet(servo, error, _bytes(values))
@@ -106,26 +107,27 @@ class _Lines(Decoder):
         super().__init__()
         self._replies = replies
 
-    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
+    def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
+        """Return the number of bytes used and their packet, None for noise; None if a line is not complete."""
         end = data.find(b"\n")
         if end < 0:
-            return (len(data), None) if len(data) > _LONGEST else None
-        said, star, told = data[:end].removesuffix(b"\r").rpartition(b"*")
-        used = end + 1
-        if not star or not said:
-            return used, None
-        if told.upper() != f"{crc(said):04X}".encode("ascii"):
+            return (len(data), None) if len(data) > _MAX_LINE_LENGTH else None
+        payload, star, checksum = data[:end].removesuffix(b"\r").rpartition(b"*")
+        length = end + 1
+        if not star or not payload:
+            return length, None
+        if checksum.upper() != f"{crc(payload):04X}".encode("ascii"):
             self.broken += 1
-            inner = said.find(b"*")  # a line feed that was lost or spoilt joined two lines: the second may be whole
+            inner = payload.find(b"*")  # a line feed that was lost or spoilt joined two lines: the second may be whole
             if inner < 0:
-                return used, None
-            after = inner + _TAIL
-            return (after if data[after : after + 1].isalnum() else after + 1), None
+                return length, None
+            resume_index = inner + _TAIL
+            return (resume_index if data[resume_index : resume_index + 1].isalnum() else resume_index + 1), None
         try:
-            text = said.decode("ascii")
-            return used, _reply(text) if self._replies else _request(text)
+            text = payload.decode("ascii")
+            return length, _reply(text) if self._replies else _request(text)
         except (ValueError, KeyError, OverflowError):
-            return used, None
+            return length, None
 
 
 class PlainLine(Framing):
@@ -136,11 +138,11 @@ class PlainLine(Framing):
 
     def request(self, packet: Packet) -> bytes:
         """Return the bytes of a request."""
-        return _line(" ".join(_said(packet)))
+        return _line(" ".join(_request_words(packet)))
 
     def reply(self, packet: Packet) -> bytes:
         """Return the bytes of a reply."""
-        return _line(" ".join(str(one) for one in (packet.id, packet.code, *_numbers(packet.data))))
+        return _line(" ".join(str(number) for number in (packet.id, packet.code, *_numbers(packet.data))))
 
     def alert(self, code: int) -> bool:
         """Return whether the error says that there is an alert."""
@@ -160,23 +162,28 @@ class PlainLine(Framing):
         return _Lines(replies=True)
 
 
-def _said(packet: Packet) -> Iterator[str]:
+def _request_words(packet: Packet) -> Iterator[str]:
     """Yield the parts of a request's line."""
     data = packet.data
     if packet.code not in (Instruction.SYNC_READ, Instruction.SYNC_WRITE):
         yield from (_WORDS[Instruction(packet.code)], str(packet.id))
         if packet.code == Instruction.READ:
-            yield from (str(one // 2) for one in _numbers(data))
+            yield from (str(number // 2) for number in _numbers(data))
         elif packet.code == Instruction.WRITE:
-            yield from (str(_numbers(data)[0] // 2), ",".join(str(one) for one in _numbers(data[2:])))
+            yield from (str(_numbers(data)[0] // 2), ",".join(str(number) for number in _numbers(data[2:])))
         return
     start, length = _numbers(data[:4])
     rows = data[4:]
     if packet.code == Instruction.SYNC_READ:
-        yield from (_WORDS[Instruction.READ], ",".join(str(one) for one in rows), str(start // 2), str(length // 2))
+        yield from (
+            _WORDS[Instruction.READ],
+            ",".join(str(number) for number in rows),
+            str(start // 2),
+            str(length // 2),
+        )
         return
     size = length + 1
     yield _WORDS[Instruction.WRITE]
     yield ",".join(str(rows[i]) for i in range(0, len(rows), size))
     yield str(start // 2)
-    yield ",".join(str(one) for i in range(0, len(rows), size) for one in _numbers(rows[i + 1 : i + size]))
+    yield ",".join(str(number) for i in range(0, len(rows), size) for number in _numbers(rows[i + 1 : i + size]))

@@ -42,6 +42,7 @@ class Decoder(ABC):
     """Finds packets in bytes that come in any portions, with noise before, between and within them."""
 
     def __init__(self) -> None:
+        """Begin with an empty buffer and counters at zero."""
         self._buffer = bytearray()
         self.dropped = 0
         """Bytes that belonged to no packet [-]."""
@@ -49,26 +50,26 @@ class Decoder(ABC):
         """Frames whose checksum was wrong [-]."""
 
     def feed(self, data: bytes) -> list[Packet]:
-        """Take bytes and return the packets that they complete, in their order."""
+        """Add received bytes, and return the packets that are now complete, in order."""
         self._buffer += data
         packets: list[Packet] = []
-        while (step := self._next(bytes(self._buffer))) is not None:
-            used, packet = step
+        while (step := self._next_packet(bytes(self._buffer))) is not None:
+            length, packet = step
             if packet is None:
-                self.dropped += used
+                self.dropped += length
             else:
                 packets.append(packet)
-            del self._buffer[:used]
+            del self._buffer[:length]
         return packets
 
     def clear(self) -> None:
-        """Forget what has begun and not ended."""
+        """Discard an incomplete packet."""
         self.dropped += len(self._buffer)
         self._buffer.clear()
 
     @abstractmethod
-    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
-        """Return how many bytes are used up and the packet that they are, None for noise; None if more must come."""
+    def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
+        """Return the number of bytes used and their packet, None for noise; None if more bytes must come."""
 
 
 class Framing(ABC):
@@ -97,18 +98,18 @@ class Framing(ABC):
 
     @abstractmethod
     def alert(self, code: int) -> bool:
-        """Return whether the error of a reply says that something is wrong with the servo."""
+        """Return whether the error of a reply contains an alert."""
 
     @abstractmethod
     def refusal(self, code: int) -> str:
-        """Return why a servo did not do what it was asked, by the error of its reply; empty if it did."""
+        """Return why a servo refused a request, by the error of its reply; empty if it did not."""
 
     def number(self, value: int) -> bytes:
         """Return an address or a length as it stands in parameters."""
         return value.to_bytes(self.word, "little")
 
     def read(self, servo: int, address: int, length: int) -> bytes:
-        """Return the request that asks one servo for the bytes from an address on."""
+        """Return the request for bytes of one servo from an address on."""
         return self.request(Packet(servo, Instruction.READ, self.number(address) + self.number(length)))
 
     def write(self, servo: int, address: int, data: bytes) -> bytes:
@@ -120,7 +121,7 @@ class Framing(ABC):
         return self.request(Packet(servo, Instruction.PING))
 
     def reboot(self, servo: int) -> bytes:
-        """Return the request that lets a servo begin anew, which ends an alert."""
+        """Return the request that reboots a servo, which ends an alert."""
         return self.request(Packet(servo, Instruction.REBOOT))
 
     def sync_read(self, servos: Sequence[int], address: int, length: int) -> bytes:

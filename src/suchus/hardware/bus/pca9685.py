@@ -44,10 +44,10 @@ def open_wires(name: str) -> Wires:
             "an I2C bus needs the package smbus2, which is not installed: pip install 'suchus[hardware]' on Linux."
         ) from error
     if not Path(name).exists():
-        there = (
+        bus_names = (
             ", ".join(map(str, sorted(Path("/dev").glob("i2c-*")))) or "none; switch I2C on, on a Pi by raspi-config"
         )
-        raise BusFailure(f"there is no I2C bus {name}; there is {there}.")
+        raise BusFailure(f"there is no I2C bus {name}; there is {bus_names}.")
     try:
         opened: Any = smbus2.SMBus(name)
     except OSError as error:
@@ -69,6 +69,7 @@ class Pulses:
     """
 
     def __init__(self, wires: Wires, boards: Sequence[int], rate: float) -> None:
+        """Set the rate of pulses on all boards."""
         if not LEAST <= rate <= MOST:
             raise InvalidDesign(f"the rate of pulses is {rate:g} Hz; {LEAST:g} to {MOST:g} Hz is what the boards give.")
         self._wires, self.boards, self.rate = wires, tuple(boards), rate
@@ -78,28 +79,30 @@ class Pulses:
             self._write(board, MODE, [_INCREMENT])
 
     def send(self, pulses: Mapping[tuple[int, int], float]) -> None:
-        """Let channels pulse.
+        """Set the pulse widths of channels.
 
         Args:
             pulses: widths by board and channel [us].
         """
         for board in self.boards:
-            own = {channel: width for (at, channel), width in pulses.items() if at == board}
+            board_widths = {
+                channel: width for (channel_board, channel), width in pulses.items() if channel_board == board
+            }
             for start in range(0, 16, _BLOCK):
-                self._block(board, {c: own[c] for c in range(start, start + _BLOCK) if c in own})
+                self._block(board, {c: board_widths[c] for c in range(start, start + _BLOCK) if c in board_widths})
 
     def _block(self, board: int, widths: Mapping[int, float]) -> None:
-        """Write neighbouring channels at once, those between that have none switched off."""
+        """Write successive channels at once; channels between them without a width are switched off."""
         if not widths:
             return
-        first, last = min(widths), max(widths)
+        first_channel, last_channel = min(widths), max(widths)
         data: list[int] = []
-        for channel in range(first, last + 1):
+        for channel in range(first_channel, last_channel + 1):
             if channel in widths:
                 data += [0, 0, *round(widths[channel] * 1e-6 * self.rate * _STEPS).to_bytes(2, "little")]
             else:
                 data += [0, 0, 0, _FULL_OFF]
-        self._write(board, FIRST + 4 * first, data)
+        self._write(board, FIRST + 4 * first_channel, data)
 
     def off(self) -> None:
         """Switch all channels off: servos that get no pulses give no torque."""
@@ -111,6 +114,7 @@ class Pulses:
         self._wires.close()
 
     def _write(self, board: int, register: int, data: Sequence[int]) -> None:
+        """Write successive registers of a board, and refuse a board that does not answer."""
         try:
             self._wires.write_i2c_block_data(ADDRESS + board, register, list(data))
         except OSError as error:

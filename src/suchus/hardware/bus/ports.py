@@ -1,4 +1,4 @@
-"""Where the bytes of a bus come and go: a serial port, a socket; nothing blocks for longer than it is told."""
+"""Ports of a bus: serial port or socket; no call blocks for longer than its deadline."""
 
 import errno
 import os
@@ -19,15 +19,15 @@ LOOPBACK = ("127.0.0.1", "localhost", "::1")
 ADAPTERS = Path("/sys/bus/usb-serial/devices")
 """Where Linux says how long an adapter keeps bytes back."""
 _CHUNK = 4096  # bytes of a read
-_GONE = (errno.EIO, errno.ENXIO, errno.ENODEV, errno.EPIPE, errno.ECONNRESET, errno.EBADF)
+_GONE_ERRORS = (errno.EIO, errno.ENXIO, errno.ENODEV, errno.EPIPE, errno.ECONNRESET, errno.EBADF)
 
 
 class BusGone(BusFailure):
-    """A bus whose other end is no longer there."""
+    """The other end of a bus is gone."""
 
 
 class Port(Protocol):
-    """A way to a bus."""
+    """A connection to a bus."""
 
     name: str
     """As the user named it."""
@@ -69,20 +69,20 @@ class FilePort:
 
     def send(self, data: bytes, wait: float) -> None:
         """Send all of some bytes, see ``Port``."""
-        end, left = monotonic() + wait, memoryview(data)
+        end, remainder = monotonic() + wait, memoryview(data)
         with self._noticing():
-            while left:
+            while remainder:
                 _, ready, _ = select.select((), (self._fd,), (), max(end - monotonic(), 0.0))
                 if not ready:
                     raise BusGone(
-                        f"the bus {self.name} took {len(data) - len(left)} of {len(data)} bytes and then none for "
+                        f"the bus {self.name} took {len(data) - len(remainder)} of {len(data)} bytes and then none for "
                         f"{wait:.3g} s: what is at its other end does not read; look at the adapter and its cable."
                     )
                 with suppress(BlockingIOError):
-                    left = left[os.write(self._fd, left) :]
+                    remainder = remainder[os.write(self._fd, remainder) :]
 
     def receive(self, wait: float) -> bytes:
-        """Return what has arrived, see ``Port``."""
+        """Return the received bytes, see ``Port``; empty after a time without any."""
         with self._noticing():
             ready, _, _ = select.select((self._fd,), (), (), max(wait, 0.0))
             if not ready:
@@ -102,10 +102,11 @@ class FilePort:
 
     @contextmanager
     def _noticing(self) -> Iterator[None]:
+        """Turn the errors of a port that is gone into ``BusGone``."""
         try:
             yield
         except (OSError, ValueError) as error:  # a descriptor that was closed is -1
-            if isinstance(error, BusFailure) or getattr(error, "errno", errno.EBADF) not in _GONE:
+            if isinstance(error, BusFailure) or getattr(error, "errno", errno.EBADF) not in _GONE_ERRORS:
                 raise
             raise BusGone(
                 f"the bus {self.name} is gone ({getattr(error, 'strerror', None) or error}): its adapter was "
@@ -128,27 +129,29 @@ def open_port(name: str, baud: int) -> Port:
 
 
 def _socket(name: str) -> Port:
-    where = urlsplit(name)
+    """Return a port that is a socket of an emulator on this computer."""
+    address = urlsplit(name)
     try:
-        port = where.port
+        port = address.port
     except ValueError:
         port = None
-    if where.hostname not in LOOPBACK or port is None:
+    if address.hostname not in LOOPBACK or port is None:
         raise InvalidDesign(
             f"the port is {name!r}; a socket is socket://127.0.0.1:PORT of an emulator on this computer, since nothing "
             "on the way is encrypted."
         )
     try:
-        made = socket.create_connection((where.hostname, port), timeout=2.0)
+        connection = socket.create_connection((address.hostname, port), timeout=2.0)
     except OSError as error:
         raise BusFailure(
             f"nobody listens at {name} ({error.strerror or error}): start suchus emulate first, which prints its port."
         ) from error
-    made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    return FilePort(name, made.fileno(), made)
+    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return FilePort(name, connection.fileno(), connection)
 
 
 def _serial(name: str, baud: int) -> Port:
+    """Return a serial port, open for this process alone."""
     try:
         import serial  # noqa: PLC0415  an optional extra, needed here only
     except ModuleNotFoundError as error:
@@ -157,11 +160,11 @@ def _serial(name: str, baud: int) -> Port:
         ) from error
     path = Path(name)
     if not path.exists():
-        raise BusFailure(f"there is no port {name}; {_there()}")
+        raise BusFailure(f"there is no port {name}; {_ports_text()}")
     if not path.is_char_device():
-        raise BusFailure(f"{name} is no serial port but a {'folder' if path.is_dir() else 'file'}; {_there()}")
+        raise BusFailure(f"{name} is no serial port but a {'folder' if path.is_dir() else 'file'}; {_ports_text()}")
     try:
-        made = serial.Serial(name, baudrate=baud, timeout=0, write_timeout=0, exclusive=True)
+        device = serial.Serial(name, baudrate=baud, timeout=0, write_timeout=0, exclusive=True)
     except (serial.SerialException, OSError, ValueError, termios.error) as error:
         busy = isinstance(error, OSError) and error.errno in (errno.EAGAIN, errno.EWOULDBLOCK, errno.EBUSY)
         if busy or "lock" in str(error).lower():
@@ -171,20 +174,20 @@ def _serial(name: str, baud: int) -> Port:
                 f"{name} may not be opened by you: join the group that owns it, often dialout, and log in again."
             ) from error
         raise BusFailure(f"{name} cannot be opened at {baud} baud as a serial port: {error}.") from error
-    _lower_latency(made)
-    return FilePort(name, made.fileno(), made)
+    _lower_latency(device)
+    return FilePort(name, device.fileno(), device)
 
 
-def _there() -> str:
-    """Return which ports there are, as a sentence."""
-    known = sorted(Path("/dev/serial/by-id").glob("*")) or sorted(Path("/dev").glob("tty[UA][SC][BM]*"))
-    return f"there is {', '.join(map(str, known))}." if known else "no adapter is plugged in."
+def _ports_text() -> str:
+    """Return a sentence that names the serial ports of this computer."""
+    adapters = sorted(Path("/dev/serial/by-id").glob("*")) or sorted(Path("/dev").glob("tty[UA][SC][BM]*"))
+    return f"there is {', '.join(map(str, adapters))}." if adapters else "no adapter is plugged in."
 
 
-def _lower_latency(made: Any) -> None:
-    """Ask an adapter to hand bytes on at once, where it can be asked."""
+def _lower_latency(device: Any) -> None:
+    """Set an adapter to pass bytes on without delay, where its driver allows it."""
     with suppress(OSError, ValueError, AttributeError, NotImplementedError):
-        made.set_low_latency_mode(True)
+        device.set_low_latency_mode(True)
 
 
 def latency_timer(name: str) -> int | None:

@@ -47,17 +47,17 @@ class Register:
     """Least and greatest value that it takes; None for all that fit."""
 
     def encode(self, value: int) -> bytes:
-        """Return the bytes of a value, which is clipped to what fits."""
+        """Return the bytes of a value, which is clipped to the range of the register."""
         if self.sign == "two":
-            most = 1 << (8 * self.size - 1)
-            return min(max(value, -most), most - 1).to_bytes(self.size, "little", signed=True)
+            limit = 1 << (8 * self.size - 1)
+            return min(max(value, -limit), limit - 1).to_bytes(self.size, "little", signed=True)
         if self.sign == "bit":
-            most = 1 << self.sign_bit
-            value = min(abs(value), most - 1) | (most if value < 0 else 0)
+            limit = 1 << self.sign_bit
+            value = min(abs(value), limit - 1) | (limit if value < 0 else 0)
         return min(max(value, 0), (1 << 8 * self.size) - 1).to_bytes(self.size, "little")
 
     def decode(self, data: bytes) -> int:
-        """Return the value that bytes are."""
+        """Return the value of bytes."""
         value = int.from_bytes(data, "little", signed=self.sign == "two")
         if self.sign == "bit" and value >> self.sign_bit & 1:
             return -(value & ((1 << self.sign_bit) - 1))
@@ -112,7 +112,7 @@ class Table:
     @cached_property
     def by_name(self) -> Mapping[str, Register]:
         """The registers by name."""
-        return MappingProxyType({one.name: one for one in self.registers})
+        return MappingProxyType({register.name: register for register in self.registers})
 
     def __getitem__(self, name: str) -> Register:
         if name not in self.by_name:
@@ -123,24 +123,24 @@ class Table:
         return name in self.by_name
 
     def block(self, ends: tuple[str, str]) -> tuple[int, int]:
-        """Return address and length of what lies from one register to another [byte]."""
-        first, last = self[ends[0]], self[ends[1]]
-        return first.address, last.address + last.size - first.address
+        """Return address and length of the block from one register to another [byte]."""
+        first_register, last_register = self[ends[0]], self[ends[1]]
+        return first_register.address, last_register.address + last_register.size - first_register.address
 
     def unpack(self, ends: tuple[str, str], data: bytes) -> dict[str, int]:
         """Return the values of a block by register."""
         start, length = self.block(ends)
         return {
-            one.name: one.decode(data[one.address - start : one.address - start + one.size])
-            for one in self.registers
-            if start <= one.address and one.address + one.size <= start + length
+            register.name: register.decode(data[register.address - start : register.address - start + register.size])
+            for register in self.registers
+            if start <= register.address and register.address + register.size <= start + length
         }
 
     @cached_property
     def length(self) -> int:
         """Bytes of the whole table [byte]."""
-        last = self.registers[-1]
-        return last.address + last.size
+        last_register = self.registers[-1]
+        return last_register.address + last_register.size
 
 
 _RPM = 2 * pi / 60
@@ -154,7 +154,7 @@ _AMPERES = {"XM": 2.69e-3, "XW": 2.69e-3, "XC330": 1e-3}
 def _x_series(motor: Motor) -> Table:
     """Return the table of an X servo."""
     current = next((step for start, step in _AMPERES.items() if motor.name.startswith(start)), 0.0)
-    low, high = (round(10 * end) for end in motor.volts_range)
+    min_voltage, max_voltage = (round(10 * end) for end in motor.volts_range)
     hottest = round(motor.temperature_limit)
     two: Sign = "two"
     return Table(
@@ -171,8 +171,8 @@ def _x_series(motor: Motor) -> Table:
             Register(name="operating_mode", address=11, size=1, writable=True, initial=3, span=(0, 16)),
             Register(name="homing_offset", address=20, size=4, unit=_STEP, sign=two, writable=True),
             Register(name="temperature_limit", address=31, size=1, writable=True, initial=hottest, span=(0, 100)),
-            Register(name="voltage_high", address=32, size=2, unit=0.1, writable=True, initial=high),
-            Register(name="voltage_low", address=34, size=2, unit=0.1, writable=True, initial=low),
+            Register(name="voltage_high", address=32, size=2, unit=0.1, writable=True, initial=max_voltage),
+            Register(name="voltage_low", address=34, size=2, unit=0.1, writable=True, initial=min_voltage),
             Register(name="position_high", address=48, size=4, unit=_STEP, writable=True, initial=STEPS - 1,
                      span=(0, STEPS - 1)),
             Register(name="position_low", address=52, size=4, unit=_STEP, writable=True, span=(0, STEPS - 1)),
@@ -209,7 +209,7 @@ def _x_series(motor: Motor) -> Table:
 def _sts(motor: Motor) -> Table:
     """Return the table of an STS servo: without a watchdog, it holds its last goal when the host is gone."""
     hottest = round(motor.temperature_limit)
-    low, high = (round(10 * end) for end in motor.volts_range)
+    min_voltage, max_voltage = (round(10 * end) for end in motor.volts_range)
     return Table(
         model=motor.name,
         number=motor.model_number,
@@ -226,8 +226,8 @@ def _sts(motor: Motor) -> Table:
             Register(name="position_high", address=11, size=2, unit=_STEP, writable=True, initial=STEPS - 1,
                      span=(0, STEPS - 1)),
             Register(name="temperature_limit", address=13, size=1, writable=True, initial=hottest, span=(0, 100)),
-            Register(name="voltage_high", address=14, size=1, unit=0.1, writable=True, initial=high),
-            Register(name="voltage_low", address=15, size=1, unit=0.1, writable=True, initial=low),
+            Register(name="voltage_high", address=14, size=1, unit=0.1, writable=True, initial=max_voltage),
+            Register(name="voltage_low", address=15, size=1, unit=0.1, writable=True, initial=min_voltage),
             Register(name="homing_offset", address=31, size=2, unit=_STEP, sign="bit", sign_bit=11, writable=True),
             Register(name="operating_mode", address=33, size=1, writable=True, span=(0, 3)),
             Register(name="torque_enable", address=40, size=1, writable=True, span=(0, 128)),
@@ -255,7 +255,7 @@ def _sts(motor: Motor) -> Table:
 def _own_board(motor: Motor) -> Table:
     """Return the table of a hobby servo behind a board of one's own, which speaks in lines; register n is at 2 n."""
     hottest = round(motor.temperature_limit)
-    low = round(100 * motor.volts_range[0])
+    min_voltage = round(100 * motor.volts_range[0])
     two: Sign = "two"
     rows = (
         Register(name="model_number", address=0, size=2, initial=motor.model_number),
@@ -265,7 +265,7 @@ def _own_board(motor: Motor) -> Table:
         Register(name="return_delay", address=8, size=2, unit=1e-6, writable=True, span=(0, 10_000)),
         Register(name="operating_mode", address=10, size=2, writable=True, initial=3, span=(0, 16)),
         Register(name="temperature_limit", address=12, size=2, writable=True, initial=hottest, span=(0, 200)),
-        Register(name="voltage_low", address=14, size=2, unit=0.01, writable=True, initial=low),
+        Register(name="voltage_low", address=14, size=2, unit=0.01, writable=True, initial=min_voltage),
         Register(name="position_low", address=16, size=2, unit=_STEP, sign=two, writable=True),
         Register(name="position_high", address=18, size=2, unit=_STEP, sign=two, writable=True, initial=STEPS - 1),
         Register(name="bus_watchdog", address=20, size=2, unit=0.02, sign=two, writable=True, span=(0, 127)),
@@ -299,13 +299,13 @@ TABLES: Mapping[str, Table] = MappingProxyType(
 
 
 def _board(model: str, number: int, protocol: BusProtocol, registers: tuple[Register, ...]) -> Table:
-    """Return the table of a board for sensors: its number, then what it feels, in one block."""
-    own = Register(name="model_number", address=0, size=2, initial=number)
+    """Return the table of a sensor board: its number, then its sensors in one block."""
+    model_register = Register(name="model_number", address=0, size=2, initial=number)
     return Table(
         model=model,
         number=number,
         protocol=protocol,
-        registers=(own, *registers),
+        registers=(model_register, *registers),
         felt=(registers[0].name, registers[-1].name),
     )
 
@@ -331,7 +331,7 @@ def imu_board(protocol: BusProtocol) -> Table:
 
 
 def load_board(protocol: BusProtocol, kind: str, places: int, unit: float) -> Table:
-    """Return the table of a board that feels the normal force at several places.
+    """Return the table of a board that measures the normal force at several positions.
 
     Args:
         protocol: that it speaks.

@@ -1,4 +1,4 @@
-"""Which servo of a robot hangs on which bus under which number, and how its steps become the joint's angle."""
+"""Bus and number of each servo of a robot, and the conversion between steps of the servo and joint angles."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -68,6 +68,7 @@ class ServoPlace:
     """Greatest angle of the joint that it may be sent to [rad]."""
 
     def __post_init__(self) -> None:
+        """Refuse ids, models and ranges that no servo has."""
         with Checks(f"servo {self.name!r}", self) as check:
             check.whole("id", 0, LAST_ID)
             check.that(self.id != CLOCK, f"id is {CLOCK}, which stands for the emulator's clock; take another one")
@@ -99,6 +100,7 @@ class BoardPlace:
     """Force of a step, where it feels forces [N]."""
 
     def __post_init__(self) -> None:
+        """Refuse ids and units out of range."""
         with Checks(f"board {self.kind!r}", self) as check:
             check.whole("id", 0, LAST_ID)
             check.that(self.id != CLOCK, f"id is {CLOCK}, which stands for the emulator's clock; take another one")
@@ -122,27 +124,29 @@ class Wiring:
     """Boards for sensors; none where the robot feels nothing but its servos."""
 
     def __post_init__(self) -> None:
+        """Refuse ids that occur twice on a bus, buses that do not exist, and mixed protocols on one bus."""
         with Checks("hardware", self) as check:
             check.that(len(self.bus) > 0, "bus is empty; one at least is needed")
-            hanging: list[ServoPlace | BoardPlace] = [*self.servo, *self.board]
-            places = [(one.bus, one.id) for one in hanging]
+            devices: list[ServoPlace | BoardPlace] = [*self.servo, *self.board]
+            places = [(device.bus, device.id) for device in devices]
             for place in sorted(twice(places)):
-                sharing = [_called(one) for one in hanging if (one.bus, one.id) == place]
+                sharing = [_label(device) for device in devices if (device.bus, device.id) == place]
                 check.that(
                     False, f"{' and '.join(sharing)} are all number {place[1]} on bus {place[0]}; one is allowed"
                 )
-            for one in hanging:
+            for device in devices:
                 check.that(
-                    one.bus < len(self.bus), f"{_called(one)} is on bus {one.bus}; there are {len(self.bus)}, from 0"
+                    device.bus < len(self.bus),
+                    f"{_label(device)} is on bus {device.bus}; there are {len(self.bus)}, from 0",
                 )
             for kind in sorted(twice([board.kind for board in self.board])):
                 check.that(False, f"there are two boards {kind!r}; one is allowed")
             for servo in self.servo:
-                spoken = self.bus[servo.bus].protocol if servo.bus < len(self.bus) else servo.table.protocol
+                bus_protocol = self.bus[servo.bus].protocol if servo.bus < len(self.bus) else servo.table.protocol
                 check.that(
-                    servo.table.protocol == spoken,
+                    servo.table.protocol == bus_protocol,
                     f"{servo.name} is a {servo.model}, which speaks {servo.table.protocol}, on a bus that speaks "
-                    f"{spoken}",
+                    f"{bus_protocol}",
                 )
 
     def ordered(self, robot: Robot) -> tuple[ServoPlace, ...]:
@@ -151,14 +155,14 @@ class Wiring:
         Raises:
             InvalidDesign: it is for another robot, or a servo is missing, stands there twice, or is none of its.
         """
-        check_names("hardware", [one.name for one in self.servo], robot)
+        check_names("hardware", [servo.name for servo in self.servo], robot)
         _refuse_linear(robot)
         if self.fingerprint != fingerprint(robot):
             raise InvalidDesign(
                 f"the hardware is wired for robot {self.robot!r} with other servo ranges than {robot.name!r} has: name "
                 "the robot that it was made for, or write the file anew for this one."
             )
-        by_name = {one.name: one for one in self.servo}
+        by_name = {servo.name: servo for servo in self.servo}
         return tuple(by_name[name] for name in layout(robot).servos)
 
     def tables(self, board: BoardPlace, robot: Robot) -> Table:
@@ -176,7 +180,7 @@ def board_table(board: BoardPlace, protocol: BusProtocol, robot: Robot) -> Table
 
 
 def fingerprint(robot: Robot) -> str:
-    """Return what tells a robot's servos and their ranges from those of another."""
+    """Return a hash of a robot's servos and their ranges."""
     ranges = [[round(end, 6) if np.isfinite(end) else None for end in row] for row in servo_ranges(robot).tolist()]
     return digest({"servos": list(layout(robot).servos), "ranges": ranges})[:16]
 
@@ -223,6 +227,7 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
 
 
 def _refuse_cranks(robot: Robot) -> None:
+    """Refuse robots with joints that turn without end."""
     cranks = [
         f"{limb.name}_{hinge.name}"
         for limb in layout(robot).limbs
@@ -237,42 +242,46 @@ def _refuse_cranks(robot: Robot) -> None:
 
 
 def _refuse_linear(robot: Robot) -> None:
-    moved = [cable.name for cable in robot.cables if cable.linear is not None]
-    if moved:
+    """Refuse robots with linear actuators."""
+    linear_cables = [cable.name for cable in robot.cables if cable.linear is not None]
+    if linear_cables:
         raise UnsuitedRobot(
-            f"robot {robot.name!r} moves {', '.join(moved)} by a linear actuator, and the servos that are spoken to on "
+            f"robot {robot.name!r} moves {', '.join(linear_cables)} by a linear actuator, and the servos that are "
+            "spoken to on "
             "a bus turn: drive it by pulses (suchus export-commands), or let a servo pull the cords by a pulley "
             "(tail.drive = 'cable')."
         )
 
 
-def check_names(what: str, names: Sequence[str], robot: Robot) -> None:
-    """Refuse names that are not those of a robot's servos, each once.
+def check_names(owner: str, names: Sequence[str], robot: Robot) -> None:
+    """Refuse names that differ from those of a robot's servos.
 
     Args:
-        what: what names them, for the message.
+        owner: what names them, for the message.
         names: in any order.
         robot: whose servos they are to be.
 
     Raises:
         InvalidDesign: one is missing, stands there twice, or is none of the robot's.
     """
-    wanted = layout(robot).servos
-    missing = [name for name in wanted if name not in names]
-    unknown = [name for name in names if name not in wanted]
+    servo_names = layout(robot).servos
+    missing = [name for name in servo_names if name not in names]
+    unknown = [name for name in names if name not in servo_names]
     if missing or unknown or twice(names):
-        said = (("lacks", missing), ("has unknown", unknown), ("has more than once", sorted(twice(names))))
-        text = "; it ".join(f"{verb} {', '.join(which)}" for verb, which in said if which)
-        raise InvalidDesign(f"{what} {text}; every servo of robot {robot.name!r} is needed once: {', '.join(wanted)}.")
+        problems = (("lacks", missing), ("has unknown", unknown), ("has more than once", sorted(twice(names))))
+        text = "; it ".join(f"{verb} {', '.join(problem_names)}" for verb, problem_names in problems if problem_names)
+        raise InvalidDesign(
+            f"{owner} {text}; every servo of robot {robot.name!r} is needed once: {', '.join(servo_names)}."
+        )
 
 
 def twice(values: Iterable[T]) -> list[T]:
-    """Return the values that stand there more than once, each once."""
+    """Return the values that occur more than once, each once."""
     return [value for value, count in Counter(values).items() if count > 1]
 
 
-def _called(one: ServoPlace | BoardPlace) -> str:
-    return one.name if isinstance(one, ServoPlace) else f"the board {one.kind!r}"
+def _label(device: ServoPlace | BoardPlace) -> str:
+    return device.name if isinstance(device, ServoPlace) else f"the board {device.kind!r}"
 
 
 class Steps:
@@ -283,8 +292,8 @@ class Steps:
     """
 
     def __init__(self, servos: Sequence[ServoPlace]) -> None:
-        self._sign = np.array([one.sign for one in servos])
-        self._zero = np.array([one.zero for one in servos])
+        self._sign = np.array([servo.sign for servo in servos])
+        self._zero = np.array([servo.zero for servo in servos])
         self.unit = 2 * pi / STEPS
 
     def of(self, angles: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Servos that are not there: buses with control tables, and behind them the simulated robot, on land or in the lake."""
+"""Emulated servos: buses with control tables, and behind them the simulated robot, on land or in the lake."""
 
 from suchus.hardware.emulator.body import Commanded, EmulatedBody
 from suchus.hardware.emulator.devices import USUAL, Board, Device, EmulatedServo

@@ -19,13 +19,13 @@ from suchus.sim.land.lake import check_lake
 from suchus.sim.land.loop import Loop
 from suchus.sim.land.readings import Recorder
 
-_ROOM = 1000  # samples of a block of the record
-_FOR_EVER = 86400.0  # [s]
+_BLOCK_SAMPLES = 1000  # samples of a block of the record
+_MAX_DURATION = 86400.0  # [s]
 
 
 @dataclass(frozen=True, slots=True)
 class Commanded:
-    """Holds the servo angles that it is given, one after another; begins in the first posture of the run's gait."""
+    """Control by given servo angles; it begins in the first posture of the run's gait."""
 
     @property
     def feels(self) -> bool:
@@ -43,8 +43,8 @@ class HeldCommands:
     """The commands of a batch of ``Commanded``."""
 
     def __init__(self, runs: Runs) -> None:
-        first = runs._replace(controls=tuple(OpenLoop() for _ in runs.robots), ticks=1)
-        table = OpenLoop.start(first, 1.0)
+        first_runs = runs._replace(controls=tuple(OpenLoop() for _ in runs.robots), ticks=1)
+        table = OpenLoop.start(first_runs, 1.0)
         self._phase = table.command(0, None).phase
         self.targets = table.rest()
 
@@ -86,9 +86,10 @@ class EmulatedBody:
         latency: float = 0.0,
         timestep: float | None = None,
     ) -> None:
+        """Set up the simulation of the robot at rest in the first posture of its gait."""
         timestep = physics_step(robot) if timestep is None else timestep
         check_step(robot, timestep)
-        check_faults(faults, robot, _FOR_EVER)
+        check_faults(faults, robot, _MAX_DURATION)
         check_limits(robot, gait)
         if lake is not None:
             check_lake(robot, lake)
@@ -98,20 +99,20 @@ class EmulatedBody:
         )  # fmt: skip
         self.robot, self.period, self.servos = robot, control_period(robot), layout(robot).servos
         self._loop = Loop([run], timestep, ticks=1)
-        self._late = round(latency / timestep)
-        self.latency = self._late * timestep
+        self._latency_steps = round(latency / timestep)
+        self.latency = self._latency_steps * timestep
         """Latency of goals in the end [s]."""
-        held = self._loop.controller
-        assert isinstance(held, HeldCommands)
-        self._held = held
+        controller = self._loop.controller
+        assert isinstance(controller, HeldCommands)
+        self._commands = controller
         self._coming: list[tuple[int, np.ndarray]] = []  # physics step from which goals act, and the goals
-        self._goals = held.rest()[0]
+        self._goals = controller.rest()[0]
         self.powered = np.ones(len(self.servos))
         """Share of its torque that each servo may use, 0 to 1 [-]."""
-        self._own = {fault.part: fault for fault in faults}
+        self._faults = {fault.part: fault for fault in faults}
         self._blocks: list[Recorder] = []  # full ones; a record is made of them when one is asked for
-        self._recorder, self._kept = self._loop.recorder(_ROOM), 0
-        self._one = self._loop.recorder(1)
+        self._recorder, self._stored_samples = self._loop.recorder(_BLOCK_SAMPLES), 0
+        self._probe = self._loop.recorder(1)
         self._loop.decide()
 
     @property
@@ -125,40 +126,40 @@ class EmulatedBody:
         return self._loop.time
 
     def sensed(self) -> Sensed:
-        """Return what the robot feels now, by sensors that may be broken."""
+        """Return the readings of the robot's sensors, which may have faults."""
         return self._loop.sensed()
 
     @property
     def now(self) -> Mapping[str, np.ndarray]:
-        """What a record would hold of this instant, by the names of ``record.VARIABLES`` without run and time."""
-        self._one.store(0, self._loop.command.phase, self._loop.command.targets)
-        return self._one.sample(0, 0)
+        """Variables of the present instant, by the names of ``record.VARIABLES``, without run and time."""
+        self._probe.store(0, self._loop.command.phase, self._loop.command.targets)
+        return self._probe.sample(0, 0)
 
     def aim(self, goals: Mapping[int, float]) -> None:
-        """Send goals on their way.
+        """Give the servos goals, which act after the latency.
 
         Args:
             goals: angles by the place of the servo in the layout [rad].
         """
-        after = (self._coming[-1][1] if self._coming else self._goals).copy()
+        new_goals = (self._coming[-1][1] if self._coming else self._goals).copy()
         for place, angle in goals.items():
-            after[place] = angle
-        due = self.tick * self._loop.steps + self._late
+            new_goals[place] = angle
+        due = self.tick * self._loop.steps + self._latency_steps
         if self._coming and self._coming[-1][0] == due:
-            self._coming[-1] = (due, after)
+            self._coming[-1] = (due, new_goals)
         else:
-            self._coming.append((due, after))
+            self._coming.append((due, new_goals))
 
     def power(self, place: int, share: float) -> None:
-        """Give a servo a share of its torque from now on, 0 to 1 [-]."""
+        """Set the fraction of its torque that a servo may use, 0 to 1 [-]."""
         if share == self.powered[place]:
             return
         self.powered[place] = share
         name, injector = self.servos[place], self._loop.disturbances.injector
         if share <= 0.0:
             injector.begin(0, Limp(name))
-        elif name in self._own and self._own[name].at <= self.time:
-            injector.begin(0, self._own[name])
+        elif name in self._faults and self._faults[name].at <= self.time:
+            injector.begin(0, self._faults[name])
         elif share < 1.0:
             injector.begin(0, Weak(name, share))
         else:
@@ -174,12 +175,12 @@ class EmulatedBody:
         self._take(begin)
         self._loop.decide()
         self._keep()
-        early = np.array(self._loop.command.targets)
+        early_targets = np.array(self._loop.command.targets)
         split = [due for due, _ in self._coming if begin < due < begin + self._loop.steps]
         if split:
             self._take(split[0])
             self._loop.decide()
-            self._loop.advance(before=(early, split[0] - begin))
+            self._loop.advance(before=(early_targets, split[0] - begin))
         else:
             self._loop.advance()
         if not self._loop.batch.alive[0]:
@@ -187,34 +188,36 @@ class EmulatedBody:
             raise Diverged(f"the emulated robot diverged at {time:.2f} s: {cause}.", time=time)
 
     def record(self) -> xr.Dataset:
-        """Return what truly happened until now, as ``land.crawl`` does, this instant included."""
-        if self._kept == _ROOM:
+        """Return the true motion until now, as ``land.crawl`` does, with the present instant."""
+        if self._stored_samples == _BLOCK_SAMPLES:
             self._turn_over()
-        self._recorder.store(self._kept, self._loop.command.phase, self._loop.command.targets)
-        full = [block.record(self._times(number * _ROOM)) for number, block in enumerate(self._blocks)]
-        last = self._recorder.record(self._times(self.tick - self._kept)).isel(time=slice(self._kept + 1))
-        end = last.ended.copy(data=np.array([float(last.time[-1])]))
-        parts = [part.assign(ended=end, cause=last.cause) for part in (*full, last)]
-        whole = xr.concat(parts, "time", join="exact", data_vars="minimal") if len(parts) > 1 else parts[0]
-        whole.attrs.update(timestep=self.period / self._loop.steps, control_period=self.period)
-        return whole.isel(run=0)
+        self._recorder.store(self._stored_samples, self._loop.command.phase, self._loop.command.targets)
+        full = [block.record(self._times(number * _BLOCK_SAMPLES)) for number, block in enumerate(self._blocks)]
+        last_block = self._recorder.record(self._times(self.tick - self._stored_samples)).isel(
+            time=slice(self._stored_samples + 1)
+        )
+        end = last_block.ended.copy(data=np.array([float(last_block.time[-1])]))
+        parts = [block_record.assign(ended=end, cause=last_block.cause) for block_record in (*full, last_block)]
+        full_record = xr.concat(parts, "time", join="exact", data_vars="minimal") if len(parts) > 1 else parts[0]
+        full_record.attrs.update(timestep=self.period / self._loop.steps, control_period=self.period)
+        return full_record.isel(run=0)
 
     def _take(self, step: int) -> None:
-        """Let goals that have arrived act."""
+        """Apply goals whose latency is over."""
         while self._coming and self._coming[0][0] <= step:
             self._goals = self._coming.pop(0)[1]
-        self._held.targets = self._goals[None]
+        self._commands.targets = self._goals[None]
 
     def _keep(self) -> None:
-        if self._kept == _ROOM:
+        if self._stored_samples == _BLOCK_SAMPLES:
             self._turn_over()
-        self._recorder.store(self._kept, self._loop.command.phase, self._loop.command.targets)
-        self._kept += 1
+        self._recorder.store(self._stored_samples, self._loop.command.phase, self._loop.command.targets)
+        self._stored_samples += 1
 
     def _turn_over(self) -> None:
         self._blocks.append(self._recorder)
-        self._recorder, self._kept = self._loop.recorder(_ROOM), 0
+        self._recorder, self._stored_samples = self._loop.recorder(_BLOCK_SAMPLES), 0
 
-    def _times(self, first: int) -> np.ndarray:
-        times: np.ndarray = np.arange(first, first + _ROOM) * self.period
+    def _times(self, first_tick: int) -> np.ndarray:
+        times: np.ndarray = np.arange(first_tick, first_tick + _BLOCK_SAMPLES) * self.period
         return times

@@ -1,4 +1,4 @@
-"""What hangs on an emulated bus: servos with their control tables, and boards for sensors."""
+"""Devices on an emulated bus: servos with their control tables, and sensor boards."""
 
 from math import pi
 
@@ -19,7 +19,7 @@ SWITCHES_OFF = {"input voltage": False, "overheated": True, "encoder": False, "e
 
 
 class Device:
-    """Something with a control table.
+    """A device with a control table.
 
     Args:
         table: its registers.
@@ -28,18 +28,18 @@ class Device:
     def __init__(self, table: Table) -> None:
         self.table = table
         self.memory = bytearray(table.length)
-        for one in table.registers:
-            self.put(one.name, one.initial)
+        for register in table.registers:
+            self.put(register.name, register.initial)
 
     def get(self, name: str) -> int:
         """Return the value of a register."""
-        one = self.table[name]
-        return one.decode(bytes(self.memory[one.address : one.address + one.size]))
+        register = self.table[name]
+        return register.decode(bytes(self.memory[register.address : register.address + register.size]))
 
     def put(self, name: str, value: int) -> None:
-        """Set a register, whether or not others can write it."""
-        one = self.table[name]
-        self.memory[one.address : one.address + one.size] = one.encode(value)
+        """Set a register, also one that is read-only for the host."""
+        register = self.table[name]
+        self.memory[register.address : register.address + register.size] = register.encode(value)
 
     def read(self, address: int, length: int) -> bytes:
         """Return bytes as they are."""
@@ -66,6 +66,7 @@ class EmulatedServo(Device):
     """
 
     def __init__(self, place: ServoPlace, baud: int, number: int) -> None:
+        """Set the registers of a servo that is wired at a place."""
         super().__init__(place.table)
         self.place, self.number = place, number
         codes = {rate: code for code, rate in self.table.bauds.items()}
@@ -103,37 +104,40 @@ class EmulatedServo(Device):
         return error if self.table.protocol == "feetech" else (ALERT if error else 0)
 
     def write(self, address: int, data: bytes) -> int:
-        """Take bytes by the rules of the servo."""
-        touched = [r for r in self.table.registers if address < r.address + r.size and r.address < address + len(data)]
-        if not touched or any(self._partly(r, address, data) for r in touched):
+        """Write bytes by the rules of the servo, and return the error code."""
+        registers = [
+            r for r in self.table.registers if address < r.address + r.size and r.address < address + len(data)
+        ]
+        if not registers or any(self._partly(r, address, data) for r in registers):
             return ACCESS
-        for one in touched:
-            error = self._refused(one, one.decode(data[one.address - address :][: one.size]))
+        for register in registers:
+            error = self._write_error(register, register.decode(data[register.address - address :][: register.size]))
             if error:
                 return OK if self.table.protocol == "feetech" else error
         self.memory[address : address + len(data)] = data
-        if any(one.name == "bus_watchdog" for one in touched):
+        if any(register.name == "bus_watchdog" for register in registers):
             self.put("bus_watchdog", max(self.get("bus_watchdog"), 0))
         return OK
 
     @staticmethod
-    def _partly(one: Register, address: int, data: bytes) -> bool:
-        return one.address < address or one.address + one.size > address + len(data)
+    def _partly(register: Register, address: int, data: bytes) -> bool:
+        return register.address < address or register.address + register.size > address + len(data)
 
-    def _refused(self, one: Register, value: int) -> int:
-        if not one.writable:
+    def _write_error(self, register: Register, value: int) -> int:
+        """Return the error code for a write of a value to a register; ``OK`` if it is allowed."""
+        if not register.writable:
             return ACCESS
-        if one.address < self.table.persistent and (
+        if register.address < self.table.persistent and (
             self.get("torque_enable") if "lock" not in self.table else self.get("lock")
         ):
             return ACCESS
-        if one.name == "bus_watchdog" and self.get("firmware") < self.table.watches_from:
+        if register.name == "bus_watchdog" and self.get("firmware") < self.table.watches_from:
             return ACCESS
-        if one.name.startswith("goal_") and "bus_watchdog" in self.table and self.get("bus_watchdog") < 0:
+        if register.name.startswith("goal_") and "bus_watchdog" in self.table and self.get("bus_watchdog") < 0:
             return ACCESS
-        if one.span is not None and not one.span[0] <= value <= one.span[1]:
+        if register.span is not None and not register.span[0] <= value <= register.span[1]:
             return RANGE
-        if one.name == "goal_position" and not self.get("position_low") <= value <= self.get("position_high"):
+        if register.name == "goal_position" and not self.get("position_low") <= value <= self.get("position_high"):
             return LIMIT
         return OK
 
@@ -154,22 +158,22 @@ class EmulatedServo(Device):
         self._tell("present_voltage", self.voltage)
         self._tell("present_temperature", self.temperature)
 
-    def age(self, seconds: float, heating: float, voltage: float, now: float) -> None:
-        """Let time pass: it warms up, watches its limits, and whether its host is there.
+    def age(self, seconds: float, heating: float, voltage: float, time: float) -> None:
+        """Let time pass: the servo warms up, and checks its limits and its watchdog.
 
         Args:
             seconds: how much [s].
             heating: beside what its load does [K/s].
             voltage: at its plug [V].
-            now: by the emulator's clock [s].
+            time: by the emulator's clock [s].
         """
         motor = self.place.table.motor
         if motor is not None:
             load = min(self.torque / motor.stall_torque, 1.0)
-            lost = motor.volts * motor.stall_current * load**2  # all of it heat: a servo that holds does no work
+            loss = motor.volts * motor.stall_current * load**2  # all of it heat: a servo that holds does no work
             heat = motor.heat
             cooling = (self.temperature - AMBIENT) / heat.resistance
-            self.temperature += seconds * ((lost - cooling) / heat.capacity + heating)
+            self.temperature += seconds * ((loss - cooling) / heat.capacity + heating)
         self.voltage = voltage
         if self.temperature >= self.get("temperature_limit"):
             self.fail("overheated")
@@ -177,19 +181,19 @@ class EmulatedServo(Device):
             self.fail("input voltage")
         if "bus_watchdog" in self.table:
             patience = self.get("bus_watchdog") * self.table["bus_watchdog"].unit
-            if patience > 0.0 and now - self.heard_at > patience + 1e-9:
+            if patience > 0.0 and time - self.heard_at > patience + 1e-9:
                 self.put("bus_watchdog", -1)
                 self.put("goal_position", self.get("present_position"))
 
-    def fail(self, what: str) -> None:
-        """Raise an alert, and switch off where the maker has it so."""
+    def fail(self, alert: str) -> None:
+        """Raise an alert, and switch the servo off if its maker has it so."""
         bits = {text: bit for bit, text in self.table.alerts}
-        if what in bits:
-            self.put("hardware_error", self.get("hardware_error") | 1 << bits[what])
-        self.off = self.off or SWITCHES_OFF[what]
+        if alert in bits:
+            self.put("hardware_error", self.get("hardware_error") | 1 << bits[alert])
+        self.off = self.off or SWITCHES_OFF[alert]
 
     def reboot(self) -> None:
-        """Begin anew: no torque, no alert."""
+        """Reboot the servo: torque and alerts are off."""
         self.off = False
         self.put("hardware_error", 0)
         self.put("torque_enable", 0)
@@ -214,5 +218,5 @@ class Board(Device):
             "imu": np.concatenate([sensed.orientation[0], sensed.angular_velocity[0], sensed.acceleration[0]]),
         }
         readings = np.atleast_1d(np.squeeze(values[kind]))
-        for one, value in zip(self.table.registers[1:], readings, strict=True):
-            self.put(one.name, round(float(value) / one.unit))
+        for register, value in zip(self.table.registers[1:], readings, strict=True):
+            self.put(register.name, round(float(value) / register.unit))

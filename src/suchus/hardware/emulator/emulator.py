@@ -1,4 +1,4 @@
-"""An emulated robot's buses: bytes in, bytes out, each when a real wire would have carried them."""
+"""Buses of an emulated robot: bytes in, bytes out, with the delays of a real bus."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -42,6 +42,7 @@ class Emulator:
     def __init__(
         self, wiring: Wiring, body: EmulatedBody, trouble: Trouble | None = None, *, clocked: bool = False
     ) -> None:
+        """Connect emulated servos and boards to the buses of a wiring."""
         self.body, self.clocked, self.trouble = body, clocked, trouble or Trouble()
         self.wiring = wiring
         self.diverged: Diverged | None = None
@@ -58,25 +59,25 @@ class Emulator:
             self.servos.append(servo)
             self.lines[place.bus].devices[place.id] = servo
         self._boards = []
-        for one in wiring.board:
-            board = Board(wiring.tables(one, body.robot))
-            self._boards.append((one.kind, board))
-            self.lines[one.bus].devices[one.id] = board
-        self._late: list[Sensed] = []
-        self._behind = int(np.ceil(self.trouble.latency / body.period - 1e-9)) if clocked else 0
+        for board_place in wiring.board:
+            board = Board(wiring.tables(board_place, body.robot))
+            self._boards.append((board_place.kind, board))
+            self.lines[board_place.bus].devices[board_place.id] = board
+        self._delayed_readings: list[Sensed] = []
+        self._delay_ticks = int(np.ceil(self.trouble.latency / body.period - 1e-9)) if clocked else 0
         self._sagged = 0.0
         self._power()
         self._feel()
 
     def hear(self, number: int, data: bytes, baud: int | None = None) -> list[tuple[float, bytes]]:
-        """Take bytes from a bus and return the replies, each with the time after which it has come [s].
+        """Process bytes from a bus, and return the replies, each with its delay [s].
 
         Args:
             number: of the bus.
             data: the bytes.
             baud: bit rate at which they were sent, where that can be known: servos hear nothing else [1/s].
         """
-        line, replies, after = self.lines[number], list[tuple[float, bytes]](), 0.0
+        line, replies, arrival_time = self.lines[number], list[tuple[float, bytes]](), 0.0
         if baud is not None and baud != line.baud:
             return []
         for packet in line.decoder.feed(data):
@@ -86,9 +87,9 @@ class Emulator:
             for servo, reply in self._answers(line, packet):
                 data = line.framing.reply(reply) if servo is None else self._spoilt(line, reply)
                 delay = servo.get("return_delay") * 2e-6 if isinstance(servo, EmulatedServo) else 0.0
-                after += delay + len(line.framing.reply(reply)) * BITS / line.baud
+                arrival_time += delay + len(line.framing.reply(reply)) * BITS / line.baud
                 if data:
-                    replies.append((after, data))
+                    replies.append((arrival_time, data))
         return replies
 
     def pass_until(self, tick: int) -> None:
@@ -110,31 +111,31 @@ class Emulator:
     # --- what is answered ---------------------------------------------------------------------------------------------
 
     def _answers(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
-        """Return who answers what; None for the clock."""
+        """Return the replies to a packet with their devices; None for the clock."""
         word, data = line.framing.word, packet.data
         if packet.code == Instruction.SYNC_READ and len(data) >= 2 * word:
             address, length = _number(data, word), _number(data[word:], word)
-            found: list[tuple[Device | None, Packet]] = []
+            answers: list[tuple[Device | None, Packet]] = []
             for servo in data[2 * word :]:
                 if servo == CLOCK and self.clocked:
-                    found.append((None, Packet(CLOCK, OK, self.body.tick.to_bytes(4, "little").ljust(length, b"\0"))))
+                    answers.append((None, Packet(CLOCK, OK, self.body.tick.to_bytes(4, "little").ljust(length, b"\0"))))
                 elif (device := self._listening(line, servo)) is not None:
-                    found.append((device, Packet(servo, device.alert, device.read(address, length))))
-            return found
+                    answers.append((device, Packet(servo, device.alert, device.read(address, length))))
+            return answers
         if packet.code == Instruction.SYNC_WRITE and len(data) > 2 * word:
             address, length = _number(data, word), _number(data[word:], word)
-            rest = data[2 * word :]
-            for start in range(0, len(rest) - length, length + 1):
-                written = self._listening(line, rest[start])
-                if written is not None:
-                    self._write(written, address, rest[start + 1 : start + 1 + length])
+            payload = data[2 * word :]
+            for start in range(0, len(payload) - length, length + 1):
+                target = self._listening(line, payload[start])
+                if target is not None:
+                    self._write(target, address, payload[start + 1 : start + 1 + length])
             return []
         if packet.id == CLOCK:
             return [(None, self._of_clock(packet, word))] if self.clocked else []
         if packet.id == BROADCAST:
             everybody = sorted(line.devices) if packet.code == Instruction.PING else ()
-            return [one for servo in everybody for one in self._of_one(line, packet._replace(id=servo))]
-        return self._of_one(line, packet)
+            return [answer for servo in everybody for answer in self._device_answers(line, packet._replace(id=servo))]
+        return self._device_answers(line, packet)
 
     def _of_clock(self, packet: Packet, word: int) -> Packet:
         if packet.code == Instruction.WRITE:
@@ -142,14 +143,15 @@ class Emulator:
             return Packet(CLOCK, int(self.diverged is not None))
         return Packet(CLOCK, OK, self.body.tick.to_bytes(4, "little"))
 
-    def _of_one(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
+    def _device_answers(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
+        """Return the reply of the device that a packet names; empty if it does not answer."""
         device, word = self._listening(line, packet.id), line.framing.word
         if device is None:
             return []
         data, error = packet.data, OK
         answer = b""
         if packet.code == Instruction.PING:
-            answer = self._about(device)
+            answer = self._ping_reply(device)
         elif packet.code == Instruction.READ and len(data) == 2 * word:
             answer = device.read(_number(data, word), _number(data[word:], word))
         elif packet.code == Instruction.WRITE and len(data) > word:
@@ -160,18 +162,18 @@ class Emulator:
             error = 2 if word == 2 else OK
         return [(device, Packet(packet.id, error | device.alert, answer))]
 
-    def _about(self, device: Device) -> bytes:
-        """Return what an answer to a ping tells: Dynamixel the model and the firmware, the others nothing."""
+    def _ping_reply(self, device: Device) -> bytes:
+        """Return the data of a reply to a ping: model and firmware for Dynamixel, nothing for other protocols."""
         if device.table.protocol != "dynamixel":
             return b""
         firmware = device.get("firmware") if "firmware" in device.table else 0
         return device.get("model_number").to_bytes(2, "little") + bytes([firmware])
 
     def _listening(self, line: _Line, servo: int) -> Device | None:
-        """Return a device that hears and answers."""
+        """Return a device, or None if it does not answer."""
         device = line.devices.get(servo)
-        on = self.body.time >= self.trouble.at
-        if device is None or (on and servo in self.trouble.mute):
+        has_trouble = self.body.time >= self.trouble.at
+        if device is None or (has_trouble and servo in self.trouble.mute):
             return None
         if servo in self.trouble.wet and self.body.time >= self.trouble.at + _SOAKED:
             return None
@@ -182,6 +184,7 @@ class Emulator:
         return device
 
     def _write(self, device: Device, address: int, data: bytes) -> int:
+        """Write registers of a device, pass new goals and torque limits to the robot, and return the error code."""
         error = device.write(address, data)
         if isinstance(device, EmulatedServo) and error == OK:
             goal = device.table["goal_position"]
@@ -192,7 +195,7 @@ class Emulator:
         return error
 
     def _spoilt(self, line: _Line, reply: Packet) -> bytes:
-        """Return the bytes of a reply as they arrive, nothing of one that is lost."""
+        """Return the bytes of a reply as they arrive; empty if it is lost."""
         random, trouble = self._random, self.trouble
         data = bytearray(line.framing.reply(reply))
         if reply.id in trouble.twin:  # two replies at once
@@ -215,23 +218,23 @@ class Emulator:
             self.body.power(servo.number, servo.share)
 
     def _happen(self) -> None:
-        """Let servos age by a control period, and trouble take its course."""
-        trouble, now, period = self.trouble, self.body.time, self.body.period
-        on = now >= trouble.at
-        if on:
+        """Age the servos by a control period, with the faults of ``Trouble``."""
+        trouble, time, period = self.trouble, self.body.time, self.body.period
+        has_trouble = time >= trouble.at
+        if has_trouble:
             self._sagged += trouble.sag * period
         for servo in self.servos:
-            heating = trouble.heating if on and servo.place.id in trouble.hot else 0.0
-            servo.age(period, heating, max(servo.supply - self._sagged, 0.0), now)
-            if on and servo.place.id in trouble.wet:
+            heating = trouble.heating if has_trouble and servo.place.id in trouble.hot else 0.0
+            servo.age(period, heating, max(servo.supply - self._sagged, 0.0), time)
+            if has_trouble and servo.place.id in trouble.wet:
                 servo.fail("overload" if servo.table.protocol == "feetech" else "electrical shock")
 
     def _feel(self) -> None:
-        """Let servos and boards tell what the robot feels, or felt before where that is on its way for long."""
-        self._late.append(self.body.sensed())
-        sensed = self._late[0]
-        if len(self._late) > self._behind:
-            self._late.pop(0)
+        """Write the robot's sensor readings to servos and boards, delayed by the latency."""
+        self._delayed_readings.append(self.body.sensed())
+        sensed = self._delayed_readings[0]
+        if len(self._delayed_readings) > self._delay_ticks:
+            self._delayed_readings.pop(0)
         angles = sensed.servo_position[0]
         if self.trouble.noise > 0.0:
             angles = angles + self.trouble.noise * self._noise.standard_normal(len(angles))
@@ -252,7 +255,7 @@ def _number(data: Sequence[int], word: int) -> int:
 
 
 class MemoryPort:
-    """A port to an emulator in the same process, whose clock is told the time: nothing waits for anything.
+    """A port to an emulator in the same process, without delays.
 
     Args:
         emulator: with a clock of its own.
@@ -260,6 +263,7 @@ class MemoryPort:
     """
 
     def __init__(self, emulator: Emulator, number: int = 0) -> None:
+        """Connect to a bus of an emulator in the same process."""
         self.name = f"emulated bus {number}"
         self._emulator, self._number, self._coming = emulator, number, bytearray()
         self.gone = False
@@ -270,8 +274,8 @@ class MemoryPort:
     def send(self, data: bytes, wait: float) -> None:
         """Let the emulator take bytes; it answers at once."""
         if self.gone or self.deaf:
-            why = "is gone" if self.gone else f"took no bytes for {wait:.3g} s"
-            raise BusGone(f"the bus {self.name} {why}.")
+            cause = "is gone" if self.gone else f"took no bytes for {wait:.3g} s"
+            raise BusGone(f"the bus {self.name} {cause}.")
         for _, reply in self._emulator.hear(self._number, data):
             self._coming += reply
 

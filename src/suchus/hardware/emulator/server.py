@@ -22,7 +22,7 @@ except ImportError:  # pragma: no cover - Windows
     pty = None  # type: ignore[assignment]
 
 _CHUNK = 4096  # bytes of a read
-_BEHIND = 0.25  # [s]; a machine that falls behind by more lets the robot's time wait
+_MAX_LAG = 0.25  # [s]; a machine that falls behind by more lets the robot's time wait
 
 
 class Server:
@@ -41,6 +41,7 @@ class Server:
     """
 
     def __init__(self, emulator: Emulator, links: Sequence[str | Path] = (), *, sockets: bool = False) -> None:
+        """Open a port for each bus of an emulator."""
         self._emulator = emulator
         sockets = sockets or pty is None
         self._ends: list[Any] = []
@@ -65,23 +66,23 @@ class Server:
             Diverged: the simulation diverged.
         """
         emulator, period = self._emulator, self._emulator.body.period
-        due, told = monotonic() + period, emulator.body.tick
+        due, last_tick = monotonic() + period, emulator.body.tick
         while not until():
-            now = monotonic()
+            clock_time = monotonic()
             wait = 0.1
             if not emulator.clocked:
-                if now >= due:  # one at a time: who waits for an answer waits for no more than one
+                if clock_time >= due:  # one at a time: who waits for an answer waits for no more than one
                     emulator.step()
                     each()
-                    now = monotonic()
-                    due = max(due + period, now - _BEHIND)
-                wait = min(wait, due - now)
+                    clock_time = monotonic()
+                    due = max(due + period, clock_time - _MAX_LAG)
+                wait = min(wait, due - clock_time)
             if self._due:
-                wait = min(wait, self._due[0][0] - now)
+                wait = min(wait, self._due[0][0] - clock_time)
             self._listen(max(wait, 0.0))
             self._deliver()
-            if emulator.clocked and emulator.body.tick != told:
-                told = emulator.body.tick
+            if emulator.clocked and emulator.body.tick != last_tick:
+                last_tick = emulator.body.tick
                 each()
             if emulator.diverged is not None:
                 raise emulator.diverged
@@ -95,39 +96,42 @@ class Server:
             end.close()
 
     def _listen(self, wait: float) -> None:
+        """Receive requests for at most some time [s], and pass them to the emulator or queue them."""
         by_file = {file: number for number, end in enumerate(self._ends) for file in end.files}
         ready, _, _ = select.select(list(by_file), (), (), wait)
-        now, latency = monotonic(), self._emulator.trouble.latency
+        clock_time, latency = monotonic(), self._emulator.trouble.latency
         for file in ready:
             number = by_file[file]
             data = self._ends[number].receive(file)
             if not data:
                 continue
             if self._emulator.clocked:
-                self._hear(number, data, now)
+                self._hear(number, data, clock_time)
             else:
-                on_the_way = latency + len(data) * BITS / self._emulator.lines[number].baud
-                heapq.heappush(self._due, (now + on_the_way, next(self._order), number, data, True))
+                transit_time = latency + len(data) * BITS / self._emulator.lines[number].baud
+                heapq.heappush(self._due, (clock_time + transit_time, next(self._order), number, data, True))
 
     def _deliver(self) -> None:
         """Let requests and replies arrive that are due."""
         while self._due and self._due[0][0] <= monotonic():
-            at, _, number, data, request = heapq.heappop(self._due)
+            arrival_time, _, number, data, request = heapq.heappop(self._due)
             if request:
-                self._hear(number, data, at)
+                self._hear(number, data, arrival_time)
             else:
                 self._ends[number].send(data)
 
-    def _hear(self, number: int, data: bytes, at: float) -> None:
+    def _hear(self, number: int, data: bytes, arrival_time: float) -> None:
+        """Pass a request to the emulator, and queue its replies with the delays of the bus."""
         emulator = self._emulator
-        for after, reply in emulator.hear(number, data, self._ends[number].baud):
+        for delay, reply in emulator.hear(number, data, self._ends[number].baud):
             if emulator.clocked:
                 self._ends[number].send(reply)
             else:
-                arrives = at + after + emulator.trouble.latency
+                arrives = arrival_time + delay + emulator.trouble.latency
                 heapq.heappush(self._due, (arrives, next(self._order), number, reply, False))
 
     def _link(self, path: Path, name: str) -> None:
+        """Make a symbolic link to a port, in place of one that a killed emulator left."""
         try:
             if path.is_symlink() and not path.exists() and str(path.readlink()).startswith("/dev/"):
                 path.unlink()  # of an emulator that was killed
@@ -146,16 +150,17 @@ class _Terminal:
     """A pseudo-terminal: whoever opens its name is the host."""
 
     def __init__(self) -> None:
-        self._ours, self._theirs = pty.openpty()
-        tty.setraw(self._theirs)  # it stays open, else a host that leaves would end it for all
-        os.set_blocking(self._ours, False)
-        self.name = os.ttyname(self._theirs)
-        self.files = [self._ours]
+        """Open a pseudo-terminal, whose name hosts open as a serial port."""
+        self._controller_fd, self._terminal_fd = pty.openpty()
+        tty.setraw(self._terminal_fd)  # it stays open, else a host that leaves would end it for all
+        os.set_blocking(self._controller_fd, False)
+        self.name = os.ttyname(self._terminal_fd)
+        self.files = [self._controller_fd]
 
     @property
     def baud(self) -> int | None:
         """Bit rate that the host has set [1/s]; None if it cannot be told."""
-        return bit_rate(self._ours)
+        return bit_rate(self._controller_fd)
 
     def receive(self, file: int) -> bytes:
         """Return what has come."""
@@ -167,11 +172,11 @@ class _Terminal:
     def send(self, data: bytes) -> None:
         """Send bytes; what a host that does not read leaves lying about is lost."""
         with suppress(OSError):
-            os.write(self._ours, data)
+            os.write(self._controller_fd, data)
 
     def close(self) -> None:
         """Close both ends."""
-        for file in (self._ours, self._theirs):
+        for file in (self._controller_fd, self._terminal_fd):
             with suppress(OSError):
                 os.close(file)
 

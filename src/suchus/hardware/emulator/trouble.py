@@ -1,4 +1,4 @@
-"""What goes wrong on an emulated bus and in its servos; what breaks in the body is a ``Fault`` of the simulation."""
+"""Faults of an emulated bus and of its servos; faults of the body are those of the simulation (``Fault``)."""
 
 from dataclasses import dataclass
 
@@ -39,6 +39,7 @@ class Trouble:
     """Seed of what is random [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse rates, delays and fractions out of range."""
         with Checks("trouble", self) as check:
             check.number("latency", 0.0, 1.0, "s")
             check.number("noise", 0.0, 1.0, "rad")

@@ -1,4 +1,4 @@
-"""Robot and water solved together: one ladder of runs, from forces section by section to a flow in space."""
+"""Robot and water solved together, with any model of the water: the section model, a slice, or a flow in space."""
 
 from suchus.swimming.coupling.earned import earned_correction, judgement_text
 from suchus.swimming.coupling.on_joints import check_on_joints, swim_on_joints

@@ -1,8 +1,8 @@
-"""Whether a correction of the section model is earned: fitted to one swim in a flow, held against other swims.
+"""Whether a correction of the section model is valid: it is fitted to one swim in a flow and tested on other swims.
 
-The factors on added mass and drag of each link come from one swim. They are offered for a link only if in every other
-swim, none of which the fit saw, they leave less of the flow's force unexplained than the model as it is shipped, by
-more than cycles differ: the lower end of a bootstrap over blocks of half a cycle is above nothing.
+The factors on added mass and drag of each link come from one swim. A link gets factors only if they reduce the
+unexplained force in every other swim. The reduction must be significant: the lower end of its interval, a bootstrap
+over blocks of half a cycle, is above zero.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from suchus.swimming.coupling.residual import BLOCKS, COVERED, DRAWS, drawn, fit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceParts:
-    """Force across a link in one swim, and the two parts of what sections say of it."""
+    """Force across a link in one swim, and the two parts of the force that the section model predicts."""
 
     flow: Float[np.ndarray, " sample"]
     """Of the flow [N]."""
@@ -33,7 +33,7 @@ class ForceParts:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkJudgement:
-    """What became of the factors of one link."""
+    """The factors of one link, and whether they are valid."""
 
     added: float
     """Factor on added mass that was fitted [-]."""
@@ -51,35 +51,39 @@ class LinkJudgement:
     """Why the factors are not offered; empty if they are."""
 
 
-def judged(fit: ForceParts, held_out: Sequence[ForceParts]) -> LinkJudgement:
-    """Return the factors that one swim gives a link, and whether they help in the others."""
-    added, drag = fitted(fit.flow, fit.added, fit.drag).tolist()
+def judged(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgement:
+    """Return the factors of a link that one swim gives, and whether they reduce the error in other swims."""
+    added_factor, drag_factor = fitted(fit.flow, fit.added, fit.drag).tolist()
     draws = drawn(fit.flow, fit.added, fit.drag, fit.block)
-    low, high = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
-    shipped = tuple(r2(one.flow, one.added + one.drag) for one in held_out)
-    corrected = tuple(r2(one.flow, added * one.added + drag * one.drag) for one in held_out)
-    why = ""
-    if not held_out:
-        why = "no other swim to hold them against"
-    elif not np.isfinite([*low, *high]).all():
-        why = "too few cycles for an interval"
-    elif low[0] < 0.0 or low[1] < 0.0:
-        why = "a factor may be negative"
-    elif not all(_gain(one, added, drag) > 0.0 for one in held_out):
-        why = "no gain in every other swim"
+    lower_bound, upper_bound = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
+    shipped = tuple(r2(swim.flow, swim.added + swim.drag) for swim in test_swims)
+    corrected = tuple(r2(swim.flow, added_factor * swim.added + drag_factor * swim.drag) for swim in test_swims)
+    refusal = ""
+    if not test_swims:
+        refusal = "no other swim to hold them against"
+    elif not np.isfinite([*lower_bound, *upper_bound]).all():
+        refusal = "too few cycles for an interval"
+    elif lower_bound[0] < 0.0 or lower_bound[1] < 0.0:
+        refusal = "a factor may be negative"
+    elif not all(_gain(swim, added_factor, drag_factor) > 0.0 for swim in test_swims):
+        refusal = "no gain in every other swim"
     return LinkJudgement(
-        added=added, added_interval=(float(low[0]), float(high[0])), drag=drag,
-        drag_interval=(float(low[1]), float(high[1])), shipped=shipped, corrected=corrected, why_not=why,
+        added=added_factor, added_interval=(float(lower_bound[0]), float(upper_bound[0])), drag=drag_factor,
+        drag_interval=(float(lower_bound[1]), float(upper_bound[1])), shipped=shipped, corrected=corrected,
+        why_not=refusal,
     )  # fmt: skip
 
 
-def _gain(one: ForceParts, added: float, drag: float) -> float:
-    """Return the lower end of the interval of how much less the factors leave unexplained in a swim [N2]."""
-    before, after = one.flow - one.added - one.drag, one.flow - added * one.added - drag * one.drag
-    count = len(one.flow) // one.block
+def _gain(swim: ForceParts, added_factor: float, drag_factor: float) -> float:
+    """Return the lower end of the 95 % interval of the reduction of the mean square residual in a swim [N2]."""
+    shipped_residual, corrected_residual = (
+        swim.flow - swim.added - swim.drag,
+        swim.flow - added_factor * swim.added - drag_factor * swim.drag,
+    )
+    count = len(swim.flow) // swim.block
     if count < BLOCKS:
         return float("-inf")
-    gains = (before**2 - after**2)[: count * one.block].reshape(count, one.block).mean(axis=1)
+    gains = (shipped_residual**2 - corrected_residual**2)[: count * swim.block].reshape(count, swim.block).mean(axis=1)
     means = gains[np.random.default_rng(count).integers(count, size=(DRAWS, count))].mean(axis=1)
     return float(np.quantile(means, (1 - COVERED) / 2))
 
@@ -87,7 +91,7 @@ def _gain(one: ForceParts, added: float, drag: float) -> float:
 def earned_correction(
     robot: Robot, records: Sequence[xr.Dataset], *, period: float, first: float, viscosity: float, name: str
 ) -> tuple[SectionCorrection | None, dict[str, LinkJudgement]]:
-    """Return the correction that swims in a flow have earned, if any link has, and the judgement of every link.
+    """Return the correction of all links with valid factors, None without one, and the judgement of every link.
 
     Args:
         robot: that swam.
@@ -98,42 +102,53 @@ def earned_correction(
         viscosity: kinematic, of the flow's water [m2/s].
         name: of the correction.
     """
-    each = [sections_beside(robot, record, first=first, viscosity=viscosity) for record in records]
-    links = link_bodies(robot, each[0].joints)
-    found = {}
-    for k, link in enumerate(each[0].names[: each[0].links]):
+    comparisons = [sections_beside(robot, record, first=first, viscosity=viscosity) for record in records]
+    links = link_bodies(robot, comparisons[0].joints)
+    judgements = {}
+    for k, link in enumerate(comparisons[0].names[: comparisons[0].links]):
         parts = [
             ForceParts(
-                flow=one.flow[one.keep, k], added=one.added[one.keep, k], drag=one.drag[one.keep, k],
-                block=max(round(0.5 * period / one.step), 2),
+                flow=comparison.flow[comparison.keep, k],
+                added=comparison.added[comparison.keep, k],
+                drag=comparison.drag[comparison.keep, k],
+                block=max(round(0.5 * period / comparison.step), 2),
             )
-            for one in each
+            for comparison in comparisons
         ]  # fmt: skip
-        found[link] = judged(parts[0], parts[1:])
+        judgements[link] = judged(parts[0], parts[1:])
     reynolds = robot.length**2 / (period * viscosity)
     factors = tuple(
         LinkFactors(
-            bodies=bodies, added=one.added, drag=one.drag, added_interval=one.added_interval,
-            drag_interval=one.drag_interval,
+            bodies=bodies, added=judgement.added, drag=judgement.drag, added_interval=judgement.added_interval,
+            drag_interval=judgement.drag_interval,
         )
-        for bodies, one in zip(links, found.values(), strict=True)
-        if not one.why_not
+        for bodies, judgement in zip(links, judgements.values(), strict=True)
+        if not judgement.why_not
     )  # fmt: skip
     correction = SectionCorrection(name=name, reynolds=(reynolds, reynolds), links=factors) if factors else None
-    return correction, found
+    return correction, judgements
 
 
-def judgement_text(found: dict[str, LinkJudgement], swims: Sequence[str]) -> str:
-    """Return the judgement of every link as Markdown, the other swims by their names."""
+def judgement_text(judgements: dict[str, LinkJudgement], swims: Sequence[str]) -> str:
+    """Return the judgement of every link as a Markdown table.
+
+    Args:
+        judgements: judgement of each link by its name.
+        swims: names of the other swims.
+    """
     head = "".join(f" R2 in {swim}, shipped | corrected |" for swim in swims)
     lines = [f"| link | added mass x | drag x |{head} offered |\n", f"|---|---:|---:|{'---:|---:|' * len(swims)}---|\n"]
-    for link, one in found.items():
+    for link, judgement in judgements.items():
         factors = (
-            f"{value:.2f} ({low:.2f} to {high:.2f})" if low <= high else f"{value:.2f}"
-            for value, (low, high) in ((one.added, one.added_interval), (one.drag, one.drag_interval))
+            f"{value:.2f} ({lower_bound:.2f} to {upper_bound:.2f})" if lower_bound <= upper_bound else f"{value:.2f}"
+            for value, (lower_bound, upper_bound) in (
+                (judgement.added, judgement.added_interval),
+                (judgement.drag, judgement.drag_interval),
+            )
         )
         shares = "".join(
-            f" {before:.2f} | {after:.2f} |" for before, after in zip(one.shipped, one.corrected, strict=True)
+            f" {shipped:.2f} | {corrected:.2f} |"
+            for shipped, corrected in zip(judgement.shipped, judgement.corrected, strict=True)
         )
-        lines.append(f"| {link} | {' | '.join(factors)} |{shares} {one.why_not or 'yes'} |\n")
+        lines.append(f"| {link} | {' | '.join(factors)} |{shares} {judgement.why_not or 'yes'} |\n")
     return "".join(lines)

@@ -1,7 +1,7 @@
-"""A robot as links, each with its own pose: limbs that paddle, bodies that leave the plane.
+"""A robot as links, each with its own pose: limbs can paddle, and bodies can leave the plane.
 
 Coordinates are all of the robot's own (``land.stepper``): six rates of the root, then every hinge. The flow sees the
-robot turned by half a turn, as it sees a midline: its head at the origin, its tail towards +x.
+robot turned by half a turn: its head is at the origin, its tail towards +x.
 """
 
 from collections.abc import Callable
@@ -20,11 +20,11 @@ from suchus.sim.land.links import LinkShape, RobotLinks
 from suchus.swimming.coupling.chain import RECENT, ChainState, Way
 
 _HALF_TURN = np.diag([-1.0, -1.0, 1.0])
-_ALONG_X = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])  # turns x to where the rod's z was, up to a sign
+_ROD_TURN = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])  # turns x to where the rod's z was, up to a sign
 
 
 class LinkChain:
-    """A robot's links over all of its coordinates; see ``chain.MidlineChain``, which has the same methods.
+    """The links of a robot over all of its coordinates, with the methods of ``chain.MidlineChain``.
 
     Args:
         robot: which.
@@ -36,10 +36,11 @@ class LinkChain:
     """Axes in which it moves [-]."""
 
     def __init__(self, robot: Robot, links: RobotLinks, start: Float[np.ndarray, "3"]) -> None:
+        """Take the links of a robot that begins at a position."""
         self.joints, self.names, self._links = links.joints, links.names, links
         number = [segment.name for segment in robot.axis].index(robot.root)
-        ahead = stations(robot)[number][0] + robot.axis[number].front
-        self._corner = np.array([ahead, 0.0, 0.0]) - _HALF_TURN @ start
+        root_offset = stations(robot)[number][0] + robot.axis[number].front
+        self._corner = np.array([root_offset, 0.0, 0.0]) - _HALF_TURN @ start
         self.pieces = tuple(_piece(shape) for shape in links.shapes)
         volume = np.zeros(len(self.names))
         for piece in self.pieces:
@@ -54,76 +55,76 @@ class LinkChain:
 
     @cached_property
     def coordinates(self) -> tuple[str, ...]:
-        """Their names."""
+        """Names of the coordinates."""
         return "root_x", "root_y", "root_z", "root_roll", "root_pitch", "root_yaw", *self.joints
 
     def seen(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
-        """Return a state of the robot, whose coordinates are the chain's own."""
+        """Return a state of the robot; its coordinates are those of the chain."""
         return ChainState(place, rate)
 
     def of_robot(self, values: np.ndarray) -> np.ndarray:
-        """Return a generalised force or an added mass along the robot's coordinates, which are the chain's own."""
+        """Return a generalised force or an added mass in the robot's coordinates, which are those of the chain."""
         return values
 
-    def _known(self, place: np.ndarray) -> np.ndarray:
-        """Return the Jacobian of the links in a posture, in the frame of the flow; worked out once."""
+    def _jacobian(self, place: np.ndarray) -> np.ndarray:
+        """Return the Jacobian of the links in a posture, in the frame of the flow, from a cache of recent postures."""
         unit = place.copy()
         unit[3:7] /= np.linalg.norm(unit[3:7])
         key = unit.tobytes()
         if key not in self._recent:
             if len(self._recent) == RECENT:
                 del self._recent[next(iter(self._recent))]
-            rest = self._links.motion(unit, np.zeros(self.size))
+            rest_state = self._links.motion(unit, np.zeros(self.size))
             jacobian = self._links.jacobian(unit)
-            turned = np.concatenate([_HALF_TURN @ jacobian[:, :3], _HALF_TURN @ jacobian[:, 3:]], axis=1)
-            where = rest.position @ _HALF_TURN + self._corner
-            none = np.zeros_like(where)
-            self._recent[key] = flow.LinkStates(where, _HALF_TURN @ rest.matrix, none, none), turned
+            flow_jacobian = np.concatenate([_HALF_TURN @ jacobian[:, :3], _HALF_TURN @ jacobian[:, 3:]], axis=1)
+            positions = rest_state.position @ _HALF_TURN + self._corner
+            zeros = np.zeros_like(positions)
+            self._recent[key] = flow.LinkStates(positions, _HALF_TURN @ rest_state.matrix, zeros, zeros), flow_jacobian
         return self._recent[key][1]
 
     def states(self, posture: ChainState) -> flow.LinkStates:
         """Return the links in the frame of the flow."""
-        jacobian = self._known(posture.place)
+        jacobian = self._jacobian(posture.place)
         unit = posture.place.copy()
         unit[3:7] /= np.linalg.norm(unit[3:7])
         rate = jacobian @ posture.rate
         return self._recent[unit.tobytes()][0]._replace(velocity=rate[:, :3], spin=rate[:, 3:])
 
     def way(self, time: float, posture: ChainState) -> "LinkWay":
-        """Return a way that begins at a posture."""
+        """Return a path that begins at a posture."""
         return LinkWay(self, time, posture)
 
-    def turned(self, place: np.ndarray, other: np.ndarray) -> float:
-        """Return the greatest angle by which root and joints of two postures differ [rad]."""
-        root = 2.0 * np.arccos(np.clip(abs(place[3:7] @ other[3:7]), 0.0, 1.0))
-        return float(max(root, np.abs(place[7:] - other[7:]).max(initial=0.0)))
+    def turned(self, place: np.ndarray, other_place: np.ndarray) -> float:
+        """Return the greatest angle between root and joints of two postures [rad]."""
+        root = 2.0 * np.arccos(np.clip(abs(place[3:7] @ other_place[3:7]), 0.0, 1.0))
+        return float(max(root, np.abs(place[7:] - other_place[7:]).max(initial=0.0)))
 
     def force(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, " coordinate"]:
-        """Return the generalised force of what acts on the links [N, N m].
+        """Return the generalised force of the loads on the links [N, N m].
 
         Args:
             place: posture; with that in the middle of the step, force times velocity is the power to second order.
             loads: on the links; torques about ``loads.about``.
             origin: of the grid's frame in the world of the flow [m].
         """
-        jacobian = self._known(place)
-        force, own = self._wrenches(place, loads, origin)
-        return np.asarray(np.einsum("lck,lc->k", jacobian, np.concatenate([force, own], axis=1)))
+        jacobian = self._jacobian(place)
+        force, torque = self._wrenches(place, loads, origin)
+        return np.asarray(np.einsum("lck,lc->k", jacobian, np.concatenate([force, torque], axis=1)))
 
     def _wrenches(
         self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray
     ) -> tuple[Float[np.ndarray, "link 3"], Float[np.ndarray, "link 3"]]:
         """Return forces on the links and torques about their origins, in the frame of the flow."""
-        at = self.states(ChainState(place, np.zeros(self.size))).position - origin - loads.about
-        return loads.parts.force, loads.parts.moment - np.cross(at, loads.parts.force)
+        link_origins = self.states(ChainState(place, np.zeros(self.size))).position - origin - loads.about
+        return loads.parts.force, loads.parts.moment - np.cross(link_origins, loads.parts.force)
 
     def felt(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
-        """Return what acts on each link, in the world: force, and torque about the vertical through its origin."""
-        force, own = self._wrenches(place, loads, origin)
-        return np.column_stack([force @ _HALF_TURN, own[:, 2]])
+        """Return the load on each link in the world: force, and torque about the vertical through its origin."""
+        force, torque = self._wrenches(place, loads, origin)
+        return np.column_stack([force @ _HALF_TURN, torque[:, 2]])
 
-    def unpressed(self, place: np.ndarray, pressed: np.ndarray, about: np.ndarray) -> np.ndarray:  # noqa: ARG002
-        """Return what takes away what links do to each other: nothing, since they are rigid between their joints."""
+    def unpressed(self, place: np.ndarray, pressed: np.ndarray, reference_point: np.ndarray) -> np.ndarray:  # noqa: ARG002
+        """Return zeros: links are rigid between their joints, and the pressure inside them does no work."""
         return np.zeros((*pressed.shape[:-2], self.size))
 
     def twists(self, place: np.ndarray, rate: np.ndarray, origin: np.ndarray, axes: int) -> Twists:  # noqa: ARG002
@@ -135,15 +136,15 @@ class LinkChain:
             origin: of the grid's frame in the world of the flow [m].
             axes: of the flow, 3 [-].
         """
-        now = self.states(ChainState(place, rate))
-        return Twists(about=now.position - origin, linear=now.velocity, angular=now.spin)
+        states = self.states(ChainState(place, rate))
+        return Twists(about=states.position - origin, linear=states.velocity, angular=states.spin)
 
     def modes(self, place: np.ndarray, origin: np.ndarray, axes: int) -> list[Twists]:
-        """Return the motions of the links for a unit rate of each coordinate; see ``twists``."""
+        """Return the motions of the links at a unit rate of each coordinate; see ``twists``."""
         return [self.twists(place, unit, origin, axes) for unit in np.eye(self.size)]
 
     def centre(self, states: flow.LinkStates) -> tuple[np.ndarray, np.ndarray]:
-        """Return the point that the grid follows, the mean of the links by their volumes, and its velocity."""
+        """Return position and velocity of the point that the grid follows: the mean of the links by volume."""
         return self._weights @ states.position, self._weights @ states.velocity
 
     def body(self, path: "LinkWay") -> flow.Linked:
@@ -157,17 +158,17 @@ class LinkChain:
         return flow.Linked(pieces=self.pieces, motion=motion)
 
     def motion(self, path: "LinkWay") -> Callable[[float], flow.Pose]:
-        """Return where the centre of the same body is along a path."""
+        """Return the function that gives the pose of the body's centre at a time [s]."""
 
         def pose(time: float) -> flow.Pose:
-            (x, y, z), (u, v, w) = (part.tolist() for part in self.centre(path.links(time)))
+            (x, y, z), (u, v, w) = (vector.tolist() for vector in self.centre(path.links(time)))
             return flow.Pose(position=(x, y, z), velocity=(u, v, w))
 
         return pose
 
 
 class LinkWay(Way):
-    """A robot's way through one step: each link goes along a cubic that has its places and rates at both ends."""
+    """The path of a robot through one step: each link follows a cubic between its states at both ends."""
 
     def __init__(self, chain: LinkChain, time: float, posture: ChainState) -> None:
         super().__init__(time, posture)
@@ -176,34 +177,36 @@ class LinkWay(Way):
         self._seen_links: dict[float, flow.LinkStates] = {}
 
     def go(self, time: float, posture: ChainState, end: float, then: ChainState) -> None:
-        """Go from a posture at a time to another [s]."""
+        """Set the path from a posture at a time to a posture at another time [s]."""
         super().go(time, posture, end, then)
         self._states = self._chain.states(posture), self._chain.states(then)
         self._seen_links.clear()
 
     def at(self, time: float) -> ChainState:
-        """Return the posture at the end of the path that is nearer to a time [s]; between them there are only links."""
-        first, last = self._times
-        return self._start if abs(time - first) < abs(time - last) else self._end
+        """Return the posture at the end of the path that is nearer to a time [s]; between the ends only links exist."""
+        start_time, end_time = self._times
+        return self._start if abs(time - start_time) < abs(time - end_time) else self._end
 
     def links(self, time: float) -> flow.LinkStates:
-        """Return the links at a time [s], in the frame of the flow; beyond the ends they go on at their rates."""
+        """Return the links at a time [s] in the frame of the flow, extrapolated at constant rates beyond the ends."""
         if time not in self._seen_links:
-            (first, last), (start, end) = self._times, self._states
-            span = last - first
-            found = between(start, end, span, (time - first) / span) if span else onward(end, time - last)
-            self._seen_links[time] = found
+            (start_time, end_time), (start, end) = self._times, self._states
+            span = end_time - start_time
+            link_states = (
+                between(start, end, span, (time - start_time) / span) if span else onward(end, time - end_time)
+            )
+            self._seen_links[time] = link_states
         return self._seen_links[time]
 
 
 def _piece(shape: LinkShape) -> flow.LinkPiece:
     """Return a shape of a robot as a piece of a body of the flow."""
     if shape.kind == "ellipsoid":
-        long, wide, high = (2 * half for half in shape.size)
-        whole: flow.Ellipsoid | flow.Spherocylinder = flow.Ellipsoid(length=long, width=wide, height=high)
-        return flow.LinkPiece(link=shape.link, shape=whole, at=shape.at, turn=shape.turn)
-    long = 2 * shape.size[1] if shape.kind == "rod" else 0.0
-    w, x, y, z = rotation.multiply(np.array(shape.turn), _ALONG_X).tolist()
+        length, width, height = (2 * half for half in shape.size)
+        ellipsoid: flow.Ellipsoid | flow.Spherocylinder = flow.Ellipsoid(length=length, width=width, height=height)
+        return flow.LinkPiece(link=shape.link, shape=ellipsoid, at=shape.at, turn=shape.turn)
+    length = 2 * shape.size[1] if shape.kind == "rod" else 0.0
+    w, x, y, z = rotation.multiply(np.array(shape.turn), _ROD_TURN).tolist()
     return flow.LinkPiece(
-        link=shape.link, shape=flow.Spherocylinder(length=long, radius=shape.size[0]), at=shape.at, turn=(w, x, y, z)
+        link=shape.link, shape=flow.Spherocylinder(length=length, radius=shape.size[0]), at=shape.at, turn=(w, x, y, z)
     )

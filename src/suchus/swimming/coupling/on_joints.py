@@ -25,15 +25,15 @@ from suchus.swimming.water.swim_setup import ResolvedSwim
 
 
 def floating(robot: Robot) -> Robot:
-    """Return a robot that floats: the same if it does, or with the foam that carries it."""
+    """Return a robot that floats: the same robot if it does, otherwise with the foam that carries it."""
     if floats(robot):
         return robot
-    bare = with_values(robot, {"hull": None})
-    return with_values(bare, {"hull": float_hull(bare)})
+    hull_free_robot = with_values(robot, {"hull": None})
+    return with_values(hull_free_robot, {"hull": float_hull(hull_free_robot)})
 
 
 def _run(robot: Robot, gait: Gait, setting: SwimSetting) -> Run:
-    """Return the run that swims so."""
+    """Return the run of the swim."""
     reynolds = robot.length**2 / (gait.period * setting.viscosity)
     water = Space(
         cells=setting.cells, reynolds=reynolds, tail_height=setting.tail_height, limbs=setting.limbs,
@@ -46,7 +46,7 @@ def _run(robot: Robot, gait: Gait, setting: SwimSetting) -> Run:
 
 
 def check_on_joints(robot: Robot, gait: Gait, setting: SwimSetting) -> None:
-    """Refuse what ``swim_on_joints`` cannot swim, before anything runs.
+    """Refuse a robot or a motion that ``swim_on_joints`` cannot simulate, before anything runs.
 
     Raises:
         InvalidDesign, OutsideLimits: see ``Swim``.
@@ -99,44 +99,49 @@ class _OnJoints(FreeInSpace):
 
     def __init__(self, swim: Swim, commanded: ResolvedSwim) -> None:
         super().__init__(commanded)
-        self._whole, self._commanded = swim, commanded
+        self._coupled_swim, self._commanded = swim, commanded
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what was sampled, with what the robot's servos did and how well it came to terms with the water."""
-        found, robot = super().record(sim, samples), self._whole.run.robot
-        record, period, cycles = self._whole.record().isel(run=0), self._commanded.period, found.sizes["cycle"]
-        bounds = [round(cycle * period / self._whole.stepper.period) for cycle in range(cycles + 1)]
+        """Return the record of the flow, with the power of the servos and the errors of the coupling."""
+        flow_record, robot = super().record(sim, samples), self._coupled_swim.run.robot
+        record, period, cycles = (
+            self._coupled_swim.record().isel(run=0),
+            self._commanded.period,
+            flow_record.sizes["cycle"],
+        )
+        bounds = [round(cycle * period / self._coupled_swim.stepper.period) for cycle in range(cycles + 1)]
         power = [float(record.servo_power[a + 1 : b + 1].mean()) for a, b in pairwise(bounds)]
-        later = record.isel(time=slice(bounds[1], None))
-        cable = [name for one in robot.cables for name in one.hinges]
+        settled_record = record.isel(time=slice(bounds[1], None))
+        cable = [name for robot_cable in robot.cables for name in robot_cable.hinges]
         half = np.ptp(record.joint_angle.isel(time=slice(bounds[-2], None)).sel(joint=cable).values, axis=0) / 2
-        return found.assign(
+        return flow_record.assign(
             servo_power=("cycle", power, {"units": "W"}),
             tail_spread=((), float(half.max() / half.mean()) if half.size else np.nan, {"units": "1"}),
-            coupling_residual=((), float(later.coupling_residual.max()), {"units": "1"}),
+            coupling_residual=((), float(settled_record.coupling_residual.max()), {"units": "1"}),
             energy_error=((), float(abs(record.energy_error[-1])), {"units": "1"}),
             power_error=((), float(abs(record.power_error[-1])), {"units": "1"}),
         )
 
     def _loads(self, sim: flow.Simulation) -> xr.Dataset:
+        """Return the torques of the water at the joints, the servo torques, and the weight, in the last cycle."""
         del sim
-        record, outline = self._whole.record().isel(run=0), self._commanded.outline
-        samples = round(self._commanded.period / self._whole.stepper.period)
-        last = record.isel(time=slice(-samples, None))
+        record, outline = self._coupled_swim.record().isel(run=0), self._commanded.outline
+        samples = round(self._commanded.period / self._coupled_swim.stepper.period)
+        last_cycle = record.isel(time=slice(-samples, None))
         servos = [servo.name for servo in outline.servos]
         return xr.Dataset(
             {
-                "moment": ("moment", last.time.values, {"units": "s"}),
+                "moment": ("moment", last_cycle.time.values, {"units": "s"}),
                 "joint_torque": (
                     ("moment", "joint"),
-                    last.joint_water_torque.sel(joint=list(outline.joints)).transpose("time", "joint").values,
+                    last_cycle.joint_water_torque.sel(joint=list(outline.joints)).transpose("time", "joint").values,
                     {"units": "N m"},
                 ),
                 "servo_torque": (
                     ("moment", "servo"),
-                    last.servo_torque.sel(servo=servos).transpose("time", "servo").values,
+                    last_cycle.servo_torque.sel(servo=servos).transpose("time", "servo").values,
                     {"units": "N m"},
                 ),
-                "weight": ((), GRAVITY * self._whole.run.robot.mass, {"units": "N"}),
+                "weight": ((), GRAVITY * self._coupled_swim.run.robot.mass, {"units": "N"}),
             }
         )

@@ -1,4 +1,4 @@
-"""What is kept of every step of a coupled run, and the record that becomes of it."""
+"""Quantities that are stored in every step of a coupled run, and the record of the run."""
 
 import json
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from suchus.swimming.coupling.linked import LinkChain
 
 @dataclass(slots=True)
 class Series:
-    """What is kept of every step."""
+    """Quantities that are stored in every step."""
 
     time: list[float] = field(default_factory=list)
     """End of the step [s]."""
@@ -37,35 +37,35 @@ class Series:
     the difference over the whole inertia [-]."""
 
     def state(self) -> dict[str, np.ndarray]:
-        """Return all that is kept as arrays, by name."""
-        return {one.name: np.array(getattr(self, one.name)) for one in fields(self)}
+        """Return all stored quantities as arrays, by name."""
+        return {series_field.name: np.array(getattr(self, series_field.name)) for series_field in fields(self)}
 
     @classmethod
     def of(cls, state: Mapping[str, np.ndarray]) -> "Series":
-        """Return what ``state`` gave."""
+        """Return the series of a state that ``state`` returned."""
         arrays = ("force", "links")
         return cls(**{name: list(values) if name in arrays else values.tolist() for name, values in state.items()})
 
 
 def recorded(
-    run: Run, chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset, added: np.ndarray
+    run: Run, chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset, added_mass: np.ndarray
 ) -> xr.Dataset:
-    """Return the record of a coupled run: that of the robot, and beside it what the water did.
+    """Return the record of a coupled run: the record of the robot, and the forces and errors of the water.
 
     Args:
         run: of which.
         chain: its midline.
         series: of every step.
         record: of the robot alone, of one run.
-        added: added mass at the start, in the robot's coordinates.
+        added_mass: added mass at the start, in the robot's coordinates.
     """
     values = _sampled(chain, series, record)
-    wet = {
-        name: (("run", *dims), values[name][None], {"units": unit, "long_name": what})
-        for name, (dims, unit, what) in {**WATER, **COUPLED}.items()
+    water_variables = {
+        name: (("run", *dims), values[name][None], {"units": unit, "long_name": meaning})
+        for name, (dims, unit, meaning) in {**WATER, **COUPLED}.items()
     }
     kind = {"solved": type(run.solved).__name__.lower(), **asdict(run.solved)} if run.solved is not None else {}
-    about = {"units": "1", "long_name": "the flow as JSON, with its settings"}
+    attributes = {"units": "1", "long_name": "the flow as JSON, with its settings"}
     names = list(chain.coordinates)
     inertia = {"units": "kg, kg m, kg m2", "long_name": "added mass at the start, of each coordinate in each"}
     radius = np.array(series.radius).reshape(-1, 2)[:, 1]
@@ -73,78 +73,79 @@ def recorded(
         "units": "1",
         "long_name": "by how much the added mass was off when it was computed anew: spectral radius",
     }
-    found = record.assign(
-        wet
+    coupled_record = record.assign(
+        water_variables
         | {
-            "swims_in": ("run", [json.dumps(kind, sort_keys=True)], about),
-            "added_mass": (("run", "coordinate", "coordinate_too"), added[None], inertia),
+            "swims_in": ("run", [json.dumps(kind, sort_keys=True)], attributes),
+            "added_mass": (("run", "coordinate", "coordinate_too"), added_mass[None], inertia),
             "radius": (("run",), [float(radius.max(initial=0.0))], spread),
         }
     )
-    return found.assign_coords(link=list(chain.names), coordinate=names, coordinate_too=names)
+    return coupled_record.assign_coords(link=list(chain.names), coordinate=names, coordinate_too=names)
 
 
 def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset) -> Mapping[str, np.ndarray]:
-    """Return the series at the samples of a record, NaN where it has not come to."""
+    """Return the series at the samples of a record; NaN after the end of the run."""
     time = record.time.values.astype(float)
     ends = np.array([0.0, *series.time])
-    reached = time <= ends[-1] + 1e-9
+    is_computed = time <= ends[-1] + 1e-9
     steps = np.diff(ends)
 
     def mean(values: np.ndarray) -> np.ndarray:
-        """Return the mean of values over the control period before each sample, at the first the first one."""
-        total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values * _along(steps, values), axis=0)])
+        """Return the mean of values over the control period before each sample; the first sample is 0."""
+        total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values * _broadcast_steps(steps, values), axis=0)])
         flat = total.reshape(len(total), -1)
         sums = np.column_stack([np.interp(time, ends, column) for column in flat.T])
         rates = np.diff(sums, axis=0) / np.diff(time)[:, None]
-        out = np.concatenate([np.zeros_like(rates[:1]), rates]).reshape(len(time), *values.shape[1:])
-        out[~reached] = np.nan
-        return np.asarray(out)
+        means = np.concatenate([np.zeros_like(rates[:1]), rates]).reshape(len(time), *values.shape[1:])
+        means[~is_computed] = np.nan
+        return np.asarray(means)
 
-    def latest(values: np.ndarray) -> np.ndarray:
-        """Return the value of the step that holds each sample."""
+    def latest_value(values: np.ndarray) -> np.ndarray:
+        """Return the value of the step that contains each sample."""
         k = np.clip(np.searchsorted(ends, time - 1e-9) - 1, 0, len(values) - 1)
-        out = values[k].astype(float)
-        out[~reached] = np.nan
-        return np.asarray(out)
+        samples = values[k].astype(float)
+        samples[~is_computed] = np.nan
+        return np.asarray(samples)
 
     count = len(series.time)
     if not count:
         sizes = {**record.sizes, "link": len(chain.names), "time": len(time)}
-        dims = {name: one[0] for name, one in {**WATER, **COUPLED}.items()}
-        return {name: np.full([sizes[dim] for dim in own], np.nan) for name, own in dims.items()}
+        dims = {name: declaration[0] for name, declaration in {**WATER, **COUPLED}.items()}
+        return {name: np.full([sizes[dim] for dim in dimensions], np.nan) for name, dimensions in dims.items()}
     links, force = np.array(series.links), np.array(series.force)
-    worked, energy = np.array(series.worked), np.array(series.energy)
-    sums = worked.cumsum(axis=0)
-    spent = np.maximum(np.maximum.accumulate(sums[:, 0]), 1e-300)
-    missing = (sums[:, 0] + sums[:, 1] + sums[:, 2] - energy) / spent
-    apart = (sums[:, 2] - sums[:, 3]) / np.maximum(np.maximum.accumulate(np.abs(sums[:, 2])), 1e-300)
+    work, energy = np.array(series.worked), np.array(series.energy)
+    sums = work.cumsum(axis=0)
+    servo_work = np.maximum(np.maximum.accumulate(sums[:, 0]), 1e-300)
+    missing = (sums[:, 0] + sums[:, 1] + sums[:, 2] - energy) / servo_work
+    power_error = (sums[:, 2] - sums[:, 3]) / np.maximum(np.maximum.accumulate(np.abs(sums[:, 2])), 1e-300)
     hinges = [str(name) for name in record.joint.values]
     moments = np.full((len(time), len(hinges)), np.nan)
     roots = len(chain.coordinates) - len(chain.joints)
     moments[:, [hinges.index(name) for name in chain.joints]] = mean(force[:, roots:])
-    flat = np.where(reached, 0.0, np.nan)
+    flat = np.where(is_computed, 0.0, np.nan)
     pull = mean(links[:, :, :3])
     residual = np.array(series.residual)
     return {
         "link_force": pull,
         "link_torque": mean(links[:, :, 3]),
         "joint_water_torque": moments,
-        "coupling_residual": latest(residual[:, 1]),
-        "coupling_first": latest(residual[:, 0]),
-        "coupling_iterations": latest(np.array(series.corrections)),
-        "energy_error": latest(missing),
-        "power_error": latest(apart),
+        "coupling_residual": latest_value(residual[:, 1]),
+        "coupling_first": latest_value(residual[:, 0]),
+        "coupling_iterations": latest_value(np.array(series.corrections)),
+        "energy_error": latest_value(missing),
+        "power_error": latest_value(power_error),
         "water_level": np.full(len(time), np.nan),
         "air_fraction": np.full(len(time), np.nan),
         "air_fraction_front": np.full(len(time), np.nan),
         "share_under": flat + 1.0,
         "water_force": pull.sum(axis=1),
-        "water_power": mean(worked[:, 3] / steps),
-        "servo_power": mean(worked[:, 0] / steps),
+        "water_power": mean(work[:, 3] / steps),
+        "servo_power": mean(work[:, 0] / steps),
         "feet_share": flat,
     }
 
 
-def _along(steps: np.ndarray, values: np.ndarray) -> np.ndarray:
+def _broadcast_steps(steps: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the durations of the steps, in a shape that multiplies values of shape (step, ...)."""
     return steps.reshape(-1, *(1,) * (values.ndim - 1))

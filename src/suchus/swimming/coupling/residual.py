@@ -1,8 +1,7 @@
-"""How far the section model is from the flow, link by link and joint by joint, along the motion that the robot took.
+"""Difference between the section model and the flow, for each link and joint, along the recorded motion.
 
-The section model says of the recorded motion what it would have done; no second run is made. Its force is a part by
-the acceleration and a part by the speed, and the two factors with which they come nearest to the flow's are fitted on
-some cycles and judged on the others.
+The section model predicts forces for the recorded motion; there is no second run. Its force has a part by the
+acceleration and a part by the speed. Two factors on these parts are fitted to some cycles and tested on the others.
 """
 
 from collections.abc import Sequence
@@ -54,7 +53,7 @@ def motion_of(record: xr.Dataset, joints: Sequence[str]) -> RecordedMotion:
 def residual_table(
     robot: Robot, record: xr.Dataset, *, period: float, first: float, viscosity: float
 ) -> xr.Dataset:  # fmt: skip
-    """Return how far the section model is from the flow that a record holds.
+    """Return the difference between the section model and the flow of a record.
 
     Args:
         robot: that swam.
@@ -87,7 +86,7 @@ def residual_table(
 
 
 class SectionsBeside(NamedTuple):
-    """What a flow did to links and joints along a record, and the two parts of what sections say of the same motion."""
+    """Forces of a flow on links and joints along a record, and the two parts that the section model predicts."""
 
     names: list[str]
     """Links from the head on, then joints."""
@@ -108,40 +107,46 @@ class SectionsBeside(NamedTuple):
 
     @property
     def step(self) -> float:
-        """From sample to sample [s]."""
+        """Interval between samples [s]."""
         return float(self.time[1] - self.time[0])
 
 
 def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity: float) -> SectionsBeside:
-    """Return what the flow of a record did, and beside it the section model; see ``residual_table``."""
+    """Return the forces of the flow in a record and those of the section model; see ``residual_table``."""
     lateral = {hinge.name for hinge in robot.axis_hinges if hinge.turn == "yaw"}
-    felt = [str(name) for name in record.joint.values if np.isfinite(record.joint_water_torque.sel(joint=name)).all()]
-    joints = [name for name in felt if name in lateral]
+    loaded_joints = [
+        str(name) for name in record.joint.values if np.isfinite(record.joint_water_torque.sel(joint=name)).all()
+    ]
+    joints = [name for name in loaded_joints if name in lateral]
     record = _between_joints(robot, record, joints)
     motion = motion_of(record, joints)
-    bare = with_values(robot, {"hull": None})
+    hull_free_robot = with_values(robot, {"hull": None})
     lake = Lake(level=0.0, water=replace(Water(), viscosity=viscosity))
-    still = replace(lake, added_mass=0.0)
-    whole, dragged = (_across(sections_along(bare, joints, *motion, one), motion) for one in (lake, still))
+    lake_without_added_mass = replace(lake, added_mass=0.0)
+    section_loads, drag_loads = (
+        _lateral_loads(sections_along(hull_free_robot, joints, *motion, variant), motion)
+        for variant in (lake, lake_without_added_mass)
+    )
     time = record.time.values
     keep = (time >= first) & (time <= time[-1] - _SMOOTHED * (time[1] - time[0]))
     names = [str(name) for name in record.link.values] + joints
-    flow = _across(_flow_loads(record, joints), motion)
-    return SectionsBeside(names, record.sizes["link"], time, keep, flow, whole - dragged, dragged, joints)
+    flow = _lateral_loads(_flow_loads(record, joints), motion)
+    return SectionsBeside(names, record.sizes["link"], time, keep, flow, section_loads - drag_loads, drag_loads, joints)
 
 
 def _between_joints(robot: Robot, record: xr.Dataset, joints: Sequence[str]) -> xr.Dataset:
-    """Return a record whose links lie between lateral joints: of one that has each body for itself, their sums.
+    """Return a record whose links lie between lateral joints; bodies between two joints are summed.
 
-    Limbs are left out, as sections leave them out.
+    Limbs are left out, as in the section model.
     """
-    groups, there = link_bodies(robot, joints), {str(name) for name in record.link.values}
-    if not any(body in there for group in groups for body in group):
+    groups, link_names = link_bodies(robot, joints), {str(name) for name in record.link.values}
+    if not any(body in link_names for group in groups for body in group):
         return record
     names = [f"link_{k + 1}" for k in range(len(groups))]
     loads = {
         name: xr.concat(
-            [record[name].sel(link=[body for body in group if body in there]).sum("link") for group in groups], "link"
+            [record[name].sel(link=[body for body in group if body in link_names]).sum("link") for group in groups],
+            "link",
         ).transpose("time", "link", ...)
         for name in ("link_force", "link_torque")
     }
@@ -149,7 +154,7 @@ def _between_joints(robot: Robot, record: xr.Dataset, joints: Sequence[str]) -> 
 
 
 def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:
-    """Return what the flow did, at the samples: means over the control period before each, half a period late."""
+    """Return the loads of the flow at the samples: means over the control period before each sample."""
     links = np.concatenate([record.link_force.values[..., :2], record.link_torque.values[..., None]], axis=2)
     moments = record.joint_water_torque.sel(joint=list(joints)).transpose("time", "joint").values
 
@@ -159,52 +164,68 @@ def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:
     return SectionLoads(centred(links), centred(moments))
 
 
-def _across(loads: SectionLoads, motion: RecordedMotion) -> np.ndarray:
+def _lateral_loads(loads: SectionLoads, motion: RecordedMotion) -> np.ndarray:
     """Return the force across each link, to the left of the root's heading, and the moments, shape (sample, part)."""
     yaw = motion.place[:, 2, None]
-    aside = -np.sin(yaw) * loads.links[:, :, 0] + np.cos(yaw) * loads.links[:, :, 1]
-    return np.column_stack([aside, loads.joints])
+    lateral_force = -np.sin(yaw) * loads.links[:, :, 0] + np.cos(yaw) * loads.links[:, :, 1]
+    return np.column_stack([lateral_force, loads.joints])
 
 
 def r2(values: np.ndarray, model: np.ndarray) -> float:
-    """Return the share of the variance of values that a model explains; below 0 it is worse than their mean [-]."""
+    """Return the fraction of the variance of values that a model explains; below 0 it is worse than their mean [-]."""
     spread = float(((values - values.mean()) ** 2).sum())
     return float(1.0 - ((values - model) ** 2).sum() / spread) if spread > 0 else float("nan")
 
 
-def fitted(values: np.ndarray, added: np.ndarray, drag: np.ndarray) -> np.ndarray:
-    """Return the factors on two parts with which their sum comes nearest to values, shape (2,) [-]."""
-    found, *_ = np.linalg.lstsq(np.column_stack([added, drag]), values, rcond=None)
-    return np.asarray(found)
+def fitted(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    """Return the factors on added mass and drag with the least squares of the residual, shape (2,) [-].
+
+    Args:
+        values: forces of the flow, shape (sample,).
+        added_force: part of the section model by the acceleration, shape (sample,).
+        drag: part by the speed, shape (sample,).
+    """
+    factors, *_ = np.linalg.lstsq(np.column_stack([added_force, drag]), values, rcond=None)
+    return np.asarray(factors)
 
 
 def _row(
-    values: np.ndarray, added: np.ndarray, drag: np.ndarray, keep: np.ndarray, halves: tuple[np.ndarray, np.ndarray],
+    values: np.ndarray, added_force: np.ndarray, drag: np.ndarray, keep: np.ndarray,
+    halves: tuple[np.ndarray, np.ndarray],
     cycle: float,
 ) -> list[float]:  # fmt: skip
-    one, other = halves
-    factors = fitted(values[one], added[one], drag[one])
-    draws = drawn(values[one], added[one], drag[one], max(round(0.5 * cycle), 2))
-    low, high = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
+    """Return a row of the residual table: rms, explained variance, factors with intervals, and the test."""
+    fit_half, test_half = halves
+    factors = fitted(values[fit_half], added_force[fit_half], drag[fit_half])
+    draws = drawn(values[fit_half], added_force[fit_half], drag[fit_half], max(round(0.5 * cycle), 2))
+    lower_bound, upper_bound = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
 
-    def fit(where: np.ndarray) -> float:
-        return r2(values[where], factors[0] * added[where] + factors[1] * drag[where])
+    def fit(mask: np.ndarray) -> float:
+        return r2(values[mask], factors[0] * added_force[mask] + factors[1] * drag[mask])
 
     return [
-        float(np.sqrt((values[keep] ** 2).mean())), float(np.sqrt(((added + drag)[keep] ** 2).mean())),
-        r2(values[keep], (added + drag)[keep]), factors[0], low[0], high[0], factors[1], low[1], high[1], fit(one),
-        fit(other),
+        float(np.sqrt((values[keep] ** 2).mean())), float(np.sqrt(((added_force + drag)[keep] ** 2).mean())),
+        r2(values[keep], (added_force + drag)[keep]), factors[0], lower_bound[0], upper_bound[0], factors[1],
+        lower_bound[1], upper_bound[1], fit(fit_half),
+        fit(test_half),
     ]  # fmt: skip
 
 
-def drawn(values: np.ndarray, added: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
-    """Return the factors of fits to blocks that are drawn with replacement, shape (draw, 2); NaN of too few blocks."""
+def drawn(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
+    """Return the factors of a block bootstrap, shape (draw, 2); NaN if there are too few blocks.
+
+    Args:
+        values: forces of the flow, shape (sample,).
+        added_force: part of the section model by the acceleration, shape (sample,).
+        drag: part by the speed, shape (sample,).
+        block: samples in a block [-].
+    """
     if len(values) < BLOCKS * block:
         return np.full((DRAWS, 2), np.nan)
     rng, count = np.random.default_rng(len(values)), max(len(values) // block, 1)
-    out = np.empty((DRAWS, 2))
+    draws = np.empty((DRAWS, 2))
     for k in range(DRAWS):
         start = rng.integers(len(values), size=count)
         index = ((start[:, None] + np.arange(block)) % len(values)).ravel()  # each sample is drawn as often
-        out[k] = fitted(values[index], added[index], drag[index])
-    return out
+        draws[k] = fitted(values[index], added_force[index], drag[index])
+    return draws

@@ -1,4 +1,4 @@
-"""Simulate runs on any rung of the ladder: on land, in forces section by section, or with a flow around the robot."""
+"""Simulate runs with any model of the water: on land, with the section model, or with a flow around the robot."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -26,10 +26,10 @@ def simulate(
     keep: Path | str | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
-    """Simulate runs whatever their water is, each as ``land.simulate`` does or with the flow around it.
+    """Simulate runs with any water, as ``land.simulate`` does or with the flow around the robot.
 
-    The runs without a flow go together, as a batch; those in a flow one after the other. The same runs give the same
-    bytes, whatever the number of threads.
+    Runs without a flow are simulated together, as a batch; runs in a flow one after another. The same runs give the
+    same bytes, whatever the number of threads.
 
     Args:
         runs: at least one; see ``land.simulate``.
@@ -51,30 +51,32 @@ def simulate(
         Unwritable: a run cannot be kept.
     """
     runs = tuple(runs)
-    solved = [i for i, run in enumerate(runs) if run.solved is not None]
-    if not solved:
+    flow_indices = [i for i, run in enumerate(runs) if run.solved is not None]
+    if not flow_indices:
         return land.simulate(runs, duration=duration, timestep=timestep, every=every, progress=progress)
     check_kept("" if keep is None else str(keep))
-    swims = [Swim(runs[i], duration, timestep=timestep) for i in solved]  # refused before any is computed
+    swims = [Swim(runs[i], duration, timestep=timestep) for i in flow_indices]  # refused before any is computed
     periods = {swim.stepper.period for swim in swims}
     if len(periods) > 1:
         raise InvalidDesign("the robots have different control periods; simulate them one after another.")
-    others = [i for i in range(len(runs)) if i not in solved]
-    parts, order, count = [], [], len(solved) + bool(others)
-    if others:
-        part = portion(progress, 0, count)
-        rest = [runs[i] for i in others]
-        parts.append(land.simulate(rest, duration=duration, timestep=timestep, every=every, progress=part))
-        order += others
-    for number, (i, swim) in enumerate(zip(solved, swims, strict=True), start=count - len(solved)):
+    plain_indices = [i for i in range(len(runs)) if i not in flow_indices]
+    parts, order, count = [], [], len(flow_indices) + bool(plain_indices)
+    if plain_indices:
+        run_progress = portion(progress, 0, count)
+        plain_runs = [runs[i] for i in plain_indices]
+        parts.append(
+            land.simulate(plain_runs, duration=duration, timestep=timestep, every=every, progress=run_progress)
+        )
+        order += plain_indices
+    for number, (i, swim) in enumerate(zip(flow_indices, swims, strict=True), start=count - len(flow_indices)):
         with suppress(Diverged):  # its record says when and why
-            kept = None if keep is None else Path(keep) / f"{fingerprint(swim.setup)[:16]}.kept-swim"
-            part = portion(progress, number, count)
-            swim.go(swim.ticks * swim.stepper.period, progress=part, checkpoint=kept)
+            kept_path = None if keep is None else Path(keep) / f"{fingerprint(swim.setup)[:16]}.kept-swim"
+            run_progress = portion(progress, number, count)
+            swim.go(swim.ticks * swim.stepper.period, progress=run_progress, checkpoint=kept_path)
         parts.append(swim.record().isel(time=slice(None, None, every)))
         order.append(i)
-    alike = with_equal_variables(parts)
-    record = alike[0] if len(alike) == 1 else xr.concat(alike, "run", join="outer", data_vars="all")
+    records = with_equal_variables(parts)
+    record = records[0] if len(records) == 1 else xr.concat(records, "run", join="outer", data_vars="all")
     record = record.isel(run=np.argsort(order)).assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=swims[0].timestep, control_period=periods.pop())
     return record

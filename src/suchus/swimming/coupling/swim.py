@@ -1,13 +1,17 @@
 """Robot and flow solved together, step by step.
 
-In each step of the flow the robot goes first, under the force of the last step and the added mass; the flow follows;
-then the robot goes through the same time again under the force that the flow found, and the water gets what that
-changes by one solve of the pressure equation (``flow.twist``). With F the generalised force of the water, A the added
-mass, a the mean acceleration of the step, the robot is told ``F(a) = F* - A (a - a*)``, where F* and a* are those that
-were found last. What the robot was told in its last go, less what the flow says then, is the residual. It is not
-lost: the robot gets that impulse in the next step, and so what MuJoCo's steps miss of its momentum, so that its
-momentum is the impulse of the water. A is symmetric, answers as the water was seen to answer in each correction, and is
-computed anew as the body bends.
+A step of the flow has four parts. The robot moves under the force of the last step and the added mass. The flow
+follows. The robot repeats the step under the force that the flow returned. The water gets the change of the motion by
+one solve of the pressure equation (``flow.twist``).
+
+With F the generalised force of the water, A the added mass and a the mean acceleration of the step, the force that is
+applied to the robot is ``F(a) = F* - A (a - a*)``. F* and a* are those of the last iteration.
+
+The residual is the force applied in the last iteration minus the force that the flow returns. Its impulse is carried
+over to the next step. The momentum error of MuJoCo's steps is carried over as well. The robot's momentum thus equals
+the impulse of the water.
+
+A is symmetric. Each correction updates A with the observed response of the water. A is computed anew as the body bends.
 """
 
 import warnings
@@ -49,47 +53,50 @@ from suchus.swimming.water.samples import Samples
 from suchus.swimming.water.setting import DENSITY, SwimSetting
 
 OFF_PLANE = 0.12
-"""Angle by which a joint may leave the plane that the flow takes the body to stay in [rad]."""
+"""Greatest angle of a joint out of the plane of the flow [rad]."""
 LOST = 1.0
-"""Residual from which a step counts as one that does not converge [-]: the force that is left over is as large as the
-greatest so far."""
+"""Residual above which a step is unconverged [-]: the residual force exceeds the greatest force so far."""
 PATIENCE = 5
-"""Steps in a row that may do so [-]: at the start there is hardly any force to compare with."""
+"""Greatest number of successive unconverged steps [-]: at the start the force is too small for a comparison."""
 LONGEST = 1.25
-"""Step of the flow over the time in which a cycle's waves go on by a cell, at most [-]: at rest it has no bound of its
-own, and while the robot swims it takes some 0.9."""
+"""Greatest step of the flow, over the time in which the body wave moves by a cell [-].
+
+At rest the flow has no other bound. While the robot swims, the step is about 0.9 of that time."""
 STEPS = 100
-"""Steps of the flow in a cycle, at least, where limbs stroke [-]: forces and velocities are means over a step, whose
-product misses the power by a share of the second order; with 42 it is up to 0.5 % off, with 100 0.1 %."""
+"""Least number of steps of the flow in a cycle with moving limbs [-].
+
+Forces and velocities are means over a step. The error of their product, the power, is of second order: up to 0.5 % with
+42 steps, 0.1 % with 100."""
 FINER = 5
-"""Physics steps in a step of the flow, at least: with 1, 5 and 10 the energy closes to 1e-2, 2e-3 and 8e-4 [-]."""
+"""Least number of physics steps in a step of the flow; energy error: 1e-2 with 1, 2e-3 with 5, 8e-4 with 10 [-]."""
 LEAST = 0.1
-"""Share of the inertia of robot and water along a correction, at least, that the water's answer to it may leave [-].
-Chosen: with less, the next guess of the acceleration would be more than ten times as large."""
-_ROUNDS, _SETTLED = 10, 1e-4
-"""Rounds in which the robot and the part of the added mass that its own matrix has no room for come to terms, at most;
-and the change of the acceleration, over its size, at which they have [-]."""
-_CHANGING = (
-    "force",
-    "push",
-    "owed",
-    "strayed",
-    "added",
-    "kept",
-    "computed",
-    "greatest",
-    "greatest_momentum",
-    "strikes",
-    "effort",
-    "start_added",
-)
-"""What a swim changes of its own."""
+"""Least inertia along a correction after an update of the added mass, over the inertia before it [-].
+
+It is chosen: with less, the next guess of the acceleration would be more than ten times as large."""
+_MAX_ROUNDS, _ROUND_TOLERANCE = 10, 1e-4
+"""Greatest number of rounds for the explicit part of the added mass, which the robot's own matrix cannot hold; and the
+relative change of the acceleration at which they have converged [-]."""
+_CHANGING = {
+    "force": "_force",
+    "push": "_push",
+    "owed": "_residual_impulse",
+    "strayed": "_momentum_defect",
+    "added": "_added_mass",
+    "kept": "_implicit_added_mass",
+    "computed": "_computed",
+    "greatest": "_max_force",
+    "greatest_momentum": "_greatest_momentum",
+    "strikes": "_strikes",
+    "effort": "_effort",
+    "start_added": "_start_added",
+}
+"""Attributes that change during a swim, by their names in a checkpoint."""
 _WIDER = 1.25
-"""Swing that the box has room for, over that of the commanded midline [-]."""
+"""Swing for which the box is made, over that of the commanded midline [-]."""
 
 
 def check_swim(run: Run, duration: float) -> None:
-    """Refuse a run whose gait, faults, control or body a flow around it cannot have, before the flow is set up.
+    """Refuse a run whose gait, faults, control or body a flow cannot have, before the flow is set up.
 
     Args:
         run: with a ``Slice`` or a ``Space``.
@@ -119,7 +126,7 @@ def check_swim(run: Run, duration: float) -> None:
 
 
 def _check_plane(run: Run) -> None:
-    """Refuse a gait that strokes with limbs, which the flow does not see move, or bends the axis out of its plane.
+    """Refuse a gait that moves limbs, which are at rest in the flow, or bends the axis out of its plane.
 
     Raises:
         InvalidDesign: naming the servo.
@@ -129,11 +136,12 @@ def _check_plane(run: Run) -> None:
     lateral = {servo.name for servo in Outline(robot, 33).servos}
     axis = {hinge.name for hinge in robot.axis_hinges} | {cable.name for cable in robot.cables}
     for number, name in enumerate(place.servos):
-        swing, far = float(np.ptp(angles[:, number])), float(np.abs(angles[:, number]).max())
-        if name not in lateral and (swing > OFF_PLANE or (name in axis and far > OFF_PLANE)):
-            what = "bends the axis out of the plane" if name in axis else "strokes with a limb"
+        swing, max_angle = float(np.ptp(angles[:, number])), float(np.abs(angles[:, number]).max())
+        if name not in lateral and (swing > OFF_PLANE or (name in axis and max_angle > OFF_PLANE)):
+            fault = "bends the axis out of the plane" if name in axis else "strokes with a limb"
             raise InvalidDesign(
-                f"gait {gait.name!r} {what}: servo {name} swings by {swing:.3g} rad about angles up to {far:.3g} "
+                f"gait {gait.name!r} {fault}: servo {name} swings by {swing:.3g} rad about angles up to "
+                f"{max_angle:.3g} "
                 "rad. The flow is around a body that bends in its plane, its limbs at rest: take a gait that "
                 "does, say motion.swimming_gait, or water=Space(linked=True), where each piece moves as its joints do, "
                 'or water="sections".'
@@ -141,60 +149,65 @@ def _check_plane(run: Run) -> None:
 
 
 def never_negative(
-    added: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"]
+    added_mass: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"]
 ) -> Float[np.ndarray, "coordinate coordinate"]:
-    """Return an added mass that no motion makes negative: the same, or without what it takes from the robot's own mass.
+    """Return an added mass that is positive semidefinite: negative modes are set to zero.
 
-    Coarse cells may find less than none for the bend of a thin tail, once the pressure inside the body is taken away. A
-    robot that is lighter than that there would be thrown about.
+    Coarse cells may give a negative added mass for the bend of a thin tail, after the pressure inside the body is taken
+    away. A light robot would be unstable with it.
     """
-    values, shapes = eigh(added, mass)
+    values, shapes = eigh(added_mass, mass)
     if values[0] >= 0.0:
-        return added
-    pulled = mass @ shapes
-    return added - (pulled * np.minimum(values, 0.0)) @ pulled.T
+        return added_mass
+    mass_modes = mass @ shapes
+    return added_mass - (mass_modes * np.minimum(values, 0.0)) @ mass_modes.T
 
 
 def learned(
-    added: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"],
-    push: Float[np.ndarray, " coordinate"], answered: Float[np.ndarray, " coordinate"],
+    added_mass: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"],
+    push: Float[np.ndarray, " coordinate"], water_response: Float[np.ndarray, " coordinate"],
 ) -> Float[np.ndarray, "coordinate coordinate"]:  # fmt: skip
-    """Return an added mass near another one that answers an acceleration as the water was seen to.
+    """Return the added mass after a BFGS update with the observed response of the water.
 
-    It is symmetric, and with the robot's own mass positive definite: the update of Broyden, Fletcher, Goldfarb and
-    Shanno of the whole inertia. What would leave less than ``LEAST`` of that inertia along the push is not believed.
+    It is symmetric, and positive definite with the robot's own mass. An update that leaves less than ``LEAST`` of the
+    inertia along the acceleration is rejected.
 
     Args:
-        added: symmetric.
+        added_mass: symmetric.
         mass: the robot's own.
         push: acceleration more.
-        answered: force of the water against it.
+        water_response: force of the water against it.
     """
-    whole = (mass + added) @ push
-    seen = mass @ push + answered
-    before, after = float(push @ whole), float(push @ seen)
-    if not after > LEAST * before > 0.0:
-        return added
-    return np.asarray(added + np.outer(seen, seen) / after - np.outer(whole, whole) / before)
+    predicted_force = (mass + added_mass) @ push
+    observed_force = mass @ push + water_response
+    predicted_work, observed_work = float(push @ predicted_force), float(push @ observed_force)
+    if not observed_work > LEAST * predicted_work > 0.0:
+        return added_mass
+    return np.asarray(
+        added_mass
+        + np.outer(observed_force, observed_force) / observed_work
+        - np.outer(predicted_force, predicted_force) / predicted_work
+    )
 
 
-def out_of_step(most: int, period: int) -> int:
-    """Return how many physics steps a step of the flow has, at most so many, so that it ends at other phases each time.
+def out_of_step(max_steps: int, period: int) -> int:
+    """Return the number of physics steps in a step of the flow, such that steps end at different phases.
 
-    Servos are commanded anew at the beginning of each control period, and light limbs follow so fast that their speed
-    changes by a tenth within it. Steps of the flow that end at one phase would all see the speed at that one.
+    Servos get new commands at the beginning of each control period. Light limbs follow so fast that their speed changes
+    by a tenth within the period. If all steps of the flow ended at the same phase, they would all see the speed of that
+    phase.
 
     Args:
-        most: physics steps [-].
+        max_steps: physics steps [-].
         period: physics steps in a control period [-].
     """
-    fair = [n for n in range(max(most - 3, 1), most + 1) if gcd(n, period) == 1]
-    fast = [n for n in fair if most > period and 1 < n % period < period - 1]
-    return max(fast or fair or [most])
+    fair = [n for n in range(max(max_steps - 3, 1), max_steps + 1) if gcd(n, period) == 1]
+    fast = [n for n in fair if max_steps > period and 1 < n % period < period - 1]
+    return max(fast or fair or [max_steps])
 
 
 class Swim:
-    """One run whose water is a flow, from rest.
+    """One run in a flow, from rest.
 
     Args:
         run: with a ``Slice`` or a ``Space``.
@@ -219,6 +232,7 @@ class Swim:
         controller: Controller | None = None,
         begin: Beginning | None = None,
     ) -> None:
+        """Set up robot and flow, and compute the added mass."""
         water = run.solved
         assert water is not None
         self.run, self.water = run, water
@@ -239,36 +253,36 @@ class Swim:
             if self._linked
             else MidlineChain(self.outline, water.parts, (float(start[0]), float(start[1])))
         )
-        self.path = self.chain.way(0.0, self._seen(self.stepper.now))
+        self.path = self.chain.way(0.0, self._flow_state(self.stepper.now))
         self.sim = flow.Simulation(self._setup(), thread_count=thread_count)
         self.series = Series()
         self._effort = 0.0
         self._force = np.zeros(self.chain.size)
         self._push = np.zeros(self.chain.size)
-        self._owed = np.zeros(self.chain.size)  # impulse of the water that the robot has not been given yet
-        self._strayed = np.zeros(self.stepper.axes)  # see ``Stretch.strayed``; of the last step
-        self._added = np.zeros((self.chain.size, self.chain.size))
-        self._kept = self._added
+        self._residual_impulse = np.zeros(self.chain.size)  # impulse of the water that the robot has not been given yet
+        self._momentum_defect = np.zeros(self.stepper.axes)  # see ``Stretch.strayed``; of the last step
+        self._added_mass = np.zeros((self.chain.size, self.chain.size))
+        self._implicit_added_mass = self._added_mass
         self._computed: np.ndarray | None = None
-        self._greatest, self._strikes = 0.0, 0
+        self._max_force, self._strikes = 0.0, 0
         self._greatest_momentum = 0.0
-        self._stopped: set[str] = set()
-        self._placed = self.path.at(0.0)  # posture for which the water was told last where the body is
+        self._warned_joints: set[str] = set()
+        self._flow_posture = self.path.at(0.0)  # posture for which the water was told last where the body is
         self.samples = Samples()
         """What a ``watch`` of ``go`` keeps; a checkpoint holds it too."""
         self._renew()
-        self._start_added = self._added
+        self._start_added = self._added_mass
 
     # --- what is set up ----------------------------------------------------------------------------------------
 
     @property
     def depth(self) -> float:
         """Depth of the water of a slice [m]."""
-        given = getattr(self.water, "depth", None)
-        if given is not None:
-            return float(given)
-        wide, _ = self.outline.silhouette
-        return displaced(self.outline, 1.0) / float(np.trapezoid(2 * wide, self.outline.s))
+        fixed_depth = getattr(self.water, "depth", None)
+        if fixed_depth is not None:
+            return float(fixed_depth)
+        half_width, _ = self.outline.silhouette
+        return displaced(self.outline, 1.0) / float(np.trapezoid(2 * half_width, self.outline.s))
 
     @property
     def viscosity(self) -> float:
@@ -276,17 +290,17 @@ class Swim:
         return self.run.robot.length**2 / (self.run.gait.period * self.water.reynolds)
 
     def _expected_swing(self) -> float:
-        """Return how far the commanded midline swings to a side [m]."""
+        """Return the greatest lateral displacement of the commanded midline [m]."""
         outline = Outline(self.run.robot, 65)
         return float(np.abs(cycle(outline, self.run.gait, *recoil(outline, self.run.gait, 0.0, Water())).y).max())
 
     def _physics_step(self) -> float:
-        """Return the largest step of the physics that divides a control period often enough [s]."""
+        """Return the largest timestep of the physics that divides a control period often enough [s]."""
         period, cell = control_period(self.run.robot), self.run.robot.length / self.water.cells
-        aside, below = self._strokes if self._linked else (0.0, 0.0)
-        fastest = 2 * np.pi / self.run.gait.period * max(self._swing, aside, below, cell)
-        most = min(physics_step(self.run.robot), 0.8 * cell / (1.5 * fastest) / FINER)
-        return float(period / np.ceil(period / most * (1 - 1e-9)))
+        lateral_stroke, vertical_stroke = self._strokes if self._linked else (0.0, 0.0)
+        fastest = 2 * np.pi / self.run.gait.period * max(self._swing, lateral_stroke, vertical_stroke, cell)
+        max_step = min(physics_step(self.run.robot), 0.8 * cell / (1.5 * fastest) / FINER)
+        return float(period / np.ceil(period / max_step * (1 - 1e-9)))
 
     @cached_property
     def half_height(self) -> Float[np.ndarray, " station"]:
@@ -294,35 +308,36 @@ class Swim:
         return half_heights(self.outline, self.water.tail_height)
 
     @property
-    def _least(self) -> float:
-        blunt = self.water.blunt if isinstance(self.water, Slice) else 0.0
-        return blunt * self.run.robot.length / self.water.cells
+    def _min_half_width(self) -> float:
+        bluntness = self.water.blunt if isinstance(self.water, Slice) else 0.0
+        return bluntness * self.run.robot.length / self.water.cells
 
     @property
     def _linked(self) -> bool:
-        """Whether each link has its own pose, and the root moves in space."""
+        """Whether each link has its own pose and the root moves in space."""
         return isinstance(self.water, Space) and self.water.linked
 
     @cached_property
     def _strokes(self) -> tuple[float, float]:
-        """Return how far the gait swings limbs about their hips, and an end of the axis up or down, to a side [m]."""
+        """Return the greatest lateral displacement of limbs and vertical displacement of the axis in the gait [m]."""
         robot, names = self.run.robot, layout(self.run.robot).servos
         angles = cycle_targets(robot, self.run.gait, np.linspace(0.0, 1.0, 24, endpoint=False))
         swings = dict(zip(names, 0.5 * np.ptp(angles, axis=0), strict=True))
-        raised, lateral = 0.0, {servo.name for servo in self.outline.servos}
+        rise, lateral = 0.0, {servo.name for servo in self.outline.servos}
         starts, hinges = 0.0, dict[str, float]()
         for segment in robot.axis:
             starts += segment.front + segment.rear
             hinges |= {hinge.name: min(starts, robot.length - starts) for hinge in segment.hinges}
-        for name, far in hinges.items():
-            raised += swings.get(name, 0.0) * far * (name not in lateral)
+        for name, lever in hinges.items():
+            rise += swings.get(name, 0.0) * lever * (name not in lateral)
         limbs = [
             limb.girdle.limb.reach * sum(swings.get(name, 0.0) for name in names[limb.servos])
             for limb in layout(robot).limbs
         ]  # fmt: skip
-        return max(limbs, default=0.0), raised
+        return max(limbs, default=0.0), rise
 
     def _setup(self) -> flow.Setup:
+        """Return the setup of the flow: grid, body, its motion, and the sides of the box."""
         robot, axes = self.run.robot, self._axes
         setting = SwimSetting(axes=axes, cells=self.water.cells, viscosity=self.viscosity, cycles=1)
         if self.water.beside is not None:
@@ -331,18 +346,19 @@ class Swim:
         if isinstance(self.chain, LinkChain):
             assert isinstance(self.path, LinkWay)
             stretched = [girdle.aside + girdle.limb.reach + girdle.limb.foot.radius for girdle in robot.girdles]
-            far = max(swing, *stretched, 1.5 * self._strokes[1] + float(self.half_height.max()))
-            grid = setting.grid_around(robot.length, far)
+            reach = max(swing, *stretched, 1.5 * self._strokes[1] + float(self.half_height.max()))
+            grid = setting.grid_around(robot.length, reach)
             shape: flow.SpaceShape | flow.Midline = self.chain.body(self.path)
             motion = self.chain.motion(self.path)
         else:
             grid = setting.grid(robot.length, swing, float(self.half_height.max()))
-            bare = self.chain.body(self.path, axes, self._least, self.half_height)
-            motion, shape = self.chain.motion(self.path, axes, self._least), bare
+            spine_body = self.chain.body(self.path, axes, self._min_half_width, self.half_height)
+            motion, shape = self.chain.motion(self.path, axes, self._min_half_width), spine_body
             if self.water.limbs:
-                assert isinstance(bare, flow.Trunk)
+                assert isinstance(spine_body, flow.Trunk)
                 shape = flow.Limbed(
-                    spine=bare.spine, half_height=bare.half_height, cuts=bare.cuts, limbs=folded(robot)
+                    spine=spine_body.spine, half_height=spine_body.half_height, cuts=spine_body.cuts,
+                    limbs=folded(robot),
                 )  # fmt: skip
         setting.check_thickness(robot, shape)
         body = flow.Body(shape=shape, motion=motion, name=robot.name)
@@ -354,7 +370,7 @@ class Swim:
 
     # --- between the robot's world and the flow's --------------------------------------------------------------
 
-    def _seen(self, state: CoordinateState) -> ChainState:
+    def _flow_state(self, state: CoordinateState) -> ChainState:
         """Return a state of the robot in the frame of the flow."""
         return self.chain.seen(state.place, state.rate)
 
@@ -362,8 +378,8 @@ class Swim:
     def _origin(self) -> np.ndarray:
         return np.array(self.sim.frame[0, : self.chain.axes])
 
-    def _found(self, began: ChainState, posture: ChainState) -> np.ndarray:
-        """Return the generalised force of the water in the last step, along the robot's own coordinates."""
+    def _water_force(self, began: ChainState, posture: ChainState) -> np.ndarray:
+        """Return the generalised force of the water in the last step, in the robot's own coordinates."""
         loads, place = self.sim.last(self.run.robot.name), 0.5 * (began.place + posture.place)
         return self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
 
@@ -371,91 +387,94 @@ class Swim:
 
     @property
     def time(self) -> float:
-        """How far it has come [s]."""
+        """Time that has been simulated [s]."""
         return self.stepper.time
 
     @property
     def effort(self) -> float:
-        """Work of the servos so far, braking counted as much as driving [J]."""
+        """Work of the servos so far; braking counts as positive work [J]."""
         return self._effort
 
     def _renew(self, *, anew: bool = False) -> None:
-        """Compute the added mass anew if the body has turned or bent enough, and when the wall first has its skin.
+        """Compute the added mass anew if the body has turned or bent enough, and after the first step.
 
-        Corrections that do not come to an end (``anew``) say that it does not fit any more.
+        The argument ``anew`` forces it: corrections that do not converge show that the added mass is not valid any
+        more.
         """
         posture = self.path.at(self.time)
-        settled = len(self.series.time) == 1
-        known = None if settled or anew else self._computed
-        if known is not None and self.chain.turned(posture.place, known) < self.water.renewed:
+        is_first_step = len(self.series.time) == 1
+        reference_place = None if is_first_step or anew else self._computed
+        if reference_place is not None and self.chain.turned(posture.place, reference_place) < self.water.renewed:
             return
         self._computed = posture.place
-        before = self._added
+        previous_mass = self._added_mass
         modes = self.chain.modes(posture.place, self._origin, self._axes)
-        found = self.sim.added_mass(self.run.robot.name, modes)
-        inside = self.chain.unpressed(posture.place, found.pressed, self._origin)
-        own = found.matrix - 0.5 * (inside + inside.T)
-        self._added = never_negative(self._times * self.chain.of_robot(own), self.stepper.mass())
+        added_mass = self.sim.added_mass(self.run.robot.name, modes)
+        internal_mass = self.chain.unpressed(posture.place, added_mass.pressed, self._origin)
+        water_mass = added_mass.matrix - 0.5 * (internal_mass + internal_mass.T)
+        self._added_mass = never_negative(self._times * self.chain.of_robot(water_mass), self.stepper.mass())
         if len(self.series.time):
-            inertia = self.stepper.mass() + before
-            apart = np.linalg.eigvals(np.linalg.solve(inertia, self._added - before))
-            self.series.radius.append((self.time, float(np.abs(apart).max())))
-        self._kept = self.stepper.burden(self._added)
+            inertia = self.stepper.mass() + previous_mass
+            eigenvalues = np.linalg.eigvals(np.linalg.solve(inertia, self._added_mass - previous_mass))
+            self.series.radius.append((self.time, float(np.abs(eigenvalues).max())))
+        self._implicit_added_mass = self.stepper.burden(self._added_mass)
 
     def _newton(self) -> np.ndarray:
-        """Return how the acceleration that is missing changes with one that is guessed, but for what servos do."""
-        inertia = self.stepper.mass() + self._kept
-        return np.asarray(np.eye(self.chain.size) + np.linalg.solve(inertia, self._added - self._kept))
+        """Return the derivative of the missing acceleration with respect to the guess, without the servos."""
+        inertia = self.stepper.mass() + self._implicit_added_mass
+        return np.asarray(
+            np.eye(self.chain.size) + np.linalg.solve(inertia, self._added_mass - self._implicit_added_mass)
+        )
 
-    def _gone(
+    def _solve_motion(
         self, count: int, force: np.ndarray, push: np.ndarray, guess: np.ndarray, newton: np.ndarray
     ) -> tuple[CoordinateState, np.ndarray, np.ndarray]:  # fmt: skip
-        """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
+        """Move the robot under ``force`` minus the added mass times the change of the acceleration.
 
-        Returns where it comes to, its mean acceleration on the way, ``guess`` at first, and what force it got beyond
-        that, as rounds end where the two are nearly alike. Broyden's updates of ``newton`` are kept in it.
+        Returns the state at the end, the mean acceleration, and the force beyond the implicit part. The rounds end when
+        the acceleration agrees with ``guess``. Broyden's method updates ``newton`` in place.
         """
-        h, before = count * self.timestep, self.stepper.at_begin.rate
-        left = self._added - self._kept
+        h, start_rate = count * self.timestep, self.stepper.at_begin.rate
+        explicit_mass = self._added_mass - self._implicit_added_mass
         missing = change = np.zeros_like(push)
-        for round_ in range(_ROUNDS):
-            end = self.stepper.go(count, force + self._added @ push - left @ guess)
-            found = (end.rate - before) / h
-            last, missing = missing, found - guess
-            beyond = left @ missing
-            if np.abs(missing).max() <= _SETTLED * np.abs(found).max():
+        for round_ in range(_MAX_ROUNDS):
+            end = self.stepper.go(count, force + self._added_mass @ push - explicit_mass @ guess)
+            acceleration = (end.rate - start_rate) / h
+            previous_missing, missing = missing, acceleration - guess
+            extra_force = explicit_mass @ missing
+            if np.abs(missing).max() <= _ROUND_TOLERANCE * np.abs(acceleration).max():
                 break
             if round_:
-                newton += np.outer(last - missing - newton @ change, change) / (change @ change)
+                newton += np.outer(previous_missing - missing - newton @ change, change) / (change @ change)
             change = np.linalg.solve(newton, missing)
             guess = guess + change
-        return end, found, beyond
+        return end, acceleration, extra_force
 
     def _size(self, force: np.ndarray) -> float:
-        """Return the size of a generalised force, each coordinate's over the root of its inertia."""
-        return float(np.sqrt((force**2 / np.diag(self.stepper.mass() + self._added)).sum()))
+        """Return the norm of a generalised force, each coordinate divided by the square root of its inertia."""
+        return float(np.sqrt((force**2 / np.diag(self.stepper.mass() + self._added_mass)).sum()))
 
-    def _learn(self, push: np.ndarray, answered: np.ndarray) -> np.ndarray:
-        """Let the added mass be one that answers an acceleration as the water was seen to; return what it gains.
+    def _learn(self, push: np.ndarray, water_response: np.ndarray) -> np.ndarray:
+        """Update the added mass with the observed response of the water, and return the change.
 
         Args:
             push: acceleration more.
-            answered: force of the water against it.
+            water_response: force of the water against it.
         """
-        before = self._added
-        self._added = learned(before, self.stepper.mass(), push, answered)
-        return self._added - before
+        previous_mass = self._added_mass
+        self._added_mass = learned(previous_mass, self.stepper.mass(), push, water_response)
+        return self._added_mass - previous_mass
 
-    def _adrift(self, owed: np.ndarray) -> float:
-        """Return the size of an impulse on the whole robot over the greatest momentum that it has had [-]."""
-        greatest = self._greatest_momentum
-        return float(np.linalg.norm(owed[: self.stepper.axes])) / greatest if greatest > 0.0 else 0.0
+    def _adrift(self, impulse: np.ndarray) -> float:
+        """Return the norm of an impulse on the whole robot over its greatest momentum so far [-]."""
+        max_momentum = self._greatest_momentum
+        return float(np.linalg.norm(impulse[: self.stepper.axes])) / max_momentum if max_momentum > 0.0 else 0.0
 
-    def step(self, until: float) -> None:
-        """Take one step of the flow and of the robot that does not go beyond a time [s].
+    def step(self, end_time: float) -> None:
+        """Take one step of the flow and of the robot that ends at a time or before it [s].
 
         Raises:
-            Diverged: robot or flow did, or the two do not come to terms; with the record so far.
+            Diverged: robot or flow diverged, or the coupling does not converge; with the record so far.
             OutsideLimits: the water is so fast that the flow's step falls below the physics'.
             InvalidDesign: the robot leaves the plane, or the box.
         """
@@ -471,84 +490,114 @@ class Swim:
         allowed = min(allowed, LONGEST * period / self.water.cells)
         if self._linked:
             allowed = min(allowed, period / STEPS)
-        most = max(int(allowed / self.timestep), 1)
+        max_steps = max(int(allowed / self.timestep), 1)
         if self._linked:
-            most = out_of_step(most, round(stepper.period / self.timestep))
-        count = stepper.until(until, most, LANDING)
-        h, start, began = count * self.timestep, self.time, self._seen(stepper.now)
+            max_steps = out_of_step(max_steps, round(stepper.period / self.timestep))
+        count = stepper.until(end_time, max_steps, LANDING)
+        h, start, began = count * self.timestep, self.time, self._flow_state(stepper.now)
         stepper.begin()
         newton = self._newton()
-        foreseen = self._strayed
-        asked, at = self._force, self._push
-        end, push, beyond = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, at, newton)
-        told = asked - self._added @ (push - at) + beyond
+        foreseen = self._momentum_defect
+        base_force, base_acceleration = self._force, self._push
+        end, push, extra_force = self._solve_motion(
+            count,
+            base_force + _lessened(self._residual_impulse, foreseen) / h,
+            base_acceleration,
+            base_acceleration,
+            newton,
+        )
+        applied_force = base_force - self._added_mass @ (push - base_acceleration) + extra_force
         if not np.isfinite(end.rate).all():
             raise Diverged(
                 f"at t = {self.time:.4g} s the physics of robot {self.run.robot.name!r} no longer has finite numbers "
                 f"under the water's force; take a shorter timestep than {self.timestep:.3g} s, or more cells.",
                 time=start,
             )
-        posture = self._seen(end)
+        posture = self._flow_state(end)
         self.path.go(start, began, start + h, posture)
         sim.advance(h)
-        self._placed = posture
-        found = self._found(began, posture)
-        self._greatest = max(self._greatest, self._size(found))
-        left = first = self._size(found - told) / max(self._greatest, 1e-300)
-        stretch, made, mass = stepper.account(), 0, stepper.mass()
-        missed = _lessened(h * (found - told), stretch.strayed - foreseen)
-        while made < self.water.corrections and max(left, self._adrift(missed)) > self.water.tolerance:
+        self._flow_posture = posture
+        water_force = self._water_force(began, posture)
+        self._max_force = max(self._max_force, self._size(water_force))
+        residual = first_residual = self._size(water_force - applied_force) / max(self._max_force, 1e-300)
+        stretch, correction_count, mass = stepper.account(), 0, stepper.mass()
+        residual_impulse = _lessened(h * (water_force - applied_force), stretch.strayed - foreseen)
+        while (
+            correction_count < self.water.corrections
+            and max(residual, self._adrift(residual_impulse)) > self.water.tolerance
+        ):
             foreseen = stretch.strayed
-            asked, at = found, push
-            likely = push + np.linalg.solve(mass + self._added, found - told)
-            end, push, beyond = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, likely, newton)
-            told = asked - self._added @ (push - at) + beyond
-            other = self._seen(end)
-            more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
-            posture = other
+            base_force, base_acceleration = water_force, push
+            likely = push + np.linalg.solve(mass + self._added_mass, water_force - applied_force)
+            end, push, extra_force = self._solve_motion(
+                count, base_force + _lessened(self._residual_impulse, foreseen) / h, base_acceleration, likely, newton
+            )
+            applied_force = base_force - self._added_mass @ (push - base_acceleration) + extra_force
+            corrected_posture = self._flow_state(end)
+            twist_change = self.chain.twists(
+                posture.place, corrected_posture.rate - posture.rate, self._origin, self._axes
+            )
+            posture = corrected_posture
             self.path.go(start, began, start + h, posture)
-            sim.accelerate({name: more})
-            found = self._found(began, posture)
-            newton += np.linalg.solve(mass + self._kept, self._learn(push - at, asked - found))
-            left, made = self._size(found - told) / self._greatest, made + 1
+            sim.accelerate({name: twist_change})
+            water_force = self._water_force(began, posture)
+            newton += np.linalg.solve(
+                mass + self._implicit_added_mass, self._learn(push - base_acceleration, base_force - water_force)
+            )
+            residual, correction_count = self._size(water_force - applied_force) / self._max_force, correction_count + 1
             stretch = stepper.account()
-            missed = _lessened(h * (found - told), stretch.strayed - foreseen)
+            residual_impulse = _lessened(h * (water_force - applied_force), stretch.strayed - foreseen)
         self._effort += stretch.effort
-        self._note(stretch, found, self._stirred(stretch, push, h), posture, (first, left), made)
+        self._note(
+            stretch,
+            water_force,
+            self._fluctuation_work(stretch, push, h),
+            posture,
+            (first_residual, residual),
+            correction_count,
+        )
         self._greatest_momentum = max(self._greatest_momentum, float(np.linalg.norm(stretch.momentum)))
-        self._force, self._push, self._owed, self._strayed = found, push, missed, stretch.strayed
-        self._watch(left)
-        self._renew(anew=made > 0 and left > self.water.tolerance)
+        self._force, self._push, self._residual_impulse, self._momentum_defect = (
+            water_force,
+            push,
+            residual_impulse,
+            stretch.strayed,
+        )
+        self._watch(residual)
+        self._renew(anew=correction_count > 0 and residual > self.water.tolerance)
 
-    def _stirred(self, stretch: Stretch, push: np.ndarray, h: float) -> float:
-        """Return the water's work in a step beyond that of its mean force [J].
+    def _fluctuation_work(self, stretch: Stretch, push: np.ndarray, h: float) -> float:
+        """Return the work of the water in a step beyond the work of its mean force [J].
 
-        The part of it that answers accelerations changes with these within a step, as servos are commanded anew.
+        The part of the force that depends on accelerations changes within a step, because the servos get new commands.
         """
         mean = 0.5 * h * (self.stepper.at_begin.rate + self.stepper.now.rate)
-        return float((self._kept @ push) @ (stretch.way - mean))
+        return float((self._implicit_added_mass @ push) @ (stretch.way - mean))
 
     def _note(
-        self, stretch: Stretch, found: np.ndarray, stirred: float, posture: ChainState,
-        residual: tuple[float, float], made: int,
+        self, stretch: Stretch, water_force: np.ndarray, fluctuation_work: float, posture: ChainState,
+        residual: tuple[float, float], correction_count: int,
     ) -> None:  # fmt: skip
+        """Append the quantities of a step to the series."""
         series = self.series
         loads = self.sim.last(self.run.robot.name)
         h = self.time - (series.time[-1] if series.time else 0.0)
         power = self._times * float(loads.whole.power - loads.whole.force @ self._drift())
         series.time.append(self.time)
-        series.force.append(found)
+        series.force.append(water_force)
         series.links.append(self._times * self.chain.felt(posture.place, loads, self._origin))
         series.residual.append(residual)
-        series.corrections.append(made)
-        series.worked.append((stretch.worked, stretch.yielded, float(found @ stretch.way) + stirred, -power * h))
+        series.corrections.append(correction_count)
+        series.worked.append(
+            (stretch.worked, stretch.yielded, float(water_force @ stretch.way) + fluctuation_work, -power * h)
+        )
         series.energy.append(stretch.energy)
 
     def _drift(self) -> np.ndarray:
         return np.asarray(self.sim.drift)
 
-    def _watch(self, left: float) -> None:
-        """Refuse what has left the plane, or does not converge; say which joints come to the end of their range."""
+    def _watch(self, residual: float) -> None:
+        """Refuse a robot that left the plane or a step that does not converge; warn of joints at their stops."""
         name, bend = self.stepper.off_plane
         if abs(bend) > OFF_PLANE:
             raise InvalidDesign(
@@ -557,34 +606,34 @@ class Swim:
                 'water=Space(linked=True), or water="sections".'
             )
         for joint, angle in self.stepper.at_stops.items():
-            if joint not in self._stopped:
-                self._stopped.add(joint)
+            if joint not in self._warned_joints:
+                self._warned_joints.add(joint)
                 warnings.warn(
                     f"at t = {self.time:.4g} s joint {joint} of robot {self.run.robot.name!r} is driven to the end of "
                     f"its range, {angle:.3g} rad: from then on its stop bears what servo, spring and water do not; a "
                     "stiffer spring or a slower gait keeps it free.", Doubtful, stacklevel=3,
                 )  # fmt: skip
-        self._strikes = self._strikes + 1 if left > LOST or not np.isfinite(left) else 0
-        if self._strikes >= PATIENCE or not np.isfinite(left):
+        self._strikes = self._strikes + 1 if residual > LOST or not np.isfinite(residual) else 0
+        if self._strikes >= PATIENCE or not np.isfinite(residual):
             raise Diverged(
-                f"at t = {self.time:.4g} s robot and flow do not come to terms: a force of {left:.3g} times the "
+                f"at t = {self.time:.4g} s robot and flow do not converge: a force of {residual:.3g} times the "
                 f"greatest so far is left over after {self.water.corrections} corrections; allow more corrections "
                 f"(now {self.water.corrections}), or take more cells.", time=self.time,
             )  # fmt: skip
 
     def go(
         self,
-        until: float,
+        end_time: float,
         *,
         progress: Progress | None = None,
         watch: Callable[["Swim"], None] | None = None,
         checkpoint: str | Path | None = None,
         checkpoint_every: float = 15.0,
     ) -> None:
-        """Go on until a time, a whole number of control periods [s]; the same bytes, stopped and gone on or not.
+        """Simulate until a time, a whole number of control periods [s]; an interrupted run gives the same bytes.
 
         Args:
-            until: time to reach [s].
+            end_time: time to reach [s].
             progress: told the share that is done; None shows a progress bar.
             watch: called after every step; what it keeps belongs into ``samples``.
             checkpoint: file in which robot, flow and samples are kept; if it exists, the swim goes on from there.
@@ -600,20 +649,20 @@ class Swim:
             store.load(self, checkpoint)
         saver = store.Saver(checkpoint, checkpoint_every)
         cells = prod(self.sim.setup.grid.cells)
-        with Bar(self.time, until, cells, show=progress is None) as bar:
-            while self.time < until - 0.5 * self.timestep:
+        with Bar(self.time, end_time, cells, show=progress is None) as bar:
+            while self.time < end_time - 0.5 * self.timestep:
                 try:
-                    self.step(until)
+                    self.step(end_time)
                 except (Diverged, InvalidDesign, NotConverged, OutsideLimits) as error:
-                    reached = self.series.time[-1] if self.series.time else 0.0
-                    self.stepper.end(reached, str(error))
-                    raise Diverged(str(error), time=reached, record=self.record()) from error
+                    last_time = self.series.time[-1] if self.series.time else 0.0
+                    self.stepper.end(last_time, str(error))
+                    raise Diverged(str(error), time=last_time, record=self.record()) from error
                 if watch is not None:
                     watch(self)
                 saver.save(self)
                 bar.move(self.time)
                 if progress is not None:
-                    progress("swimming", self.time / until)
+                    progress("swimming", self.time / end_time)
         saver.save(self, now=True)
         self.stepper.finish()
 
@@ -621,51 +670,55 @@ class Swim:
 
     @property
     def setup(self) -> object:
-        """What is simulated, and for how long; who has the same can go on from the other's state."""
+        """Setup of the run; a state can be resumed in any swim with an equal setup."""
         return self.run, self.timestep, self.ticks, self.water
 
     def state(self) -> store.State:
-        """Return all that changes, of the flow and of the robot, between two steps."""
-        now = self.path.at(self.time)
+        """Return all variables of flow and robot that change between two steps."""
+        current_posture = self.path.at(self.time)
         postures = {
-            f"{which}.{name}": getattr(posture, name)
-            for which, posture in (("posture", now), ("placed", self._placed))
+            f"{label}.{name}": getattr(posture, name)
+            for label, posture in (("posture", current_posture), ("placed", self._flow_posture))
             for name in ChainState._fields
         }
         parts = {
             "flow": self.sim.state(), "robot": self.stepper.state(), "series": self.series.state(),
             "samples": self.samples.state(),
         }  # fmt: skip
-        own = {name: getattr(self, f"_{name}") for name in _CHANGING}
+        attributes = {name: getattr(self, attribute) for name, attribute in _CHANGING.items()}
         return {
-            **postures, **{f"own.{name}": np.array(value) for name, value in own.items() if value is not None},
-            **{f"{part}.{name}": value for part, one in parts.items() for name, value in one.items()},
+            **postures, **{f"own.{name}": np.array(value) for name, value in attributes.items() if value is not None},
+            **{
+                f"{component}.{name}": value
+                for component, component_state in parts.items()
+                for name, value in component_state.items()
+            },
         }  # fmt: skip
 
     def resume(self, state: store.State) -> None:
-        """Go on from the state of a swim of the same run; to be asked of a fresh one."""
+        """Continue from the state of a swim of the same run; this swim must not have started."""
 
-        def part(name: str) -> store.State:
+        def component_state(name: str) -> store.State:
             start = f"{name}."
             return {key.removeprefix(start): value for key, value in state.items() if key.startswith(start)}
 
-        self.stepper.resume(part("robot"))
-        self._placed, posture = (ChainState(**part(name)) for name in ("placed", "posture"))
-        self.path.go(self.time, self._placed, self.time, self._placed)
-        self.sim.resume(part("flow"))
+        self.stepper.resume(component_state("robot"))
+        self._flow_posture, posture = (ChainState(**component_state(name)) for name in ("placed", "posture"))
+        self.path.go(self.time, self._flow_posture, self.time, self._flow_posture)
+        self.sim.resume(component_state("flow"))
         self.path.go(self.time, posture, self.time, posture)
         self.sim.forget()
-        for name, value in part("own").items():
-            setattr(self, f"_{name}", value if value.ndim else value.item())
-        self.series, self.samples = Series.of(part("series")), Samples.of(part("samples"))
+        for name, value in component_state("own").items():
+            setattr(self, _CHANGING[name], value if value.ndim else value.item())
+        self.series, self.samples = Series.of(component_state("series")), Samples.of(component_state("samples"))
 
     # --- what is kept ------------------------------------------------------------------------------------------
 
     def record(self) -> xr.Dataset:
-        """Return the record so far, in the schema of a run with ``record.WATER`` and ``record.COUPLED``; NaN beyond."""
+        """Return the record so far, with the variables of ``record.WATER`` and ``record.COUPLED``; NaN after it."""
         return recorded(self.run, self.chain, self.series, self.stepper.record(), self._start_added)
 
 
 def _lessened(impulse: np.ndarray, momentum: np.ndarray) -> np.ndarray:
-    """Return an impulse along the coordinates less a momentum of the whole robot."""
+    """Return an impulse in the coordinates minus a momentum of the whole robot."""
     return np.concatenate([impulse[: momentum.size] - momentum, impulse[momentum.size :]])

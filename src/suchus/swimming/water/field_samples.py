@@ -1,4 +1,4 @@
-"""What is kept of the fields around a swimming body: a window of the plane, and vortices in space."""
+"""Samples of the fields around a swimming body: a window of the plane, and vortices in space."""
 
 from typing import Any
 
@@ -24,20 +24,20 @@ SPINE = (("x", "m"), ("y", "m"), ("heading", "rad"), ("half_width", "m"))
 
 
 class FieldWindow:
-    """A window of the grid, in its corners, and what is seen through it."""
+    """A window of the grid, whose fields are sampled at the corners of its cells."""
 
-    def __init__(self, grid: flow.Grid, length: float, behind: float, beside: float) -> None:
+    def __init__(self, grid: flow.Grid, length: float, rear_end: float, half_width: float) -> None:
         """Open a window from a third of a length ahead of the snout.
 
         Args:
             grid: the cells.
             length: of the body [m].
-            behind: end of the window, from the snout [body length].
-            beside: half of its width [body length].
+            rear_end: end of the window, from the snout [body length].
+            half_width: half of its width [body length].
         """
         x, y = grid.x[:-1] + 0.5 * grid.cell, grid.y[:-1] + 0.5 * grid.cell
-        columns = np.flatnonzero((x > -0.35 * length) & (x < behind * length))
-        rows = np.flatnonzero(np.abs(y) < beside * length)
+        columns = np.flatnonzero((x > -0.35 * length) & (x < rear_end * length))
+        rows = np.flatnonzero(np.abs(y) < half_width * length)
         self._window = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         self.x, self.y = x[self._window[1]], y[self._window[0]]
 
@@ -49,12 +49,13 @@ class FieldWindow:
         u, v = sim.velocity
         return {
             "vorticity": sim.vorticity[self._window].astype(np.float32),
-            "pressure": self._between(sim.pressure),
-            "u": self._between(u + sim.frame[1, 0]),
-            "v": self._between(v + sim.frame[1, 1]),
+            "pressure": self._at_corners(sim.pressure),
+            "u": self._at_corners(u + sim.frame[1, 0]),
+            "v": self._at_corners(v + sim.frame[1, 1]),
         }
 
-    def _between(self, values: np.ndarray) -> np.ndarray:
+    def _at_corners(self, values: np.ndarray) -> np.ndarray:
+        """Return cell values at the corners of the cells within the window."""
         corners = 0.25 * (values[1:, 1:] + values[1:, :-1] + values[:-1, 1:] + values[:-1, :-1])
         return np.asarray(corners[self._window], np.float32)
 
@@ -72,28 +73,28 @@ class FieldWindow:
 def midline(sim: flow.Simulation) -> flow.MidlineState:
     """Return the midline of the only body, in the frame of the grid."""
     body, (position, _) = sim.setup.bodies[0], sim.frame
-    placed = body.shape.spine(sim.time).placed(sim.pose(body.name))  # type: ignore[union-attr]
+    world_state = body.shape.spine(sim.time).placed(sim.pose(body.name))  # type: ignore[union-attr]
     return flow.MidlineState(
-        x=placed.x - position[0],
-        y=placed.y - position[1],
-        heading=placed.heading,
-        half_width=placed.half_width,
-        x_rate=placed.x_rate,
-        y_rate=placed.y_rate,
-        heading_rate=placed.heading_rate,
+        x=world_state.x - position[0],
+        y=world_state.y - position[1],
+        heading=world_state.heading,
+        half_width=world_state.half_width,
+        x_rate=world_state.x_rate,
+        y_rate=world_state.y_rate,
+        heading_rate=world_state.heading_rate,
     )
 
 
 def sample_course(sim: flow.Simulation, samples: Samples) -> None:
-    """Add where the midline is to the side, at ``COURSE`` places along the body, after a step."""
+    """Store the lateral position of the midline at ``COURSE`` stations, after a step."""
     spine, (position, _) = midline(sim), sim.frame
-    at = np.linspace(0.0, spine.y.size - 1.0, COURSE)
-    across = np.interp(at, np.arange(spine.y.size), spine.y) + position[1]
-    samples.add("course", sim.time, across=across.astype(np.float32))
+    stations = np.linspace(0.0, spine.y.size - 1.0, COURSE)
+    lateral = np.interp(stations, np.arange(spine.y.size), spine.y) + position[1]
+    samples.add("course", sim.time, across=lateral.astype(np.float32))
 
 
 def course(sim: flow.Simulation, samples: Samples, period: float, cycles: int) -> xr.Dataset:
-    """Return the course of a free body from its start: midline and centre of mass to the side, at even instants.
+    """Return the lateral course of a free body from its start: midline and centre of mass at equal intervals of time.
 
     Args:
         sim: at its end.
@@ -101,12 +102,14 @@ def course(sim: flow.Simulation, samples: Samples, period: float, cycles: int) -
         period: of one cycle [s].
         cycles: that were swum [-].
     """
-    even, seen = period * np.arange(TICKS * cycles + 1) / TICKS, samples.series("course")
-    across = np.column_stack([np.interp(even, seen["time"], column) for column in seen["across"].T])
-    centre = np.interp(even, sim.record.time, sim.record.column("y"))
+    times, course_samples = period * np.arange(TICKS * cycles + 1) / TICKS, samples.series("course")
+    lateral = np.column_stack(
+        [np.interp(times, course_samples["time"], column) for column in course_samples["across"].T]
+    )
+    centre = np.interp(times, sim.record.time, sim.record.column("y"))
     return xr.Dataset(
         {
-            "course": (("tick", "place"), across, {"units": "m", "long_name": "midline to the right"}),
+            "course": (("tick", "place"), lateral, {"units": "m", "long_name": "midline to the right"}),
             "course_centre": ("tick", centre, {"units": "m", "long_name": "centre of mass to the right"}),
         }
     )
@@ -146,12 +149,12 @@ def _vortices(sim: flow.Simulation) -> np.ndarray:
     velocity = np.stack(sim.velocity).astype(float)
     image = velocity[:, :1] * np.array([1.0, 1.0, -1.0])[:, None, None, None]
     q = flow.second_invariant(np.concatenate([image, velocity], axis=1), sim.setup.grid.cell)[1:]
-    outside: np.ndarray = q * (sim.fluid_share > OUTSIDE)
-    return outside
+    invariant: np.ndarray = q * (sim.fluid_share > OUTSIDE)
+    return invariant
 
 
 class VortexSampler:
-    """Looks at a body at equal intervals of its last cycle and samples its midline and the vortices around it."""
+    """Samples the midline and the vortices of a body at equal intervals of its last cycle."""
 
     def __init__(self, frequency: float, end: float, frames: int) -> None:
         """Begin to wait for the last cycle.
@@ -164,25 +167,26 @@ class VortexSampler:
         self._frequency, self._end, self._frames = frequency, end, frames
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
-        """Take a frame if one is due."""
-        left = (self._end - sim.time) * self._frequency
+        """Store a frame if one is due."""
+        remaining_cycles = (self._end - sim.time) * self._frequency
         count = samples.count("frames")
-        if count < self._frames and left < 1.0 - (count + 1) / self._frames + 1e-6:
+        if count < self._frames and remaining_cycles < 1.0 - (count + 1) / self._frames + 1e-6:
             samples.add("frames", sim.time, **self._frame(sim))
 
     def _frame(self, sim: flow.Simulation) -> dict[str, np.ndarray]:
+        """Return vortices, spin and midline of the present instant, in small integers."""
         f = self._frequency
         q = _vortices(sim) / (VORTEX * f * f)
-        shown = q > 0.25
-        spin = np.where(shown, sim.vorticity_at_centres[2] / (TURNS * f), 0.0)
+        is_vortex = q > 0.25
+        spin = np.where(is_vortex, sim.vorticity_at_centres[2] / (TURNS * f), 0.0)
         return {
-            "vortices": np.where(shown, np.round(LEVEL * np.minimum(q, 32.0)), 0.0).astype(np.int16),
+            "vortices": np.where(is_vortex, np.round(LEVEL * np.minimum(q, 32.0)), 0.0).astype(np.int16),
             "spin": np.round(127.0 * np.clip(spin, -1.0, 1.0)).astype(np.int8),
             **midline_values(midline(sim)),
         }
 
     def record(self, samples: Samples) -> xr.Dataset:
-        """Return the frames: ``vortices`` and ``spin`` in whole numbers, and what 1 of them stands for."""
+        """Return the frames: ``vortices`` and ``spin`` as integers, and the values of their units."""
         if samples.count("frames") == 0:
             return xr.Dataset()
         frames, f, box = samples.series("frames"), self._frequency, ("frame", "z", "y", "x")

@@ -1,7 +1,7 @@
-"""Waves that the joints are asked to make: the motion that comes nearest to them.
+"""Fit of a gait to a body wave: the motion of the joints that is nearest to the wave.
 
-The article commands a continuous wave; a robot has a few lateral servos, the article's three yaw joints and one cable.
-So the wave's tangent angles are fitted by least squares, and what remains is reported.
+The article commands a continuous wave. A robot has a few lateral servos; the article's has three yaw joints and one
+cable. So the wave's tangent angles are fitted by least squares, and the misfit is reported.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,7 +26,7 @@ _TIMES = 48
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
-    """A swimming gait that comes nearest to a wave."""
+    """The swimming gait that is nearest to a wave."""
 
     gait: Gait
     """The gait."""
@@ -46,10 +46,10 @@ def fit(
     most: float = 0.25,
     limbs: tuple[float, float] = LIMBS_BACK,
 ) -> Fit:
-    """Return the gait of the lateral servos that comes nearest to a wave, least squares on tangent angles.
+    """Return the gait of the lateral servos that is nearest to a wave, by least squares of tangent angles.
 
-    Angles are compared at equal arc lengths over one cycle, their first harmonic in time; the head's direction is
-    free, the passive end straight.
+    Angles are compared at equal arc lengths over one cycle, by their first harmonic in time. The direction of the head
+    is free, the passive end straight.
 
     Args:
         robot: whose joints.
@@ -79,52 +79,68 @@ def fit(
     _check_amplitudes(robot, name, amplitudes)
     lags = [round(-float(np.angle(bend)) / (2 * np.pi), 12) for bend in bends]
     # a servo behind the root turns the tip right where its angle is positive, and a gait's bends are to the left
-    left = [
+    left_lags = [
         lag if servo.ahead else lag - 0.5 if lag > 0.0 else lag + 0.5
         for servo, lag in zip(outline.servos, lags, strict=True)
     ]
-    gait = swimming_gait(robot, name=name, frequency=1.0 / wave.period, amplitude=amplitudes, lag=left, limbs=limbs)
-    misfit, asked = _misfit(outline, gait, head, time, x, y), _asked(outline, heading)
+    gait = swimming_gait(
+        robot, name=name, frequency=1.0 / wave.period, amplitude=amplitudes, lag=left_lags, limbs=limbs
+    )
+    misfit, requested_bends = _misfit(outline, gait, head, time, x, y), _requested_bends(outline, heading)
     if not misfit <= most:
         limits = _limits(outline)
-        worst = int(np.argmax(asked / limits))
+        worst_joint = int(np.argmax(requested_bends / limits))
         raise OutsideLimits(
             f"the joints of robot {robot.name!r} cannot make {name!r}: the nearest motion is off by {100 * misfit:.0f} "
-            f"% of the tail's swing, and {100 * most:.0f} % is allowed. Where {outline.joints[worst]} stands the wave "
-            f"bends by {asked[worst]:.2f} rad and the joint by {limits[worst]:.2f} rad at most: take a longer "
-            "or a flatter wave."
+            f"% of the tail's swing, and {100 * most:.0f} % is allowed. Where {outline.joints[worst_joint]} stands "
+            "the wave "
+            f"bends by {requested_bends[worst_joint]:.2f} rad and the joint by {limits[worst_joint]:.2f} rad at "
+            "most: take a longer or a flatter wave."
         )
-    return Fit(gait=gait, head=head, misfit=misfit, asked=tuple(asked.tolist()))
+    return Fit(gait=gait, head=head, misfit=misfit, asked=tuple(requested_bends.tolist()))
 
 
 def _misfit(outline: Outline, gait: Gait, head: complex, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
-    """Return the rms distance over the tail's swing; at every instant the curves lie over each other on the average."""
+    """Return the rms distance of a gait's midline from the wave, over the swing of the tail [-].
+
+    At every instant both curves have the same mean position.
+    """
     curve = undulation(outline, gait).held(turn=head).curve(time)
-    apart = [a - b - (a - b).mean(axis=-1, keepdims=True) for a, b in ((curve.x, x), (curve.y, y))]
+    differences = [a - b - (a - b).mean(axis=-1, keepdims=True) for a, b in ((curve.x, x), (curve.y, y))]
     swing = float(np.abs(y[:, -1]).max())
-    return float(np.sqrt(np.mean(apart[0] ** 2 + apart[1] ** 2)) / swing) if swing > 0 else 0.0
+    return float(np.sqrt(np.mean(differences[0] ** 2 + differences[1] ** 2)) / swing) if swing > 0 else 0.0
 
 
-def _asked(outline: Outline, heading: np.ndarray) -> np.ndarray:
-    """Return the greatest bend of a wave over the length that each joint stands for [rad]."""
+def _requested_bends(outline: Outline, heading: np.ndarray) -> np.ndarray:
+    """Return the greatest bend of a wave over the length that belongs to each joint [rad]."""
     half = 0.5 * outline.spacings
-    ends = [np.array([np.interp(outline.places + side * half, outline.s, now) for now in heading]) for side in (-1, 1)]
+    ends = [
+        np.array([np.interp(outline.places + side * half, outline.s, instant_heading) for instant_heading in heading])
+        for side in (-1, 1)
+    ]
     return np.asarray(np.abs(ends[1] - ends[0]).max(axis=0))
 
 
 def _limits(outline: Outline) -> np.ndarray:
-    """Return how far each joint bends to either side, those of a cable an even share of what it allows [rad]."""
+    """Return the greatest bend of each joint to either side; the joints of a cable have equal limits [rad]."""
     robot = outline.robot
     limits = {hinge.name: hinge.range or (-np.pi, np.pi) for hinge in robot.axis_hinges}
     limits |= {name: (0.0, cable.bend_limit / cable.joints) for cable in robot.cables for name in cable.hinges}
     return np.array([_either_side(*limits[name]) for name in outline.joints])
 
 
-def _either_side(low: float, high: float) -> float:
-    return min(-low, high) if low < 0.0 else high
+def _either_side(lower_bound: float, upper_bound: float) -> float:
+    return min(-lower_bound, upper_bound) if lower_bound < 0.0 else upper_bound
 
 
 def _check_amplitudes(robot: Robot, name: str, amplitudes: Sequence[float]) -> None:
+    """Refuse bends beyond the range of a servo.
+
+    Args:
+        robot: the design.
+        name: of the motion, for the message.
+        amplitudes: of the bend of each lateral servo [rad].
+    """
     limits = {hinge.name: _either_side(*(hinge.range or (-np.pi, np.pi))) for hinge in robot.axis_hinges}
     limits |= {cable.name: cable.bend_limit for cable in robot.cables}
     for servo, amplitude in zip(lateral_servos(robot), amplitudes, strict=True):
@@ -147,7 +163,7 @@ def swim_of(
     reading: str = "I",
     limbs: tuple[float, float] = LIMBS_BACK,
 ) -> Gait:
-    """Return the gait in which a robot swims unless another one is asked for: the wave of (20) on its joints.
+    """Return the default swimming gait of a robot: the wave of (20) on its joints.
 
     Args:
         robot: any robot whose axis bends sideways; its hull makes no difference.
@@ -160,13 +176,13 @@ def swim_of(
         UnsuitedRobot: no servo bends the robot sideways.
         OutsideLimits: its joints cannot make the wave.
     """
-    bare = with_values(check_needs(robot, ["axis"], "a swim"), {"hull": None})
+    hull_free_robot = with_values(check_needs(robot, ["axis"], "a swim"), {"hull": None})
     cycles = frequency or _FREQUENCY * _PERIOD / control_period(robot)
-    return fit(bare, printed_wave(bare, reading, frequency=cycles, sign=-1), limbs=limbs).gait
+    return fit(hull_free_robot, printed_wave(hull_free_robot, reading, frequency=cycles, sign=-1), limbs=limbs).gait
 
 
 class Attempt(NamedTuple):
-    """A reading that was tried."""
+    """The fit to one reading of (20)."""
 
     letter: str
     """Letter of ``kinematics.wave.READINGS``."""
@@ -177,33 +193,33 @@ class Attempt(NamedTuple):
 
 
 def attempts(robot: Robot, *, frequency: float, sign: int = -1) -> list[Attempt]:
-    """Return what a robot's joints make of (20) in each of its readings.
+    """Return the fit of a robot's joints to (20) in each of its readings.
 
     Args:
         robot: whose joints.
         frequency: which the article does not give [Hz].
         sign: -1 runs from head to tail; 1 as printed.
     """
-    found = []
+    results = []
     for letter in READINGS:
         wave = printed_wave(robot, letter, frequency=frequency, sign=sign)
         try:
-            found.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
+            results.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
         except OutsideLimits as refused:
-            found.append(Attempt(letter, None, str(refused)))
-    return found
+            results.append(Attempt(letter, None, str(refused)))
+    return results
 
 
-def readings_table(tried: Iterable[Attempt], thrust: Mapping[str, str]) -> str:
+def readings_table(readings: Iterable[Attempt], thrust: Mapping[str, str]) -> str:
     """Return a Markdown table of readings: units, misfit, what the joints make of it, thrust.
 
     Args:
-        tried: the readings.
+        readings: the readings.
         thrust: what was measured of some of them, by letter.
     """
     lines = ["| reading of (20) | units | misfit | joints | thrust |", "|---|---|---|---|---|"]
-    for letter, fitted, refusal in tried:
-        misfit = "" if fitted is None else f"{100 * fitted.misfit:.1f} %"
+    for letter, nearest_fit, refusal in readings:
+        misfit = "" if nearest_fit is None else f"{100 * nearest_fit.misfit:.1f} %"
         joints = refusal or READINGS[letter].verdict
         lines.append(f"| {letter} | {READINGS[letter].meaning} | {misfit} | {joints} | {thrust.get(letter, '')} |")
     return "\n".join(lines) + "\n"

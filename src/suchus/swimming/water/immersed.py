@@ -1,4 +1,4 @@
-"""The robot as a body of the flow solver: a slice through it, as deep as the flow is, or the body itself."""
+"""The robot as a body of the flow solver: a slice through it, or the body itself."""
 
 from functools import lru_cache
 
@@ -19,11 +19,11 @@ def immersed(
 ) -> flow.Midline:
     """Return the robot as a bending body of ``suchus.flow``, head at the origin, tail towards +x, y to its right.
 
-    The midline bends as it is commanded, the six cable joints all alike. On the robot one cable holds their sum alone,
-    so that the water's moments, which differ from joint to joint, would make their angles differ: that is left out, as
-    is what the passive end gives way, see ``sprung``.
+    The midline bends as it is commanded, and the six cable joints bend equally. The real cable fixes only their sum,
+    and the moments of the water differ between the joints; this is neglected. The compliance of the passive end is
+    neglected as well, see ``sprung``.
 
-    Seen from above that frame is turned by half a turn, not mirrored: counter-clockwise stays counter-clockwise.
+    Seen from above the frame is turned by half a turn, not mirrored: counter-clockwise stays counter-clockwise.
 
     Args:
         outline: of the robot; stations about one cell apart serve well.
@@ -33,28 +33,28 @@ def immersed(
         grow: time over which the motion grows from nothing [s].
         least: half-width below which the body is thickened, its ends made round [m].
     """
-    bent = undulation(outline, motion).held(sway, turn)
+    body_motion = undulation(outline, motion).held(sway, turn)
     half_width = outline.silhouette.half_width
 
     @lru_cache(maxsize=2)  # the flow asks up to ten times for the same two instants of a step
     def spine(time: float) -> flow.MidlineState:
-        curve = bent.curve(np.asarray(time), *_grown(time, grow))
-        bare = flow.MidlineState(**curve._asdict(), half_width=half_width)
-        return bare.thickened(least) if least > 0.0 else bare
+        curve = body_motion.curve(np.asarray(time), *_growth(time, grow))
+        state = flow.MidlineState(**curve._asdict(), half_width=half_width)
+        return state.thickened(least) if least > 0.0 else state
 
     return flow.Midline(spine=spine)
 
 
-def _grown(time: float, over: float) -> tuple[float, float]:
-    """Return the share of a motion that has grown, smooth at both ends, and its rate."""
-    if over <= 0.0 or time >= over:
+def _growth(time: float, duration: float) -> tuple[float, float]:
+    """Return the fraction of a motion that has grown, smooth at both ends, and its rate [1/s]."""
+    if duration <= 0.0 or time >= duration:
         return 1.0, 0.0
-    part = time / over
-    return part**3 * (10 - 15 * part + 6 * part**2), 30 * part**2 * (1 - part) ** 2 / over
+    fraction = time / duration
+    return fraction**3 * (10 - 15 * fraction + 6 * fraction**2), 30 * fraction**2 * (1 - fraction) ** 2 / duration
 
 
 def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
-    """Return half of the body's height at the stations, limbs left out, with a raised tail if it is asked for [m].
+    """Return half of the body's height at the stations, without limbs, with a raised tail if requested [m].
 
     Args:
         outline: of the robot.
@@ -68,23 +68,30 @@ def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
 
 
 def folded(robot: Robot) -> tuple[flow.Capsule, ...]:
-    """Return the limbs of a robot, stretched and turned straight back from the hips, which lie in the body's plane.
+    """Return the limbs of a robot, stretched and turned straight back from the hips, in the plane of the body.
 
-    Each link is a capsule and each foot a ball, rigid with the body at the hip.
+    Each link is a capsule and each foot a ball. They are fixed to the body at the hip.
     """
-    place, found = layout(robot), []
+    place, capsules = layout(robot), []
     names = [segment.name for segment in place.robot.axis]
     for limb in place.limbs:
         girdle = limb.girdle
-        at = stations(place.robot)[names.index(girdle.segment)][0]
-        at += place.robot.axis[names.index(girdle.segment)].front - girdle.at
-        aside, behind = -limb.side * girdle.aside, 0.0  # the body's y points to the robot's right
+        hip_position = stations(place.robot)[names.index(girdle.segment)][0]
+        hip_position += place.robot.axis[names.index(girdle.segment)].front - girdle.at
+        lateral_offset, rear_offset = -limb.side * girdle.aside, 0.0  # the body's y points to the robot's right
         for link in girdle.limb.links:
-            ends = (behind, aside), (behind + link.length, aside)
-            found.append(flow.Capsule(at=at, start=ends[0], end=ends[1], radius=link.radius))
-            behind += link.length
-        found.append(flow.Capsule(at=at, start=(behind, aside), end=(behind, aside), radius=girdle.limb.foot.radius))
-    return tuple(found)
+            ends = (rear_offset, lateral_offset), (rear_offset + link.length, lateral_offset)
+            capsules.append(flow.Capsule(at=hip_position, start=ends[0], end=ends[1], radius=link.radius))
+            rear_offset += link.length
+        capsules.append(
+            flow.Capsule(
+                at=hip_position,
+                start=(rear_offset, lateral_offset),
+                end=(rear_offset, lateral_offset),
+                radius=girdle.limb.foot.radius,
+            )
+        )
+    return tuple(capsules)
 
 
 def trunk(
@@ -109,7 +116,7 @@ def trunk(
         turn: harmonic of the head's direction [rad].
     """
     spine = immersed(outline, motion, sway=sway, turn=turn, grow=grow).spine
-    cuts, high = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
+    cuts, half_height = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
     if limbs:
-        return flow.Limbed(spine=spine, half_height=high, cuts=cuts, limbs=folded(outline.robot))
-    return flow.Trunk(spine=spine, half_height=high, cuts=cuts)
+        return flow.Limbed(spine=spine, half_height=half_height, cuts=cuts, limbs=folded(outline.robot))
+    return flow.Trunk(spine=spine, half_height=half_height, cuts=cuts)

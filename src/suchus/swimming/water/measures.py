@@ -1,4 +1,4 @@
-"""Numbers read from the records of a tethered and of a free swim; how each is defined stands here."""
+"""Measures of a tethered and of a free swim, and their definitions."""
 
 from typing import NamedTuple
 
@@ -21,34 +21,34 @@ class Quarters(NamedTuple):
     """Force to the right [N/m]."""
 
     @classmethod
-    def each(cls, held: xr.Dataset) -> "list[Quarters]":
-        """Read every cycle but the first from a record of a tethered slice; the last one comes last."""
-        cycles = [held.isel(settled=i) for i in range(held.sizes["settled"])]
-        return [cls(*(one[f"quarter_{name}"].values.tolist() for name in cls._fields)) for one in cycles]
+    def each(cls, record: xr.Dataset) -> "list[Quarters]":
+        """Return the quarters of every cycle but the first of a tethered slice, the last cycle at the end."""
+        cycles = [record.isel(settled=i) for i in range(record.sizes["settled"])]
+        return [cls(*(cycle[f"quarter_{name}"].values.tolist() for name in cls._fields)) for cycle in cycles]
 
     @property
     def moves(self) -> float:
-        """How far the difference has moved towards the tip from T/4 to 3T/4, in tail lengths [-]."""
+        """Displacement of the pressure difference towards the tip from T/4 to 3T/4, in tail lengths [-]."""
         return self.place[2] - self.place[0]
 
 
-def convex_higher(held: xr.Dataset) -> float:
-    """Return in which share of the cycle the convex side of the tail has the higher pressure [-]."""
-    return float((held.difference > 0).mean())
+def convex_higher(record: xr.Dataset) -> float:
+    """Return the fraction of the cycle in which the convex side of the tail has the higher pressure [-]."""
+    return float((record.difference > 0).mean())
 
 
 def level(track: np.ndarray) -> np.ndarray:
-    """Return a track over whole cycles, first and last instant included, less its mean line.
+    """Return a track over whole cycles, first and last instant included, minus its mean line.
 
-    The line's slope is the displacement from the first to the last instant: a line of least squares would lean with a
-    sine.
+    The slope of the line is the displacement from the first to the last instant. A line of least squares would be
+    tilted by a sine.
     """
     drift = (track[-1] - track[0]) * np.linspace(-0.5, 0.5, track.size)
     return np.asarray(track - drift - np.mean(track[:-1] - drift[:-1]))
 
 
 class LateralSwing(NamedTuple):
-    """How each station of a body swings to either side, as a sine of one cycle."""
+    """First harmonic of each station's lateral motion."""
 
     amplitude: Float[np.ndarray, " station"]
     """Amplitude of the sine [m]."""
@@ -58,22 +58,22 @@ class LateralSwing(NamedTuple):
     """Fraction of the variance about the mean line that the sine has [-]."""
 
 
-def swing(across: Float[np.ndarray, "sample station"], cycles: int = 2) -> LateralSwing:
-    """Return how far each station swings to either side as a sine, and which share of its swing that sine is.
+def swing(lateral_positions: Float[np.ndarray, "sample station"], cycles: int = 2) -> LateralSwing:
+    """Return the amplitude of each station's first harmonic, its lag, and the variance that the harmonic explains.
 
     Args:
-        across: places to the side over whole cycles, first and last instant included [m].
+        lateral_positions: places to the side over whole cycles, first and last instant included [m].
         cycles: how many [-].
     """
-    swung = np.column_stack([level(track) for track in across.T])[:-1]
-    harmonic = 2.0 * np.fft.rfft(swung, axis=0)[cycles] / len(swung)
-    variance = np.maximum(np.mean(swung**2, axis=0), np.finfo(float).tiny)
+    deviations = np.column_stack([level(track) for track in lateral_positions.T])[:-1]
+    harmonic = 2.0 * np.fft.rfft(deviations, axis=0)[cycles] / len(deviations)
+    variance = np.maximum(np.mean(deviations**2, axis=0), np.finfo(float).tiny)
     lag = np.mod(-np.angle(harmonic) / (2.0 * np.pi), 1.0)
     return LateralSwing(np.abs(harmonic), lag, 0.5 * np.abs(harmonic) ** 2 / variance)
 
 
 class Sway(NamedTuple):
-    """A track's displacement to the side and back, once a cycle."""
+    """Lateral motion of a track once a cycle."""
 
     amplitude: float
     """Amplitude of the sine of one cycle [m]."""
@@ -82,7 +82,7 @@ class Sway(NamedTuple):
 
     @classmethod
     def of(cls, track: Float[np.ndarray, " sample"], cycles: int) -> "Sway":
-        """Measure a track to the side over whole cycles, first and last instant included [m].
+        """Return the sway of a lateral track over whole cycles, first and last instant included [m].
 
         Raises:
             ValueError: the samples are no whole number for each cycle.
@@ -90,14 +90,14 @@ class Sway(NamedTuple):
         if (track.size - 1) % cycles:
             raise ValueError(f"{track.size} samples are no whole number for each of {cycles} cycles.")
         amplitude, _, share = (float(values[0]) for values in swing(track[:, None], cycles))
-        left = np.sqrt(max(np.var(level(track)[:-1]) * (1.0 - share), 0.0))
-        return cls(amplitude, 2.0 * float(left))
+        residual = np.sqrt(max(np.var(level(track)[:-1]) * (1.0 - share), 0.0))
+        return cls(amplitude, 2.0 * float(residual))
 
 
 def wave_form(
     s: Float[np.ndarray, " station"], amplitude: Float[np.ndarray, " station"], lag: Float[np.ndarray, " station"]
 ) -> tuple[float, float, float, float]:
-    """Return the wave of the form (20) that comes nearest to a swinging midline, and which share of the swing it is.
+    """Return the wave of the form (20) that is nearest to a midline, and the fraction of the swing that it explains.
 
     Args:
         s: arc length from the snout, over the length [-].
@@ -110,21 +110,23 @@ def wave_form(
 
     Paper: Eq. (20).
     """
-    swung = amplitude * np.exp(-2j * np.pi * lag)
+    harmonics = amplitude * np.exp(-2j * np.pi * lag)
 
-    def left(guess: np.ndarray) -> np.ndarray:
-        apart = (guess[0] * s + guess[1] * s**2) * np.exp(-2j * np.pi * (guess[2] * s + guess[3])) - swung
-        return np.concatenate([apart.real, apart.imag])
+    def residuals(guess: np.ndarray) -> np.ndarray:
+        difference = (guess[0] * s + guess[1] * s**2) * np.exp(-2j * np.pi * (guess[2] * s + guess[3])) - harmonics
+        return np.concatenate([difference.real, difference.imag])
 
     size = float(amplitude[-1])
     starts = [(0.1 * size, size, waves, lag) for waves in (-1.0, 0.2, 1.0) for lag in (0.0, 0.25, 0.5, 0.75)]
-    found = min((least_squares(left, start, x_scale=(size, size, 1.0, 1.0)) for start in starts), key=lambda f: f.cost)
-    whole = float(np.sum(np.abs(swung) ** 2))
-    return float(found.x[0]), float(found.x[1]), float(found.x[2]), 1.0 - 2.0 * float(found.cost) / whole
+    best = min(
+        (least_squares(residuals, start, x_scale=(size, size, 1.0, 1.0)) for start in starts), key=lambda f: f.cost
+    )
+    total_power = float(np.sum(np.abs(harmonics) ** 2))
+    return float(best.x[0]), float(best.x[1]), float(best.x[2]), 1.0 - 2.0 * float(best.cost) / total_power
 
 
 class Swum(NamedTuple):
-    """A free swim in numbers, of its last cycle."""
+    """Measures of a free swim in its last cycle."""
 
     speed: float
     """Forward [m/s]."""
@@ -141,7 +143,7 @@ class Swum(NamedTuple):
 
     @classmethod
     def of(cls, free: xr.Dataset, frequency: float) -> "Swum":
-        """Read them from a record of a free slice."""
+        """Return the measures of a record of a free slice."""
         speed, power = float(free.speed[-1]), float(free.power[-1])
         return cls(
             speed,
@@ -154,7 +156,7 @@ class Swum(NamedTuple):
 
 
 def efficiency(drag: float, speed: float, power: float) -> float:
-    """Return the quasi-propulsive efficiency: the power that towing the straight body takes over that of the joints.
+    """Return the quasi-propulsive efficiency: the power for towing the straight body over that of the joints.
 
     Args:
         drag: of the straight body at that speed [N or N/m].

@@ -1,7 +1,7 @@
-"""The robot seen from above, limbs folded away: how wide it is along its midline, and how its joints bend that.
+"""Outline of the robot from above, without limbs: its width along the midline, and the bend by its joints.
 
-Frame: the snout at the origin when the base rests there, x towards the tail, y to the robot's right, so that x is
-that of (20); a heading is the direction from head to tail. Arc length s runs from the snout to the tip of the tail.
+The snout is at the origin when the base rests there, x points towards the tail, y to the robot's right: x is that of
+(20). A heading is the direction from head to tail. Arc length s runs from the snout to the tip of the tail.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class BodySilhouette(NamedTuple):
 
 
 def silhouette(robot: Robot, s: Float[np.ndarray, " station"]) -> BodySilhouette:
-    """Return how far the straight robot reaches sideways and upwards, limbs left out.
+    """Return half width and half height of the straight robot along its midline, without limbs.
 
     Args:
         robot: the design.
@@ -41,7 +41,7 @@ def silhouette(robot: Robot, s: Float[np.ndarray, " station"]) -> BodySilhouette
 
 
 class MidlineCurve(NamedTuple):
-    """A bent midline and how it moves; every array has the shape (*b, station)."""
+    """A bent midline and its velocity; every array has the shape (*b, station)."""
 
     x: Float[np.ndarray, "*b station"]
     """[m]."""
@@ -58,7 +58,7 @@ class MidlineCurve(NamedTuple):
 
 
 class LateralServo(NamedTuple):
-    """What bends the midline at a command: a servo at its hinge, or a cable at several."""
+    """A servo that bends the midline: at its hinge, or by a cable at several hinges."""
 
     name: str
     """Name of the servo."""
@@ -70,11 +70,11 @@ class LateralServo(NamedTuple):
 
 @dataclass(frozen=True)
 class Outline:
-    """A robot's midline, from its joints.
+    """A robot's midline over its joints.
 
-    Each joint's bend is smeared over a length, the curvature as a raised cosine: half way to the nearest joint on
-    either side where a servo turns one hinge between rigid segments, as far as the nearest joint in a cable section
-    and a passive end, which are flexible. Where such joints bend alike the curvature is even.
+    The bend of each joint is distributed over a length, with a raised cosine as curvature. A joint between rigid
+    segments reaches half way to the nearest joint on either side. A joint in a cable section or a passive end, which
+    are flexible, reaches to the nearest joint. The curvature is constant where such joints bend equally.
     """
 
     robot: Robot
@@ -93,7 +93,7 @@ class Outline:
 
     @cached_property
     def silhouette(self) -> BodySilhouette:
-        """How wide and high the body is at the stations."""
+        """Half width and half height of the body at the stations."""
         return silhouette(self.robot, self.s)
 
     @cached_property
@@ -104,28 +104,28 @@ class Outline:
 
     @cached_property
     def ahead(self) -> int:
-        """How many of ``joints`` lie ahead of the root.
+        """Number of ``joints`` ahead of the root.
 
-        A positive angle turns the front end left there, and the tip right behind the root.
+        A positive angle of such a joint turns the front end left; behind the root it turns the tip right.
         """
         place = layout(self.robot)
         return sum(name in place.hinges[place.ahead] for name in self.joints)
 
     @cached_property
     def servos(self) -> tuple[LateralServo, ...]:
-        """What bends the midline at a command, in the order of ``motion.lateral_servos``."""
+        """The servos that bend the midline, in the order of ``motion.lateral_servos``."""
         place, order = layout(self.robot), {name: i for i, name in enumerate(self.joints)}
         hinges = {name: place.cable(place.servos.index(name)).hinges for name in self._cables}
-        moved = {
+        joints_by_servo = {
             name: tuple(order[joint] for joint in hinges.get(name, (name,))) for name in lateral_servos(self.robot)
         }
-        return tuple(LateralServo(name, joints, joints[0] < self.ahead) for name, joints in moved.items())
+        return tuple(LateralServo(name, joints, joints[0] < self.ahead) for name, joints in joints_by_servo.items())
 
     def at_servos(self, moments: Float[np.ndarray, "*b joint"]) -> Float[np.ndarray, "*b servo"]:
-        """Return what moments about ``joints`` ask of ``servos``, each at its own shaft [N m].
+        """Return the torques of ``servos`` for moments about ``joints``, each at its own shaft [N m].
 
-        A cable bends its joints alike, so that its servo takes the mean of their moments, over the ratio of half the
-        cords' distance to the pulley.
+        A cable bends its joints equally. Its servo carries the mean of their moments, over the ratio of half the
+        distance of the cords to the pulley radius.
         """
         cables = {cable.name: cable.pulley / (0.5 * cable.cord_spacing) for cable in self.robot.cables}
         columns = [
@@ -135,13 +135,13 @@ class Outline:
 
     @cached_property
     def passive(self) -> tuple[int, ...]:
-        """Those of ``joints`` that no servo moves."""
-        driven = {joint for servo in self.servos for joint in servo.joints}
-        return tuple(i for i in range(len(self.joints)) if i not in driven)
+        """Indices of ``joints`` without a servo."""
+        driven_joints = {joint for servo in self.servos for joint in servo.joints}
+        return tuple(i for i in range(len(self.joints)) if i not in driven_joints)
 
     @property
     def tail_root(self) -> float:
-        """Where the tail begins, at the end of the root's segment, from the snout [m]."""
+        """Position at which the tail begins, at the end of the root's segment, from the snout [m]."""
         return tail_root(self.robot)
 
     @property
@@ -150,30 +150,36 @@ class Outline:
 
     @cached_property
     def places(self) -> Float[np.ndarray, " joint"]:
-        """Where the joints are, from the snout [m]."""
+        """Positions of the joints, from the snout [m]."""
         ends = np.cumsum([segment.front + segment.rear for segment in self.robot.axis])
-        at = {h.name: end for segment, end in zip(self.robot.axis, ends, strict=True) for h in segment.hinges}
-        return np.array([at[name] for name in self.joints])
+        hinge_positions = {
+            h.name: end for segment, end in zip(self.robot.axis, ends, strict=True) for h in segment.hinges
+        }
+        return np.array([hinge_positions[name] for name in self.joints])
 
     @cached_property
     def spacings(self) -> Float[np.ndarray, " joint"]:
-        """From each joint to the nearest one that is driven in the same way [m].
+        """Distance from each joint to the nearest one with the same kind of drive [m].
 
-        That is by a servo of its own, by the same cable, or by nothing; of a single one the distance is that to the
-        nearest of all, or to the nearer end of the body.
+        Kinds are a servo of its own, the same cable, or none. For a single joint the distance is that to the nearest
+        joint of any kind, or to the nearer end of the body.
         """
         cables = {joint: servo.name for servo in self.servos if servo.name in self._cables for joint in servo.joints}
         drive = ["" if i in self.passive else cables.get(i, "servo") for i in range(len(self.joints))]
-        apart = np.abs(self.places[:, None] - self.places)
-        np.fill_diagonal(apart, np.inf)
-        alike = np.where(np.array(drive)[:, None] == np.array(drive), apart, np.inf).min(axis=1, initial=np.inf)
-        nearest = np.where(np.isfinite(alike), alike, apart.min(axis=1, initial=np.inf))
+        distances = np.abs(self.places[:, None] - self.places)
+        np.fill_diagonal(distances, np.inf)
+        same_drive_distances = np.where(np.array(drive)[:, None] == np.array(drive), distances, np.inf).min(
+            axis=1, initial=np.inf
+        )
+        nearest_distances = np.where(
+            np.isfinite(same_drive_distances), same_drive_distances, distances.min(axis=1, initial=np.inf)
+        )
         ends = np.minimum(self.places, self.robot.length - self.places)
-        return np.asarray(np.where(np.isfinite(nearest), nearest, ends))
+        return np.asarray(np.where(np.isfinite(nearest_distances), nearest_distances, ends))
 
     @cached_property
     def reaches(self) -> Float[np.ndarray, " joint"]:
-        """Half of the length over which each joint bends the midline [m]."""
+        """Half of the length over which the bend of each joint is distributed [m]."""
         rigid = [servo.joints[0] for servo in self.servos if servo.name not in self._cables]
         share = np.ones(len(self.joints))
         share[rigid] = 0.5
@@ -181,27 +187,27 @@ class Outline:
 
     @cached_property
     def bending(self) -> Float[np.ndarray, "middle servo"]:
-        """How the heading halfway between stations grows with the bend of each of ``servos`` [-]."""
+        """Derivative of the heading halfway between stations with respect to the bend of each of ``servos`` [-]."""
         return self.bending_at(0.5 * (self.s[1:] + self.s[:-1]))
 
     def bending_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point servo"]:
-        """Return how the heading at points grows with the bend of each of ``servos``, its own sense positive [-]."""
-        each = self.joints_at(s)
-        shares = [each[:, list(servo.joints)].mean(axis=1) for servo in self.servos]
+        """Return the derivative of the heading at points with respect to the bend of each of ``servos`` [-]."""
+        joint_bends = self.joints_at(s)
+        shares = [joint_bends[:, list(servo.joints)].mean(axis=1) for servo in self.servos]
         return np.array(shares).reshape(len(self.servos), len(s)).T
 
     def passive_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point passive"]:
-        """Return how the heading at points grows with the bend of each passive joint [-]."""
+        """Return the derivative of the heading at points with respect to each passive joint [-]."""
         return self.joints_at(s)[:, list(self.passive)]
 
     def joints_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point joint"]:
-        """Return how the heading at points grows with the angle of each joint, in the order of ``joints`` [-].
+        """Return the derivative of the heading at points with respect to each joint, in the order of ``joints`` [-].
 
-        It is the share of the joint's bend that lies ahead of the point; that of a joint ahead of the root, which turns
-        the front end left, counts to the right behind it.
+        A joint's bend is distributed over some length; its part ahead of the point counts. The sign is negative for
+        joints ahead of the root, because they turn the front end to the left.
         """
-        along = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
-        shares = np.asarray(0.5 * (1.0 + along + np.sin(np.pi * along) / np.pi))
+        reach_fraction = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
+        shares = np.asarray(0.5 * (1.0 + reach_fraction + np.sin(np.pi * reach_fraction) / np.pi))
         shares[:, : self.ahead] *= -1.0
         return shares
 
@@ -211,7 +217,9 @@ def tail_root(robot: Robot) -> float:
     return sum(segment.front + segment.rear for segment in robot.axis[: robot.root_place + 1])
 
 
-def summed(first: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]) -> Float[np.ndarray, "*b station"]:
-    """Return where steps lead from a start."""
-    start = np.asarray(first)[..., None]
+def summed(
+    start_value: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]
+) -> Float[np.ndarray, "*b station"]:
+    """Return the positions to which steps lead from a start."""
+    start = np.asarray(start_value)[..., None]
     return np.concatenate([start, start + np.cumsum(steps, axis=-1)], axis=-1)

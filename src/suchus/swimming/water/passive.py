@@ -1,4 +1,4 @@
-"""The passive end of the tail, bent by the water against its springs."""
+"""The passive end of the tail, which the water bends against its springs."""
 
 from dataclasses import replace
 
@@ -15,11 +15,11 @@ _ROUNDS = 12
 
 
 def sprung(outline: Outline, motion: Motion, speed: float, water: Water | None = None) -> Undulation:
-    """Return a motion whose passive end gives way to the water, for a body that nothing holds.
+    """Return a motion whose passive end yields to the water, for a free body.
 
-    Each passive joint balances its spring and damper against the moment about it of Lighthill's reaction of the water
-    beyond it, of the drag across the body (linearised so that it takes the same work from a sine), and of the mass of
-    the end itself, as heavy as its water. First harmonic, small bends: a model of the round body, which knows no wake.
+    The spring and the damper of each passive joint balance three moments: Lighthill's reaction of the water beyond the
+    joint, the drag across the body, and the inertia of the end, which has the mass of its water. The drag is linearised
+    with equal work for a sine. The model has a first harmonic, small bends, a round body and no wake.
 
     Args:
         outline: of the robot.
@@ -27,57 +27,69 @@ def sprung(outline: Outline, motion: Motion, speed: float, water: Water | None =
         speed: forward [m/s].
         water: fresh water if None.
     """
-    still, driven = water or Water(), undulation(outline, motion)
+    medium, driven_motion = water or Water(), undulation(outline, motion)
     middle = 0.5 * (outline.s[1:] + outline.s[:-1])
     middles, stations = outline.passive_at(middle), outline.passive_at(outline.s)
     step = outline.s[1] - outline.s[0]
     shapes = np.stack([summed(np.zeros(()), step * column) for column in middles.T])
     bends = np.zeros(len(shapes), complex)
     for _ in range(_ROUNDS):
-        limber = _bent(driven, middles @ bends, stations @ bends)
-        sway, turn = recoil(outline, limber, speed, still)
+        limber = _with_bend(driven_motion, middles @ bends, stations @ bends)
+        sway, turn = recoil(outline, limber, speed, medium)
         slope = limber.stations[1] + turn
         y = summed(limber.sway[1] + sway, step * (limber.middles[1] + turn))
-        load = _Load(outline, driven.frequency, speed, still, y, slope)
-        own = np.array([load.moments(shape, column) for shape, column in zip(shapes, stations.T, strict=True)]).T
-        rest = load.moments(y - shapes.T @ bends, slope - stations @ bends)
-        bends = np.linalg.solve(np.diag(_springs(outline, driven.frequency)) - own, rest)
-    return _bent(driven, middles @ bends, stations @ bends)
+        load = _Load(outline, driven_motion.frequency, speed, medium, y, slope)
+        response = np.array([load.moments(shape, column) for shape, column in zip(shapes, stations.T, strict=True)]).T
+        load_moments = load.moments(y - shapes.T @ bends, slope - stations @ bends)
+        bends = np.linalg.solve(np.diag(_springs(outline, driven_motion.frequency)) - response, load_moments)
+    return _with_bend(driven_motion, middles @ bends, stations @ bends)
 
 
-def _bent(driven: Undulation, middles: np.ndarray, stations: np.ndarray) -> Undulation:
+def _with_bend(base_motion: Undulation, middles: np.ndarray, stations: np.ndarray) -> Undulation:
     """Return a motion with a first harmonic added to its headings."""
-    more_middles, more_stations = np.zeros_like(driven.middles), np.zeros_like(driven.stations)
+    more_middles, more_stations = np.zeros_like(base_motion.middles), np.zeros_like(base_motion.stations)
     more_middles[1], more_stations[1] = middles, stations
-    return replace(driven, middles=driven.middles + more_middles, stations=driven.stations + more_stations)
+    return replace(
+        base_motion, middles=base_motion.middles + more_middles, stations=base_motion.stations + more_stations
+    )
 
 
 def _springs(outline: Outline, frequency: float) -> np.ndarray:
-    """Return spring and damper of each passive joint at a frequency, as the model has them [N m/rad]."""
+    """Return the complex stiffness of each passive joint at a frequency, by spring and damper [N m/rad]."""
     drives = {hinge.name: hinge.drive for hinge in outline.robot.axis_hinges}
     springs = [drives[outline.joints[i]] for i in outline.passive]
     return np.array([s.stiffness + 2j * np.pi * frequency * s.damping for s in springs if isinstance(s, Spring)])
 
 
 class _Load:
-    """What the water does to a section that moves sideways, linear in that motion."""
+    """Load of the water on a section in a lateral motion, linear in that motion."""
 
     def __init__(
         self, outline: Outline, frequency: float, speed: float, water: Water, y: np.ndarray, slope: np.ndarray
     ) -> None:
+        """Compute added mass, mass and linearised drag of the stations in a lateral motion.
+
+        Args:
+            outline: of the robot.
+            frequency: of the motion [Hz].
+            speed: forward [m/s].
+            water: density and drag coefficient.
+            y: first harmonic of the lateral displacement [m].
+            slope: first harmonic of the heading [rad].
+        """
         self._s, self._speed, self._rate = outline.s, speed, 2j * np.pi * frequency
-        wide, high = outline.silhouette
-        self._added = water.density * np.pi * high**2
-        self._mass = water.density * np.pi * wide * high
-        across = np.abs(self._rate * y + speed * slope)
-        self._drag = water.density * water.cross_drag * high * 8.0 / (3.0 * np.pi) * across
+        half_width, half_height = outline.silhouette
+        self._added_mass = water.density * np.pi * half_height**2
+        self._mass = water.density * np.pi * half_width * half_height
+        lateral_speed = np.abs(self._rate * y + speed * slope)
+        self._drag = water.density * water.cross_drag * half_height * 8.0 / (3.0 * np.pi) * lateral_speed
         self._joints = outline.places[list(outline.passive)]
 
     def moments(self, y: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        """Return the moments about the passive joints of what the water does beyond them in a sideways motion [N m]."""
-        across = self._rate * y + self._speed * slope
-        given = self._added * across
-        force = -(self._rate * given + self._speed * np.gradient(given, self._s))
-        force = force - self._drag * across - self._rate**2 * self._mass * y
+        """Return the moments about the passive joints of the water's load beyond them in a lateral motion [N m]."""
+        lateral_velocity = self._rate * y + self._speed * slope
+        momentum = self._added_mass * lateral_velocity
+        force = -(self._rate * momentum + self._speed * np.gradient(momentum, self._s))
+        force = force - self._drag * lateral_velocity - self._rate**2 * self._mass * y
         arms = np.maximum(self._s - self._joints[:, None], 0.0)
         return np.asarray(np.trapezoid(force * arms, self._s, axis=-1))

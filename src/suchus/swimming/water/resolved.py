@@ -31,13 +31,13 @@ _RAMP = 0.5
 
 
 class SwimObserver(Protocol):
-    """Samples a swim after every step, and makes a record of it in the end."""
+    """Takes samples after every step of a swim, and makes its record."""
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
-        """Add to the samples."""
+        """Store samples."""
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what the swim's samples and the flow's own record say."""
+        """Return the record of the swim, from its samples and the record of the flow."""
 
 
 _OBSERVERS: dict[tuple[int, bool], Callable[[ResolvedSwim], SwimObserver]] = {
@@ -59,10 +59,10 @@ def resolved_swim(
     checkpoint: Path | str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Return a swim by CFD: from rest, the motion growing over the first half cycle.
+    """Return a swim by CFD from rest; the motion grows over the first half cycle.
 
-    A free body is as heavy as the water it displaces, and the grid travels with its centre; ``x`` and ``y`` of the
-    record are in its frame at each instant.
+    A free body has the mass of the water that it displaces. The grid follows its centre; ``x`` and ``y`` of the record
+    are in the frame of the grid at each instant.
 
     Args:
         robot: who swims.
@@ -96,7 +96,7 @@ def resolved_swim(
     swim = ResolvedSwim(robot=robot, motion=motion, setting=setting, sway=sway, turn=turn)
     sim, observer = flow.Simulation(swim.setup), _OBSERVERS[setting.axes, setting.tethered](swim)
     samples = run_on(
-        sim, swim.end, swim.period / 4, observer.sample, about=swim.key, checkpoint=checkpoint, progress=progress
+        sim, swim.end, swim.period / 4, observer.sample, description=swim.key, checkpoint=checkpoint, progress=progress
     )
     return observer.record(sim, samples)
 
@@ -104,7 +104,7 @@ def resolved_swim(
 def check_resolved_swim(
     robot: Robot, motion: Motion, setting: SwimSetting, *, sway: complex = 0j, turn: complex = 0j
 ) -> None:
-    """Refuse what joints, servos, grid, box or machine cannot follow, before anything runs; see ``resolved_swim``."""
+    """Refuse a swim beyond the limits of joints, servos, grid, box or machine, before anything runs."""
     ResolvedSwim(robot=robot, motion=motion, setting=setting, sway=sway, turn=turn).check()
 
 
@@ -125,11 +125,11 @@ def towed_drag(robot: Robot, speed: float, setting: SwimSetting, *, lengths: flo
     _check_tow("speed", speed, *SPEEDS, "m/s")
     _check_tow("lengths", lengths, *LENGTHS, "body lengths")
     length, outline = robot.length, Outline(robot, setting.cells + 1)
-    over = _RAMP * length / speed
+    ramp_time = _RAMP * length / speed
 
     def stream(time: float) -> tuple[float, float]:
-        part = min(time / over, 1.0)
-        return speed * part * part * (3 - 2 * part), 0.0
+        fraction = min(time / ramp_time, 1.0)
+        return speed * fraction * fraction * (3 - 2 * fraction), 0.0
 
     sim = flow.Simulation(
         flow.Setup(
@@ -142,6 +142,8 @@ def towed_drag(robot: Robot, speed: float, setting: SwimSetting, *, lengths: flo
     return float(np.average(series.force()[:, 0], weights=series.step))
 
 
-def _check_tow(name: str, value: float, low: float, high: float, unit: str) -> None:
-    if not low <= value <= high:
-        raise OutsideLimits(f"{name} of the tow is {value:.4g} {unit}; {low:g} to {high:g} {unit} is allowed.")
+def _check_tow(name: str, value: float, lower_bound: float, upper_bound: float, unit: str) -> None:
+    if not lower_bound <= value <= upper_bound:
+        raise OutsideLimits(
+            f"{name} of the tow is {value:.4g} {unit}; {lower_bound:g} to {upper_bound:g} {unit} is allowed."
+        )

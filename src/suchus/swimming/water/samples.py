@@ -1,8 +1,8 @@
-"""What is sampled of a flow as it goes, and how a run that was stopped goes on from its last pause.
+"""Samples of a running flow, and checkpoints from which a stopped run continues.
 
-At every pause the samples are written first, then the flow's own checkpoint, each in one piece. A kill loses at most
-what came after the last pause, Ctrl-C likewise; and since a run pauses at the same instants whether it saves or not,
-one that was stopped ends with the same bytes as one that was not.
+At every pause the samples are written first, then the checkpoint of the flow. Each file is written atomically. An
+interrupted run loses at most the time since the last pause. A run pauses at the same instants whether it saves or not;
+thus a resumed run gives the same bytes.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -22,17 +22,17 @@ from suchus.core.writing import check_writable, keep
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
 
-_KEPT, _SAMPLES = ".kept-swim", ".samples"  # how the files of an unfinished swim end
+_CHECKPOINT_SUFFIX, _SAMPLES_SUFFIX = ".kept-swim", ".samples"  # how the files of an unfinished swim end
 
 
 class Samples:
-    """Samples of a run in series, each of a time and named values."""
+    """Samples of a run in series; each has a time and named values."""
 
     def __init__(self) -> None:
         self._series: dict[str, list[dict[str, np.ndarray]]] = {}
 
     def add(self, series: str, time: float, **values: np.ndarray | float) -> None:
-        """Add a sample to a series: the time [s] and values of the same shapes as in the samples before."""
+        """Add a sample to a series: the time [s], and values of constant shapes."""
         sample = {"time": np.asarray(time), **{name: np.asarray(value) for name, value in values.items()}}
         self._series.setdefault(series, []).append(sample)
 
@@ -46,12 +46,12 @@ class Samples:
         return {name: np.stack([sample[name] for sample in samples]) for name in samples[0]}
 
     def state(self) -> dict[str, np.ndarray]:
-        """Return the samples so far by ``series/name``."""
+        """Return the samples so far as arrays, by ``series/name``."""
         return {f"{series}/{name}": values for series in self._series for name, values in self.series(series).items()}
 
     @classmethod
     def of(cls, state: Mapping[str, np.ndarray]) -> "Samples":
-        """Return what ``state`` gave."""
+        """Return the samples of a state that ``state`` returned."""
         samples = cls()
         for key, values in state.items():
             series, name = key.split("/")
@@ -59,18 +59,18 @@ class Samples:
                 sample[name] = value
         return samples
 
-    def save(self, path: Path, time: float, about: str) -> None:
+    def save(self, path: Path, time: float, description: str) -> None:
         """Write the samples so far.
 
         Raises:
             Unwritable: naming the place.
         """
         content = BytesIO()
-        np.savez(content, allow_pickle=False, until=np.array(time), about=np.array(_short(about)), **self.state())
+        np.savez(content, allow_pickle=False, until=np.array(time), about=np.array(_hash(description)), **self.state())
         keep(path, sealed(content.getvalue()))
 
-    def load(self, path: Path, time: float, about: str) -> None:
-        """Take up the samples until a time [s].
+    def load(self, path: Path, time: float, description: str) -> None:
+        """Read the samples until a time [s].
 
         Raises:
             UnreadableFile: they are broken, end too soon or belong to another swim.
@@ -86,32 +86,32 @@ class Samples:
             raise UnreadableFile(f"{path} holds no samples of a swim, or is damaged; delete it and its checkpoint.")
         state = store.arrays(data, path)
         try:
-            until, whose = float(state.pop("until")), str(state.pop("about"))
-            found = self.of(state)._series
-            sound = all(f"{series}/time" in state for series in found)
+            end_time, owner_hash = float(state.pop("until")), str(state.pop("about"))
+            series_by_name = self.of(state)._series
+            sound = all(f"{series}/time" in state for series in series_by_name)
         except (ValueError, TypeError, LookupError):
             sound = False
         if not sound:
             raise UnreadableFile(f"{path} holds no samples of a swim; delete it and its checkpoint.")
-        if whose != _short(about):
+        if owner_hash != _hash(description):
             raise UnreadableFile(f"{path} belongs to another swim; give that one's settings, or another checkpoint.")
-        if until < time * (1 - 1e-12):
+        if end_time < time * (1 - 1e-12):
             raise UnreadableFile(f"{path} ends before its checkpoint does; delete both to start anew.")
-        for series, samples in found.items():
+        for series, samples in series_by_name.items():
             self._series[series] = [sample for sample in samples if sample["time"] <= time * (1 + 1e-12)]
 
 
-def _short(about: str) -> str:
-    return sha256(about.encode()).hexdigest()
+def _hash(description: str) -> str:
+    return sha256(description.encode()).hexdigest()
 
 
 def kept_in(folder: str, name: str) -> Path | None:
-    """Return the file in which an experiment keeps an unfinished swim in a folder; None if that is empty."""
-    return Path(folder) / f"{name.replace(' ', '_')}{_KEPT}" if folder else None
+    """Return the file of an unfinished swim in a folder; None if the folder is empty text."""
+    return Path(folder) / f"{name.replace(' ', '_')}{_CHECKPOINT_SUFFIX}" if folder else None
 
 
 def check_kept(folder: str) -> None:
-    """Refuse a folder for unfinished swims before any is begun, if they could not be kept there.
+    """Refuse a folder in which unfinished swims cannot be stored.
 
     Raises:
         Unwritable: it is no folder, or cannot be written to.
@@ -121,9 +121,9 @@ def check_kept(folder: str) -> None:
 
 
 def all_kept(folder: str, names: Iterable[str]) -> tuple[Path, ...]:
-    """Return the files of unfinished swims of these names in a folder, and of their samples; none if that is empty."""
+    """Return the files of unfinished swims and of their samples in a folder; none if the folder is empty text."""
     files = [path for name in names if (path := kept_in(folder, name)) is not None]
-    return tuple(path.with_name(path.name + end) for path in files for end in ("", _SAMPLES))
+    return tuple(path.with_name(path.name + end) for path in files for end in ("", _SAMPLES_SUFFIX))
 
 
 def run_on(
@@ -132,7 +132,7 @@ def run_on(
     pause: float,
     sample: Callable[[flow.Simulation, Samples], None],
     *,
-    about: str,
+    description: str,
     checkpoint: Path | str | None,
     progress: Progress | None,
 ) -> Samples:
@@ -143,7 +143,7 @@ def run_on(
         end: a whole number of pauses [s].
         pause: between two savings; a step ends exactly there [s].
         sample: called after every step to take samples.
-        about: what this run is, so that it does not go on from another's checkpoint.
+        description: what this run is, so that it does not go on from another's checkpoint.
         checkpoint: the flow's state; the samples are kept beside it. None keeps nothing.
         progress: told the share that is done; None shows a progress bar.
 
@@ -152,10 +152,10 @@ def run_on(
         Unwritable: they cannot be written.
     """
     samples, path = Samples(), None if checkpoint is None else Path(checkpoint)
-    beside = None if path is None else path.with_name(f"{path.name}{_SAMPLES}")
-    if path is not None and beside is not None and path.exists():
+    samples_path = None if path is None else path.with_name(f"{path.name}{_SAMPLES_SUFFIX}")
+    if path is not None and samples_path is not None and path.exists():
         store.load(sim, path)
-        samples.load(beside, sim.time, about)
+        samples.load(samples_path, sim.time, description)
     cells = prod(sim.setup.grid.cells)
     with Bar(sim.time, end, cells, show=progress is None) as bar:
 
@@ -167,7 +167,7 @@ def run_on(
 
         for i in range(round(sim.time / pause), round(end / pause)):
             sim.run((i + 1) * pause, watch=watch, progress=False)
-            if path is not None and beside is not None:
-                samples.save(beside, sim.time, about)
+            if path is not None and samples_path is not None:
+                samples.save(samples_path, sim.time, description)
                 store.save(sim, path)
     return samples

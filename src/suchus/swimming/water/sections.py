@@ -1,8 +1,8 @@
-"""What an elliptic section of a body feels in water: a table of drag and added mass computed by the flow solver.
+"""Drag and added mass of elliptic sections: a table that was computed by the flow solver.
 
-The sections move to and fro in water at rest, ``evidence.atlas.sections`` says how. Between the nodes of the table the
-logarithms are linear in those of aspect and Keulegan number. The table stands at a number of Stokes of 20, so that its
-Reynolds numbers are 20 to 400; the robot's number of Stokes is 3600. See docs/amphibious.md for what follows.
+The sections oscillate in water at rest, see ``evidence.atlas.sections``. Between the nodes the logarithms are linear in those of
+aspect and Keulegan-Carpenter number. The table has a Stokes number of 20, that is Reynolds numbers of 20 to 400. The
+robot's Stokes number is 3600; docs/amphibious.md describes the consequences.
 """
 
 import csv
@@ -36,7 +36,7 @@ COLUMNS = ("aspect", "keulegan", "cells", "drag", "added", "drag_before", "added
 
 
 class SectionFlow(NamedTuple):
-    """What one section feels."""
+    """Coefficients of one section."""
 
     aspect: float
     """Height across the motion over thickness along it [-]."""
@@ -59,7 +59,7 @@ class SectionFlow(NamedTuple):
 
 
 def attached(keulegan: float, stokes: float = STOKES) -> tuple[float, float]:
-    """Return drag coefficient and added mass of a round section around which the water does not separate [-].
+    """Return drag coefficient and added mass of a round section in attached flow [-].
 
     Args:
         keulegan: number of Keulegan and Carpenter, small [-].
@@ -67,19 +67,19 @@ def attached(keulegan: float, stokes: float = STOKES) -> tuple[float, float]:
 
     Source: Stokes 1851; Wang 1968, J. Fluid Mech. 32, 55-68.
     """
-    thin = 1.0 / sqrt(pi * stokes)
-    drag = 1.5 * pi**3 / keulegan * (thin + thin**2 - 0.25 * thin**3)
-    return drag, 1.0 + 4.0 * thin + thin**3
+    layer = 1.0 / sqrt(pi * stokes)
+    drag = 1.5 * pi**3 / keulegan * (layer + layer**2 - 0.25 * layer**3)
+    return drag, 1.0 + 4.0 * layer + layer**3
 
 
 def likely(
     half_width: Float[np.ndarray, " s"], half_height: Float[np.ndarray, " s"], amplitude: Float[np.ndarray, " s"]
 ) -> tuple[float, float]:
-    """Return by what factors the table's coefficients differ from a swim's own, over the sections of a body [-].
+    """Return factors between the coefficients of a swim and those of the table, over the sections of a body [-].
 
-    Of the table's coefficients that is taken which an attached viscous layer adds at its number of Stokes and not at a
-    robot's. Each section counts for drag as the power that drag takes from it, and for added mass as its kinetic
-    energy; outside the table the nearest of its aspects and Keulegan numbers counts.
+    The table holds an attached viscous layer at its Stokes number; a robot's layer is much thinner, and is taken away.
+    For drag, each section is weighted by the power that drag takes; for added mass, by its kinetic energy. Outside the
+    table the nearest aspect and Keulegan-Carpenter number are taken.
 
     Args:
         half_width: of equally spaced sections [m].
@@ -93,16 +93,19 @@ def likely(
     half_width, half_height, amplitude = half_width[solid], half_height[solid], amplitude[solid]
     aspect = np.clip(half_height / half_width, ASPECTS[0], ASPECTS[-1])
     keulegan = np.clip(pi * amplitude / half_height, KEULEGANS[0], KEULEGANS[-1])
-    found = np.array([coefficients(float(a), float(k)) for a, k in zip(aspect, keulegan, strict=True)])
+    table_coefficients = np.array([coefficients(float(a), float(k)) for a, k in zip(aspect, keulegan, strict=True)])
     layer = np.array([attached(float(k)) for k in keulegan])
-    drag, added = np.maximum(found[:, 0] - layer[:, 0], 0.0), found[:, 1] - layer[:, 1] + 1.0
+    drag, added_mass = (
+        np.maximum(table_coefficients[:, 0] - layer[:, 0], 0.0),
+        table_coefficients[:, 1] - layer[:, 1] + 1.0,
+    )
     power, energy = half_height * amplitude**3, (half_height * amplitude) ** 2
-    return float(np.average(drag, weights=power)) / Water().cross_drag, float(np.average(added, weights=energy))
+    return float(np.average(drag, weights=power)) / Water().cross_drag, float(np.average(added_mass, weights=energy))
 
 
 @lru_cache(maxsize=4)
 def table(path: Path = TABLE) -> tuple[SectionFlow, ...]:
-    """Return every point of a table, held-out ones and those on a finer grid too.
+    """Return all points of a table, also those that are held out and those on a finer grid.
 
     Raises:
         UnreadableFile: it holds something else.
@@ -136,25 +139,34 @@ def coefficients(aspect: float, keulegan: float, path: Path = TABLE) -> tuple[fl
     for name, value, nodes in (("aspect", aspect, ASPECTS), ("keulegan", keulegan, KEULEGANS)):
         if not nodes[0] <= value <= nodes[-1]:
             raise InvalidDesign(f"{name} is {value:g}; the table of sections holds {nodes[0]:g} to {nodes[-1]:g}.")
-    drag, added = _interpolators(path)
-    at = np.log([[aspect, keulegan]])
-    return float(np.exp(drag(at)[0])), float(np.exp(added(at)[0]))
+    drag, added_interpolator = _interpolators(path)
+    log_point = np.log([[aspect, keulegan]])
+    return float(np.exp(drag(log_point)[0])), float(np.exp(added_interpolator(log_point)[0]))
 
 
 def held_out(path: Path = TABLE) -> Float[np.ndarray, "point 2"]:
-    """Return by how much interpolated Cd and Ca are off at the points that are not among the nodes [-]."""
-    found = {(one.aspect, one.keulegan): one for one in table(path) if (one.aspect, one.keulegan) in HELD_OUT}
-    pairs = [(coefficients(*point, path), (found[point].drag, found[point].added)) for point in HELD_OUT]
-    return np.array([[abs(ours / theirs - 1.0) for ours, theirs in zip(*pair, strict=True)] for pair in pairs])
+    """Return the relative errors of interpolated Cd and Ca at the points that are not nodes [-]."""
+    flows = {
+        (section_flow.aspect, section_flow.keulegan): section_flow
+        for section_flow in table(path)
+        if (section_flow.aspect, section_flow.keulegan) in HELD_OUT
+    }
+    pairs = [(coefficients(*point, path), (flows[point].drag, flows[point].added)) for point in HELD_OUT]
+    return np.array(
+        [[abs(estimate / reference - 1.0) for estimate, reference in zip(*pair, strict=True)] for pair in pairs]
+    )
 
 
 @lru_cache(maxsize=4)
 def _interpolators(path: Path) -> tuple[RegularGridInterpolator, RegularGridInterpolator]:
-    nodes = {(one.aspect, one.keulegan): one for one in reversed(table(path))}  # the coarser grid comes first
+    """Return the interpolators of the logarithms of drag coefficient and added mass in the logarithms of the nodes."""
+    nodes = {
+        (section_flow.aspect, section_flow.keulegan): section_flow for section_flow in reversed(table(path))
+    }  # the coarser grid comes first
     axes = np.log(ASPECTS), np.log(KEULEGANS)
     values = np.array(
         [[nodes[a, k][3:5] for k in KEULEGANS] for a in ASPECTS],
         dtype=float,
     )  # fmt: skip
-    drag, added = (RegularGridInterpolator(axes, np.log(values[..., i])) for i in (0, 1))
-    return drag, added
+    drag, added_mass = (RegularGridInterpolator(axes, np.log(values[..., i])) for i in (0, 1))
+    return drag, added_mass

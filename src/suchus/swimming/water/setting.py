@@ -1,4 +1,4 @@
-"""How a swim is resolved by the flow solver: in the plane or in space, tethered or free, how finely, how long."""
+"""Settings of a swim in the flow solver: in the plane or in space, tethered or free, resolution and duration."""
 
 from dataclasses import dataclass, replace
 
@@ -23,11 +23,11 @@ AHEAD, BEHIND, BESIDE, ABOVE = 0.15, 0.35, 0.2, 0.15
 FINEST = {2: 4096, 3: 1024}
 """Most cells per body length, by the number of axes [-]."""
 _TOLERANCES = {2: 1e-5, 3: 1e-4}
-_SHORTEST, _NARROWEST = 1.75, 1.0
+_MIN_LENGTH, _MIN_WIDTH = 1.75, 1.0
 """Least length and width of a slice's box that leaves some water on every side of a swimming body [body length]."""
 _MARGIN = 8.0
 """Cells between the body's widest reach and the sides that the solver needs, its half-width included [-]."""
-_DRAWN = 0.05
+_DRIFT_MARGIN = 0.05
 """Swing to a side that the box leaves to a body that draws to the side and turns, beside its own [body length]."""
 
 
@@ -68,6 +68,7 @@ class SwimSetting:
     """Mean divergence left over, in fastest speed per cell; None is 1e-5 in the plane and 1e-4 in space [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings out of range, and settings of a slice for a body in space and vice versa."""
         with Checks("setting", self) as check:
             check.that(self.axes in FINEST, f"setting.axes is {self.axes!r}; 2 is a slice and 3 the body in space")
             check.whole("cells", 32, FINEST.get(self.axes, FINEST[3]))
@@ -79,23 +80,25 @@ class SwimSetting:
             check.number("tail_height", 0.0, 1.0, "m")
             if self.tolerance is not None:
                 check.number("tolerance", 5e-7, 1e-2, "")
-            others = ("box", "blunt") if self.axes == 3 else ("beside", "tail_height", "limbs")
-            given = [name for name in others if getattr(self, name) != _default(name)]
+            foreign_fields = ("box", "blunt") if self.axes == 3 else ("beside", "tail_height", "limbs")
+            changed_fields = [name for name in foreign_fields if getattr(self, name) != _default(name)]
             kind = "a slice" if self.in_space else "a body in space"
             check.that(
-                not given,
-                f"setting.{', '.join(given)} is for {kind}, and setting.axes is {self.axes}: leave it out",
+                not changed_fields,
+                f"setting.{', '.join(changed_fields)} is for {kind}, and setting.axes is {self.axes}: leave it out",
             )
-        for value, least, what in zip(self.box or (), (_SHORTEST, _NARROWEST), ("long", "wide"), strict=False):
-            if not (np.isfinite(value) and value >= least):
+        for value, min_value, dimension in zip(
+            self.box or (), (_MIN_LENGTH, _MIN_WIDTH), ("long", "wide"), strict=False
+        ):
+            if not (np.isfinite(value) and value >= min_value):
                 raise InvalidDesign(
-                    f"setting.box is {value} body lengths {what}; the body itself is 1 long and swings to both sides: "
-                    f"give at least {least}."
+                    f"setting.box is {value} body lengths {dimension}; the body itself is 1 long and swings to both "
+                    f"sides: give at least {min_value}."
                 )
 
     @property
     def tethered(self) -> bool:
-        """Whether the body's whole motion is given."""
+        """Whether the whole motion of the body is prescribed."""
         return not any(self.free)
 
     @property
@@ -108,7 +111,7 @@ class SwimSetting:
         return self.blunt * length / self.cells
 
     def largest_divergence(self) -> float:
-        """Return ``tolerance``, or what stands for None [-]."""
+        """Return ``tolerance``, or its default if it is None [-]."""
         return _TOLERANCES[self.axes] if self.tolerance is None else self.tolerance
 
     def grid(self, length: float, swing: float = 0.0, height: float = 0.0) -> flow.Grid:
@@ -121,28 +124,36 @@ class SwimSetting:
         """
         if self.in_space:
             return self._grid_in_space(length, swing, height)
-        long, wide = self.box or (TETHERED_BOX if self.tethered else FREE_BOX)
-        ahead = (long - 0.5) / 3.0
+        box_length, box_width = self.box or (TETHERED_BOX if self.tethered else FREE_BOX)
+        front_length = (box_length - 0.5) / 3.0
         return flow.Grid.covering(
-            (-ahead * length, (long - ahead) * length),
-            (-0.5 * wide * length, 0.5 * wide * length),
+            (-front_length * length, (box_length - front_length) * length),
+            (-0.5 * box_width * length, 0.5 * box_width * length),
             cell=length / self.cells,
         )
 
-    def grid_around(self, length: float, far: float) -> flow.Grid:
-        """Return the cells all around a body in space that reaches so far from its axis to any side [m]."""
-        aside = far + (_DRAWN + self.beside) * length
+    def grid_around(self, length: float, reach: float) -> flow.Grid:
+        """Return the cells around a body in space that moves in all directions.
+
+        Args:
+            length: of the body [m].
+            reach: greatest distance of the body from its axis, to any side [m].
+        """
+        half_width = reach + (_DRIFT_MARGIN + self.beside) * length
         return flow.Grid.covering(
-            (-AHEAD * length, (1.0 + BEHIND) * length), (-aside, aside), (-aside, aside), cell=length / self.cells
+            (-AHEAD * length, (1.0 + BEHIND) * length),
+            (-half_width, half_width),
+            (-half_width, half_width),
+            cell=length / self.cells,
         )
 
     def _grid_in_space(self, length: float, swing: float, height: float) -> flow.Grid:
         """Return the cells around the upper half of a body."""
-        aside, above = swing / length + _DRAWN, height / length + ABOVE
+        lateral_reach, top = swing / length + _DRIFT_MARGIN, height / length + ABOVE
         grid = flow.Grid.covering(
             (-AHEAD * length, (1.0 + BEHIND) * length),
-            (-(aside + self.beside) * length, (aside + self.beside) * length),
-            (0.0, above * length),
+            (-(lateral_reach + self.beside) * length, (lateral_reach + self.beside) * length),
+            (0.0, top * length),
             cell=length / self.cells,
         )
         return replace(grid, origin=(*grid.origin[:2], 0.0))  # what it grew above and below lies above
@@ -153,13 +164,14 @@ class SwimSetting:
         Raises:
             InvalidDesign: with the cells that would do.
         """
-        most, cell = float(shape.thickness(0.0)[1].max()), robot.length / self.cells
-        if self.in_space and most < THINNEST * cell:
-            needed = int(np.ceil(THINNEST * robot.length / most))
+        max_thickness, cell = float(shape.thickness(0.0)[1].max()), robot.length / self.cells
+        if self.in_space and max_thickness < THINNEST * cell:
+            min_cells = int(np.ceil(THINNEST * robot.length / max_thickness))
             raise InvalidDesign(
-                f"robot {robot.name!r} is {most:.3g} m thick at most, and with {self.cells} cells a length a cell is "
-                f"{cell:.3g} m: a flow in space needs {THINNEST:.2f} cells across. Take at least {needed} cells, or a "
-                "slice."
+                f"robot {robot.name!r} is {max_thickness:.3g} m thick at most, and with {self.cells} cells a length "
+                "a cell is "
+                f"{cell:.3g} m: a flow in space needs {THINNEST:.2f} cells across. Take at least {min_cells} cells, "
+                "or a slice."
             )
 
     def check_margin(self) -> None:
@@ -168,11 +180,11 @@ class SwimSetting:
         Raises:
             InvalidDesign: with what is left beside the body, and what would do.
         """
-        least = _MARGIN / self.cells
-        if self.in_space and self.beside + _DRAWN < least:
+        min_margin = _MARGIN / self.cells
+        if self.in_space and self.beside + _DRIFT_MARGIN < min_margin:
             raise InvalidDesign(
                 f"the box leaves {self.beside:.3g} body lengths of water beside the widest swing, and the body would "
-                f"leave it: give at least {least - _DRAWN:.2g}, better {BESIDE}."
+                f"leave it: give at least {min_margin - _DRIFT_MARGIN:.2g}, better {BESIDE}."
             )
 
 

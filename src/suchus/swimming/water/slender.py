@@ -1,8 +1,8 @@
-"""Slender-body models of swimming: resistive after Taylor, reactive after Lighthill, on the robot's own midline.
+"""Slender-body models of swimming on the robot's midline: resistive after Taylor, reactive after Lighthill.
 
-Both take every section of the body for itself. The resistive model drags it by its own velocity; the reactive one
-gives it the momentum of the water beside it, which leaves at the tail. Neither knows the wake nor the flow around the
-head. The body swims towards -x, at the speed U against the water.
+Both treat every section by itself. The resistive model computes the drag of its velocity. The reactive model computes
+the momentum of the water beside it, which is shed at the tail. Neither has a wake or the flow around the head. The body
+swims towards -x at the speed U.
 """
 
 from collections.abc import Callable
@@ -19,12 +19,12 @@ from suchus.swimming.water.undulation import Motion, undulation
 
 _TIMES = 96
 """Instants of a cycle [-]."""
-_NOTHING = 1e-5
+_THRUST_TOLERANCE = 1e-5
 """Thrust over that which the power would give at three wave speeds, below which it is rounding [-]."""
 
 
 class Effort(NamedTuple):
-    """Means over a cycle."""
+    """Mean thrust and power over a cycle."""
 
     thrust: float
     """Force forward [N]."""
@@ -47,23 +47,32 @@ def resistive(outline: Outline, curve: MidlineCurve, speed: float, water: Water)
 
     Source: Taylor 1952, Proc. R. Soc. A 214, 158.
     """
-    tangent_x, tangent_y, across, along = _velocities(curve, speed)
+    tangent_x, tangent_y, normal_velocity, tangential_velocity = _velocities(curve, speed)
     perimeter = _perimeter(outline)
-    fastest = float(np.sqrt(np.mean(along**2)))
-    normal = -water.density * water.cross_drag * outline.silhouette.half_height * np.abs(across) * across
-    rub = -0.5 * water.density * water.friction(fastest, outline.robot.length) * perimeter * np.abs(along) * along
+    fastest = float(np.sqrt(np.mean(tangential_velocity**2)))
+    normal = (
+        -water.density * water.cross_drag * outline.silhouette.half_height * np.abs(normal_velocity) * normal_velocity
+    )
+    rub = (
+        -0.5
+        * water.density
+        * water.friction(fastest, outline.robot.length)
+        * perimeter
+        * np.abs(tangential_velocity)
+        * tangential_velocity
+    )
     force_x = -normal * tangent_y + rub * tangent_x
     thrust = -_over_body(outline, force_x)
-    power = -_over_body(outline, normal * across + rub * along) + thrust * speed
+    power = -_over_body(outline, normal * normal_velocity + rub * tangential_velocity) + thrust * speed
     return Effort(thrust, power)
 
 
 def reactive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) -> Effort:
-    """Return thrust and power after Lighthill: the momentum that sheds at the tail, less the body's friction.
+    """Return thrust and power after Lighthill: momentum shed at the tail, minus the body's friction.
 
-    The mean force is that of the water that passes the plane through the tail's tip, square to the body, with the
-    pressure on that plane. The water must leave there: the model knows nothing of a body that swims tail first, and
-    its thrust at rest is the same for a wave and its reverse.
+    The mean force is the momentum flux through the plane normal to the body at the tip of the tail, with the pressure
+    on that plane. The water must leave there: the model is not valid for a body that swims tail first. Its thrust at
+    rest is the same for a wave and its reverse.
 
     Args:
         outline: of the robot.
@@ -73,22 +82,22 @@ def reactive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) 
 
     Source: Lighthill 1971, Proc. R. Soc. B 179, 125.
     """
-    tangent_x, tangent_y, across, along = _velocities(curve, speed)
-    added = water.density * np.pi * outline.silhouette.half_height[-1] ** 2
-    w, u, tx, ty = across[:, -1], along[:, -1], tangent_x[:, -1], tangent_y[:, -1]
-    shed = u * added * w * -ty - 0.5 * added * w**2 * tx
-    thrust = -float(np.mean(shed))
-    wake = float(np.mean(-u * 0.5 * added * w**2))  # energy that the shed water carries away
+    tangent_x, tangent_y, normal_velocity, tangential_velocity = _velocities(curve, speed)
+    added_mass = water.density * np.pi * outline.silhouette.half_height[-1] ** 2
+    w, u, tx, ty = normal_velocity[:, -1], tangential_velocity[:, -1], tangent_x[:, -1], tangent_y[:, -1]
+    shed_momentum = u * added_mass * w * -ty - 0.5 * added_mass * w**2 * tx
+    thrust = -float(np.mean(shed_momentum))
+    wake = float(np.mean(-u * 0.5 * added_mass * w**2))  # energy that the shed water carries away
     surface = float(np.trapezoid(_perimeter(outline), outline.s))
     drag = 0.5 * water.density * water.friction(abs(speed), outline.robot.length) * surface * abs(speed) * speed
     return Effort(thrust - drag, wake + thrust * speed)
 
 
 def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tuple[complex, complex]:
-    """Return how the snout sways and the head turns when nothing holds the body.
+    """Return the sway of the snout and the turn of the head of a free body.
 
-    Small lateral motions: body and the water beside it exchange no net lateral momentum and no moment about the
-    snout over time, by Lighthill's reactive force. The body is as heavy as the water it displaces.
+    Lateral motions are small. Body and water exchange no net lateral momentum and no net moment about the snout over
+    time, by Lighthill's reactive force. The body has the mass of the water that it displaces.
 
     Args:
         outline: of the robot.
@@ -100,15 +109,15 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
         Harmonics of the snout's displacement to the right [m] and of the head's direction [rad]: ``Re(h exp(2 pi i f
         t))``.
     """
-    bent = undulation(outline, motion)
-    omega = 2 * np.pi * bent.frequency
-    s, (wide, high) = outline.s, outline.silhouette
-    slope, shape = bent.stations[1], summed(bent.sway[1], (s[1] - s[0]) * bent.middles[1])
-    mass, added = water.density * np.pi * wide * high, water.density * np.pi * high**2
+    body_motion = undulation(outline, motion)
+    omega = 2 * np.pi * body_motion.frequency
+    s, (half_width, half_height) = outline.s, outline.silhouette
+    slope, shape = body_motion.stations[1], summed(body_motion.sway[1], (s[1] - s[0]) * body_motion.middles[1])
+    mass, added_mass = water.density * np.pi * half_width * half_height, water.density * np.pi * half_height**2
 
     def balance(y: np.ndarray, dy: np.ndarray) -> np.ndarray:
         """Return net lateral force and moment of a lateral motion, body and water."""
-        momentum = added * (1j * omega * y + speed * dy)
+        momentum = added_mass * (1j * omega * y + speed * dy)
         rate = -(omega**2) * mass * y + 1j * omega * momentum + speed * np.gradient(momentum, s)
         return np.array([np.trapezoid(rate, s), np.trapezoid(rate * s, s)])
 
@@ -118,9 +127,9 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
 
 
 def cycle(outline: Outline, motion: Motion, sway: complex = 0j, turn: complex = 0j) -> MidlineCurve:
-    """Return the midline over one cycle, shape (time, station), its snout swaying and its head turning as given."""
-    bent = undulation(outline, motion)
-    return bent.held(sway, turn).curve(np.arange(_TIMES) / _TIMES / bent.frequency)
+    """Return the midline over one cycle, shape (time, station), with given sway of the snout and turn of the head."""
+    body_motion = undulation(outline, motion)
+    return body_motion.held(sway, turn).curve(np.arange(_TIMES) / _TIMES / body_motion.frequency)
 
 
 class Cruise(NamedTuple):
@@ -142,40 +151,44 @@ def cruise(outline: Outline, motion: Motion, model: Model, water: Water) -> Crui
     Raises:
         NotConverged: no speed up to three wave speeds balances the forces.
     """
-    bent = undulation(outline, motion)
-    most = 3.0 * bent.frequency * outline.robot.length
+    body_motion = undulation(outline, motion)
+    max_speed = 3.0 * body_motion.frequency * outline.robot.length
 
     def effort(speed: float) -> Effort:
-        return model(outline, cycle(outline, bent, *recoil(outline, bent, speed, water)), speed, water)
+        return model(outline, cycle(outline, body_motion, *recoil(outline, body_motion, speed, water)), speed, water)
 
-    held = effort(0.0)
-    if abs(held.thrust) <= _NOTHING * held.power / most:
-        return Cruise(0.0, held.power, *recoil(outline, bent, 0.0, water))
+    rest_effort = effort(0.0)
+    if abs(rest_effort.thrust) <= _THRUST_TOLERANCE * rest_effort.power / max_speed:
+        return Cruise(0.0, rest_effort.power, *recoil(outline, body_motion, 0.0, water))
     start = 0.0
     for share in np.geomspace(0.01, 1.0, 9):
-        end = float(np.copysign(share * most, held.thrust))
-        if effort(end).thrust * held.thrust <= 0:
+        end = float(np.copysign(share * max_speed, rest_effort.thrust))
+        if effort(end).thrust * rest_effort.thrust <= 0:
             speed = float(brentq(lambda speed: effort(speed).thrust, start, end, xtol=1e-6))
-            return Cruise(speed, effort(speed).power, *recoil(outline, bent, speed, water))
+            return Cruise(speed, effort(speed).power, *recoil(outline, body_motion, speed, water))
         start = end
     raise NotConverged(
-        f"no speed up to {most:.3g} m/s balances thrust and drag of {bent.name!r}; raise cross_drag or thickening."
+        f"no speed up to {max_speed:.3g} m/s balances thrust and drag of {body_motion.name!r}; raise cross_drag or "
+        "thickening."
     )
 
 
 def _velocities(curve: MidlineCurve, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return tangent and the velocity against the water across and along it."""
+    """Return the tangent, and the velocity relative to the water normal to the midline and along it."""
     tangent_x, tangent_y = np.cos(curve.heading), np.sin(curve.heading)
     x_rate = curve.x_rate - speed
-    across = -tangent_y * x_rate + tangent_x * curve.y_rate
-    along = tangent_x * x_rate + tangent_y * curve.y_rate
-    return tangent_x, tangent_y, across, along
+    normal_velocity = -tangent_y * x_rate + tangent_x * curve.y_rate
+    tangential_velocity = tangent_x * x_rate + tangent_y * curve.y_rate
+    return tangent_x, tangent_y, normal_velocity, tangential_velocity
 
 
 def _perimeter(outline: Outline) -> np.ndarray:
-    """Return the girth of the body at the stations, as of ellipses, by Ramanujan's formula [m]."""
-    wide, high = outline.silhouette
-    return np.asarray(np.pi * (3 * (wide + high) - np.sqrt((3 * wide + high) * (wide + 3 * high))))
+    """Return the perimeter of the body at the stations by Ramanujan's formula for ellipses [m]."""
+    half_width, half_height = outline.silhouette
+    return np.asarray(
+        np.pi
+        * (3 * (half_width + half_height) - np.sqrt((3 * half_width + half_height) * (half_width + 3 * half_height)))
+    )
 
 
 def _over_body(outline: Outline, density: Float[np.ndarray, "time station"]) -> float:

@@ -1,4 +1,4 @@
-"""What is sampled and recorded of the robot's own body in space: free, or its motion given."""
+"""Samples and record of the robot's body in space: free, or with a prescribed motion."""
 
 from itertools import pairwise
 
@@ -19,7 +19,7 @@ _PER_CYCLE = {"velocity_x": ("speed", "m/s"), "force_x": ("thrust", "N"), "power
 
 
 class FreeInSpace:
-    """Speed, moments at the joints, wake and vortices of a body that the water moves."""
+    """Speed, moments at the joints, wake and vortices of a free body."""
 
     def __init__(self, swim: ResolvedSwim) -> None:
         self._swim, self._end, self._period = swim, swim.end, swim.period
@@ -35,12 +35,12 @@ class FreeInSpace:
         samples.add("track", sim.time, heading=spine.heading[0], tail=spine.y[-1] + position[1])
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what was sampled, at even phases, with the means of every cycle."""
+        """Return the record of the samples at equal phases, with the means of every cycle."""
         period, cycles, series = self._swim.period, self._swim.setting.cycles, sim.record
         outline, motion, robot = self._swim.outline, self._swim.motion, self._swim.robot
         servos = [servo.name for servo in outline.servos]
         means = dict(zip(_PER_CYCLE, cycle_means(series, period, cycles, tuple(_PER_CYCLE)), strict=True))
-        track, last = samples.series("track"), series.after((cycles - 1) * period * (1.0 + SLACK))
+        track, last_cycle = samples.series("track"), series.after((cycles - 1) * period * (1.0 + SLACK))
         sign = {"velocity_x": -1.0, "force_x": -1.0, "power": 1.0}  # the body swims towards -x
         data = xr.Dataset(
             {
@@ -54,7 +54,7 @@ class FreeInSpace:
             head_yaw=((), 0.5 * float(np.ptp(track["heading"])), {"units": "rad"}),
             wave_speed=((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
             thin=((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
-            steps=((), float(len(last.time)), {"units": "1", "long_name": "in the last cycle"}),
+            steps=((), float(len(last_cycle.time)), {"units": "1", "long_name": "in the last cycle"}),
             million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
             joint_place=("joint", outline.places, {"units": "m"}),
         )
@@ -62,13 +62,13 @@ class FreeInSpace:
         return data.merge(self._film.record(samples)).merge(course(sim, samples, period, cycles))
 
     def _loads(self, sim: flow.Simulation) -> xr.Dataset:
-        """Return the moments of the last cycle at the joints and the servos, and the weight."""
+        """Return the torques of the last cycle at joints and servos, and the weight."""
         outline, setting = self._swim.outline, self._swim.setting
-        last = sim.record.after((setting.cycles - 1) * self._swim.period * (1.0 + SLACK))
-        torques = last.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
+        last_cycle = sim.record.after((setting.cycles - 1) * self._swim.period * (1.0 + SLACK))
+        torques = last_cycle.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
         return xr.Dataset(
             {
-                "moment": ("moment", last.time, {"units": "s"}),
+                "moment": ("moment", last_cycle.time, {"units": "s"}),
                 "joint_torque": (("moment", "joint"), torques, {"units": "N m"}),
                 "servo_torque": (("moment", "servo"), outline.at_servos(torques), {"units": "N m"}),
                 "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
@@ -77,7 +77,7 @@ class FreeInSpace:
 
 
 class TetheredInSpace:
-    """Forces on a body whose motion is given; the flow's own record is enough."""
+    """Forces on a body with a prescribed motion, from the record of the flow."""
 
     def __init__(self, swim: ResolvedSwim) -> None:
         self._swim = swim
@@ -86,56 +86,64 @@ class TetheredInSpace:
         """Sample nothing."""
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
-        """Return what was sampled, at even phases, with the means of every cycle."""
+        """Return the record at equal phases, with the means of every cycle."""
         del samples
         period, cycles, (sway, turn) = self._swim.period, self._swim.setting.cycles, self._swim.head
-        ahead, power = cycle_means(sim.record, period, cycles, ("force_x", "power"))
+        axial_force, power = cycle_means(sim.record, period, cycles, ("force_x", "power"))
         phase = np.arange(1, PHASES + 1) / PHASES
-        when, force = (sim.record.time - 0.5 * sim.record.step - self._swim.end + period) / period, sim.record.force()
+        step_phase, force = (
+            (sim.record.time - 0.5 * sim.record.step - self._swim.end + period) / period,
+            sim.record.force(),
+        )
         series = {
             "thrust": (-force[:, 0], "N"),
             "aside": (force[:, 1], "N"),
             "power": (sim.record.column("power"), "W"),
         }
         data = {
-            name: ("phase", np.interp(phase, when, values), {"units": unit}) for name, (values, unit) in series.items()
+            name: ("phase", np.interp(phase, step_phase, values), {"units": unit})
+            for name, (values, unit) in series.items()
         }
         data |= {
-            "cycle_thrust": ("cycle", -ahead, {"units": "N"}),
+            "cycle_thrust": ("cycle", -axial_force, {"units": "N"}),
             "cycle_power": ("cycle", power, {"units": "W"}),
             "sway": ("part", [sway.real, -sway.imag], {"units": "m"}),
             "turn": ("part", [turn.real, -turn.imag], {"units": "rad"}),
         }
-        found = xr.Dataset(data, coords={"part": ["cosine", "sine"], "phase": phase, "cycle": np.arange(1, cycles + 1)})
-        return found.merge(self._turns(sim))
+        dataset = xr.Dataset(
+            data, coords={"part": ["cosine", "sine"], "phase": phase, "cycle": np.arange(1, cycles + 1)}
+        )
+        return dataset.merge(self._turns(sim))
 
     def _turns(self, sim: flow.Simulation) -> xr.Dataset:
-        """Return what was at the four quarters of every cycle but the first, as of a slice; see ``_push``."""
+        """Return the loads at the four quarters of every cycle but the first, as for a slice; see ``_push``."""
         swim, series = self._swim, sim.record
-        settled = min(1, swim.setting.cycles - 1)
-        count = swim.setting.cycles - settled
-        turns = swim.period * (settled + (np.arange(4 * count) + 1.0) / 4.0)
-        when, force = series.time - 0.5 * series.step, series.force()
-        at = {
-            "thrust": (np.interp(turns, when, -force[:, 0]), "N"),
-            "aside": (np.interp(turns, when, force[:, 1]), "N"),
+        first_cycle = min(1, swim.setting.cycles - 1)
+        count = swim.setting.cycles - first_cycle
+        turns = swim.period * (first_cycle + (np.arange(4 * count) + 1.0) / 4.0)
+        step_times, force = series.time - 0.5 * series.step, series.force()
+        quantities = {
+            "thrust": (np.interp(turns, step_times, -force[:, 0]), "N"),
+            "aside": (np.interp(turns, step_times, force[:, 1]), "N"),
         }
         if swim.outline.places.size:  # else it is not divided
             parts = np.stack([series.along("force_x"), series.along("force_y")])
-            there = np.array([[np.interp(turns, when, part) for part in axis.T] for axis in parts])
-            pushed = [self._push(sim, float(time), there[:, :, i]) for i, time in enumerate(turns)]
-            at["difference"] = np.array(pushed), "Pa"
+            part_forces = np.array(
+                [[np.interp(turns, step_times, part_force) for part_force in axis.T] for axis in parts]
+            )
+            pushes = [self._push(sim, float(time), part_forces[:, :, i]) for i, time in enumerate(turns)]
+            quantities["difference"] = np.array(pushes), "Pa"
         data = {
             f"quarter_{name}": (("settled", "instant"), values.reshape(count, 4), {"units": unit})
-            for name, (values, unit) in at.items()
+            for name, (values, unit) in quantities.items()
         }
-        coords = {"instant": list(QUARTERS), "settled": np.arange(settled, swim.setting.cycles) + 1}
+        coords = {"instant": list(QUARTERS), "settled": np.arange(first_cycle, swim.setting.cycles) + 1}
         return xr.Dataset(data, coords=coords)
 
     def _push(self, sim: flow.Simulation, time: float, force: np.ndarray) -> float:
-        """Return the push on the tail from its convex side less that from its concave one, over the tail's side [Pa].
+        """Return the lateral force on the tail from convex to concave side, over the side area of the tail [Pa].
 
-        It stands for the difference of the pressures, which no grid here resolves along a round tail's skin.
+        It replaces the pressure difference, because no grid resolves the pressure along the skin of a round tail.
 
         Args:
             sim: at its end.
@@ -144,13 +152,13 @@ class TetheredInSpace:
         """
         outline = self._swim.outline
         spine = sim.setup.bodies[0].shape.spine(time)  # type: ignore[union-attr]
-        across = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
+        normals = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
         edges = np.array([0.0, *np.sort(outline.places), outline.robot.length])
         push = 0.0
-        for part, (front, rear) in enumerate(pairwise(edges)):
+        for part_index, (front, rear) in enumerate(pairwise(edges)):
             if 0.5 * (front + rear) > outline.tail_root:
-                there = (outline.s >= front) & (outline.s <= rear)
-                push += float(force[:, part] @ across[:, there].mean(axis=1))
+                is_in_part = (outline.s >= front) & (outline.s <= rear)
+                push += float(force[:, part_index] @ normals[:, is_in_part].mean(axis=1))
         tail = outline.s >= outline.tail_root
         side = float(np.trapezoid(2.0 * outline.silhouette.half_height[tail], outline.s[tail]))
         return push / side * float(np.sign(bend(outline, spine)))

@@ -1,4 +1,4 @@
-"""What is simulated when a robot swims in the flow solver, and the checks before anything runs."""
+"""Setup of a robot's swim in the flow solver, and the checks before it runs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ they were at 96 to 192 cells a length."""
 
 @dataclass(frozen=True, kw_only=True)
 class ResolvedSwim:
-    """One robot, one motion, one setting: what is simulated."""
+    """A robot, a motion and a setting, from which the flow is set up."""
 
     robot: Robot
     """The robot that swims."""
@@ -61,7 +61,7 @@ class ResolvedSwim:
 
     @property
     def key(self) -> str:
-        """What tells this swim from others, in full."""
+        """Text that identifies the swim."""
         motion = self.motion
         if hasattr(motion, "middles"):
             return repr((self.sway, self.turn, self.robot, motion.name, motion.middles.tobytes(), self.setting))
@@ -69,21 +69,21 @@ class ResolvedSwim:
 
     @cached_property
     def head(self) -> tuple[complex, complex]:
-        """Harmonics of the snout's sway [m] and of the head's direction [rad]: those given, or those to be expected."""
+        """Harmonics of the snout's sway [m] and of the head's direction [rad]: given, or estimated."""
         if self.setting.tethered:
             return self.sway, self.turn
         return recoil(self.outline, self.motion, 0.0, Water())
 
     @cached_property
     def setup(self) -> flow.Setup:
-        """What is simulated: the body, snout at the origin, in its box of water."""
+        """Setup of the flow: the body, its snout at the origin, in its box of water."""
         length, name, free = self.robot.length, self.robot.name, not self.setting.tethered
         shape = body_shape(
             self.outline, self.motion, self.setting, sway=self.sway, turn=self.turn, grow=GROWS / self.motion.frequency
         )
         start = (0.5 * length, 0.0, 0.0) if self.setting.in_space else (0.5 * length, 0.0)
-        held = flow.Body(shape=shape, name=name)
-        body = flow.FreeBody(shape=shape, name=name, start=start, free=self.setting.free) if free else held
+        fixed_body = flow.Body(shape=shape, name=name)
+        body = flow.FreeBody(shape=shape, name=name, start=start, free=self.setting.free) if free else fixed_body
         swing = float(np.abs(cycle(self.outline, self.motion, *self.head).y).max()) if self.setting.in_space else 0.0
         return flow.Setup(
             grid=box_grid(self.outline, self.setting, swing), viscosity=self.setting.viscosity, density=DENSITY,
@@ -92,7 +92,7 @@ class ResolvedSwim:
         )  # fmt: skip
 
     def check(self) -> None:
-        """Refuse what joints, servos, grid, box or machine cannot follow, before anything runs.
+        """Refuse a swim beyond the limits of joints, servos, grid, box or machine, before anything runs.
 
         Raises:
             OutsideLimits: the joints or servos cannot follow the motion.
@@ -115,6 +115,7 @@ class ResolvedSwim:
         setup.check()
 
     def _check_layer(self) -> None:
+        """Refuse cells that are too coarse for the boundary layer of the motion."""
         length, setting = self.robot.length, self.setting
         moving = cycle(self.outline, self.motion, *self.head)
         speed = float(np.hypot(moving.x_rate, moving.y_rate).max())
@@ -128,7 +129,7 @@ class ResolvedSwim:
             )
 
     def _cost(self, cells: int) -> str:
-        """Return what a swim in space with so many cells per body length takes, for a message."""
+        """Return a text on the cost of a swim in space with a number of cells per body length."""
         setting = self.setting
         if not setting.in_space:
             return ""
@@ -148,8 +149,8 @@ def body_shape(
         return trunk(
             outline, motion, grow=grow, tail_height=setting.tail_height, limbs=setting.limbs, sway=sway, turn=turn
         )
-    least = setting.least_half_width(outline.robot.length)
-    return immersed(outline, motion, sway=sway, turn=turn, grow=grow, least=least)
+    min_half_width = setting.least_half_width(outline.robot.length)
+    return immersed(outline, motion, sway=sway, turn=turn, grow=grow, least=min_half_width)
 
 
 def box_grid(outline: Outline, setting: SwimSetting, swing: float) -> flow.Grid:
@@ -159,14 +160,14 @@ def box_grid(outline: Outline, setting: SwimSetting, swing: float) -> flow.Grid:
 
 
 def box_sides(setting: SwimSetting) -> flow.Sides:
-    """Return what lies around the box: an unbounded domain, in space beyond a plane of symmetry its image."""
+    """Return the sides of the box: an unbounded domain, in space with its image beyond a plane of symmetry."""
     return flow.Sides(low=flow.Mirror()) if setting.in_space else flow.Sides()
 
 
 def straight_body(outline: Outline, setting: SwimSetting) -> flow.Body:
     """Return the straight body at rest, its limbs left out."""
-    bare = replace(setting, limbs=False)
-    shape = body_shape(outline, still(outline), bare, sway=0j, turn=0j, grow=0.0)
+    limbless_setting = replace(setting, limbs=False)
+    shape = body_shape(outline, still(outline), limbless_setting, sway=0j, turn=0j, grow=0.0)
     return flow.Body(shape=replace(shape, deforms=False))
 
 
@@ -181,9 +182,9 @@ def cycle_means(
         cycles: how many [-].
         names: columns of the record.
     """
-    out = np.empty((len(names), cycles))
+    means = np.empty((len(names), cycles))
     for i in range(cycles):
-        part = (series.time > i * period * (1 + SLACK)) & (series.time <= (i + 1) * period * (1 + SLACK))
+        is_in_cycle = (series.time > i * period * (1 + SLACK)) & (series.time <= (i + 1) * period * (1 + SLACK))
         for row, name in enumerate(names):
-            out[row, i] = np.average(series.column(name)[part], weights=series.step[part])
-    return out
+            means[row, i] = np.average(series.column(name)[is_in_cycle], weights=series.step[is_in_cycle])
+    return means

@@ -1,4 +1,4 @@
-"""How a robot swims by the models that cost nothing: one motion in full, or many in a few numbers each."""
+"""Swims by slender-body models, which take no time: one motion in full, or many with a few numbers each."""
 
 from collections.abc import Sequence
 
@@ -23,11 +23,11 @@ VALUES = {"speed": "m/s", "efficiency": "1", "cost_of_transport": "1", "strouhal
 
 
 def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
-    """Return how a robot swims by the resistive and the reactive model.
+    """Return the swim of a robot by the resistive and by the reactive model.
 
-    ``thrust_held`` is the mean force on a body that is kept from moving on but free to sway and turn; everything else
-    belongs to free swimming at the speed where the mean force vanishes. The passive end of the tail is straight, the
-    body as heavy as the water it displaces; limbs do nothing.
+    ``thrust_held`` is the mean force on a body that cannot move forward but can sway and turn. All other quantities are
+    those of free swimming, at the speed with no mean force. The passive end of the tail is straight. The body has the
+    mass of the water that it displaces. Limbs have no effect.
 
     Args:
         robot: who swims, or its name on the shelf.
@@ -43,23 +43,23 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
         OutsideLimits: the joints or servos cannot follow the motion.
         NotConverged: thrust and drag never balance.
     """
-    swimmer, around = ROBOTS.resolve(robot), water or Water()
+    swimmer, medium = ROBOTS.resolve(robot), water or Water()
     if isinstance(motion, Gait):
         check_limits(swimmer, motion)
         check_speeds(swimmer, motion)
     outline = Outline(swimmer, stations)
-    bent = undulation(outline, motion)
-    held = cycle(outline, bent, *recoil(outline, bent, 0.0, around))
+    body_motion = undulation(outline, motion)
+    fixed_curve = cycle(outline, body_motion, *recoil(outline, body_motion, 0.0, medium))
     per_model: dict[str, list[float]] = {name: [] for name in _PER_MODEL}
     curves = []
     for model in MODELS.values():
-        free = cruise(outline, bent, model, around)
-        curve = cycle(outline, bent, free.sway, free.turn)
+        free = cruise(outline, body_motion, model, medium)
+        curve = cycle(outline, body_motion, free.sway, free.turn)
         curves.append(curve)
-        values = _numbers(swimmer, motion, outline, curve, free.speed, free.power, around)
-        for name, value in {"thrust_held": model(outline, held, 0.0, around).thrust, **values}.items():
+        values = _numbers(swimmer, motion, outline, curve, free.speed, free.power, medium)
+        for name, value in {"thrust_held": model(outline, fixed_curve, 0.0, medium).thrust, **values}.items():
             per_model[name].append(value)
-    return _record(outline, motion, around, curves, per_model)
+    return _record(outline, motion, medium, curves, per_model)
 
 
 _PER_MODEL = {
@@ -78,6 +78,17 @@ _PER_MODEL = {
 def _numbers(
     robot: Robot, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float, water: Water
 ) -> dict[str, float]:
+    """Return speed, power, slip, cost of transport and the similarity numbers of a free swim.
+
+    Args:
+        robot: the design.
+        motion: of the midline.
+        outline: of the robot.
+        curve: midline over one cycle.
+        speed: forward [m/s].
+        power: of the body on the water [W].
+        water: density and viscosity.
+    """
     swing = float(np.ptp(curve.y[:, -1]))
     weight = GRAVITY * displaced(outline)
     moving = speed != 0.0
@@ -95,16 +106,15 @@ def _numbers(
 
 
 def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
-    """Return the mass of the water that the body displaces, its sections taken as ellipses [kg]."""
-    wide, high = outline.silhouette
-    return float(density * np.pi * np.trapezoid(wide * high, outline.s))
+    """Return the mass of the water that the body displaces; sections are ellipses [kg]."""
+    half_width, half_height = outline.silhouette
+    return float(density * np.pi * np.trapezoid(half_width * half_height, outline.s))
 
 
 def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
     """Return the speed of the body wave towards the tail, negative if it runs to the head [m/s].
 
-    The phase of the sideways motion along the body is fitted with a straight line, each place weighted with the square
-    of its amplitude.
+    A line is fitted to the phase of the lateral motion along the body, weighted with the squared amplitude.
     """
     count = len(curve.y)
     turning = np.exp(-2j * np.pi * np.arange(count) / count)
@@ -121,6 +131,7 @@ def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
 def _record(
     outline: Outline, motion: Motion, water: Water, curves: list[MidlineCurve], per_model: dict[str, list[float]]
 ) -> xr.Dataset:
+    """Return the record of a swim by all models."""
     count = len(curves[0].x)
     data = xr.Dataset(
         coords={
@@ -129,8 +140,8 @@ def _record(
             "station": ("station", outline.s, {"units": "m", "long_name": "along the midline from the snout"}),
         }
     )
-    for name, (unit, what) in _PER_MODEL.items():
-        data[name] = ("model", per_model[name], {"units": unit, "long_name": what})
+    for name, (unit, meaning) in _PER_MODEL.items():
+        data[name] = ("model", per_model[name], {"units": unit, "long_name": meaning})
     for field, unit in (("x", "m"), ("y", "m"), ("heading", "rad"), ("x_rate", "m/s"), ("y_rate", "m/s")):
         values = np.stack([getattr(curve, field) for curve in curves])
         data[field] = (("model", "time", "station"), values, {"units": unit})
@@ -142,7 +153,7 @@ def _record(
 
 
 def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
-    """Return what both slender-body models say of motions, and which of them the robot can follow.
+    """Return the results of both slender-body models for motions, and whether the robot can follow them.
 
     Args:
         robot: who swims.
@@ -153,34 +164,36 @@ def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None,
     Returns:
         ``VALUES`` along ``model`` and ``motion``, and ``possible`` along ``motion``: joints and servos can follow it.
     """
-    outline, around = Outline(robot, stations), water or Water()
-    found = np.array([[_one(outline, motion, model, around) for motion in motions] for model in MODELS.values()])
-    data = {name: (("model", "motion"), found[:, :, i], {"units": VALUES[name]}) for i, name in enumerate(VALUES)}
+    outline, medium = Outline(robot, stations), water or Water()
+    values = np.array(
+        [[_evaluate_motion(outline, motion, model, medium) for motion in motions] for model in MODELS.values()]
+    )
+    data = {name: (("model", "motion"), values[:, :, i], {"units": VALUES[name]}) for i, name in enumerate(VALUES)}
     possible = [_possible(robot, motion) for motion in motions]
     return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
 
 
 def greatest(robot: Robot, motion: Gait, *, most: float = 4.0) -> float:
-    """Return the greatest factor of every angle at which joints and servos still follow a motion, to 1e-4 [-].
+    """Return the greatest factor on all angles at which joints and servos can follow a motion, to 1e-4 [-].
 
     Args:
         robot: who swims.
         motion: how.
         most: factor that is not gone beyond [-].
     """
-    low, high = 0.0, most
-    if _possible(robot, motion.bent(high)):
-        return high
-    while high - low > 1e-4:
-        middle = 0.5 * (low + high)
+    lower_bound, upper_bound = 0.0, most
+    if _possible(robot, motion.bent(upper_bound)):
+        return upper_bound
+    while upper_bound - lower_bound > 1e-4:
+        middle = 0.5 * (lower_bound + upper_bound)
         if _possible(robot, motion.bent(middle)):
-            low = middle
+            lower_bound = middle
         else:
-            high = middle
-    return low
+            upper_bound = middle
+    return lower_bound
 
 
-def _one(outline: Outline, motion: Gait, model: Model, water: Water) -> tuple[float, ...]:
+def _evaluate_motion(outline: Outline, motion: Gait, model: Model, water: Water) -> tuple[float, ...]:
     """Return ``VALUES`` of one motion by one model."""
     free = cruise(outline, motion, model, water)
     if free.speed == 0.0:
@@ -199,6 +212,7 @@ def _one(outline: Outline, motion: Gait, model: Model, water: Water) -> tuple[fl
 
 
 def _possible(robot: Robot, motion: Gait) -> bool:
+    """Return whether joints and servos can follow a motion."""
     try:
         check_limits(robot, motion)
         check_speeds(robot, motion)

@@ -1,11 +1,10 @@
-"""How a midline bends over time: as its joints bend it, or exactly as a wave prescribes.
+"""Motion of a midline over time: by the bends of its joints, or exactly as a wave prescribes.
 
-Both are the same thing to the flow and to the models: tangent angles along the body, each a sum of harmonics in time.
-Places and velocities follow by summing tangents from the snout, so that the midline keeps its length whatever the wave,
-and velocities are exact derivatives.
+Both are tangent angles along the body, each a sum of harmonics in time. Positions and velocities are sums of tangents
+from the snout. So the midline has a constant length, and velocities are exact derivatives.
 
-A cable fixes the sum of its joints only, and a passive end bends as the water lets it; a gait commands them and cannot
-see that. So a motion can also be taken from the angles of every lateral joint of a run (``taken``).
+A cable fixes only the sum of its joints, and the water bends a passive end. A gait cannot describe that. So a motion
+can also be taken from the angles of every lateral joint of a run (``taken``).
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +28,7 @@ HARMONICS = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExactWave:
-    """A wave that the midline follows exactly, joints or not: a body that bends anywhere."""
+    """A wave that the midline follows exactly, independent of joints."""
 
     name: str
     """Name, as messages, tables and files show it."""
@@ -42,7 +41,7 @@ class ExactWave:
 
     @property
     def frequency(self) -> float:
-        """Of the wave [Hz]."""
+        """Frequency of the wave [Hz]."""
         return 1.0 / self.wave.period
 
 
@@ -64,29 +63,33 @@ class Undulation:
     """Way of the snout to the right [m]."""
 
     def held(self, sway: complex = 0j, turn: complex = 0j) -> "Undulation":
-        """Return the same with a first harmonic added to snout's displacement [m] and head's direction [rad]."""
+        """Return the motion with a first harmonic added to the head's displacement [m] and direction [rad]."""
         middles, stations, snout = self.middles.copy(), self.stations.copy(), self.sway.copy()
         middles[1] += turn
         stations[1] += turn
         snout[1] += sway
         return replace(self, middles=middles, stations=stations, sway=snout)
 
-    def curve(self, time: Float[np.ndarray, "*b"], grown: float = 1.0, growing: float = 0.0) -> MidlineCurve:
-        """Return the midline at times.
+    def curve(self, time: Float[np.ndarray, "*b"], growth: float = 1.0, growth_rate: float = 0.0) -> MidlineCurve:
+        """Return the midline and its velocity at times.
 
         Args:
             time: [s].
-            grown: share of the motion that has grown [-].
-            growing: rate of that share [1/s].
+            growth: share of the motion that has grown [-].
+            growth_rate: rate of that share [1/s].
         """
         turning, spinning = self._phases(time)
-        mixed = grown * spinning + growing * turning
-        turning = grown * turning
+        mixed = growth * spinning + growth_rate * turning
+        turning = growth * turning
 
-        def at(harmonics: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        def evaluate(harmonics: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             return (turning @ harmonics).real, (mixed @ harmonics).real
 
-        (middle, spin), (heading, rate), (y, y_rate) = at(self.middles), at(self.stations), at(self.sway[:, None])
+        (middle, spin), (heading, rate), (y, y_rate) = (
+            evaluate(self.middles),
+            evaluate(self.stations),
+            evaluate(self.sway[:, None]),
+        )
         step = self.outline.robot.length / (self.outline.stations - 1)
         zero = np.zeros_like(y[..., 0])
         return MidlineCurve(
@@ -109,7 +112,7 @@ Motion = Gait | ExactWave | Undulation
 
 
 def undulation(outline: Outline, motion: Motion) -> Undulation:
-    """Return how the midline bends in a motion; in a gait the snout stays in place and the head straight.
+    """Return the motion of a midline; in a gait the snout stays in place and the head straight.
 
     Args:
         outline: of the robot.
@@ -133,12 +136,12 @@ def undulation(outline: Outline, motion: Motion) -> Undulation:
 
 
 def still(outline: Outline, frequency: float = 1.0) -> Undulation:
-    """Return the motion that is none."""
+    """Return the motion of a straight body at rest."""
     return _of_joints(outline, "still", frequency, np.zeros((2, len(outline.joints)), complex))
 
 
 def _of_joints(outline: Outline, name: str, frequency: float, harmonics: np.ndarray) -> Undulation:
-    """Return the motion of a midline whose joints have such harmonics, shape (harmonic, joint) [rad]."""
+    """Return the motion of a midline with given harmonics of its joints, shape (harmonic, joint) [rad]."""
     middle = 0.5 * (outline.s[1:] + outline.s[:-1])
     return Undulation(
         name=name,
@@ -151,8 +154,8 @@ def _of_joints(outline: Outline, name: str, frequency: float, harmonics: np.ndar
 
 
 def _commanded(outline: Outline, gait: Gait) -> Complex[np.ndarray, "harmonic joint"]:
-    """Return the harmonics of the joints in a gait, a cable's bend shared evenly, without their means [rad]."""
-    here, place = movement(outline.robot, gait), layout(outline.robot)
+    """Return the harmonics of the joints in a gait, without their means [rad]; joints of a cable bend equally."""
+    plan, place = movement(outline.robot, gait), layout(outline.robot)
     harmonics = np.zeros((HARMONICS if gait.curves else 2, len(outline.joints)), complex)
     if gait.curves:
         angles = cycle_targets(outline.robot, gait, np.arange(_INSTANTS) / _INSTANTS)
@@ -163,16 +166,17 @@ def _commanded(outline: Outline, gait: Gait) -> Complex[np.ndarray, "harmonic jo
                 bend = tail_kinematics.bend_of_servo(place.cable(number), bend) / len(servo.joints)
             harmonics[1:, list(servo.joints)] = _harmonics(bend)[1:HARMONICS, None]
         return harmonics
-    hinges = here.yaw.hinges
+    hinges = plan.yaw.hinges
     order = [outline.joints.index(name) for name in hinges.names]
-    harmonics[1, order] = np.array(hinges.signs) * here.harmonics()[0]
+    harmonics[1, order] = np.array(hinges.signs) * plan.harmonics()[0]
     return harmonics
 
 
 def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
+    """Return the harmonics of a midline that follows a wave exactly."""
     time = motion.wave.period * np.arange(_INSTANTS) / _INSTANTS
-    both = np.sort(np.concatenate([outline.s, 0.5 * (outline.s[1:] + outline.s[:-1])]))
-    heading, _, across = along(motion.wave, both, time)
+    points = np.sort(np.concatenate([outline.s, 0.5 * (outline.s[1:] + outline.s[:-1])]))
+    heading, _, lateral = along(motion.wave, points, time)
     harmonics = _harmonics(heading)
     return Undulation(
         name=motion.name,
@@ -180,22 +184,22 @@ def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
         outline=outline,
         middles=harmonics[:, 1::2],
         stations=harmonics[:, ::2],
-        sway=_harmonics(across[:, :1])[:, 0],
+        sway=_harmonics(lateral[:, :1])[:, 0],
     )
 
 
 def _harmonics(values: np.ndarray) -> np.ndarray:
-    """Return the harmonics of values over one cycle, shape (time, ...), as ``Undulation`` wants them."""
-    found = 2.0 * np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
-    found[0] *= 0.5
-    return np.asarray(found)
+    """Return the Fourier coefficients of values over one cycle, shape (time, ...), in the form of ``Undulation``."""
+    harmonics = 2.0 * np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
+    harmonics[0] *= 0.5
+    return np.asarray(harmonics)
 
 
 def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int, name: str = "as taken") -> Undulation:
     """Return the motion of the midline in the last whole cycles of a run, averaged over them.
 
-    Only yaw counts, as in the slice of water seen from above that it is for: pitch, heave and roll of the run are not
-    in it, and of yaw its mean over a cycle is not.
+    Only yaw counts, without its mean, as in a slice of water seen from above. Pitch, heave and roll of the run are left
+    out.
 
     Args:
         outline: of the robot without a hull.
@@ -218,16 +222,19 @@ def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int
         raise InvalidDesign(
             f"a cycle of {period:.3g} s has {period / step:.3g} samples; {2 * HARMONICS} are needed: keep more samples."
         )
-    last = time > time[-1] - cycles * period + 0.5 * step
-    angles = record.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values[last]
-    turning = np.exp(-2j * np.pi * frequency * np.outer(np.arange(HARMONICS), time[last]))
-    harmonics = 2.0 * turning @ angles / last.sum()
+    is_in_last_cycles = time > time[-1] - cycles * period + 0.5 * step
+    angles = record.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values[is_in_last_cycles]
+    turning = np.exp(-2j * np.pi * frequency * np.outer(np.arange(HARMONICS), time[is_in_last_cycles]))
+    harmonics = 2.0 * turning @ angles / is_in_last_cycles.sum()
     harmonics[0] = 0.0
     return _of_joints(outline, name, frequency, harmonics)
 
 
-def unevenness(motion: Undulation, meant: Undulation) -> float:
-    """Return how far a midline is from another of the same outline, the head alike: rms angle over the other's [-]."""
-    count = max(len(motion.middles), len(meant.middles))
-    one, other = (np.pad(each.middles, ((0, count - len(each.middles)), (0, 0))) for each in (motion, meant))
-    return float(np.sqrt((np.abs(one - other) ** 2).sum() / (np.abs(other) ** 2).sum()))
+def unevenness(motion: Undulation, reference: Undulation) -> float:
+    """Return the rms difference of the headings of two midlines over the rms heading of the second one [-]."""
+    count = max(len(motion.middles), len(reference.middles))
+    middles, reference_middles = (
+        np.pad(compared_motion.middles, ((0, count - len(compared_motion.middles)), (0, 0)))
+        for compared_motion in (motion, reference)
+    )
+    return float(np.sqrt((np.abs(middles - reference_middles) ** 2).sum() / (np.abs(reference_middles) ** 2).sum()))

@@ -31,7 +31,7 @@ class BodyWave(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PrintedWave:
-    """(20) on a robot, from the snout or from the root of the tail on; ahead of that the body stays straight.
+    """(20) on a robot, from the snout or from the root of the tail on; the body ahead of it stays straight.
 
     Paper: Eq. (20).
     """
@@ -52,8 +52,8 @@ class PrintedWave:
 
     def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return dy/dx [-]."""
-        inside = wave_kinematics.slope(self.wave, np.maximum(x - self.origin, 0.0), time)
-        return np.where(x >= self.origin, inside, 0.0)
+        wave_slope = wave_kinematics.slope(self.wave, np.maximum(x - self.origin, 0.0), time)
+        return np.where(x >= self.origin, wave_slope, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,25 +75,25 @@ class EelWave:
 
     def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return how far the midline lies off the axis [m]."""
-        part = x / self.length
-        phase = 2 * np.pi * (part - self.frequency * time)
-        return np.asarray(self.length * 0.125 * (part + 0.03125) / 1.03125 * np.sin(phase))
+        position = x / self.length
+        phase = 2 * np.pi * (position - self.frequency * time)
+        return np.asarray(self.length * 0.125 * (position + 0.03125) / 1.03125 * np.sin(phase))
 
     def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return dy/dx [-]."""
-        part = x / self.length
-        phase = 2 * np.pi * (part - self.frequency * time)
-        grown = 2 * np.pi * (part + 0.03125) * np.cos(phase)
-        return np.asarray(0.125 / 1.03125 * (np.sin(phase) + grown))
+        position = x / self.length
+        phase = 2 * np.pi * (position - self.frequency * time)
+        envelope_term = 2 * np.pi * (position + 0.03125) * np.cos(phase)
+        return np.asarray(0.125 / 1.03125 * (np.sin(phase) + envelope_term))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FilmedWave:
-    """A wave of which a film gave the amplitudes of snout and tail, and its length: ``A(x) sin 2 pi (x / wave - f t)``.
+    """A wave with amplitudes and length from a film: ``A(x) sin 2 pi (x / wave - f t)``.
 
-    In between the amplitude follows a parabola that is level at the snout; that is what a film says of it that gives
-    its ends only, and how swimmers of the eel's and of the carp's kind look (Di Santo et al. 2021, PNAS 118,
-    e2113206118).
+    Between snout and tail the amplitude is a parabola with zero slope at the snout. A film that gives the amplitudes of
+    the ends only does not say more. Eel-like and carp-like swimmers have such envelopes (Di Santo et al. 2021, PNAS
+    118, e2113206118).
     """
 
     length: float
@@ -114,19 +114,21 @@ class FilmedWave:
 
     def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return how far the midline lies off the axis [m]."""
-        part = x / self.length
-        phase = 2 * np.pi * (part / self.wavelength - self.frequency * time)
-        return np.asarray(self.length * self._amplitude(part) * np.sin(phase))
+        position = x / self.length
+        phase = 2 * np.pi * (position / self.wavelength - self.frequency * time)
+        return np.asarray(self.length * self._amplitude(position) * np.sin(phase))
 
     def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return dy/dx [-]."""
-        part = x / self.length
-        phase = 2 * np.pi * (part / self.wavelength - self.frequency * time)
-        grows = 2 * part * (self.tail - self.head)
-        return np.asarray(grows * np.sin(phase) + self._amplitude(part) * 2 * np.pi / self.wavelength * np.cos(phase))
+        position = x / self.length
+        phase = 2 * np.pi * (position / self.wavelength - self.frequency * time)
+        grows = 2 * position * (self.tail - self.head)
+        return np.asarray(
+            grows * np.sin(phase) + self._amplitude(position) * 2 * np.pi / self.wavelength * np.cos(phase)
+        )
 
-    def _amplitude(self, part: np.ndarray) -> np.ndarray:
-        return self.head + (self.tail - self.head) * part**2
+    def _amplitude(self, position: np.ndarray) -> np.ndarray:
+        return self.head + (self.tail - self.head) * position**2
 
 
 def printed_wave(
@@ -155,7 +157,7 @@ def printed_wave(
 
 
 def along(wave: BodyWave, s: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return heading, x and y of a wave at equal arc lengths, each of shape (time, station).
+    """Return heading, x and y of a wave at given arc lengths, each of shape (time, station).
 
     Args:
         wave: the curve.
@@ -164,11 +166,11 @@ def along(wave: BodyWave, s: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, 
     """
     x = np.linspace(0.0, s[-1], _FINE)
     step = x[1] - x[0]
-    heading, ahead, across = (np.empty((len(time), len(s))) for _ in range(3))
+    heading, x_positions, y_positions = (np.empty((len(time), len(s))) for _ in range(3))
     for i, t in enumerate(time):
         stretch = np.sqrt(1.0 + wave.slope(x, t) ** 2)
         arc = np.concatenate([[0.0], np.cumsum(0.5 * step * (stretch[1:] + stretch[:-1]))])
-        ahead[i] = np.interp(s, arc, x)  # arc lengths grow faster than x, so that s ends within
-        heading[i] = np.arctan(wave.slope(ahead[i], t))
-        across[i] = wave.displacement(ahead[i], t)
-    return heading, ahead, across
+        x_positions[i] = np.interp(s, arc, x)  # arc lengths grow faster than x, so that s ends within
+        heading[i] = np.arctan(wave.slope(x_positions[i], t))
+        y_positions[i] = wave.displacement(x_positions[i], t)
+    return heading, x_positions, y_positions
