@@ -1,8 +1,8 @@
 """Drag and added mass of elliptic sections: a table that was computed by the flow solver.
 
 The sections oscillate in water at rest, see ``evidence.atlas.sections``. Between the nodes the logarithms are linear in
-those of aspect and Keulegan-Carpenter number. The table has a Stokes number of 20, that is Reynolds numbers of 20 to 400. The
-robot's Stokes number is 3600; docs/amphibious.md describes the consequences.
+those of aspect and Keulegan-Carpenter number. The table has a Stokes number of 20, that is Reynolds numbers of 20 to
+400. The robot's Stokes number is 3600; docs/amphibious.md describes the consequences.
 """
 
 import csv
