@@ -56,7 +56,7 @@ def digest(modules: Iterable[str], package: Path = PACKAGE) -> str:
         SyntaxError: a source is no Python.
     """
     text = hashlib.sha256()
-    for file in files(modules, package):
+    for file in sorted(files(modules, package), key=lambda file: _name(file, package)):
         stamp = file.stat()
         text.update(_name(file, package).encode() + _content(file, stamp.st_mtime_ns, stamp.st_size))
     return text.hexdigest()[:16]

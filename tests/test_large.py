@@ -148,7 +148,7 @@ def test_a_process_of_too_little_memory_is_told_in_a_sentence(monkeypatch, capsy
 
 
 def test_memory_that_runs_out_is_a_sentence(monkeypatch, capsys):
-    def hungry(words):
+    def hungry(words, commands):
         raise MemoryError
 
     monkeypatch.setattr(sys.modules["suchus.apps.cli.entry"], "_dispatch", hungry)
@@ -171,7 +171,7 @@ def test_memory_that_mujoco_does_not_get_is_told_as_such(monkeypatch):
 
 
 def test_a_command_that_gets_no_memory_of_mujoco_says_so(monkeypatch, capsys):
-    def hungry(words):
+    def hungry(words, commands):
         raise mujoco.FatalError("Could not allocate memory")
 
     monkeypatch.setattr(sys.modules["suchus.apps.cli.entry"], "_dispatch", hungry)

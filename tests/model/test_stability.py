@@ -21,7 +21,7 @@ def test_the_longest_step_is_a_time_of_the_body():
 def test_shorter_steps_hold_the_joints_and_longer_ones_do_not():
     robot = giant()
     asked = EXPERIMENTS["death_roll"].quick().on(robot)
-    run = asked._afloat(asked._roll(), "trunk", "vacuum")
+    run = asked._floating_run(asked._roll(), "trunk", "vacuum")
     longest = longest_step(robot)
     assert 0.0005 < longest < 0.001
     for step, holds in ((0.0005, True), (0.001, False)):

@@ -56,7 +56,7 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "_period: min(int(1.5 * period / step), len(load) - 2) is max": "The best shift is shorter than both.",
     },
     "pattern_generator": {
-        "_turned: found['turn_asymmetry'].value - found['turn_straight'].value the other way round": _SIZE,
+        "_turn_measures: measures['turn_asymmetry'].value - measu ... traight'].value the other way round": _SIZE,
         "_TURNS: straight asymmetry the other way round": "Which walks are run, in whatever order.",
         "_locked: cycle.dims[0] is the last": "A cycle's index is all that the error of a start is over.",
     },
@@ -66,8 +66,8 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "waves: cycle['walk'] - cycle['commanded'] the other way round": _SIZE,
     },
     "salamander_swim": {
-        "measure: other.min() is max": _ONE_WATER,
-        "measure: other.max() is min": _ONE_WATER,
+        "measure: other_strides.min() is max": _ONE_WATER,
+        "measure: other_strides.max() is min": _ONE_WATER,
         "measure: record.missed.max() is min": _ONE_SWIM,
         "measure: record.heel.max() is min": _ONE_SWIM,
         "played: 1.0 / frequency the other way round": _ANY_PERIOD,
@@ -81,8 +81,8 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "_waving: swing(one, 1).share[0] is the last": "What is read there is the tip's place alone.",
         "_pushing: first - third * (1.0, -1.0) the other way round": _SIZE,
     },
-    "joint_loops": {"measure: float(tail.sel(test='step')[-1]) - step the other way round": _SIZE},
-    "gallop_limits": {"_first: speeds[from_here][0] is the last": "In its quick form one speed pays at most."},
+    "joint_loops": {"measure: float(final_interval.sel(test='step')[-1]) - step the other way round": _SIZE},
+    "gallop_limits": {"_first: speeds[all_faster_pay][0] is the last": "In its quick form one speed pays at most."},
     "joint_faults": {"_effects: change.sel({dim: a}) - change.sel({dim: b}) the other way round": _SIZE},
     "bipedal_reach": {
         "least_lead: run=0 is the last": _ONE_RUN,
@@ -92,8 +92,8 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "_most_tilt: abs(angles['pitch']).max('time') is min": "In its quick form the roll is the greater tilt.",
     },
     "feedback": {
-        "_loop_measures: _ending(pitch, gait.period).mean() - _en ... .period).mean() the other way round": _SIZE,
-        "_undisturbed_measures: part.isel(time=-1) - part.isel(time=0) the other way round": "Both ends of a quotient.",
+        "_loop_measures: _last_seconds(pitch, gait.period).mean() ... .period).mean() the other way round": _SIZE,
+        "_undisturbed_measures: first_cycles.isel(time=-1) - first_cycles.isel(time=0) the other way round": "Both ends of a quotient.",
     },
 }
 """By experiment the breaks that no measure of its quick form notices, and why that hides nothing."""

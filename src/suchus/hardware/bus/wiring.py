@@ -227,7 +227,7 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
 
 
 def _refuse_cranks(robot: Robot) -> None:
-    """Refuse robots with joints that turn without end."""
+    """Refuse robots with joints without limits."""
     cranks = [
         f"{limb.name}_{hinge.name}"
         for limb in layout(robot).limbs

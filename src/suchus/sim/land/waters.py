@@ -54,7 +54,7 @@ class _Resolved:
     """In space: water beside the widest swing, to each side; None for that of a commanded swim [body length]."""
 
     def _check(self, name: str) -> None:
-        """Refuse settings of a resolved flow outside their ranges, and settings of a body in space for a slice."""
+        """Refuse settings of a solved flow outside their ranges, and settings of a body in space for a slice."""
         with Checks(name, self) as check:
             check.whole("cells", 32, _MAX_CELLS[name])
             check.number("reynolds", 10.0, 1e7, "")
