@@ -135,7 +135,7 @@ def tell_outline(cells=96, corners=240, steps=12, rounds=6):
     shapes = {
         "ellipse": ellipse,
         "outline": flow.from_outline(np.stack(ellipse.outline(corners), axis=1)),
-        "bent": flow.bent(ellipse, lambda x, y, time: (x, y - 0.05 * (x + 0.5) * np.sin(6.0 * x - 3.0 * time))),
+        "bent": flow.bend_shape(ellipse, lambda x, y, time: (x, y - 0.05 * (x + 0.5) * np.sin(6.0 * x - 3.0 * time))),
     }
     grid = flow.Grid(cells=(4 * cells, 8 * cells // 3), cell=1 / cells, origin=(-1.5, -4 / 3))
     swing, sims = flow.Oscillation(frequency=0.5, heave=(0.0, 0.1), pitch=0.3), {}
@@ -247,7 +247,8 @@ def tell_solve(w, per_cell):
     down, up, dots, first, second = (
         threaded(part.py_func)
         for part in (
-            multigrid._down_threaded, multigrid._up_threaded, poisson._measure, poisson._first_step, poisson._step
+            multigrid._descend_threaded, multigrid._ascend_threaded, poisson._measure, poisson._first_step,
+            poisson._step
         )
     )  # fmt: skip
     store, layout, room, patches, inner, sides = w._store, w._layout, w._room, w._patches, w.inner, w.repeats

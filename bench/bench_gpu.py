@@ -21,7 +21,7 @@ from numba import cuda
 from form import in_form
 from suchus.flow import multigrid
 from suchus.flow.advect import advance
-from suchus.flow.compiled import PAD, Part, compiled, part_with
+from suchus.flow.compiled import PAD, KernelPart, compiled, replace_kernel_parts
 from suchus.flow.multigrid import B
 from suchus.flow.poisson import levels, make_store
 from suchus.flow.scheme import limited_quick
@@ -50,9 +50,11 @@ def on_card(part):
     """Return a part of the flow solver, with the parts that it calls, as a function for kernels of a card."""
     called = part.py_func.__globals__
     parts = {
-        name: on_card(called[name]) for name in part.py_func.__code__.co_names if isinstance(called.get(name), Part)
+        name: on_card(called[name])
+        for name in part.py_func.__code__.co_names
+        if isinstance(called.get(name), KernelPart)
     }
-    return cuda.jit(device=True)(part_with(part, **parts).py_func)
+    return cuda.jit(device=True)(replace_kernel_parts(part, **parts).py_func)
 
 
 face = on_card(limited_quick)
@@ -188,7 +190,7 @@ class Cycle:
         """Solve the last level from nothing, with the steps of the processor."""
         size, blocks = self.sizes[k], -(-prod(self.sizes[k]) // THREADS)
         x, y = self.x[k], self.y[k]
-        reaches, weight = multigrid._reaches.py_func(max(size), 3)
+        reaches, weight = multigrid._relaxation_factors.py_func(max(size), 3)
         x[:] = y[:] = np.float32(0)
         self.launches += 1 + reaches.size
         for far in reaches.astype(np.float32):

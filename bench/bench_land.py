@@ -14,7 +14,7 @@ import numpy as np
 from mujoco import rollout
 
 from form import in_form
-from suchus.apps.envs import Follow
+from suchus.apps.envs import GaitFollower
 from suchus.core import threads
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
@@ -83,7 +83,7 @@ def batches() -> None:
 def environments(count: int, actions: int) -> None:
     """Time so many environments over so many actions."""
     env = gymnasium.make_vec("suchus/Crawl-v0", num_envs=count).unwrapped
-    policy = Follow(task=env.task, centre=tuple(env.pack.centre), gait=env.task.gait)
+    policy = GaitFollower(task=env.task, centre=tuple(env.pack.centre), gait=env.task.gait)
     loop, steps = env.pack.loop, round(env.pack.loop.period / env.task.timestep)
     batch, advance, commands, played = loop.batch, loop.advance, [], []
 

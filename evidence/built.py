@@ -5,7 +5,7 @@ from math import isfinite
 from typing import Any
 
 from evidence.store import ROOT
-from suchus.hardware.loads import LoadCase, borne, cold, records_of_each
+from suchus.hardware.loads import LoadCase, cold, measure_loads, records_of_each
 from suchus.robot import blueprint
 from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS
@@ -23,7 +23,7 @@ WALKS = (*((name, GAITS[name].period) for name in ITS_OWN), *HASTY)
 
 def former() -> Robot:
     """Return the robot as it was."""
-    return blueprint.read(FILE, Robot, ROBOTS)
+    return blueprint.read_design(FILE, Robot, ROBOTS)
 
 
 def measured() -> dict[str, Any]:
@@ -36,7 +36,7 @@ def measured() -> dict[str, Any]:
     for robot in (former(), ROBOTS["caiman"]):
         records = records_of_each([(cold(robot), case) for case in cases])
         for case, record in zip(cases, records, strict=True):
-            loads = borne(robot, record)
+            loads = measure_loads(robot, record)
             most = max(loads, key=lambda name: loads[name].at_limit)
             steady = [load.steady for load in loads.values()]
             rows.append(

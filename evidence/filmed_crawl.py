@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.animals.capture import Camera, driven_share, film, observe, to_gait
+from suchus.animals.capture import Camera, driven_fraction, film, observe, to_gait
 from suchus.robot.design import LEGS
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START, Gait, limb_reaches
@@ -49,7 +49,7 @@ def reading(record: xr.Dataset, seed: int) -> dict[str, float]:
     random = np.random.default_rng(seed)
     heading, scale = float(random.uniform(-3.0, 3.0)), float(random.uniform(200.0, 2000.0))
     camera = replace(CAMERA, heading=heading, scale=scale, seed=seed)
-    walk = observe(film(ROBOT, record, camera), tail_share=driven_share(ROBOT))
+    walk = observe(film(ROBOT, record, camera), tail_share=driven_fraction(ROBOT))
     gait, target = to_gait(walk, ROBOT, GAIT, name="filmed").gait, commanded()
     phases = dict(zip((f"phase_{leg}" for leg in LEGS), gait.limb_phases, strict=True))
     phases |= {name: float(gait.number(name)) for name in ("axis_lag", "tail_lag")}

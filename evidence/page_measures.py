@@ -9,15 +9,15 @@ import numpy as np
 
 from suchus import swim
 from suchus.core.errors import InvalidDesign
-from suchus.flow.setup import LAYER_CELLS
+from suchus.flow.setup import MIN_LAYER_CELLS
 from suchus.robot.control.standing import BALANCE, Standing
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
-from suchus.robot.motion.rising import stand_up, tallest
+from suchus.robot.motion.rising import max_snout_height, stand_up
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run, simulate
 from suchus.sim.metrics.reach import lead
-from suchus.swimming.water import ExactWave, Outline, fit, printed_wave, sprung, undulation
+from suchus.swimming.water import ExactWave, Outline, fit, printed_wave, undulation, with_passive_end
 from suchus.swimming.water.resolved import SwimSetting, resolved_swim
 
 ROBOT = ROBOTS["caiman"]
@@ -58,7 +58,7 @@ def real_water() -> dict[str, float]:
         match = re.search(pattern, str(refusal))
     assert match
     layer, cells, millions, hours = map(float, match.groups())
-    return {"layer": layer, "cells": cells, "count": 1e6 * millions, "hours": hours, "layer_cells": LAYER_CELLS}
+    return {"layer": layer, "cells": cells, "count": 1e6 * millions, "hours": hours, "layer_cells": MIN_LAYER_CELLS}
 
 
 def passive_end() -> dict[str, float]:
@@ -69,7 +69,7 @@ def passive_end() -> dict[str, float]:
         changes of speed [-].
     """
     motion, outline = _joints(TOWARDS_TAIL), Outline(ROBOT)
-    bent = sprung(outline, motion, PASSIVE_SPEED)
+    bent = with_passive_end(outline, motion, PASSIVE_SPEED)
     tip = bent.stations[1][-1] - undulation(outline, motion).stations[1][-1]
     change = swim(ROBOT, bent).speed / swim(ROBOT, motion).speed - 1.0
     return {"bend": float(abs(tip)), **{str(model): float(change.sel(model=model)) for model in change.model.values}}
@@ -84,7 +84,7 @@ def rising() -> dict[str, float]:
         ``height_of_lead`` [m].
     """
     _, swung, _, cobra, *_ = stand_up(ROBOT).postures
-    heights = tallest(ROBOT, np.array(LEADS))
+    heights = max_snout_height(ROBOT, np.array(LEADS))
     return {
         "feet_past_mass": swung.lead,
         "mass_behind_cobra": cobra.lead,
@@ -106,7 +106,7 @@ def standing_feedback() -> dict[str, float]:
         control = Standing(at=1.0, hold=20.0, balance=balance)
         run = Run(robot=ROBOT, gait=GAITS["belly_crawl"], control=control, ground=Ground(uphill=-slope))
         until = control.upright_until(ROBOT)
-        record = simulate([run], duration=until, timestep=0.005, every=5)
+        record = simulate([run], duration=until, timestep=0.005, sample_stride=5)
         behind[name] = float(lead(record).isel(run=0).sel(time=slice(control.upright_from(ROBOT), until)).median())
     return {"slope": slope, **{f"behind_{name}": distance for name, distance in behind.items()}}
 

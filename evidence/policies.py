@@ -8,22 +8,22 @@ from typing import Any
 import numpy as np
 
 from suchus.apps.envs import (
-    LONGER,
-    STEPS,
+    MAX_STEPS,
+    MAX_STEPS_BY_TASK,
     TASKS,
-    Anything,
-    Controlled,
+    ControllerPolicy,
     CrocodileVectorEnv,
-    Follow,
-    Still,
+    GaitFollower,
+    HoldStill,
+    RandomActions,
     SwimToGoal,
     Task,
 )
-from suchus.apps.envs.policies import Played, Policy, play
-from suchus.apps.envs.shelf import chosen
+from suchus.apps.envs.policies import EpisodeResults, Policy, play
+from suchus.apps.envs.shelf import resolve_task
 from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Swimming
 from suchus.robot.design import layout
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Lake
 
@@ -44,12 +44,12 @@ def centre(task: Task) -> tuple[float, ...]:
 
 def follow(task: Task) -> Policy:
     """Return the policy that follows the task's gait by the clock."""
-    return Follow(task=task, centre=centre(task), gait=task.gait)
+    return GaitFollower(task=task, centre=centre(task), gait=task.gait)
 
 
 def random(task: Task) -> Policy:
     """Return the policy that draws its actions at random, from a seed."""
-    return Anything(task, np.random.default_rng(0))
+    return RandomActions(task, np.random.default_rng(0))
 
 
 def swim_to_goal(task: Task) -> Policy:
@@ -60,15 +60,15 @@ def swim_to_goal(task: Task) -> Policy:
 def amphibious(task: Task) -> Policy:
     """Return the controller of the shelf that swims to the shore and walks on."""
     control = Amphibious(swim=task.swum, swimming=Swimming(heading=HeadingHold()), heading=HeadingRule())
-    return Controlled(task, centre(task), control, steps=LONGER["Shore"])
+    return ControllerPolicy(task, centre(task), control, steps=MAX_STEPS_BY_TASK["Shore"])
 
 
 PLAYERS: Mapping[str, Mapping[str, Callable[[Task], Policy]]] = {
-    "Crawl": {"still": Still, "random": random, "follow": follow},
-    "Fault": {"still": Still, "random": random, "follow": follow},
-    "Stand": {"still": Still, "random": random},
-    "Swim": {"still": Still, "random": random, "swim_to_goal": swim_to_goal},
-    "Shore": {"still": Still, "random": random},
+    "Crawl": {"still": HoldStill, "random": random, "follow": follow},
+    "Fault": {"still": HoldStill, "random": random, "follow": follow},
+    "Stand": {"still": HoldStill, "random": random},
+    "Swim": {"still": HoldStill, "random": random, "swim_to_goal": swim_to_goal},
+    "Shore": {"still": HoldStill, "random": random},
 }
 """Policies of each task, by name."""
 
@@ -76,12 +76,16 @@ PLAYERS: Mapping[str, Mapping[str, Callable[[Task], Policy]]] = {
 def results(task: str, policy: str) -> dict[str, float]:
     """Return what the episodes of a task with a policy gave, see ``summary``."""
     played = play(
-        TASKS[task], PLAYERS[task][policy](TASKS[task]), episodes=EPISODES, seed=SEED, steps=LONGER.get(task, STEPS)
+        TASKS[task],
+        PLAYERS[task][policy](TASKS[task]),
+        episodes=EPISODES,
+        seed=SEED,
+        steps=MAX_STEPS_BY_TASK.get(task, MAX_STEPS),
     )
-    return summary(played, LONGER.get(task, STEPS) * TASKS[task].decision)
+    return summary(played, MAX_STEPS_BY_TASK.get(task, MAX_STEPS) * TASKS[task].decision)
 
 
-def summary(played: Played, longest: float) -> dict[str, float]:
+def summary(played: EpisodeResults, longest: float) -> dict[str, float]:
     """Return means over episodes, and how many reached the goal or ended before their time.
 
     Args:
@@ -102,7 +106,7 @@ def summary(played: Played, longest: float) -> dict[str, float]:
 
 def shore_results(slope: float) -> dict[str, float]:
     """Return what the controller of the shelf gave on a shore of a slope [deg], see ``summary``."""
-    angle, steps = radians(slope), LONGER["Shore"]
+    angle, steps = radians(slope), MAX_STEPS_BY_TASK["Shore"]
     task = replace(TASKS["Shore"], ground=Ground(uphill=angle), lake=Lake(level=OFFSHORE * sin(angle)))
     episodes = SHORE_EPISODES if slope == SLOPES[0] else 1
     return summary(play(task, amphibious(task), episodes=episodes, seed=0, steps=steps), steps * task.decision)
@@ -110,7 +114,7 @@ def shore_results(slope: float) -> dict[str, float]:
 
 def body_results(robot: str) -> dict[str, Any]:
     """Return the size of the crawl's task for a robot, and how far its own gait by the clock gets [body length]."""
-    task = chosen("Crawl", {"robot": robot, "gait": own_gait(ROBOTS[robot])})
+    task = resolve_task("Crawl", {"robot": robot, "gait": default_gait(ROBOTS[robot])})
     played = play(task, follow(task), episodes=BODY_EPISODES, seed=0, steps=BODY_STEPS)
     lengths = played.forward / task.robot.length
     env = CrocodileVectorEnv(1, task)

@@ -24,7 +24,7 @@ from suchus.experiments.optimise import READY
 from suchus.experiments.optimise.evaluate import evaluate
 from suchus.experiments.study.chunk import run_chunk
 from suchus.experiments.study.claims import Claims
-from suchus.hardware import cases, loads_of_each
+from suchus.hardware import cases, loads_of_cases
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import cycle_targets
 from suchus.robot.robots import ROBOTS
@@ -191,5 +191,5 @@ def servo_loads(gait: str = "belly_crawl", cycles: float = 0.5) -> Numbers:
     """
     robot = ROBOTS["caiman"]
     (case,) = cases(robot, [GAITS[gait]])
-    (loads,) = loads_of_each(robot, [replace(case, seconds=cycles * case.gait.period)], timestep=0.005)
+    (loads,) = loads_of_cases(robot, [replace(case, seconds=cycles * case.gait.period)], timestep=0.005)
     return {f"{name}_{key}": float(getattr(load, key)) for name, load in loads.items() for key in ("at_limit", "off")}

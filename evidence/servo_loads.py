@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import Any
 
 from suchus.core.errors import OutsideLimits
-from suchus.hardware import ServoLoad, cases, check_loads, loads_of_each, overloaded, with_better
-from suchus.hardware.loads import AT_LIMIT, LoadCase, borne, cold, records_of_each
+from suchus.hardware import ServoLoad, cases, check_loads, loads_of_cases, overloaded, with_better
+from suchus.hardware.loads import AT_LIMIT, LoadCase, cold, measure_loads, records_of_each
 from suchus.robot.design import Robot, Servo, with_named_servos
 from suchus.robot.gaits import GAITS, suits
 from suchus.robot.motion import Gait
@@ -23,7 +23,7 @@ def measured(
     gaits = [GAITS[name] for name in names if suits(robot, GAITS[name])]
     asked = [replace(case, seconds=cycles * case.gait.period) for case in cases(robot, gaits)]
     found = {}
-    for case, borne_there in zip(asked, loads_of_each(robot, asked, timestep=timestep), strict=True):
+    for case, borne_there in zip(asked, loads_of_cases(robot, asked, timestep=timestep), strict=True):
         told = with_better(robot, case, borne_there)
         weak = {name: load for name, load in told.items() if load.at_limit > AT_LIMIT}
         then = _then(robot, case, weak)
@@ -46,9 +46,9 @@ def _then(robot: Robot, case: LoadCase, weak: Mapping[str, ServoLoad]) -> dict[s
     named = {name: motor(load.other) for name, load in weak.items() if load.other}
     if not named:
         return {}
-    body = with_named_servos(robot, {name: Servo.of(one, like=robot.servo(name)) for name, one in named.items()})
+    body = with_named_servos(robot, {name: Servo.of(one, template=robot.servo(name)) for name, one in named.items()})
     (record,) = records_of_each([(cold(body), case)])
-    return {name: borne(body, record)[name].at_limit for name in named}
+    return {name: measure_loads(body, record)[name].at_limit for name in named}
 
 
 def _exported(robot: Robot, gait: Gait, borne_there: Mapping[str, ServoLoad]) -> bool:

@@ -43,7 +43,7 @@ class Origin:
         Args:
             seconds: processor time of the computation [s].
         """
-        described = machine.described()
+        described = machine.describe()
         rounded = None if seconds is None else round(seconds, 1)
         return cls(version=version("suchus"), commit=commit(), seconds=rounded, processor=described["processor"])
 

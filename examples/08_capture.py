@@ -14,7 +14,7 @@ import suchus
 from suchus.animals.capture import (
     Camera,
     SyntheticAnimal,
-    driven_share,
+    driven_fraction,
     film,
     film_animal,
     observe,
@@ -51,7 +51,7 @@ write_table(film(robot, record, above_us), folder / "crawl.csv")
 write_table(film_animal(lizard, above_it, cycles=4), folder / "lizard.csv")
 
 for name in ("crawl", "lizard"):
-    walk = observe(read_tracks(folder / f"{name}.csv"), tail_share=driven_share(robot) if name == "crawl" else 1.0)
+    walk = observe(read_tracks(folder / f"{name}.csv"), tail_share=driven_fraction(robot) if name == "crawl" else 1.0)
     captured = to_gait(walk, robot, crawl, name=f"{name}_walk")
     file = write_gait(captured, walk, folder / f"{name}_walk.toml")
     again = suchus.crawl(robot, captured.gait, duration=1.0 + 2 * captured.gait.period)

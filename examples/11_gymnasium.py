@@ -34,9 +34,9 @@ print(*robots.unwrapped.pack.chances[1].fault.split()[:2], "in the second robot"
 task = envs.TASKS["Crawl"]
 centre = tuple(robots.unwrapped.pack.centre)
 policies = {
-    "holding still": envs.Still(task),
-    "anything": envs.Anything(task, np.random.default_rng(0)),
-    "the shelf's crawl": envs.Follow(task=task, centre=centre, gait=task.gait),
+    "holding still": envs.HoldStill(task),
+    "anything": envs.RandomActions(task, np.random.default_rng(0)),
+    "the shelf's crawl": envs.GaitFollower(task=task, centre=centre, gait=task.gait),
 }
 for name, policy in policies.items():
     played = envs.play(task, policy, episodes=4, seed=0)

@@ -81,7 +81,7 @@ def main() -> None:
     torch.set_num_threads(1)
     learner = PPO(
         "MlpPolicy",
-        VecMonitor(Herd(task, ROBOTS, envs.STEPS)),
+        VecMonitor(Herd(task, ROBOTS, envs.MAX_STEPS)),
         n_steps=64,
         batch_size=512,
         n_epochs=5,
@@ -101,16 +101,16 @@ def main() -> None:
     centre = tuple(envs.CrocodileVectorEnv(1, task).pack.centre)
     name = f"learned in {STEPS} steps"
     shown = {
-        "standing still": (task, envs.Still(task)),
-        "anything": (task, envs.Anything(task, np.random.default_rng(SEED))),
-        "the shelf's gait": (task, envs.Follow(task=task, centre=centre, gait=task.gait)),
+        "standing still": (task, envs.HoldStill(task)),
+        "anything": (task, envs.RandomActions(task, np.random.default_rng(SEED))),
+        "the shelf's gait": (task, envs.GaitFollower(task=task, centre=centre, gait=task.gait)),
         name: (task, learned),
         f"{name}, physics of 2 ms": (replace(task, timestep=0.002), learned),
         f"{name}, full torque at any speed": (replace(task, speed_lines=False), learned),
     }
     for name, (where, policy) in shown.items():
         played = envs.play(where, policy, episodes=16, seed=1000)
-        fell = int((played.lasted < envs.STEPS * task.decision - 1e-6).sum())
+        fell = int((played.lasted < envs.MAX_STEPS * task.decision - 1e-6).sum())
         print(
             f"{name:44s} return {played.returns.mean():+7.2f} +- {played.returns.std():5.2f}, "
             f"forward {played.forward.mean():+6.2f} m in up to 10 s, {fell} of 16 fell"

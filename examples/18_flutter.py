@@ -6,7 +6,7 @@ from matplotlib.image import imsave
 from suchus import flow
 from suchus.core import rotation
 from suchus.visual.figures.vortices import Viewpoint, picture
-from suchus.visual.skin.mesh import Mesh, ellipsoid, joined
+from suchus.visual.skin.mesh import Mesh, ellipsoid, join_meshes
 
 shape = flow.Ellipsoid(length=1.0, width=1.0, height=0.28)
 seed = flow.FreeBody(shape=shape, density=2.5, gravity=(0.0, 0.0, -1.0), pitch=0.6, spin_x=0.5, name="seed")
@@ -20,9 +20,9 @@ record = sim.run(11.0)
 places = np.stack([record.column(name) for name in "xyz"], axis=1)
 turns = rotation.matrix(record.attitude())
 shown = np.searchsorted(record.time, np.arange(record.time[-1], 0.0, -0.7))
-disc = ellipsoid((0.0, 0.0, 0.0), shape.half, around=96, rings=64)
+disc = ellipsoid((0.0, 0.0, 0.0), shape.half, point_count=96, rings=64)
 colour = np.where(disc.vertices[:, 2:] > 0, (0.85, 0.62, 0.30), (0.36, 0.42, 0.50))  # its two faces
-solid = joined([Mesh(disc.vertices @ turns[k].T + places[k], disc.faces, colour) for k in shown])
+solid = join_meshes([Mesh(disc.vertices @ turns[k].T + places[k], disc.faces, colour) for k in shown])
 q = flow.second_invariant(np.stack(sim.velocity), grid.cell)
 corner = np.array([grid.x[0], grid.y[0], grid.z[0]]) + sim.frame[0]
 found = flow.isosurface(q, 0.3, corner, grid.cell)

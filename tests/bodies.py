@@ -7,7 +7,7 @@ from pathlib import Path
 from body_files import eight
 from suchus.robot import blueprint
 from suchus.robot.design import Robot, crocodile
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.robots import ROBOTS
 
 __all__ = ["CAIMAN", "eel", "eight", "hatchling", "six"]
@@ -18,12 +18,12 @@ CAIMAN: Robot = ROBOTS["caiman"]
 @lru_cache(maxsize=1)
 def six() -> Robot:
     """A crocodile with six spine joints and servos in its tail, as a file says it."""
-    return blueprint.read(Path(__file__).parent / "experiments" / "six.toml", Robot, ROBOTS)
+    return blueprint.read_design(Path(__file__).parent / "experiments" / "six.toml", Robot, ROBOTS)
 
 
 def hatchling() -> Robot:
     """The article's tables in a body of 0.3 m."""
-    return crocodile(replace(scaled(CAIMAN.tables, length_factor=0.3 / CAIMAN.length), name="hatchling"))
+    return crocodile(replace(rescale(CAIMAN.tables, length_factor=0.3 / CAIMAN.length), name="hatchling"))
 
 
 def eel() -> Robot:

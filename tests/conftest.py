@@ -86,7 +86,7 @@ def robot() -> Robot:
 @pytest.fixture(scope="session")
 def former() -> Robot:
     """Return the article's robot as it was before its servos were such as are sold."""
-    return blueprint.read(Path(__file__).parents[1] / "examples" / "former_caiman.toml", Robot, ROBOTS)
+    return blueprint.read_design(Path(__file__).parents[1] / "examples" / "former_caiman.toml", Robot, ROBOTS)
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,16 @@ import xarray as xr
 from suchus.article.verdict import Clause, Rule
 from suchus.core.errors import AmbiguousName, IncompatibleRecord, InvalidDesign
 from suchus.core.progress import portion
-from suchus.experiments.experiment import Experiment, Measure, Measures, Simulated, estimated, ranged, silent, staged
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    SimulationResult,
+    estimated,
+    ranged,
+    silent,
+    staged,
+)
 from suchus.robot.motion import Gait
 
 
@@ -38,7 +47,7 @@ class Drop(Experiment):
         )
 
     def simulate(self, progress=silent):
-        return Simulated(record=xr.Dataset({"y": ("time", [0.0, -1.0])}))
+        return SimulationResult(record=xr.Dataset({"y": ("time", [0.0, -1.0])}))
 
     def measure(self, record):
         return {self.name_of_measure: Measure(float(-record.y[-1]), "m")}

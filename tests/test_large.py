@@ -10,7 +10,7 @@ import mujoco
 import pytest
 
 from suchus.apps.cli import main
-from suchus.apps.cli.entry import LEAST
+from suchus.apps.cli.entry import MIN_ADDRESS_SPACE
 from suchus.core import large
 from suchus.core.errors import InvalidDesign, NoMemory
 from suchus.core.jobs import processes
@@ -63,15 +63,15 @@ def test_half_of_the_memory_is_free_the_rest_is_asked_for_and_more_than_all_is_r
 
 
 def test_a_day_of_a_processor_is_free_and_more_is_asked_for():
-    large.check_work("a thing", large.LONG, "take less")
-    said = refused(lambda: large.check_work("a thing", 2 * large.LONG, "take less"))
+    large.check_work("a thing", large.MAX_PROCESSOR_TIME, "take less")
+    said = refused(lambda: large.check_work("a thing", 2 * large.MAX_PROCESSOR_TIME, "take less"))
     assert said == "a thing takes some 2 days of a processor; take less, or say --large to begin all the same."
     with large.allowing():
-        large.check_work("a thing", 2 * large.LONG, "take less")
+        large.check_work("a thing", 2 * large.MAX_PROCESSOR_TIME, "take less")
 
 
 def test_what_was_allowed_before_is_allowed_afterwards(monkeypatch):
-    monkeypatch.delenv(large.WANTED, raising=False)
+    monkeypatch.delenv(large.LARGE_VARIABLE, raising=False)
     with large.allowing(False):
         assert not large.allowed()
     with large.allowing():
@@ -79,9 +79,9 @@ def test_what_was_allowed_before_is_allowed_afterwards(monkeypatch):
         with large.allowing():
             pass
         assert large.allowed()
-        assert os.environ[large.WANTED] == "1"  # which processes that help see
+        assert os.environ[large.LARGE_VARIABLE] == "1"  # which processes that help see
     assert not large.allowed()
-    assert large.WANTED not in os.environ
+    assert large.LARGE_VARIABLE not in os.environ
 
 
 def test_memory_is_the_machines_or_less_by_a_limit(monkeypatch):
@@ -104,19 +104,19 @@ def test_estimates_are_of_the_size_of_what_a_run_takes(robot, gait):
 
 def test_a_run_is_refused_before_it_begins_and_only_if_it_is_too_large(monkeypatch):
     need = 2 * record_bytes(CRAWL, 0.1 / 0.01)
-    monkeypatch.setattr(large, "memory", lambda: int(need / large.SHARE) + 1)
+    monkeypatch.setattr(large, "memory", lambda: int(need / large.MAX_MEMORY_FRACTION) + 1)
     simulate([CRAWL], duration=0.1)
-    monkeypatch.setattr(large, "memory", lambda: int(need / large.SHARE) - 1)
+    monkeypatch.setattr(large, "memory", lambda: int(need / large.MAX_MEMORY_FRACTION) - 1)
     assert refused(lambda: simulate([CRAWL], duration=0.1)).startswith("a run of 0.1 s takes some")
     assert refused(lambda: simulate([CRAWL] * 2, duration=0.1)).startswith("a batch of 2 runs of 0.1 s takes some")
-    simulate([CRAWL], duration=0.1, every=2)
+    simulate([CRAWL], duration=0.1, sample_stride=2)
     with large.allowing():
         simulate([CRAWL], duration=0.1)
 
 
 def test_a_study_is_refused_by_its_runs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    a_day = large.LONG / processor_seconds(CRAWL, 9.0, 0.005)
+    a_day = large.MAX_PROCESSOR_TIME / processor_seconds(CRAWL, 9.0, 0.005)
     (tmp_path / "s.toml").write_text(STUDY.format(duration=9.0, samples=int(1.01 * a_day)))
     assert main(["study", "s.toml", "--out", "made"]) == 2
     said = capsys.readouterr().err
@@ -140,10 +140,10 @@ def test_a_search_is_refused_by_its_walks_and_begins_with_large(tmp_path, monkey
 
 
 def test_a_process_of_too_little_memory_is_told_in_a_sentence(monkeypatch, capsys):
-    monkeypatch.setattr(large, "memory", lambda: LEAST - 1)
+    monkeypatch.setattr(large, "memory", lambda: MIN_ADDRESS_SPACE - 1)
     assert main(["--version"]) == 2
     assert "raise the limit" in capsys.readouterr().err
-    monkeypatch.setattr(large, "memory", lambda: LEAST)
+    monkeypatch.setattr(large, "memory", lambda: MIN_ADDRESS_SPACE)
     assert main(["--version"]) == 0
 
 

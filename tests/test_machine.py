@@ -16,7 +16,7 @@ import xarray as xr
 from suchus.core import machine
 from suchus.core.errors import IncompatibleRecord, OutsideLimits
 from suchus.core.files import provenance
-from suchus.core.files.provenance import made_alike
+from suchus.core.files.provenance import has_same_provenance
 from suchus.core.jobs.store import MARK, Store
 
 LINUX = pytest.mark.skipif(
@@ -61,7 +61,9 @@ def elsewhere(monkeypatch):
 
 
 def in_a_process(code, *, before=(), **environment):
-    clean = {name: value for name, value in os.environ.items() if name not in (*machine.PORTABLE, machine.WANTED)}
+    clean = {
+        name: value for name, value in os.environ.items() if name not in (*machine.PORTABLE, machine.PORTABLE_VARIABLE)
+    }
     done = subprocess.run(
         [*before, sys.executable, "-c", code], env=clean | environment, capture_output=True, text=True, check=True
     )
@@ -159,27 +161,27 @@ def test_a_store_of_before_is_of_an_unnamed_machine(tmp_path):
 
 def test_an_outcome_of_another_arithmetic_is_computed_anew(elsewhere):
     stored = provenance({"seed": 1}, seconds=2.0)
-    assert made_alike(stored, {"seed": 1})
-    assert not made_alike({name: value for name, value in stored.items() if name != "machine"}, {"seed": 1})
+    assert has_same_provenance(stored, {"seed": 1})
+    assert not has_same_provenance({name: value for name, value in stored.items() if name != "machine"}, {"seed": 1})
     elsewhere()
-    assert not made_alike(stored, {"seed": 1})
+    assert not has_same_provenance(stored, {"seed": 1})
 
 
 @LINUX
 def test_a_process_is_begun_anew_once_and_only_where_it_is_asked_for():
-    anew = machine.begun_portable({"HOME": "/x", machine.WANTED: "1"})
-    assert anew == {"HOME": "/x", machine.WANTED: "1", **machine.PORTABLE}
-    assert machine.begun_portable(anew) is None
-    assert machine.begun_portable({"HOME": "/x"}) is None
-    assert machine.begun_portable({machine.WANTED: "0"}) is None
+    anew = machine.portable_environment({"HOME": "/x", machine.PORTABLE_VARIABLE: "1"})
+    assert anew == {"HOME": "/x", machine.PORTABLE_VARIABLE: "1", **machine.PORTABLE}
+    assert machine.portable_environment(anew) is None
+    assert machine.portable_environment({"HOME": "/x"}) is None
+    assert machine.portable_environment({machine.PORTABLE_VARIABLE: "0"}) is None
     with pytest.raises(OutsideLimits, match="SUCHUS_PORTABLE is 'yes'; 1 asks"):
-        machine.begun_portable({machine.WANTED: "yes"})
+        machine.portable_environment({machine.PORTABLE_VARIABLE: "yes"})
 
 
 def test_another_kind_of_machine_says_that_it_cannot(monkeypatch):
     monkeypatch.setattr(platform, "machine", lambda: "arm64")
     with pytest.raises(OutsideLimits, match="this is arm64"):
-        machine.begun_portable({machine.WANTED: "1"})
+        machine.portable_environment({machine.PORTABLE_VARIABLE: "1"})
 
 
 @LINUX
@@ -187,7 +189,7 @@ def test_the_command_begins_itself_anew():
     clean = {name: value for name, value in os.environ.items() if name not in machine.PORTABLE}
     done = subprocess.run(
         [sys.executable, "-m", "suchus", "doctor", "--help"],
-        env=clean | {machine.WANTED: "sometimes"},
+        env=clean | {machine.PORTABLE_VARIABLE: "sometimes"},
         capture_output=True,
         text=True,
         check=False,

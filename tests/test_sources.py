@@ -16,7 +16,7 @@ from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign, SuchusE
 from suchus.core.jobs import processes
 from suchus.experiments.study import MEASURES
 from suchus.robot.blueprint import read_gait
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.faults import FAULTS, from_table
 
@@ -77,7 +77,7 @@ def test_the_shelves_hold_what_stands_in_the_project(lab):
     assert ROBOTS["short"] is ROBOTS["short"]
     assert GAITS["slow_crawl"].period == 6.0
     assert MEASURES["rate"].__doc__ == "Return how often [Hz]."
-    assert own_gait(ROBOTS["short"]) is GAITS["belly_crawl"]
+    assert default_gait(ROBOTS["short"]) is GAITS["belly_crawl"]
     suchus.project(None)
     assert [*FAULTS] == before
 
@@ -151,7 +151,7 @@ def test_what_is_broken_is_named_with_file_and_line_and_the_rest_works(lab, caps
     with pytest.raises(BrokenFile, match=r"^gaits/bad.toml cannot be loaded: .*periodd is not known"):
         GAITS["bad"]
     assert {"broken"} == {*ROBOTS} - {name for name, _ in ROBOTS.items()}
-    assert own_gait(ROBOTS["caiman"]) is GAITS["belly_crawl"]
+    assert default_gait(ROBOTS["caiman"]) is GAITS["belly_crawl"]
     assert main(["list"]) == 0
     listed = " ".join(capsys.readouterr().out.split())
     assert "[broken: robots/broken.py, line 4, cannot be loaded: ZeroDivisionError" in listed
@@ -267,12 +267,12 @@ def part_of(item, tell):
 def test_worker_processes_see_the_same_project(lab):
     suchus.project(lab)
     heard = list(processes.side_by_side(part_of, [FAULTS["tired"]("LF_knee")], 1))
-    assert heard[-1] == (0, processes.Done(("LF_knee", True)))
+    assert heard[-1] == (0, processes.PieceResult(("LF_knee", True)))
 
 
 def test_what_is_sent_elsewhere_takes_its_project_along(lab):
     suchus.project(lab)
-    sent = pickle.dumps(sources.Carried(FAULTS["tired"]("LF_yaw")))
+    sent = pickle.dumps(sources.ProjectPickle(FAULTS["tired"]("LF_yaw")))
     plain = {name: value for name, value in os.environ.items() if name != sources.VARIABLE}
     code = "import pickle, sys; print(pickle.loads(bytes.fromhex(sys.argv[1])))"
     command = [sys.executable, "-c", code, sent.hex()]
@@ -281,15 +281,15 @@ def test_what_is_sent_elsewhere_takes_its_project_along(lab):
 
 
 def test_what_makes_the_bytes_includes_the_project(lab):
-    from suchus.core.jobs.made_by import deciding  # noqa: PLC0415
+    from suchus.core.jobs.made_by import source_versions  # noqa: PLC0415
 
-    without = deciding()
+    without = source_versions()
     assert "project" not in without
     suchus.project(lab)
-    first = deciding()
+    first = source_versions()
     assert {name: value for name, value in first.items() if name != "project"} == without
     (lab / "faults/tired.py").write_text(TIRED + "\n")
-    assert deciding()["project"] != first["project"]
+    assert source_versions()["project"] != first["project"]
 
 
 def test_a_package_puts_things_on_the_shelves_by_entry_points(tmp_path, monkeypatch):

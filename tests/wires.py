@@ -6,7 +6,7 @@ import numpy as np
 from tests.felt import felt
 
 from suchus.hardware.bus import FRAMINGS, Bus, BusPlace, straight
-from suchus.hardware.emulator import USUAL, Emulator, MemoryPort, Trouble
+from suchus.hardware.emulator import DEFAULT_MODELS, Emulator, MemoryPort, Trouble
 from suchus.robot.design import layout
 from suchus.robot.design.scale import control_period
 from suchus.robot.robots import ROBOTS
@@ -48,11 +48,11 @@ class Obedient:
 
 def wiring(protocol="dynamixel", robot=ROBOTS["caiman"], buses=1, boards=False):
     places = [BusPlace(port=f"bus{i}", protocol=protocol) for i in range(buses)]
-    return straight(robot, places, USUAL[protocol], boards=boards)
+    return straight(robot, places, DEFAULT_MODELS[protocol], boards=boards)
 
 
 def emulated(protocol="dynamixel", trouble=None, **of_body):
     """Return an emulator without physics, and a bus to it."""
     made = wiring(protocol)
-    emulator = Emulator(made, Obedient(**of_body), trouble or Trouble(), clocked=True)
-    return emulator, Bus(MemoryPort(emulator), FRAMINGS[protocol], clocked=True)
+    emulator = Emulator(made, Obedient(**of_body), trouble or Trouble(), has_clock=True)
+    return emulator, Bus(MemoryPort(emulator), FRAMINGS[protocol], has_clock=True)

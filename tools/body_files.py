@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from suchus.robot import blueprint
 from suchus.robot.design import Robot, crocodile
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model.export import export
@@ -29,7 +29,7 @@ def giant() -> Robot:
 def _sized(name: str, length: float, mass: float) -> Robot:
     assert _CAIMAN.tables is not None
     factors = {"length_factor": length / _CAIMAN.length, "mass_factor": mass / _CAIMAN.mass}
-    return crocodile(replace(scaled(_CAIMAN.tables, **factors), name=name))
+    return crocodile(replace(rescale(_CAIMAN.tables, **factors), name=name))
 
 
 def six() -> Robot:

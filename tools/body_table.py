@@ -33,7 +33,7 @@ from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot import blueprint
 from suchus.robot.design import Robot
 from suchus.robot.design.scale import coarse_step
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.robots import ROBOTS
 
 ROOT = Path(__file__).parents[1]
@@ -97,7 +97,7 @@ def asked(body: str) -> str:
 
 def robot_of(body: str) -> Robot:
     """Return a body."""
-    robot: Robot = ROBOTS[body] if body in ROBOTS else blueprint.read(asked(body), Robot, ROBOTS)
+    robot: Robot = ROBOTS[body] if body in ROBOTS else blueprint.read_design(asked(body), Robot, ROBOTS)
     return robot
 
 
@@ -189,7 +189,7 @@ def command(row: str, body: str, folder: Path) -> list[str]:
 def asked_of(row: str, body: str) -> str:
     """Return a study or a search, of four runs of two seconds, of the period of a body's own gait."""
     robot = robot_of(body)
-    period = own_gait(robot).period
+    period = default_gait(robot).period
     lines = [f'name = "{row}_{robot.name}"', f'robot = "{asked(body)}"', f"timestep = {coarse_step(robot):g}"]
     lines.append(f"duration = {2.0 if row == 'study' else 3.0}")
     lines += ["measure = ['displacement']"] if row == "study" else ["evaluations = 4", "population = 4"]

@@ -72,9 +72,9 @@ def policies() -> Figure:
     task = envs.TASKS["Crawl"]
     centre = tuple(envs.CrocodileVectorEnv(1, task).pack.centre)
     players = {
-        "holding still": envs.Still(task),
-        "random actions": envs.Anything(task, np.random.default_rng(0)),
-        "the shelf's crawl": envs.Follow(task=task, centre=centre, gait=task.gait),
+        "holding still": envs.HoldStill(task),
+        "random actions": envs.RandomActions(task, np.random.default_rng(0)),
+        "the shelf's crawl": envs.GaitFollower(task=task, centre=centre, gait=task.gait),
     }
     return _bars({name: envs.play(task, player, episodes=8).forward.tolist() for name, player in players.items()})
 

@@ -15,14 +15,21 @@ import xarray as xr
 
 from suchus.core.progress import silent
 from suchus.experiments.catalog.swimming.experiment import experiment
-from suchus.experiments.catalog.swimming.ladder import GRIDS, Climb, Swims, numbers_in_space, rules_digest, space_swims
+from suchus.experiments.catalog.swimming.ladder import (
+    GRIDS,
+    LadderSetting,
+    Swims,
+    numbers_in_space,
+    rules_digest,
+    space_swims,
+)
 
 KEPT = Path(__file__).parents[1] / "src" / "suchus" / "experiments" / "catalog" / "swimming" / GRIDS
 CELLS = (68, 80, 96)
 """Cells per body length, rising [-]."""
 
 
-def swum(climb: Climb, folder: Path) -> Swims:
+def swum(climb: LadderSetting, folder: Path) -> Swims:
     """Return the swims on one grid, from the folder if they lie there."""
     place = folder / f"{climb.digest}_{climb.space_cells}"
     if not place.is_dir():

@@ -12,7 +12,7 @@ from typing import Any
 from evidence.atlas import FlowOutcome, compute_all, sections
 from pages.stated import keep
 from pages.stated import main as write_pages
-from suchus.swimming.water.sections import attached, coefficients, held_out, table
+from suchus.swimming.water.sections import attached_coefficients, coefficients, held_out_errors, table
 
 
 def stated() -> Mapping[str, Any]:
@@ -22,10 +22,10 @@ def stated() -> Mapping[str, Any]:
     return {
         "drag": [[coefficients(a, k)[0] for k in sections.KEULEGANS] for a in sections.ASPECTS],
         "added": [[coefficients(a, k)[1] for k in sections.KEULEGANS] for a in sections.ASPECTS],
-        "attached": [attached(k)[0] for k in sections.KEULEGANS],
-        "attached_added": attached(1.0)[1],
-        "attached_robot": attached(5.0, 3600.0)[1],
-        "held_out": float(held_out().max()),
+        "attached": [attached_coefficients(k)[0] for k in sections.KEULEGANS],
+        "attached_added": attached_coefficients(1.0)[1],
+        "attached_robot": attached_coefficients(5.0, 3600.0)[1],
+        "held_out": float(held_out_errors().max()),
         "fine_round": [round_.drag, round_.added],
         "published_round": list(sections.measured()),
         "fine_high": [high.drag, high.added],

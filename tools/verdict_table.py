@@ -12,10 +12,10 @@ from typing import Any
 
 from evidence import renew, store
 from pages.stated import elsewhere, kept, templates, wrapped
-from suchus.article.verdict import SHARES, TOO_FEW, judge, ladder
+from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
 from suchus.article.verdict.judging import fragile
 from suchus.core.errors import IncompatibleRecord
-from suchus.experiments.claims import RULES, counted
+from suchus.experiments.claims import RULES, count_evidence
 
 ROOT = Path(__file__).parents[1]
 NAME = "verdicts"
@@ -40,7 +40,7 @@ def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
             found[verdict["claim"]] = {name: verdict[name] for name in _KEPT if verdict[name] != []}
     for claim, row in found.items():  # of the shares that ship today, whatever shipped when it was run
         row["fragile"] = claim in RULES and fragile(
-            RULES[claim], row["verdict"], SHARES.get(claim) or TOO_FEW.get(claim)
+            RULES[claim], row["verdict"], SHARES.get(claim) or SPARSE_SHARES.get(claim)
         )
     missing = [claim for claim in RULES if claim not in found]
     if missing:
@@ -63,7 +63,7 @@ def judged_again() -> dict[str, dict[str, Any]]:
 
 def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
     """Return the README with result, summary and questions in their places, of the words in ``docs/stated/readme``."""
-    count = counted(
+    count = count_evidence(
         {claim: row["verdict"] for claim, row in table.items()}, [c for c, row in table.items() if row["fragile"]]
     )
     told: dict[str, Any] = {name: kept(name) for name in ("crawl_stability", "servo_loads")}

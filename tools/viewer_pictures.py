@@ -22,7 +22,7 @@ from lighter import lighten
 from suchus.animals.capture import Camera, SyntheticAnimal, film_animal
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.pages import LivePage, ReplayPage, Viewer
-from suchus.apps.viewer.replay import beside, takes
+from suchus.apps.viewer.replay import place_animal, takes
 from suchus.core.files import save
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
@@ -69,7 +69,7 @@ def animal(client: Any) -> ReplayPage:
     tracks = replace(film_animal(lizard, camera, cycles=4), source="lizard.csv")
     with TemporaryDirectory() as folder:
         (take, _) = takes(save(_crawls(), Path(folder) / "crawl.nc"))
-    page = ReplayPage(client, (take,), animals=(beside(tracks, take),))
+    page = ReplayPage(client, (take,), animals=(place_animal(tracks, take),))
     page._player.seek(1.4)
     page._player.speed = _SLOWEST
     return page
@@ -80,7 +80,7 @@ def _crawls() -> xr.Dataset:
         Run(robot=ROBOTS["caiman"], gait=GAITS[gait], label=label)
         for gait, label in (("belly_crawl", "spine and tail"), ("limbs_only", "limbs only"))
     ]
-    return simulate(runs, duration=9.0, timestep=0.005, every=2)
+    return simulate(runs, duration=9.0, timestep=0.005, sample_stride=2)
 
 
 DRAWN: dict[str, tuple[Callable[[Any], Any], str]] = {

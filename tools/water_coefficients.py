@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 import xarray as xr
 
-from suchus.core.checks import Course
+from suchus.core.checks import Schedule
 from suchus.robot.design import Robot
 from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait
@@ -32,7 +32,7 @@ class WaterCoefficients:
     added_mass: float = 1.0
     """Factor on added mass [-]."""
 
-    def lake(self, viscosity: float, level: Course = 0.0) -> Lake:
+    def lake(self, viscosity: float, level: Schedule = 0.0) -> Lake:
         """Return water of a viscosity [m2/s] with these coefficients, its surface at a level [m]."""
         water = Water(viscosity=viscosity, cross_drag=self.cross_drag, thickening=self.thickening)
         return Lake(level=level, water=water, added_mass=self.added_mass)

@@ -33,7 +33,7 @@ def march(
     """
     whole = until if end is None else end
     watchers: Sequence[Watcher] = (*watch, lambda now: progress("computing", now.time / whole))
-    return sim.run(until, watch=watchers, every=whole / _REPORTS if every is None else every, progress=False)
+    return sim.run(until, watch=watchers, watch_interval=whole / _REPORTS if every is None else every, progress=False)
 
 
 def middles(record: flow.Record) -> np.ndarray:

@@ -20,7 +20,7 @@ from evidence.atlas.case import Case, Curves
 from suchus.core.errors import SuchusError, UnreadableFile
 from suchus.core.files import code_digest, digest, new_file, plain, read_json
 from suchus.core.files.provenance import syntax_of
-from suchus.core.jobs import Job, deciding, finish, place_for
+from suchus.core.jobs import Job, finish, place_for, source_versions
 from suchus.core.progress import Progress, silent
 
 _FOLDER = Path(__file__).parent
@@ -178,7 +178,7 @@ def compute_all(
         unit="flows",
         work=partial(_computed, quick=quick),
         items=outcomes.flows,
-        versions=partial(deciding, ("atlas", "flow"), ("numba",)),
+        versions=partial(source_versions, ("atlas", "flow"), ("numba",)),
         tries=1,  # a flow that takes too much memory takes it again
         died=partial(_died, quick),
     )
@@ -189,7 +189,7 @@ def compute_all(
         job,
         outcomes,
         place=place,
-        each=lambda number: each(flows[number].name),
+        progress_of=lambda number: each(flows[number].name),
         finished=lambda _, outcome: finished(outcome),
     )
     return {flow.name: outcomes.get(number) for number, flow in enumerate(flows)}

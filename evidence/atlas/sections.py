@@ -20,7 +20,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.core.files import write
 from suchus.core.progress import Progress
 from suchus.flow import morison
-from suchus.swimming.water.sections import ASPECTS, COLUMNS, HELD_OUT, KEULEGANS, STOKES, TABLE, held_out
+from suchus.swimming.water.sections import ASPECTS, COLUMNS, HELD_OUT, KEULEGANS, STOKES, TABLE, held_out_errors
 
 FINER = ((1.0, 5.0), (4.0, 5.0))
 """Points that are computed on a finer grid too."""
@@ -125,5 +125,5 @@ def write_table(outcomes: Mapping[str, FlowOutcome], path: Path = TABLE) -> str:
         numbers = (*last[:2], *before[:2], last[2])
         writer.writerow([aspect, keulegan, cells, *(f"{value:.5g}" for value in numbers), outcomes[name].digest])
     write(path, out.getvalue())
-    errors = held_out(path)
+    errors = held_out_errors(path)
     return f"{len(points())} flows; held-out points are off by {errors.max():.1%} at most"

@@ -18,7 +18,7 @@ from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
 from suchus.core import threads
 from suchus.core.errors import UnreadableFile
-from suchus.core.files import check_replaceable, check_writable, there
+from suchus.core.files import check_replaceable, check_writable, path_exists
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +54,7 @@ def league(words: Sequence[str]) -> int:
         raise BadCommand(f"--jobs is {options.jobs}; at least 1 model at a time is needed.")
     if options.measured is not None and len(names) != 1:
         raise BadCommand(f"--measured is of one contestant, and {len(names)} are asked for: name one.")
-    if options.measured is not None and not there(options.measured):
+    if options.measured is not None and not path_exists(options.measured):
         raise UnreadableFile(f"{options.measured} is not there; --measured names what was measured.")
     check_writable(options.out)
     for name in (PAGE, FIGURE, OUTCOMES):

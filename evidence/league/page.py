@@ -16,7 +16,7 @@ from evidence.league.judging import WIDEST, WORDS, Judgement, Word, judged
 from evidence.league.sealing import SEAL, Measured, Prediction, Seal, opened, read_prediction, read_seal
 from evidence.league.spread import COVERED
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.core.files import read_json, there, write
+from suchus.core.files import path_exists, read_json, write
 from suchus.core.files.provenance import plain
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
@@ -133,7 +133,7 @@ def all_standings(out: Path, contestants: Sequence[Contestant], measured: Mappin
     Raises:
         IncompatibleRecord: there is none.
     """
-    found = [standing(one, out, measured[one.name]) for one in contestants if there(out / one.name / SEAL)]
+    found = [standing(one, out, measured[one.name]) for one in contestants if path_exists(out / one.name / SEAL)]
     if not found:
         raise IncompatibleRecord(f"{out} holds no sealed prediction; run python -m evidence.league --out {out} first.")
     return found

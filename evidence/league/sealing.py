@@ -19,7 +19,7 @@ import xarray as xr
 from evidence.league.contestant import Contestant, Found, Interval, Quantity, Value
 from evidence.league.spread import drawn, of_answers, of_draws, widest
 from suchus.core.errors import InvalidDesign, NotConverged, SuchusError, UnreadableFile
-from suchus.core.files import check_replaceable, package_digest, read_json, there, versions, write
+from suchus.core.files import check_replaceable, package_digest, path_exists, read_json, versions, write
 from suchus.core.files.provenance import plain
 from suchus.core.jobs import conduct_sweep
 from suchus.core.progress import Progress, silent
@@ -92,7 +92,7 @@ def sealed_prediction(
         UnreadableFile: the prediction there was changed after it had been sealed.
     """
     folder = out / contestant.name
-    if there(folder / SEAL):
+    if path_exists(folder / SEAL):
         seal = read_seal(folder)
         if seal.code != code_state():
             raise InvalidDesign(
@@ -249,7 +249,7 @@ def opened(folder: Path, predicts: Mapping[str, Quantity], measured: Path) -> di
         UnreadableFile: there is no seal, or the measurement is in another unit, of another quantity or has no source.
     """
     read_seal(folder)
-    if not there(measured):
+    if not path_exists(measured):
         return {}
     found = {}
     for name, data in read_json(measured).items():

@@ -15,7 +15,7 @@ from evidence.league.contestant import Found, Numbers, Predictor
 from suchus.core import rotation
 from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.core.progress import Progress, portion
-from suchus.flow.setup import LAYER_CELLS
+from suchus.flow.setup import MIN_LAYER_CELLS
 from suchus.robot.control import Swimming
 from suchus.robot.design import WATER_DENSITY, Robot, layout
 from suchus.robot.design.scale import control_period
@@ -25,7 +25,7 @@ from suchus.sim.land import Lake, Run, simulate
 from suchus.swimming.water import Motion, Outline, cruise, cycle, reactive, recoil, resistive, undulation
 from suchus.swimming.water.resolved import SwimSetting, resolved_swim
 from suchus.swimming.water.slender import Effort, Model
-from suchus.swimming.water.undulation import still
+from suchus.swimming.water.undulation import straight_motion
 
 STATIONS = 65
 """Points along the midline in the theories [-]; they change the speed by less than 1 % from 257."""
@@ -221,7 +221,9 @@ def _shed(model: Model, share: float, outline: Outline, curve, speed: float, wat
     whole = model(outline, curve, speed, water)
     if model is not reactive or share == 1.0:
         return whole
-    surface = -model(outline, cycle(outline, still(outline)), speed, water).thrust  # of the straight body: friction
+    surface = -model(
+        outline, cycle(outline, straight_motion(outline)), speed, water
+    ).thrust  # of the straight body: friction
     return Effort(share * (whole.thrust + surface) - surface, share * whole.power)
 
 
@@ -533,7 +535,7 @@ def _viscosity(swimmer: ModelSwimmer, cells: int) -> float:
     outline, gait, length = Outline(swimmer.robot, cells + 1), swimmer.gait, swimmer.robot.length
     curve = cycle(outline, gait, *recoil(outline, gait, 0.0, Water()))
     speed = float(np.hypot(curve.x_rate, curve.y_rate).max())
-    return 1.01 * speed * (LAYER_CELLS * length / cells) ** 2 / length
+    return 1.01 * speed * (MIN_LAYER_CELLS * length / cells) ** 2 / length
 
 
 def waters(numbers: Mapping[str, float]) -> Water:

@@ -160,7 +160,7 @@ def test_a_flow_can_be_handed_to_another_process(name):
 def test_side_by_side_a_process_that_dies_takes_only_its_own_flow(tmp_path, monkeypatch):
     """Forked here: a process that starts afresh imports for some seconds."""
     monkeypatch.setattr("suchus.core.jobs.processes.get_context", lambda kind: get_context("fork"))
-    monkeypatch.setattr("suchus.core.jobs.processes._PATIENCE", 0.5)  # forked ones hold each other's pipes open
+    monkeypatch.setattr("suchus.core.jobs.processes._STOP_TIMEOUT", 0.5)  # forked ones hold each other's pipes open
     cases = [case(), case("dies", dying_run)]
     came = compute_all(cases, tmp_path, jobs=2, quick=True)
     assert came["one"].curves["curve"][1, 1] == pytest.approx(2 / 3)
@@ -175,8 +175,8 @@ def test_side_by_side_an_error_ends_the_processes(tmp_path, monkeypatch):
 
     def working(work, cases, jobs, *, tries, each):
         try:
-            yield 0, processes.Begun()
-            yield 0, processes.Far("computing", 0.5)
+            yield 0, processes.PieceStarted()
+            yield 0, processes.PieceProgress("computing", 0.5)
         finally:
             ended.append(jobs)
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from suchus.core.errors import InvalidDesign, UnreadableFile
-from suchus.robot.blueprint import MistakenFile, read, render, write
+from suchus.robot.blueprint import MistakenFile, read_design, render, write
 from suchus.robot.design import Robot, crocodile
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
@@ -22,7 +22,7 @@ def said(tmp_path):
         file = tmp_path / "mine.toml"
         file.write_text(text)
         with pytest.raises(MistakenFile) as error:
-            read(file, kind, shelf)
+            read_design(file, kind, shelf)
         assert all(place in str(error.value) for place in error.value.mistakes)
         return error.value.mistakes
 
@@ -31,22 +31,22 @@ def said(tmp_path):
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_every_robot_reads_back_equal(name, tmp_path):
-    assert read(write(ROBOTS[name], tmp_path / "x.toml"), Robot, ROBOTS) == ROBOTS[name]
+    assert read_design(write(ROBOTS[name], tmp_path / "x.toml"), Robot, ROBOTS) == ROBOTS[name]
 
 
 @pytest.mark.parametrize("name", GAITS)
 def test_every_gait_reads_back_equal(name, tmp_path):
-    assert read(write(GAITS[name], tmp_path / "x.toml"), Gait, GAITS) == GAITS[name]
+    assert read_design(write(GAITS[name], tmp_path / "x.toml"), Gait, GAITS) == GAITS[name]
 
 
 def test_a_body_of_its_own_can_start_from_the_shelf_and_its_mistakes_are_named(tmp_path):
     file = tmp_path / "slippery.toml"
     file.write_text('base = "strider"\n[contact]\nfoot_friction = 0.2\n')
-    robot = read(file, Robot, ROBOTS)
+    robot = read_design(file, Robot, ROBOTS)
     assert (robot.name, robot.contact.foot_friction, robot.axis) == ("slippery", 0.2, ROBOTS["strider"].axis)
     file.write_text('base = "strider"\nrot = "x"\n[contact]\nfoot_friction = 99\n')
     with pytest.raises(MistakenFile, match=r"2 mistakes.*foot_friction is 99; 0.01 to 3 is allowed.*did you mean root"):
-        read(file, Robot, ROBOTS)
+        read_design(file, Robot, ROBOTS)
 
 
 @given(
@@ -64,13 +64,13 @@ def test_any_robot_reads_back_equal(name, femur, joints, tmp_path_factory):
         )
     )
     file = tmp_path_factory.mktemp("any") / "x.toml"
-    assert read(write(robot, file), Robot, ROBOTS) == robot
+    assert read_design(write(robot, file), Robot, ROBOTS) == robot
 
 
 def test_a_base_lends_what_the_file_does_not_say(tmp_path):
     file = tmp_path / "long_legs.toml"
     file.write_text('base = "caiman"\n[hind_leg]\nfemur = 0.12\n[hind_leg.servo]\nkp = 60\n')
-    robot = read(file, Robot, ROBOTS)
+    robot = read_design(file, Robot, ROBOTS)
     servo = replace(CAIMAN.hind_leg.servo, kp=60.0)
     assert robot == crocodile(
         replace(CAIMAN.tables, name="long_legs", hind_leg=replace(CAIMAN.tables.hind_leg, femur=0.12, servo=servo))
@@ -149,9 +149,9 @@ def test_what_cannot_be_read_is_one_sentence(content, said, tmp_path):
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(UnreadableFile, match=said):
-        read(file, Robot, ROBOTS)
+        read_design(file, Robot, ROBOTS)
     with pytest.raises(UnreadableFile, match="is a folder"):
-        read(tmp_path, Robot, ROBOTS)
+        read_design(tmp_path, Robot, ROBOTS)
 
 
 def test_a_part_names_all_its_impossible_fields_when_built_in_python():

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from suchus.core.errors import OutsideLimits, UnreadableFile
 from suchus.robot.blueprint import MistakenFile, read_gait, write
 from suchus.robot.gaits import GAITS
-from suchus.robot.motion import AxialWave, Bend, Curve, FootPath, Gait, GaitInMetres, Held, Sweep, cycle_targets
+from suchus.robot.motion import AxialWave, Bend, Curve, FixedLimbs, FootPath, Gait, GaitInMetres, Sweep, cycle_targets
 from suchus.robot.motion.forms import GaitByPlaces
 from suchus.robot.robots import ROBOTS
 
@@ -59,7 +59,9 @@ PATHS = st.builds(
     FootPath, stroke=SHARES, lift=st.floats(0.0, 1.0), outward=SHARES, ahead=SHARES, swivel=st.floats(-3.14, 3.14)
 )
 LIMBS = (
-    PATHS | st.builds(Sweep, stance=st.floats(0.01, 6.0), down=angles(3.0)) | st.builds(Held, angles=rows(angles(9.0)))
+    PATHS
+    | st.builds(Sweep, stance=st.floats(0.01, 6.0), down=angles(3.0))
+    | st.builds(FixedLimbs, angles=rows(angles(9.0)))
 )
 BENDS = st.builds(
     Bend,

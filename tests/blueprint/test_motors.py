@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from suchus.core.errors import InvalidDesign, UnknownName, UnreadableFile
 from suchus.robot.blueprint import MistakenFile, read_motors, render
 from suchus.robot.design import LINE, Motor, Servo, Winding
-from suchus.robot.design.motor import COPPER, ROOM
+from suchus.robot.design.motor import COPPER, ROOM_TEMPERATURE
 from suchus.robot.motors import motor, motors
 
 WORDS = {"name", "maker", "family", "protocol", "protection", "sources"}
@@ -64,7 +64,7 @@ def test_a_winding_that_warms_itself_faster_than_the_air_cools_it_has_no_steady_
     warmer = replace(heat, ambient=35.0)
     loss = 5.0
     steady = warmer.steady(loss)
-    assert steady == pytest.approx(35.0 + warmer.resistance * loss * (1 + COPPER * (steady - ROOM)))
+    assert steady == pytest.approx(35.0 + warmer.resistance * loss * (1 + COPPER * (steady - ROOM_TEMPERATURE)))
 
 
 @given(st.sampled_from(list(motors())), st.floats(0.0, 1.0))
@@ -84,7 +84,7 @@ def test_a_servo_like_another_keeps_its_loop_and_gear():
     other = Servo(
         kp=40.0, ki=1.0, kd=0.6, integral_limit=0.5, torque=3.0, speed=7.0, armature=5e-3, friction=0.03, damping=0.05
     )
-    one = Servo.of(motor("XM430-W350"), like=other)
+    one = Servo.of(motor("XM430-W350"), template=other)
     assert replace(one, torque=3.0, speed=7.0, winding=None) == other
     own = Servo.of(replace(motor("XM430-W350"), stall_torque=3.0))
     assert (own.kp, own.kd, own.armature, own.friction, own.damping) == pytest.approx((40.0, 0.6, 5e-3, 0.03, 0.05))

@@ -6,7 +6,7 @@ import pytest
 from suchus.animals.capture import Camera
 from suchus.animals.capture.angles import bend_angles
 from suchus.animals.capture.film import keypoints, tracked
-from suchus.animals.capture.retarget import driven_share
+from suchus.animals.capture.retarget import driven_fraction
 from suchus.article.paper import BendAngles, to_joint_sums
 from suchus.robot.design import joint_names
 
@@ -44,7 +44,7 @@ def posed(robot, crawl, bends):
     ],
 )
 def test_a_bent_robot_shows_its_angles(caiman, crawl, bends):
-    found = bend_angles(posed(caiman, crawl, bends), driven_share(caiman))
+    found = bend_angles(posed(caiman, crawl, bends), driven_fraction(caiman))
     for name, value in bends._asdict().items():
         np.testing.assert_allclose(getattr(found, name), value, atol=1e-9, err_msg=name)
 
@@ -77,7 +77,7 @@ def test_points_of_one_rigid_part_keep_their_distance(caiman, crawl):
 def test_the_crawl_shows_the_joint_angles_that_it_had(caiman, crawl, clean):
     camera = Camera(rate=100.0, noise=0.0, lost=0.0, heading=0.0, scale=None, heights=False, seed=0)
     tracks = tracked(keypoints(caiman, crawl), crawl.time.values, camera, source="a crawl")
-    found = bend_angles(tracks, driven_share(caiman))
+    found = bend_angles(tracks, driven_fraction(caiman))
     trunk = -sum(crawl.joint_angle.sel(joint=f"spine_yaw_{i}") for i in (1, 2, 3))
     tail = sum(crawl.joint_angle.sel(joint=f"tail_yaw_{i + 1}") for i in range(caiman.tail.joints))
     # roll and pitch of the body tilt the planes of the bends by a few degrees

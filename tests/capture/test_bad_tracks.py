@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from suchus.animals.capture import UnusableTracks, film, film_animal, observe, to_gait
-from suchus.animals.capture.tracks import renamed
+from suchus.animals.capture.tracks import map_keypoint_names
 from suchus.robot.gaits import GAITS
 
 
@@ -155,9 +155,9 @@ def test_noise_that_hides_the_steps(lizard, clean):
 
 
 def test_names_are_known_however_they_are_written():
-    ours = renamed(("Tail Base", "tailTip", "lf", "Spine1", "paw"), {"paw": "RH"}, "a file")
+    ours = map_keypoint_names(("Tail Base", "tailTip", "lf", "Spine1", "paw"), {"paw": "RH"}, "a file")
     assert ours == ("tail_base", "tail_tip", "LF", "spine_1", "RH")
     with pytest.raises(UnusableTracks, match="no keypoint 'foot'"):
-        renamed(("hip",), {"foot": "LF"}, "a file")
+        map_keypoint_names(("hip",), {"foot": "LF"}, "a file")
     with pytest.raises(UnusableTracks, match="more than one keypoint 'LF'"):
-        renamed(("lf", "LF"), {}, "a file")
+        map_keypoint_names(("lf", "LF"), {}, "a file")

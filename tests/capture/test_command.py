@@ -16,7 +16,7 @@ def table(caiman, crawl, noisy, tmp_path):
 def test_tracks_become_a_gait_and_a_diagram(table, tmp_path, capsys):
     out = tmp_path / "walks" / "caiman_walk.toml"
     assert main(["capture", str(table), "--out", str(out)]) == 0
-    gait = blueprint.read(out, Gait, GAITS)
+    gait = blueprint.read_design(out, Gait, GAITS)
     assert gait.name == "caiman_walk"
     assert gait.number("trunk_bend") == pytest.approx(GAITS["belly_crawl"].number("trunk_bend"), rel=0.05)
     kinds = ("toml", "svg", "png", "data.csv")

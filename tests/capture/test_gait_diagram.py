@@ -3,7 +3,7 @@ import pytest
 
 from suchus.core.errors import InvalidDesign
 from suchus.visual.figures import save
-from suchus.visual.figures.gait_diagram import GaitTrack, bend_sign, gait_diagram, stretches
+from suchus.visual.figures.gait_diagram import GaitTrack, bend_sign, gait_diagram, intervals
 
 TIME = np.linspace(0.0, 8.0, 401)
 
@@ -23,8 +23,8 @@ def track(**changes):
 def test_stretches_are_half_a_sample_wider_than_what_was_seen():
     time = np.arange(6.0)
     holds = np.array([True, True, False, False, True, True])
-    assert stretches(time, holds) == [(0.0, 1.5), (3.5, 5.0)]
-    assert stretches(time, np.zeros(6, dtype=bool)) == []
+    assert intervals(time, holds) == [(0.0, 1.5), (3.5, 5.0)]
+    assert intervals(time, np.zeros(6, dtype=bool)) == []
 
 
 def test_signs_right_left_and_straight():

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.animals.capture import driven_share, film_animal, observe, to_gait, write_table
+from suchus.animals.capture import driven_fraction, film_animal, observe, to_gait, write_table
 from suchus.apps.cli import main
 from suchus.core.errors import OutsideLimits, UnsuitedRobot
 from suchus.robot import blueprint
 from suchus.robot.design import hips_ahead, layout
-from suchus.robot.gaits import GAITS, own_gait
-from suchus.robot.motion import Gait, Held, check_limits, cycle_targets
+from suchus.robot.gaits import GAITS, default_gait
+from suchus.robot.motion import FixedLimbs, Gait, check_limits, cycle_targets
 from suchus.robot.robots import ROBOTS
 
 CLOCK = np.arange(256) / 256
@@ -39,7 +39,7 @@ def bends(robot, gait):
 
 @pytest.mark.parametrize("name", ["salamander", "pleurobot"])
 def test_bends_and_phases_are_those_of_the_walk(walk, name):
-    robot, base = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, base = ROBOTS[name], default_gait(ROBOTS[name])
     captured = to_gait(walk, robot, base, name="seen")
     gait = captured.gait
     check_limits(robot, gait)
@@ -56,7 +56,7 @@ def test_bends_and_phases_are_those_of_the_walk(walk, name):
 
 
 def test_lengths_go_with_the_trunk(walk):
-    robot, base = ROBOTS["salamander"], own_gait(ROBOTS["salamander"])
+    robot, base = ROBOTS["salamander"], default_gait(ROBOTS["salamander"])
     captured = to_gait(walk, robot, base, name="seen", time="own")
     trunk, reach = hips_ahead(robot, 0), robot.girdles[0].limb.reach
     if not any("do not reach" in note for note in captured.notes):
@@ -70,15 +70,15 @@ def test_lengths_go_with_the_trunk(walk):
 def test_who_lacks_four_limbs_with_feet_is_refused(walk, name, tmp_path, capsys):
     robot = ROBOTS[name]
     with pytest.raises(UnsuitedRobot, match="a captured walk needs"):
-        to_gait(walk, robot, own_gait(ROBOTS["salamander"]), name="seen")
+        to_gait(walk, robot, default_gait(ROBOTS["salamander"]), name="seen")
     assert main(["capture", str(tmp_path / "any.csv"), "--robot", name]) == 2
     assert not list(tmp_path.iterdir())
     assert capsys.readouterr().err.count("\n") == 1
 
 
 def test_a_base_that_holds_its_limbs_lends_nothing(walk):
-    robot, base = ROBOTS["salamander"], own_gait(ROBOTS["salamander"])
-    held = tuple(Held(angles=(0.0,) * 4) for _ in base.limbs)
+    robot, base = ROBOTS["salamander"], default_gait(ROBOTS["salamander"])
+    held = tuple(FixedLimbs(angles=(0.0,) * 4) for _ in base.limbs)
     with pytest.raises(OutsideLimits, match="name another one with --base"):
         to_gait(walk, robot, replace(base, limbs=held), name="seen")
 
@@ -87,21 +87,21 @@ def test_the_command_writes_a_gait_for_another_body(lizard, clean, tmp_path, cap
     tracks = write_table(film_animal(lizard, clean, cycles=3), tmp_path / "lizard.csv")
     out = tmp_path / "walk.toml"
     assert main(["capture", str(tracks), "--robot", "salamander", "--out", str(out)]) == 0
-    gait = blueprint.read(out, Gait, GAITS)
+    gait = blueprint.read_design(out, Gait, GAITS)
     check_limits(ROBOTS["salamander"], gait)
     assert "suchus run displacement --robot salamander --gait" in capsys.readouterr().out
 
 
 def test_what_is_driven_of_a_tail_ends_before_its_passive_end():
-    assert driven_share(ROBOTS["salamander"]) == driven_share(ROBOTS["swimmer"]) == 1.0
+    assert driven_fraction(ROBOTS["salamander"]) == driven_fraction(ROBOTS["swimmer"]) == 1.0
     tail = ROBOTS["caiman"].tail
     cable = tail.root + tail.joints * tail.pitch
-    assert driven_share(ROBOTS["caiman"]) == pytest.approx((cable - tail.pitch / 4) / (cable + tail.fin_length))
+    assert driven_fraction(ROBOTS["caiman"]) == pytest.approx((cable - tail.pitch / 4) / (cable + tail.fin_length))
 
 
 def test_a_joint_that_cannot_bend_as_far_bends_as_far_as_it_can(walk):
     robot = ROBOTS["salamander"]
     wild = replace(walk, bends=walk.bends | {"tail_lateral": 20.0 * walk.bends["tail_lateral"]})
-    captured = to_gait(wild, robot, own_gait(robot), name="seen")
+    captured = to_gait(wild, robot, default_gait(robot), name="seen")
     check_limits(robot, captured.gait)
     assert any("bend as far as they can" in note for note in captured.notes)

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.animals.capture import Camera, Walk, driven_share, film, film_animal, observe, to_gait, write_gait
+from suchus.animals.capture import Camera, Walk, driven_fraction, film, film_animal, observe, to_gait, write_gait
 from suchus.animals.capture.film import keypoints
 from suchus.core.errors import UnsuitedRobot
 from suchus.robot import blueprint
 from suchus.robot.design import LEGS, layout
 from suchus.robot.design.scale import coarse_step
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import START, Gait, limb_reaches, movement
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import crawl as let_crawl
@@ -42,7 +42,7 @@ def filmed(caiman, crawl):
 
     @cache
     def read(camera) -> tuple[Walk, Gait]:
-        walk = observe(film(caiman, crawl, camera), tail_share=driven_share(caiman))
+        walk = observe(film(caiman, crawl, camera), tail_share=driven_fraction(caiman))
         return walk, to_gait(walk, caiman, GAITS["belly_crawl"], name="back").gait
 
     return read
@@ -70,10 +70,10 @@ def test_our_crawl_comes_back_as_commanded(caiman, filmed, noisy, seed):
 @pytest.mark.parametrize(("name", "rate"), [("salamander", 200.0), ("pleurobot", 100.0)])
 def test_the_walk_of_another_body_comes_back_as_commanded(name, rate):
     robot = ROBOTS[name]
-    told, step = own_gait(robot), coarse_step(robot)
+    told, step = default_gait(robot), coarse_step(robot)
     walked = let_crawl(robot, told, duration=START + 5 * told.period, timestep=step)
     camera = Camera(rate=rate, noise=2e-4 * robot.length, lost=0.02, heading=1.0, scale=500.0, heights=False, seed=0)
-    walk = observe(film(robot, walked, camera), tail_share=driven_share(robot))
+    walk = observe(film(robot, walked, camera), tail_share=driven_fraction(robot))
     back = to_gait(walk, robot, told, name="back").gait
     assert back.period == pytest.approx(told.period, rel=0.005)
     assert apart(back.limb_phases, told.limb_phases).max() < PHASE
@@ -121,7 +121,7 @@ def test_what_was_captured_runs_as_far(caiman, crawl, filmed, noisy, tmp_path):
     walk, _ = filmed(noisy)
     captured = to_gait(walk, caiman, GAITS["belly_crawl"], name="caiman_walk")
     file = write_gait(captured, walk, tmp_path / "caiman_walk.toml")
-    read = blueprint.read(file, Gait, GAITS)
+    read = blueprint.read_design(file, Gait, GAITS)
     assert read == captured.gait
     again = let_crawl(caiman, read, duration=START + 2 * read.period, timestep=0.005)
     np.testing.assert_allclose(displacement(again)[0], displacement(crawl)[0], rtol=0.1)

@@ -12,8 +12,8 @@ from suchus.animals.capture import (
     ReadingOptions,
     SyntheticAnimal,
     UnusableTracks,
-    beside,
-    beside_lines,
+    compare_joints,
+    comparison_lines,
     film_animal,
     observe,
     read_tracks,
@@ -259,12 +259,12 @@ def test_time_goes_with_the_square_root_of_length_unless_told(walk, caiman, anim
 
 def test_the_animal_beside_the_robot_joint_by_joint(walk, caiman):
     captured = to_gait(walk, caiman, GAITS["belly_crawl"], name="x")
-    data = beside(walk, caiman, captured.gait)
+    data = compare_joints(walk, caiman, captured.gait)
     trunk = [f"spine_yaw_{i}" for i in (1, 2, 3)]
     np.testing.assert_allclose(data.animal.sel(joint=trunk), 0.5 / 3 / np.sqrt(2), rtol=0.1)
     assert float(data.residual.sel(joint=trunk).max()) < np.radians(2.0)
     assert "does not reach" in str(data.why.sel(joint="LH_yaw").values)
     straight = captured.gait.bent(0.0)
-    apart = beside(walk, caiman, straight)
+    apart = compare_joints(walk, caiman, straight)
     np.testing.assert_allclose(apart.residual.sel(joint=trunk), apart.animal.sel(joint=trunk), rtol=0.1)
-    assert len(beside_lines(data, "caiman")) == 1 + data.sizes["joint"]
+    assert len(comparison_lines(data, "caiman")) == 1 + data.sizes["joint"]

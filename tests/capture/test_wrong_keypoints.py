@@ -8,8 +8,8 @@ from changed import changes, delayed, put, shaken, swapped, told, walker
 from menagerie import built
 
 from suchus.animals.capture import Camera, Tracks, UnusableTracks, film_animal, observe
-from suchus.animals.capture.late import late
-from suchus.animals.capture.screen import screened
+from suchus.animals.capture.late import find_late_keypoints
+from suchus.animals.capture.screen import screen_tracks
 from suchus.animals.capture.swings import Clock
 from suchus.animals.capture.walk import _timed
 
@@ -22,7 +22,7 @@ def filmed():
 def named(tracks, *words):
     """Return what was found out of a film by the keypoints alone, which is fast."""
     try:
-        seen = screened(tracks)
+        seen = screen_tracks(tracks)
         said = " ".join([*(f"{name} {why}" for name, why in seen.wrong.items()), *seen.notes])
     except UnusableTracks as error:
         said = str(error)
@@ -31,7 +31,7 @@ def named(tracks, *words):
 
 
 def test_nothing_is_wrong_with_a_film_in_which_nothing_is(filmed):
-    seen = screened(filmed.tracks)
+    seen = screen_tracks(filmed.tracks)
     assert not seen.wrong
     assert not seen.notes
     assert not told(filmed, filmed.tracks, ()).outside
@@ -60,7 +60,7 @@ def test_a_keypoint_that_leaves_for_a_while_is_left_out_there(filmed):
     seen = np.isfinite(filmed.tracks.at("tail_2")[100:150, 0]).sum()
     share = float(named(away, "first at 2.00 s").partition("tail_2 in ")[2].partition(" %")[0])
     assert share == pytest.approx(100 * seen / len(filmed.tracks.time), abs=1.0)
-    assert np.isnan(screened(away).tracks.at("tail_2")[100:150]).mean() > 0.9
+    assert np.isnan(screen_tracks(away).tracks.at("tail_2")[100:150]).mean() > 0.9
 
 
 def test_names_that_are_exchanged_are_refused_with_the_remedy(filmed):
@@ -85,11 +85,11 @@ def test_frames_that_come_late_are_found_on_the_midline_and_at_the_feet(filmed):
 
 def test_three_frames_late_show_in_all_that_the_links_of_a_point_do(filmed):
     """The hip does not sway and the root of the tail hardly does: turns and pace together show that they are late."""
-    seen = screened(filmed.tracks)
+    seen = screen_tracks(filmed.tracks)
     timed, clock, _ = _timed(seen.tracks)
     for point in ("", "hip", "tail_base"):
         tracks = delayed(timed, point, 3) if point else timed
-        assert set(late(tracks, clock, seen.tracks.time)) == {point} - {""}
+        assert set(find_late_keypoints(tracks, clock, seen.tracks.time)) == {point} - {""}
 
 
 def test_a_film_from_the_side_shows_no_lag():
@@ -99,9 +99,9 @@ def test_a_film_from_the_side_shows_no_lag():
     tracks = film_animal(replace(animal, tail_wave=0.6, tail_bend=0.8), camera, cycles=5)
     clock = Clock(np.array([0.0, animal.period]), np.array([0.0, 1.0]), animal.period)
     beside = replace(tracks, position=tracks.position[..., [0, 2]])
-    assert not late(tracks, clock, tracks.time)
-    assert late(beside, clock, tracks.time)  # taken for a film from above
-    assert not late(replace(beside, view="side"), clock, tracks.time)
+    assert not find_late_keypoints(tracks, clock, tracks.time)
+    assert find_late_keypoints(beside, clock, tracks.time)  # taken for a film from above
+    assert not find_late_keypoints(replace(beside, view="side"), clock, tracks.time)
 
 
 def straight(point="", lag=0.0, varies=0.2):
@@ -127,7 +127,7 @@ def straight(point="", lag=0.0, varies=0.2):
 )
 def test_a_lag_shows_by_the_pace_alone(asked, found):
     tracks, clock = straight(**asked), Clock(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 1.0)
-    told = late(tracks, clock, tracks.time)
+    told = find_late_keypoints(tracks, clock, tracks.time)
     assert set(told) == found
     for why in told.values():
         assert why.startswith("runs 0.06")
@@ -144,10 +144,10 @@ def test_a_chord_of_a_body_that_bends_between_keypoints_is_not_seen_late():
     at = place[:, np.linspace(0, 399, len(names)).astype(int)]
     noise = 5e-4 * np.random.default_rng(3).standard_normal(at.shape)
     tracks = Tracks(time=time, points=names, position=at + noise, unit="m", source="an eel")
-    seen = screened(tracks)
+    seen = screen_tracks(tracks)
     assert not seen.wrong
     timed, clock, _ = _timed(seen.tracks)
-    assert not late(timed, clock, seen.tracks.time)
+    assert not find_late_keypoints(timed, clock, seen.tracks.time)
 
 
 def test_a_keypoint_that_others_pass_is_lost_until_it_is_with_them_again():
@@ -157,7 +157,7 @@ def test_a_keypoint_that_others_pass_is_lost_until_it_is_with_them_again():
     frozen = put(
         filmed.tracks, "neck", np.broadcast_to(filmed.tracks.at("neck")[150], (len(filmed.tracks.time), 2)), frames
     )
-    seen = screened(frozen)
+    seen = screen_tracks(frozen)
     assert not seen.wrong
     assert "neck in " in " ".join(seen.notes)
     assert np.isnan(seen.tracks.at("neck")[160:240]).mean() > 0.95
@@ -185,7 +185,7 @@ def test_an_animal_that_stands_is_told_from_one_that_goes_slowly(filmed):
     noise = np.random.default_rng(0).standard_normal(filmed.tracks.position.shape)
     with pytest.raises(UnusableTracks, match="the animal stands"):
         observe(replace(filmed.tracks, position=place + noise))
-    assert not screened(replace(filmed.tracks, time=3 * filmed.tracks.time)).notes
+    assert not screen_tracks(replace(filmed.tracks, time=3 * filmed.tracks.time)).notes
 
 
 @pytest.mark.validate

@@ -20,7 +20,7 @@ TABLE = Path(__file__).parent.parent / "data" / "animals" / "salamander_walking.
 def test_a_published_table_becomes_the_gait_of_the_shelf(tmp_path, capsys):
     out = tmp_path / "walk.toml"
     assert capture([str(TABLE), "--robot", "salamander", "--period", "2", "--out", str(out)]) == 0
-    assert blueprint.read(out, Gait, GAITS) == replace(GAITS["animal_walk"], name="walk", period=2.0)
+    assert blueprint.read_design(out, Gait, GAITS) == replace(GAITS["animal_walk"], name="walk", period=2.0)
     assert "24 servos of salamander" in capsys.readouterr().out
 
 

@@ -105,5 +105,5 @@ def test_no_browser_and_one_of_letters_are_none(monkeypatch):
     drawing = webbrowser.GenericBrowser("/usr/bin/firefox")
     monkeypatch.setattr(webbrowser, "get", lambda: drawing)
     assert doctor.browser() is drawing
-    assert doctor.called(drawing) == "firefox"
-    assert doctor.called(SimpleNamespace()) == "SimpleNamespace"
+    assert doctor.browser_name(drawing) == "firefox"
+    assert doctor.browser_name(SimpleNamespace()) == "SimpleNamespace"

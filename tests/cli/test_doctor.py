@@ -115,14 +115,14 @@ def python(monkeypatch):
 
 def test_trials_that_answer_fail_die_and_hang(python, monkeypatch):
     python("print('noise'); print('{\"by\": \"egl\"}')")
-    assert doctor.tried("draw", "draw") == [Trial(found={"by": "egl"})] * 2
+    assert doctor.run_trials("draw", "draw") == [Trial(found={"by": "egl"})] * 2
     python("import sys; print('first', file=sys.stderr); sys.exit('ImportError: no')")
-    assert doctor.tried("walk") == [Trial(found=None, failure="ImportError: no")]
+    assert doctor.run_trials("walk") == [Trial(found=None, failure="ImportError: no")]
     python("import os; os.kill(os.getpid(), 11)")
-    assert doctor.tried("walk") == [Trial(found=None, failure="the process died of signal 11")]
+    assert doctor.run_trials("walk") == [Trial(found=None, failure="the process died of signal 11")]
     python("import time; time.sleep(60)")
     monkeypatch.setattr(doctor, "_PATIENCE", 0.2)
-    assert doctor.tried("walk") == [Trial(found=None, failure="no answer within 0.2 s")]
+    assert doctor.run_trials("walk") == [Trial(found=None, failure="no answer within 0.2 s")]
 
 
 def test_the_trial_walk_walks():

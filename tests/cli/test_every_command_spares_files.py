@@ -60,7 +60,7 @@ def emulated(patch):
     """Servos hang in this process, and whoever watches them is always right."""
 
     def rigged(robot, wiring, **_):
-        return Rig(robot, wiring, [MemoryPort(Emulator(wiring, Obedient(), clocked=True))], clocked=True)
+        return Rig(robot, wiring, [MemoryPort(Emulator(wiring, Obedient(), has_clock=True))], has_clock=True)
 
     patch.setattr(calibrate, "Rig", rigged)
     patch.setattr(calibrate, "find_wiring", lambda rig, clock, ask: wiring())
@@ -357,8 +357,8 @@ def test_the_log_of_a_stopped_drive_finds_a_free_place(desk):
     for name in ("driven", "driven_stopped1"):
         (desk / name).mkdir()
         (desk / name / "record.nc").write_text("mine")
-    drive._hurry(log, desk / "driven")
-    drive._hurry(log, desk / "new")
+    drive._save_record_only(log, desk / "driven")
+    drive._save_record_only(log, desk / "new")
     assert load(desk / "driven_stopped2" / "record.nc").x.item() == load(desk / "new" / "record.nc").x.item() == 1.0
     assert (desk / "driven" / "record.nc").read_text() == (desk / "driven_stopped1" / "record.nc").read_text() == "mine"
 

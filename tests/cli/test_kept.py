@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from suchus.apps.cli import main
-from suchus.apps.cli.reproduce import Reproduction, attempt, kept
+from suchus.apps.cli.reproduce import ExperimentTask, attempt, reusable_result
 from suchus.apps.report import Result
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.experiment import silent
@@ -18,7 +18,7 @@ origin = sys.modules["suchus.core.files.provenance"]
 
 @pytest.fixture(scope="module")
 def first(tmp_path_factory):
-    task = Reproduction(name="working_space", out=tmp_path_factory.mktemp("out"), quick=True)
+    task = ExperimentTask(name="working_space", out=tmp_path_factory.mktemp("out"), quick=True)
     assert isinstance(attempt(task, silent).result, Result)
     return task
 
@@ -31,7 +31,7 @@ def task(first, tmp_path):
 
 
 def test_a_finished_experiment_is_kept_and_reads_as_the_run_did(task):
-    again, anew = kept(task), attempt(task, silent)
+    again, anew = reusable_result(task), attempt(task, silent)
     assert again.summary == anew.summary.rpartition(" (")[0] + " (kept from an earlier run)"
     for name in ("measures", "verdicts", "command", "decides"):
         assert again.result.outcome[name] == anew.result.outcome[name]
@@ -39,27 +39,27 @@ def test_a_finished_experiment_is_kept_and_reads_as_the_run_did(task):
 
 
 def test_what_was_never_run_or_asked_in_another_form_is_not_kept(task, tmp_path):
-    assert kept(replace(task, quick=False)) is None
-    assert kept(replace(task, out=tmp_path / "elsewhere")) is None
-    assert kept(replace(task, name="spine_kinematics")) is None
+    assert reusable_result(replace(task, quick=False)) is None
+    assert reusable_result(replace(task, out=tmp_path / "elsewhere")) is None
+    assert reusable_result(replace(task, name="spine_kinematics")) is None
 
 
 @pytest.mark.parametrize("name", ["package_digest", "versions"])
 def test_other_code_and_other_libraries_are_run_again(task, monkeypatch, name):
     other = {"package_digest": "0" * 12, "versions": {"numpy": "1.0"}}[name]
     monkeypatch.setattr(origin, name, lambda: other)
-    assert kept(task) is None
+    assert reusable_result(task) is None
 
 
 @pytest.mark.parametrize("name", ["record.nc", "outcome.json", "*.svg"])
 def test_a_result_that_lacks_a_file_is_run_again(task, name):
     next((task.out / task.name).glob(name)).unlink()
-    assert kept(task) is None
+    assert reusable_result(task) is None
 
 
 def test_a_broken_outcome_is_run_again(task):
     (task.out / task.name / "outcome.json").write_text('{"experiment": 1}')
-    assert kept(task) is None
+    assert reusable_result(task) is None
 
 
 @pytest.mark.usefixtures("fakes")

@@ -13,7 +13,7 @@ from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.optimise.spec import read_optimisation
 from suchus.experiments.study.page import read_study
 from suchus.robot import blueprint
-from suchus.robot.gaits import GAITS, gait_of, own_gait
+from suchus.robot.gaits import GAITS, default_gait, gait_of
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run
 
@@ -56,7 +56,7 @@ def test_what_is_given_is_itself_a_name_or_a_file(here):
     for given in (walk, "mine_walk.toml", Path("mine_walk.toml")):
         assert gait_of(mine, given) == walk
         assert Run(robot="mine.toml", gait=given) == Run(robot=mine, gait=walk)
-    assert gait_of(mine, None) == own_gait(mine) == TRIPOD
+    assert gait_of(mine, None) == default_gait(mine) == TRIPOD
     with pytest.raises(UnknownName, match="no robot named 'mini'"):
         ROBOTS.resolve("mini")
     with pytest.raises(UnreadableFile, match=r"mini\.toml"):
@@ -83,11 +83,11 @@ def test_studies_and_searches_take_files_and_else_the_robots_own_gait(here, read
 
 def test_tasks_take_files(here):
     pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install suchus[gym]")
-    from suchus.apps.envs.shelf import TASKS, chosen  # noqa: PLC0415
+    from suchus.apps.envs.shelf import TASKS, resolve_task  # noqa: PLC0415
 
-    task = chosen("Crawl", {"robot": "mine.toml", "gait": "mine_walk.toml"})
+    task = resolve_task("Crawl", {"robot": "mine.toml", "gait": "mine_walk.toml"})
     assert task == TASKS["Crawl"].on(replace(STRIDER, name="mine"), replace(TRIPOD, name="mine_walk", period=1.1))
-    assert chosen("Crawl", {"robot": Path("mine.toml")}).gait == TRIPOD
+    assert resolve_task("Crawl", {"robot": Path("mine.toml")}).gait == TRIPOD
 
 
 def test_the_viewer_takes_files(here, monkeypatch):

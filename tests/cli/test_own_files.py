@@ -114,7 +114,7 @@ def test_compare_shows_no_codes_of_a_terminal(desk, capsys):
 
 def test_a_file_without_a_base_is_read_where_none_may_be_named(desk):
     file = blueprint.write(ROBOTS["strider"], desk / "mine.toml")
-    assert blueprint.read(file, Robot | None, ROBOTS) == ROBOTS["strider"]
+    assert blueprint.read_design(file, Robot | None, ROBOTS) == ROBOTS["strider"]
 
 
 @pytest.mark.parametrize("odd", ["nan", "inf", "-inf"])
@@ -123,7 +123,7 @@ def test_a_shape_at_no_place_is_refused(desk, odd):
     before, start, after = file.read_text().partition("\nstart = [")
     file.write_text(f"{before}{start}{odd},{after.partition(',')[2]}")
     with pytest.raises((InvalidDesign, UnreadableFile), match="start"):
-        blueprint.read(file, Robot, ROBOTS)
+        blueprint.read_design(file, Robot, ROBOTS)
     place, number = (0.0, float(odd), 0.0), {"name": "x", "mass": 1.0}
     for kind, field, more in ((Rod, "end", {"start": (0, 0, 0), "radius": 1.0}), (Shell, "at", {"half": (1, 1, 1)})):
         with pytest.raises(InvalidDesign, match=field):

@@ -13,7 +13,7 @@ import pytest
 
 from suchus.apps.cli import main
 from suchus.apps.report import PAGE
-from suchus.core.stopping import CUT
+from suchus.core.stopping import CUT_MESSAGE
 from suchus.core.writing import MANIFEST
 
 FAKES = Path(__file__).parent / "fake_shelf"
@@ -151,7 +151,7 @@ def test_a_signal_while_one_is_saving_stops_all_and_leaves_nothing_half_written(
     assert "Traceback" not in complaint
     if not killed:
         assert complaint.splitlines()[-1].startswith("suchus: stopped"), complaint
-        cut = complaint.endswith(CUT)  # a machine that is busy with others
+        cut = complaint.endswith(CUT_MESSAGE)  # a machine that is busy with others
         assert {path.name for path in out.glob("[!.]*" if cut else "*")} <= {"wave"}
     worker, end = int((tmp_path / "started").read_text()), time.monotonic() + PATIENCE
     while is_there(worker):

@@ -11,7 +11,7 @@ from suchus.apps.report.size_page import answer
 from suchus.hardware import cases
 from suchus.hardware.loads import ServoLoad
 from suchus.hardware.sizing import Sizing
-from suchus.robot.blueprint import read
+from suchus.robot.blueprint import read_design
 from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import GAITS
 from suchus.robot.motors import motors
@@ -74,7 +74,7 @@ def test_sizing_writes_the_servos_that_are_enough_and_a_robot_that_has_them(tmp_
     with (folder / "servos.csv").open() as file:
         assert {row["servo"] for row in csv.DictReader(file)} == set(layout(ROBOTS["caiman"]).servos)
     assert "<h1>" in (folder / "size.html").read_text()
-    built = read(folder / "robot.toml", Robot, ROBOTS)
+    built = read_design(folder / "robot.toml", Robot, ROBOTS)
     sold = {name for name, motor in motors().items() if motor.family == family}
     assert {built.servo(name).winding.motor for name in layout(built).servos} <= sold
     assert main(["size", "caiman", "belly_crawl", "--family", family]) == 0  # its own files may be written anew

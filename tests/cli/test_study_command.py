@@ -3,7 +3,7 @@ import pytest
 from suchus.apps.cli import main
 from suchus.core.errors import SuchusError
 from suchus.experiments.study import read_study
-from suchus.experiments.study.chunk import called
+from suchus.experiments.study.chunk import label_of
 from suchus.experiments.study.plan import Plan
 from suchus.robot.design import unit_at
 from suchus.sim.land import Backlash, Limp, LostFoot, Offset, Slow, Weak
@@ -151,7 +151,7 @@ values = [[], [{kind = "backlash", joint = "LF_yaw", gap = 0.2}, {kind = "offset
 """)
     varied = read_study(tmp_path / "f.toml").vary[0].values
     assert varied == ((), (Backlash("LF_yaw", 0.2), Offset("RF_yaw")))
-    assert [called(value) for value in varied] == ["none", "backlash LF_yaw + offset RF_yaw"]
+    assert [label_of(value) for value in varied] == ["none", "backlash LF_yaw + offset RF_yaw"]
     page = 'measure = ["slip"]\nfaults = [{kind = "%s"}]\n[[vary]]\nfield = "noise"\nvalues = [0.0]\n'
     (tmp_path / "g.toml").write_text(page % ("x" * 9000))
     with pytest.raises(SuchusError, match="there is no fault named 'xxx") as caught:

@@ -9,9 +9,9 @@ from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
 from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.core.rotation import about
+from suchus.core.rotation import from_axis_angle
 from suchus.robot.control import DepthHold, HeadingHold, Swimming
-from suchus.robot.control.holding import Depths, Headings, neutral_air_fraction
+from suchus.robot.control.holding import DepthHolds, HeadingHolds, neutral_air_fraction
 from suchus.robot.design import WATER_DENSITY
 from suchus.robot.design.pieces import volumes
 from suchus.robot.robots import ROBOTS
@@ -24,7 +24,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 def sensed(*, yaw=0.0, depth=0.0):
     """What a robot feels that faces to the left by ``yaw``."""
-    return feels(ROBOT, orientation=about(UP, yaw), depth=depth)
+    return feels(ROBOT, orientation=from_axis_angle(UP, yaw), depth=depth)
 
 
 def test_neutral_air_fraction_weighs_what_it_displaces():
@@ -35,7 +35,7 @@ def test_neutral_air_fraction_weighs_what_it_displaces():
 
 @pytest.mark.parametrize("turned", [0.2, -0.2])
 def test_it_bends_against_the_side_to_which_it_has_turned_and_no_farther_than_its_bends(turned):
-    hold = Headings([HeadingHold(gain=2.0, integral_gain=0.0)], [ROBOT], [1], PERIOD)
+    hold = HeadingHolds([HeadingHold(gain=2.0, integral_gain=0.0)], [ROBOT], [1], PERIOD)
     hold.bend(sensed())
     tail, trunk = hold.bend(sensed(yaw=turned))
     assert tail[0] == pytest.approx(-0.6 * 2.0 * turned)
@@ -45,7 +45,7 @@ def test_it_bends_against_the_side_to_which_it_has_turned_and_no_farther_than_it
 
 
 def test_a_turn_to_and_fro_within_a_cycle_is_not_steered_against():
-    hold = Headings([HeadingHold(integral_gain=0.0)], [ROBOT], [100], PERIOD)
+    hold = HeadingHolds([HeadingHold(integral_gain=0.0)], [ROBOT], [100], PERIOD)
     bends = [hold.bend(sensed(yaw=0.1 * np.sin(2 * np.pi * i / 100) + 1e-12))[0][0] for i in range(400)]
     assert np.abs(bends[200:]).max() < 1e-3
     assert np.abs(bends[:80]).max() > 0.02
@@ -53,7 +53,7 @@ def test_a_turn_to_and_fro_within_a_cycle_is_not_steered_against():
 
 def heading_after(rule, seconds, disturbance=0.0):
     """Return the error of the heading over time of a body that turns by 0.2 rad/s at the full bend, with a lag."""
-    hold, yaw, rate, found = Headings([rule], [ROBOT], [100], PERIOD), 0.0, 0.0, []
+    hold, yaw, rate, found = HeadingHolds([rule], [ROBOT], [100], PERIOD), 0.0, 0.0, []
     for _ in range(round(seconds / PERIOD)):
         tail, _ = hold.bend(sensed(yaw=yaw + 1e-12))
         rate += PERIOD / 0.5 * (0.2 * tail[0] / 0.6 + disturbance - rate)
@@ -78,7 +78,7 @@ def test_what_pushes_to_one_side_all_the_time_is_learnt():
 
 def depth_after(rule, seconds, leak=0.0):
     """Return depth and air fraction over time of a body that weighs as the air says and meets quadratic drag."""
-    hold, z, w, found = Depths([rule], [ROBOT], PERIOD), 0.09, 0.0, []
+    hold, z, w, found = DepthHolds([rule], [ROBOT], PERIOD), 0.09, 0.0, []
     neutral = neutral_air_fraction(ROBOT)
     for _ in range(round(seconds / PERIOD)):
         air_fraction = hold.air_fraction(sensed(depth=z))[0]
@@ -116,7 +116,7 @@ def test_a_weight_that_is_not_known_is_learnt():
 def test_a_swim_holds_heading_and_depth_in_the_water():
     held = Swimming(heading=HeadingHold(direction=0.4), depth=DepthHold(depth=0.5))
     runs = [Run(robot=ROBOT, gait=WAVE, lake=Lake(level=2.0), control=control) for control in (held, Swimming())]
-    record = simulate(runs, duration=20.0, timestep=0.005, every=10)
+    record = simulate(runs, duration=20.0, timestep=0.005, sample_stride=10)
     end = record.sel(time=slice(17.0, None))
     course = end.centre_of_mass.isel(time=-1) - end.centre_of_mass.isel(time=0)
     heading = np.arctan2(course.sel(xyz="y"), course.sel(xyz="x")).values

@@ -5,7 +5,7 @@ from tests.start_batch import start_batch
 
 from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.robot.control import Control, OpenLoop
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import as_table, cycle_targets, intended
 from suchus.robot.robots import ROBOTS
 
@@ -31,7 +31,7 @@ def test_open_loop_is_a_control_and_equal_to_itself():
 @pytest.mark.parametrize("name", ["caiman", "strider", "swimmer"])
 def test_strokes_and_bends_grow_over_the_ramp_and_then_the_gait_is_as_it_was(name):
     robot = ROBOTS[name]
-    gait = own_gait(robot)
+    gait = default_gait(robot)
     grows, full = (start_batch(OpenLoop(begin=0.5, ramp=ramp), [robot], [gait], [0], 1001, 0.01) for ramp in (2.0, 0.0))
     still = cycle_targets(robot, gait, np.zeros(1), np.zeros(1))
     assert (grows.command(20, None).targets == still).all()

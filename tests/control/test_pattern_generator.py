@@ -12,7 +12,7 @@ from suchus.animals.capture.angles import standing_index
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, UnsuitedRobot
 from suchus.robot.control import LAWS, Control, OpenLoop, Oscillators, PatternGenerator, SpineRule, TailRule
 from suchus.robot.control import oscillate as turned
-from suchus.robot.control.oscillators import AxisPart, Rhythm, couple, cut, steps_needed
+from suchus.robot.control.oscillators import LimbCoupling, Rhythm, couple, cut_couplings, steps_needed
 from suchus.robot.control.pattern_posture import axis_segments
 from suchus.robot.design import layout, servo_ranges
 from suchus.robot.design.scale import control_period
@@ -62,7 +62,7 @@ def rhythm(couplings, phase, amplitude, period=0.005, numbers=NUMBERS):
 
 @pytest.mark.parametrize("first", [0.1, 1.0, 3.0, 6.0])
 def test_two_oscillators_lock_at_the_prescribed_bias(first):
-    pair = couple(NUMBERS, [AxisPart(-1, 0.0)], [], [], 0.0)
+    pair = couple(NUMBERS, [LimbCoupling(-1, 0.0)], [], [], 0.0)
     both = rhythm(pair, [0.0, first], 0.3)
     for _ in range(2000):
         both.advance(np.full((1, 2), 0.7), np.full((1, 2), 0.3))
@@ -72,7 +72,7 @@ def test_two_oscillators_lock_at_the_prescribed_bias(first):
 @pytest.mark.parametrize("faster", [-0.6, 0.2, 0.9])
 def test_two_oscillators_of_different_frequency_lock_apart_by_the_closed_form(faster):
     # d' = 2 pi df - 2 r w sin(d) for the distance d from the bias
-    pair = couple(NUMBERS, [AxisPart(-1, 0.0)], [], [], 0.0)
+    pair = couple(NUMBERS, [LimbCoupling(-1, 0.0)], [], [], 0.0)
     both = rhythm(pair, [0.0, 2.5], 0.3)
     for _ in range(3000):
         both.advance(np.array([[0.7, 0.7 + faster]]), np.full((1, 2), 0.3))
@@ -82,7 +82,7 @@ def test_two_oscillators_of_different_frequency_lock_apart_by_the_closed_form(fa
 
 
 def test_an_amplitude_rises_critically_damped_and_heun_is_of_second_order():
-    pair = couple(NUMBERS, [AxisPart(-1, 0.0)], [], [], 0.0)
+    pair = couple(NUMBERS, [LimbCoupling(-1, 0.0)], [], [], 0.0)
     errors = []
     for period in (0.005, 0.0025):
         one = rhythm(pair, [0.0, pi], 0.0, period=period)
@@ -103,7 +103,7 @@ def test_frequencies_and_amplitudes_follow_the_drive_and_end_with_it():
 
 
 def test_the_step_shrinks_with_the_fastest_rate():
-    parts = [AxisPart(0, 0.0)] * N
+    parts = [LimbCoupling(0, 0.0)] * N
     usual = couple(NUMBERS, parts, ("LF", "RF"), (0.0, 0.5), 0.1)
     stiff = couple(NUMBERS, parts * 2, ("LF", "RF"), (0.0, 0.5), 0.1)
     assert steps_needed(usual, NUMBERS, 1.0, 0.005) == 1
@@ -117,7 +117,7 @@ def test_the_step_shrinks_with_the_fastest_rate():
 
 
 def test_walking_is_a_standing_wave_of_the_limbs_frequency_with_its_node_between_the_girdles():
-    done = turned([PatternGenerator(drive=2.0, pace=1.0)], SALAMANDER, WALK, duration=6.0, every=10)
+    done = turned([PatternGenerator(drive=2.0, pace=1.0)], SALAMANDER, WALK, duration=6.0, sample_interval=10)
     phase, rate = done.phase[0], (done.phase[0, -1] - done.phase[0, -20]) / (done.time[-1] - done.time[-20])
     assert rate == pytest.approx(np.full(2 * N + 4, 0.4), abs=1e-6)
     lags = wrapped(-np.diff(phase[-1, :N]))
@@ -132,7 +132,7 @@ def test_walking_is_a_standing_wave_of_the_limbs_frequency_with_its_node_between
 
 def test_swimming_is_a_travelling_wave_of_the_axis_own_frequency():
     controls = [PatternGenerator(drive=drive, pace=1.0) for drive in (3.01, 4.0)]
-    done = turned(controls, SALAMANDER, WALK, duration=2.0, every=10)
+    done = turned(controls, SALAMANDER, WALK, duration=2.0, sample_interval=10)
     rate = (done.phase[:, -1] - done.phase[:, -20]) / (done.time[-1] - done.time[-20])
     assert rate[:, :N] == pytest.approx(np.repeat([[0.902], [1.1]], N, axis=1), abs=1e-6)
     assert rate[:, 2 * N :] == pytest.approx(np.zeros((2, 4)), abs=1e-12)
@@ -145,7 +145,7 @@ def test_swimming_is_a_travelling_wave_of_the_axis_own_frequency():
 def test_random_starts_lock_to_diagonal_limbs_or_the_tripod(name, limbs):
     controls = [PatternGenerator(initial="random", pace=1.0)] * 16
     robot, gait = ROBOTS[name], GAITS[WALKERS[name]]
-    done = turned(controls, robot, gait, duration=3.0, seeds=range(16), every=100)
+    done = turned(controls, robot, gait, duration=3.0, seeds=range(16), sample_interval=100)
     first = 2 * done.wave.shape[2]
     apart = wrapped(done.phase[:, -1, first:] - done.phase[:, -1, first : first + 1] - np.array(limbs) / 2)
     assert np.abs(apart).max() < 0.1 / (2 * pi)
@@ -239,33 +239,41 @@ def test_a_weaker_drive_on_the_right_bends_to_the_left_and_steering_bends_the_tr
 
 def test_the_gradient_and_the_lag_are_what_is_asked():
     control = PatternGenerator(drive=4.0, lag=0.05, gradient=((0.2, 0.0), (0.8, 2.0)), pace=1.0)
-    done = turned([control], SALAMANDER, WALK, duration=1.0, every=10)
+    done = turned([control], SALAMANDER, WALK, duration=1.0, sample_interval=10)
     assert wrapped(-np.diff(done.phase[0, -1, :N])) == pytest.approx(np.full(N - 1, 0.05), abs=1e-6)
-    full = turned([replace(control, gradient=((0.0, 1.0), (1.0, 1.0)))], SALAMANDER, WALK, duration=1.0, every=10)
+    full = turned(
+        [replace(control, gradient=((0.0, 1.0), (1.0, 1.0)))], SALAMANDER, WALK, duration=1.0, sample_interval=10
+    )
     places = [one.place for one in axis_segments(SALAMANDER, WALK)]
     assert done.wave == pytest.approx(full.wave * np.interp(places, [0.2, 0.8], [0.0, 2.0]))
 
 
 def test_lesions_cut_what_they_name():
     whole = couple(
-        NUMBERS, [AxisPart(0, 0.0)] * 4 + [AxisPart(1, 0.0)] * 4, ("LF", "RF", "LH", "RH"), WALK.limb_phases, 0.1
+        NUMBERS,
+        [LimbCoupling(0, 0.0)] * 4 + [LimbCoupling(1, 0.0)] * 4,
+        ("LF", "RF", "LH", "RH"),
+        WALK.limb_phases,
+        0.1,
     )
-    halves = cut(whole, (("axis_4", "axis_5"),))
+    halves = cut_couplings(whole, (("axis_4", "axis_5"),))
     lost = np.flatnonzero(halves.weight != whole.weight)
     pairs = {(whole.names[whole.receiver[i]], whole.names[whole.sender[i]]) for i in lost}
     assert pairs == {
         (f"axis_{a}_{side}", f"axis_{b}_{side}") for a, b in ((4, 5), (5, 4)) for side in ("left", "right")
     }
-    free = turned([PatternGenerator(lesions=(("limbs", "axis"),), pace=1.0)], SALAMANDER, WALK, duration=1.0, every=10)
+    free = turned(
+        [PatternGenerator(lesions=(("limbs", "axis"),), pace=1.0)], SALAMANDER, WALK, duration=1.0, sample_interval=10
+    )
     rate = (free.phase[0, -1] - free.phase[0, -10]) / (free.time[-1] - free.time[-10])
     assert rate[2 * N :] == pytest.approx(np.full(4, 0.4), abs=1e-9)
     assert rate[:N].min() > 0.5  # the axis goes its own way
     with pytest.raises(UnknownName, match="axis_9"):
-        cut(whole, (("axis_9", "LF"),))
+        cut_couplings(whole, (("axis_9", "LF"),))
     with pytest.raises(OutsideLimits, match="no coupling joins 'axis_1' and 'axis_3'"):
-        cut(whole, (("axis_1", "axis_3"),))
+        cut_couplings(whole, (("axis_1", "axis_3"),))
     with pytest.raises(OutsideLimits, match="no coupling joins 'axis_1_left' and 'LH'"):
-        cut(whole, (("axis_1_left", "LH"),))  # hind limbs drive the tail
+        cut_couplings(whole, (("axis_1_left", "LH"),))  # hind limbs drive the tail
 
 
 def test_the_drive_may_change_over_time():
@@ -308,8 +316,8 @@ def test_a_batch_turns_as_each_run_does_alone_to_the_byte_in_any_order():
 
 def test_it_walks_on_land_the_same_alone_and_beside_others():
     runs = [Run(robot=SALAMANDER, gait=WALK, control=PatternGenerator(drive=drive)) for drive in (3.0, 2.0)]
-    both = simulate(runs, duration=2.0, every=10)
-    alone = simulate(runs[1:], duration=2.0, every=10)
+    both = simulate(runs, duration=2.0, sample_stride=10)
+    alone = simulate(runs[1:], duration=2.0, sample_stride=10)
     assert both.position.isel(run=1).values.tobytes() == alone.position.isel(run=0).values.tobytes()
     stride = displacement(both).sel(xyz="x").values / SALAMANDER.length / [1.5, 1.0]
     assert (stride > 0.1).all()

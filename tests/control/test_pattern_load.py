@@ -8,7 +8,7 @@ from tests.felt import felt as feels
 
 from suchus.core.errors import InvalidDesign
 from suchus.robot.control import LoadRule, PatternGenerator
-from suchus.robot.control.pattern_load import FeltDrive
+from suchus.robot.control.pattern_load import LoadDrive
 from suchus.robot.design import GRAVITY
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Lake, Run, simulate
@@ -32,24 +32,24 @@ def felt(feet, belly=0.0, tail=0.0, runs=1):
     (0.0, 0.0, 0.0, 2.0), (0.01, 0.0, 0.0, 1.0), (0.0, 0.01, 0.005, 0.5), (0.02, 0.0, 0.0, 0.0), (0.7, 0.2, 0.1, 0.0),
 ])  # fmt: skip
 def test_the_drive_grows_as_the_load_goes(feet, belly, tail, drive):
-    one = FeltDrive([LoadRule(memory=0.0)], [ROBOT], 0.01)
+    one = LoadDrive([LoadRule(memory=0.0)], [ROBOT], 0.01)
     assert one.drive == pytest.approx([0.0])  # as on land, before anything is felt
     one.feel(felt(feet, belly, tail))
     assert one.drive == pytest.approx([drive], abs=1e-9)
 
 
 def test_the_load_goes_through_a_low_pass():
-    one = FeltDrive([LoadRule(memory=0.4)], [ROBOT], 0.01)
+    one = LoadDrive([LoadRule(memory=0.4)], [ROBOT], 0.01)
     for _ in range(40):
         one.feel(felt(0.0))
     assert one.load == pytest.approx([np.exp(-1.0)], rel=0.02)
 
 
 def test_who_has_no_rule_gets_nothing():
-    both = FeltDrive([None, LoadRule(memory=0.0)], [ROBOT, ROBOT], 0.01)
+    both = LoadDrive([None, LoadRule(memory=0.0)], [ROBOT, ROBOT], 0.01)
     both.feel(felt(0.0, runs=2))
     assert both.drive == pytest.approx([0.0, 2.0])
-    assert not FeltDrive([None], [ROBOT], 0.01).felt
+    assert not LoadDrive([None], [ROBOT], 0.01).felt
     assert PatternGenerator(load=LoadRule()).feels
     assert not PatternGenerator().feels
 
@@ -60,7 +60,7 @@ def test_one_drive_swims_in_water_and_walks_on_land():
     def gone(rules, duration, **where):
         control = [PatternGenerator(drive=2.0, load=rule) for rule in rules]
         runs = [Run(robot=ROBOT, gait="belly_crawl", control=one, **where) for one in control]
-        return simulate(runs, duration=duration, every=5)
+        return simulate(runs, duration=duration, sample_stride=5)
 
     def change(values, start, end):
         return float(values[round(end / 0.05)] - values[round(start / 0.05)])

@@ -12,12 +12,12 @@ from tests.start_batch import start_batch
 from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.robot.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, SpineRule, TailRule
 from suchus.robot.control.limbs import GRAVITY, Limbs
-from suchus.robot.control.shared import silence
+from suchus.robot.control.shared import initial_shared
 from suchus.robot.control.spine import SpineController
 from suchus.robot.control.tail import TailController
 from suchus.robot.design import layout
 from suchus.robot.design.scale import control_period
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import START, Batch, cycle_targets
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
@@ -94,7 +94,7 @@ def test_all_rules_off_but_random_phases_is_the_gait_at_those_phases(robot, craw
 
 
 def test_only_its_owner_writes_a_shared_variable():
-    shared = silence(2, 4)
+    shared = initial_shared(2, 4)
     for name, owner in OWNERS.items():
         value = np.ones((2, 4)) if name == "limb_phase" else np.ones(2)
         for other in {"limbs", "spine", "tail"} - {owner}:
@@ -111,7 +111,7 @@ def test_only_its_owner_writes_a_shared_variable():
 
 def test_the_shared_variables_are_those_that_the_article_names():
     assert set(OWNERS) == {"limb_phase", "trunk_bend", "trunk_direction", "tail_bend", "tail_direction"}
-    assert set(OWNERS) == set(silence(1, 4).__dataclass_fields__)
+    assert set(OWNERS) == set(initial_shared(1, 4).__dataclass_fields__)
 
 
 phases = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4)
@@ -121,7 +121,7 @@ phases = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4)
 def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait, phase, late, later, duty):
     gait = with_metres(crawl_gait, spine_phase=late, tail_phase=later, duty_factor=duty)
     gaits, clock = Batch([robot], [gait]), np.zeros(1)
-    shared = silence(1, 4).written_by("limbs", limb_phase=np.array([phase]))
+    shared = initial_shared(1, 4).written_by("limbs", limb_phase=np.array([phase]))
     shared = SpineController.step(shared, gaits, clock)
     shared = TailController.step(shared, gaits, clock)
     for name, law in (("trunk", trunk_bend), ("tail", tail_bend)):
@@ -131,7 +131,7 @@ def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait,
 
 @pytest.mark.parametrize("name", ["caiman", "salamander", "strider"])
 def test_without_sharing_the_axis_of_any_body_stays_with_the_clock_after_a_kick(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     place, limbs = layout(robot), len(layout(robot).limbs)
     kicked = Coordinated(limbs=LAWS["off"], spine=None, tail=None, kicks=(Kick(START + 0.1, (0.25,) * limbs),))
     period = control_period(robot)
@@ -168,7 +168,7 @@ def walked(laws, robot, gait, ahead, load, ticks):
     runs = len(ahead)
     laws = [laws] * runs if isinstance(laws, LimbLaw) else laws
     limbs = Limbs(laws, [robot] * runs, [gait] * runs, ahead, PERIOD)
-    shared, out = silence(runs, 4), []
+    shared, out = initial_shared(runs, 4), []
     for tick in range(ticks):
         clock = np.tile(limb_phase(gait, np.array(START + tick * PERIOD)), (runs, 1))
         shared = shared.written_by("limbs", limb_phase=clock + limbs.ahead)

@@ -11,11 +11,11 @@ import suchus
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.robot.control.standing import BALANCE, Standing
 from suchus.robot.design import with_values
-from suchus.robot.design.scale import coarse_step, scaled
-from suchus.robot.gaits import own_gait
+from suchus.robot.design.scale import coarse_step, rescale
+from suchus.robot.gaits import default_gait
 from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.motion.posture import plan
-from suchus.robot.motion.rising import stand_up, stretched
+from suchus.robot.motion.rising import stand_up, stretched_length
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics.reach import lead, reach
 
@@ -134,7 +134,7 @@ def test_without_balance_nothing_is_corrected():
 
 
 def test_the_caiman_stands_up_and_down_again():
-    record = simulate([Run(robot=CAIMAN, gait=CRAWL, control=SOON)], duration=24.0, timestep=0.005, every=10)
+    record = simulate([Run(robot=CAIMAN, gait=CRAWL, control=SOON)], duration=24.0, timestep=0.005, sample_stride=10)
     height, behind = reach(CAIMAN, record).isel(run=0), lead(record).isel(run=0)
     up = slice(SOON.upright_from(CAIMAN), SOON.upright_until(CAIMAN))
     assert float(height.sel(time=up).min()) > 0.64
@@ -150,13 +150,13 @@ def risen(robot, size):
         at=0.2 * size**0.5,
         hold=1.0 * size**0.5,
         blend=size**0.5,
-        balance=scaled(BALANCE, length_factor=size),
+        balance=rescale(BALANCE, length_factor=size),
         rise=stand_up(robot, slower=size**0.5),
     )
-    run = Run(robot=robot, gait=own_gait(robot), control=soon)
-    record = simulate([run], duration=soon.upright_until(robot), timestep=coarse_step(robot), every=10)
+    run = Run(robot=robot, gait=default_gait(robot), control=soon)
+    record = simulate([run], duration=soon.upright_until(robot), timestep=coarse_step(robot), sample_stride=10)
     late = reach(robot, record).isel(run=0).sel(time=slice(soon.upright_from(robot), None))
-    return float(late.min()), stretched(robot)
+    return float(late.min()), stretched_length(robot)
 
 
 def test_a_body_of_the_article_in_another_size_stands_as_it_does():
@@ -179,7 +179,7 @@ def test_a_longer_body_stands_where_its_trunk_can_lift_its_forebody(torque, stan
 def test_who_lacks_a_chain_is_refused_before_anything_moves(name):
     robot = suchus.ROBOTS[name]
     with pytest.raises(UnsuitedRobot, match=f"needs .*a trunk that bends up and down.*; robot '{name}' lacks that"):
-        start_batch(Standing(at=0.1, hold=0.1), [robot], [own_gait(robot)], [0], 10, PERIOD)
+        start_batch(Standing(at=0.1, hold=0.1), [robot], [default_gait(robot)], [0], 10, PERIOD)
 
 
 def test_impossible_settings_are_refused():

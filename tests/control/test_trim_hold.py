@@ -12,10 +12,10 @@ from tests.swims import crocodile_swim
 
 from suchus.core import rotation
 from suchus.core.errors import InvalidDesign
-from suchus.core.rotation import about
+from suchus.core.rotation import from_axis_angle
 from suchus.robot.control import DepthHold, PitchHold, Sensed, Swimming
 from suchus.robot.control.holding import neutral_air_fraction
-from suchus.robot.control.trim import Pitches
+from suchus.robot.control.trim import PitchHolds
 from suchus.robot.design.pieces import chambers
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
@@ -30,11 +30,11 @@ LEFT = np.array([0.0, 1.0, 0.0])
 
 def sensed(*, pitch=0.0, rate=0.0, depth=0.6):
     """What a robot feels whose nose is down by ``pitch``."""
-    return feels(ROBOT, orientation=about(LEFT, pitch), angular_velocity=[0.0, rate, 0.0], depth=depth)
+    return feels(ROBOT, orientation=from_axis_angle(LEFT, pitch), angular_velocity=[0.0, rate, 0.0], depth=depth)
 
 
 def hold(rule, depth=0.6, robot=ROBOT):
-    return Pitches([rule], [depth], [robot], PERIOD)
+    return PitchHolds([rule], [depth], [robot], PERIOD)
 
 
 @pytest.mark.parametrize(("pitch", "rate"), [(0.1, 0.0), (-0.1, 0.0), (0.0, 0.05), (0.0, -0.05)])
@@ -64,7 +64,7 @@ def test_air_moves_no_faster_than_the_pump():
 
 
 def test_an_air_fraction_that_is_left_to_the_lake_stays_so_and_another_run_is_not_touched():
-    machine = Pitches([PitchHold(**FAST), None], [0.6, 0.6], [ROBOT, ROBOT], PERIOD)
+    machine = PitchHolds([PitchHold(**FAST), None], [0.6, 0.6], [ROBOT, ROBOT], PERIOD)
     felt = sensed(pitch=0.1)
     both = {name: np.repeat(getattr(felt, name), 2, axis=0) for name in Sensed.__dataclass_fields__ if name != "time"}
     kept = machine.split(np.array([np.nan, 0.5]), Sensed(time=0.0, **both))
@@ -114,7 +114,7 @@ def test_a_swim_at_depth_is_level_and_with_the_air_in_its_foam_nose_up():
         Run(robot=robot, gait=WAVE, lake=Lake(level=2.0), control=control)
         for robot, control in ((ROBOT, replace(swim, pitch=PitchHold())), (IN_FOAM, swim))
     ]
-    record = simulate(runs, duration=14.0, timestep=0.005, every=10)
+    record = simulate(runs, duration=14.0, timestep=0.005, sample_stride=10)
     end = record.sel(time=slice(11.0, None))
     held, foam = rotation.pitch(end.orientation.values).mean(axis=1)
     assert abs(held) < 0.05

@@ -12,7 +12,7 @@ from suchus.robot.design.ground import Bumps, Stone
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run, simulate
-from suchus.sim.metrics import between, displacement, heading_change, tilt
+from suchus.sim.metrics import displacement, heading_change, tilt, time_window
 
 
 def started(control, robot, gait):
@@ -84,10 +84,10 @@ def test_attitude_feedback_keeps_the_high_walk_on_its_feet_on_bumps(robot):
         for rule in (None, AttitudeRule())
         for ground in grounds
     ]
-    record = simulate(runs, duration=14.0, timestep=0.005, every=5)
+    record = simulate(runs, duration=14.0, timestep=0.005, sample_stride=5)
     way = displacement(record).sel(xyz="x").values.reshape(2, -1)
     assert way[1].min() > 1.0 > way[0].min()
-    roll = np.abs(tilt(between(record))["roll"]).max("time").values.reshape(2, -1)
+    roll = np.abs(tilt(time_window(record))["roll"]).max("time").values.reshape(2, -1)
     assert np.degrees(roll[1]).max() < 25 < np.degrees(roll[0]).max()
 
 
@@ -107,8 +107,8 @@ def test_every_posture_turns_into_every_other(robot, cases):
         )
         for a, b, ground in cases
     ]
-    record = simulate(runs, duration=7.0, timestep=0.005, every=5)
-    off = tilt(between(record, 1.0))
+    record = simulate(runs, duration=7.0, timestep=0.005, sample_stride=5)
+    off = tilt(time_window(record, 1.0))
     assert np.degrees(np.maximum(abs(off["roll"]), abs(off["pitch"])).max()) < 30
     forward = displacement(record, 5.1).sel(xyz="x").values
     assert forward.min() > 0.05
@@ -120,9 +120,9 @@ def test_every_posture_turns_into_every_other(robot, cases):
 def test_runs_with_different_wishes_share_a_batch_and_equal_themselves_alone(robot):
     controls = [Walking(), Walking(bend=0.4), Walking(changes=(Change(at=1.5, gait=LADDER[2]),))]
     runs = [Run(robot=robot, gait=LADDER[1], control=control) for control in controls]
-    together = simulate(runs, duration=3.0, timestep=0.005, every=10)
+    together = simulate(runs, duration=3.0, timestep=0.005, sample_stride=10)
     for i, run in enumerate(runs):
-        alone = simulate([run], duration=3.0, timestep=0.005, every=10)
+        alone = simulate([run], duration=3.0, timestep=0.005, sample_stride=10)
         way = alone.centre_of_mass.isel(run=0).values
         assert way == pytest.approx(together.centre_of_mass.isel(run=i).values, abs=1e-6)
 
@@ -130,7 +130,7 @@ def test_runs_with_different_wishes_share_a_batch_and_equal_themselves_alone(rob
 def test_bend_and_asymmetry_steer_to_the_left(robot):
     controls = [Walking(), Walking(bend=0.3), Walking(bend=-0.3), Walking(asymmetry=0.5)]
     runs = [Run(robot=robot, gait=GAITS["semi_erect"], control=control) for control in controls]
-    turned = heading_change(simulate(runs, duration=5.0, timestep=0.005, every=10)).values
+    turned = heading_change(simulate(runs, duration=5.0, timestep=0.005, sample_stride=10)).values
     assert turned[1] > 0.5
     assert turned[2] < -0.5
     assert turned[3] > 0.3
@@ -164,7 +164,7 @@ def test_a_crawl_that_is_stuck_on_a_stone_rises_by_what_it_feels(robot):
         Run(robot=robot, gait=LADDER[0], control=control, ground=stone)
         for control in (Walking(), Walking(attitude=AttitudeRule(), switching=rule))
     ]
-    record = simulate(runs, duration=12.0, timestep=0.005, every=10)
+    record = simulate(runs, duration=12.0, timestep=0.005, sample_stride=10)
     way = displacement(record).sel(xyz="x").values
     assert way[1] > 1.1 * way[0]
     knee = record.servo_target.sel(servo="LF_yaw")

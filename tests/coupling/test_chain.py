@@ -8,7 +8,7 @@ from suchus import flow
 from suchus.flow.momentum import Reaction
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model import compile_model, joint_addresses
-from suchus.swimming.coupling.chain import ChainState, MidlineChain, Way
+from suchus.swimming.coupling.chain import ChainPath, ChainState, MidlineChain
 from suchus.swimming.water import Outline
 
 NAMES = ("floating_caiman", "swimmer", "salamander")
@@ -102,7 +102,7 @@ def test_a_path_has_the_places_and_rates_of_both_ends():
         ChainState(np.array([0.0, 1.0]), np.array([2.0, -1.0])),
         ChainState(np.array([0.3, 0.7]), np.array([1.0, 0.5])),
     )
-    path = Way(0.0, start)
+    path = ChainPath(0.0, start)
     path.go(1.0, start, 1.2, end)
     for time, posture in ((1.0, start), (1.2, end)):
         assert path.at(time).place == pytest.approx(posture.place)

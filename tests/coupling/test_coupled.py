@@ -15,7 +15,7 @@ from suchus.core.fingerprint import fingerprint
 from suchus.core.progress import silent
 from suchus.robot.control import Swimming
 from suchus.robot.control.holding import HeadingHold
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.motion import roll
 from suchus.sim.land import Ground, Lake, Push, Run
 from suchus.sim.land.stepper import Stepper
@@ -92,7 +92,7 @@ def test_the_added_mass_learns_what_the_water_answers():
     added, mass = (square @ square.T for square in rng.normal(size=(2, 5, 5)))
     push = rng.normal(size=5)
     answered = added @ push + 0.2 * mass @ push
-    after = coupled.learned(added, mass, push, answered)
+    after = coupled.update_added_mass(added, mass, push, answered)
     assert after @ push == pytest.approx(answered)
     assert after == pytest.approx(after.T, abs=1e-12)
     assert np.linalg.eigvalsh(mass + after).min() > 0.0
@@ -101,8 +101,8 @@ def test_the_added_mass_learns_what_the_water_answers():
     seen = mass @ push + answered
     lost = (after - added) @ other
     assert lost == pytest.approx(seen * (seen @ other) / (seen @ push))
-    assert coupled.learned(added, mass, push, added @ push) == pytest.approx(added)
-    assert coupled.learned(added, mass, 0.0 * push, 0.0 * push) is added
+    assert coupled.update_added_mass(added, mass, push, added @ push) == pytest.approx(added)
+    assert coupled.update_added_mass(added, mass, 0.0 * push, 0.0 * push) is added
 
 
 @pytest.mark.parametrize(("share", "believed"), [(0.2, True), (0.05, False), (-1.0, False)])
@@ -112,7 +112,7 @@ def test_what_an_answer_would_take_from_the_mass_is_not_believed(share, believed
     added, mass = (square @ square.T for square in rng.normal(size=(2, 5, 5)))
     push = rng.normal(size=5)
     answered = share * (mass + added) @ push - mass @ push
-    after = coupled.learned(added, mass, push, answered)
+    after = coupled.update_added_mass(added, mass, push, answered)
     assert (after is not added) is believed
     assert np.linalg.eigvalsh(mass + after).min() > 0.0
     swim = Swim(swim_run(), 0.1)
@@ -135,13 +135,13 @@ def test_steps_before_an_end_are_about_equally_long():
 @pytest.mark.parametrize(("most", "period", "found"), [(16, 5, 13), (15, 5, 13), (13, 5, 13), (4, 5, 4), (1, 5, 1),
                                                        (12, 6, 11), (8, 4, 7), (10, 10, 9)])  # fmt: skip
 def test_steps_of_the_flow_end_at_other_phases_of_the_servos_each_time(most, period, found):
-    assert coupled.out_of_step(most, period) == found
+    assert coupled.incommensurate_steps(most, period) == found
     assert len({k * found % period for k in range(period)}) == period
 
 
 def test_a_light_robot_has_the_momentum_and_the_energy_that_the_water_leaves_it():
     """A fiftieth of its mass: what a step may leave over of the water's force is many times the robot's own."""
-    light = scaled(suchus.ROBOTS["swimmer"], length_factor=1.0, mass_factor=0.02)
+    light = rescale(suchus.ROBOTS["swimmer"], length_factor=1.0, mass_factor=0.02)
     run = Run(robot=light, gait=swim_of(light, frequency=1.0), water=SLICE, control=Swimming(ramp=0.5))
     swim, momenta = Swim(run, 0.55), []
     swim.go(
@@ -320,7 +320,7 @@ def test_a_step_that_does_not_come_to_terms_ends_with_its_numbers_and_the_record
         swim.go(0.4, progress=silent)
     record = told.value.record.isel(run=0)
     reached = np.isfinite(record.coupling_residual.values)
-    assert len(swim.series.time) == coupled.PATIENCE
+    assert len(swim.series.time) == coupled.MAX_UNCONVERGED_STEPS
     assert 2 < reached.sum() < record.sizes["time"] - 2
     assert told.value.time == pytest.approx(swim.time)
     assert f"at t = {swim.time:.4g} s robot and flow do not converge" in str(record.cause.values)

@@ -15,7 +15,7 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.lake import lake_text
 from suchus.sim.land.prescribed import link_bodies, sections_along
-from suchus.swimming.coupling.earned import ForceParts, judged, judgement_text
+from suchus.swimming.coupling.earned import ForceParts, judge_link, judgement_text
 from suchus.swimming.water import swim_of
 
 TIME = np.arange(600) / 100.0
@@ -29,7 +29,7 @@ def swim(added, drag, phase=0.0, noise=0.02, seed=0):
 
 
 def test_what_other_swims_bear_out_is_offered():
-    found = judged(swim(2.0, 4.0), [swim(2.1, 3.8, 0.4, seed=1), swim(1.9, 4.2, 1.0, seed=2)])
+    found = judge_link(swim(2.0, 4.0), [swim(2.1, 3.8, 0.4, seed=1), swim(1.9, 4.2, 1.0, seed=2)])
     assert found.why_not == ""
     assert found.added == pytest.approx(2.0, abs=0.02)
     assert found.added_interval[0] < 2.0 < found.added_interval[1]
@@ -44,15 +44,15 @@ def test_what_other_swims_bear_out_is_offered():
 ])  # fmt: skip
 def test_what_they_do_not_is_not_offered(fit, others, why):
     held_out = [swim(*one, 0.4, noise=0.3, seed=k + 1) for k, one in enumerate(others)]
-    assert judged(swim(*fit, noise=0.3), held_out).why_not == why
+    assert judge_link(swim(*fit, noise=0.3), held_out).why_not == why
 
 
 def test_a_swim_of_too_few_cycles_earns_nothing():
     one = swim(2.0, 4.0)
     short = ForceParts(flow=one.flow[:120], added=one.added[:120], drag=one.drag[:120], block=50)
-    assert judged(short, [one]).why_not == "too few cycles for an interval"
-    assert judged(one, [short]).why_not == "no gain in every other swim"
-    text = judgement_text({"link_1": judged(one, [short])}, ["tail_only"])
+    assert judge_link(short, [one]).why_not == "too few cycles for an interval"
+    assert judge_link(one, [short]).why_not == "no gain in every other swim"
+    text = judgement_text({"link_1": judge_link(one, [short])}, ["tail_only"])
     assert "| link_1 | 2.00 (" in text
     assert "R2 in tail_only, shipped | corrected" in text
 

@@ -13,7 +13,7 @@ from suchus.core.progress import silent
 from suchus.flow.momentum import Reaction
 from suchus.robot.control import OpenLoop, Swimming
 from suchus.robot.design.pieces import volumes
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Curve, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run
@@ -235,7 +235,7 @@ def test_any_body_swims_on_its_links_in_any_gait(body, gait, cells):
     """Six and eight legs, a trunk that does not bend, 0.3 m, no limbs: each in a gait made for land."""
     robot = floating(robot_of(body))
     water = Space(cells=cells, reynolds=600.0, linked=True)
-    run = Run(robot=robot, gait=gait or own_gait(robot), water=water, control=OpenLoop(begin=0.0))
+    run = Run(robot=robot, gait=gait or default_gait(robot), water=water, control=OpenLoop(begin=0.0))
     swim = Swim(run, run.gait.period)
     for _ in range(6):
         swim.step(run.gait.period)

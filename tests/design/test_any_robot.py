@@ -23,13 +23,13 @@ from suchus.robot.design import (
     servo_ranges,
 )
 from suchus.robot.design.body import servos_of
-from suchus.robot.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
+from suchus.robot.design.scale import check_step, control_period, gravity_time, physics_step, rescale, servo_for
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 
 CAIMAN, SALAMANDER, STRIDER = ROBOTS["caiman"], ROBOTS["salamander"], ROBOTS["strider"]
 BODY = CAIMAN
-SMALL = scaled(BODY, length_factor=0.1)
+SMALL = rescale(BODY, length_factor=0.1)
 STRONG = replace(SMALL.axis[5].hinges[0], drive=CAIMAN.tail.pitch_servo)
 
 
@@ -201,31 +201,31 @@ def test_who_needs_a_chain_that_a_robot_lacks_says_so():
 @given(factor=st.floats(0.2, 5.0), heavier=st.floats(1e-2, 1e2))
 def test_scaling_there_and_back_is_nothing(factor, heavier):
     servo = CAIMAN.hind_leg.servo
-    back = scaled(
-        scaled(servo, length_factor=factor, mass_factor=heavier), length_factor=1 / factor, mass_factor=1 / heavier
+    back = rescale(
+        rescale(servo, length_factor=factor, mass_factor=heavier), length_factor=1 / factor, mass_factor=1 / heavier
     )
     for name in ("kp", "kd", "torque", "speed", "armature", "friction", "damping"):
         assert getattr(back, name) == pytest.approx(getattr(servo, name), rel=1e-9)
 
 
 def test_each_unit_scales_by_its_powers():
-    big = scaled(CAIMAN.hind_leg.servo, length_factor=4.0, mass_factor=10.0)
+    big = rescale(CAIMAN.hind_leg.servo, length_factor=4.0, mass_factor=10.0)
     own = CAIMAN.hind_leg.servo
     assert big.torque == pytest.approx(40 * own.torque)  # N m: mass times length
     assert big.speed == pytest.approx(own.speed / 2)  # rad/s: one over the root of the length
     assert big.armature == pytest.approx(160 * own.armature)
     assert big.kd == pytest.approx(80 * own.kd)
-    gait = scaled(GAITS["belly_crawl"], length_factor=4.0)
+    gait = rescale(GAITS["belly_crawl"], length_factor=4.0)
     assert gait.period == pytest.approx(2 * GAITS["belly_crawl"].period)
     assert (gait.limbs, gait.axis) == (GAITS["belly_crawl"].limbs, GAITS["belly_crawl"].axis)  # shares and angles
-    spring = scaled(Spring(stiffness=1.0, damping=1.0, armature=1.0), length_factor=4.0, mass_factor=1.0)
+    spring = rescale(Spring(stiffness=1.0, damping=1.0, armature=1.0), length_factor=4.0, mass_factor=1.0)
     assert (spring.stiffness, spring.damping, spring.armature) == pytest.approx((4.0, 8.0, 16.0))
     with pytest.raises(InvalidDesign, match=r"scaled.length_factor is 0"):
-        scaled(CAIMAN, length_factor=0.0)
+        rescale(CAIMAN, length_factor=0.0)
 
 
 def test_the_rules_give_back_the_servo_that_the_articles_robot_had_before_it_was_bought():
-    former = blueprint.read(Path(__file__).parents[2] / "examples" / "former_caiman.toml", Robot, ROBOTS)
+    former = blueprint.read_design(Path(__file__).parents[2] / "examples" / "former_caiman.toml", Robot, ROBOTS)
     rule, own = servo_for(CAIMAN.mass, CAIMAN.length), former.hind_leg.servo
     for name in ("kp", "kd", "torque", "speed", "armature", "damping"):
         assert getattr(rule, name) == pytest.approx(getattr(own, name), rel=0.1), name
@@ -233,7 +233,7 @@ def test_the_rules_give_back_the_servo_that_the_articles_robot_had_before_it_was
 
 def test_a_motor_in_another_size_is_as_warm_and_none_that_is_sold():
     """Its power grows as the body's weight times its speed, and its thermal resistance falls as much."""
-    own, small = CAIMAN.hind_leg.servo.winding, servos_of(scaled(BODY, length_factor=0.25))["LH_knee"].winding
+    own, small = CAIMAN.hind_leg.servo.winding, servos_of(rescale(BODY, length_factor=0.25))["LH_knee"].winding
     power = 0.25**3 * 0.25**0.5  # weight times speed
     assert (own.motor, small.motor, small.volts) == ("STS3250", "", own.volts)
     assert small.stall_current == pytest.approx(power * own.stall_current)
@@ -244,7 +244,7 @@ def test_a_motor_in_another_size_is_as_warm_and_none_that_is_sold():
 
 @pytest.mark.parametrize(("length", "period"), [(0.1, 0.005), (0.5, 0.01), (1.01, 0.01), (3.0, 0.02)])
 def test_the_time_step_follows_the_length(length, period):
-    robot = scaled(BODY, length_factor=length / BODY.length)
+    robot = rescale(BODY, length_factor=length / BODY.length)
     assert control_period(robot) == period
     assert gravity_time(length) / 640 < physics_step(robot) < gravity_time(length) / 20
     check_step(robot, physics_step(robot))
@@ -292,6 +292,6 @@ def test_an_inertia_of_a_link_is_mirrored_on_the_right_and_scales_with_mass_and_
     flip = np.diag([1.0, -1.0, 1.0])
     np.testing.assert_array_equal(right.tensor, flip @ TENSOR.tensor @ flip)
     assert right.centre == (0.001, -0.0005, -0.0003)
-    double = scaled(robot, length_factor=2.0).girdles[0].limb.links[0].inertia
+    double = rescale(robot, length_factor=2.0).girdles[0].limb.links[0].inertia
     np.testing.assert_allclose(double.tensor, 32 * TENSOR.tensor)
     assert double.centre == (0.002, 0.001, -0.0006)

@@ -33,7 +33,7 @@ from suchus.robot.design import (
     with_named_servos,
     with_servos,
 )
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics.tail import bend_of_servo, servo_angle
 from suchus.robot.robots import ROBOTS
@@ -59,7 +59,7 @@ def ideal() -> Robot:
 @pytest.fixture(scope="module")
 def bought() -> Robot:
     """The robot of the example, with an actuator that is sold."""
-    return blueprint.read(EXAMPLE, Robot, dict(ROBOTS))
+    return blueprint.read_design(EXAMPLE, Robot, dict(ROBOTS))
 
 
 def actuator(robot: Robot) -> LinearActuator:
@@ -118,14 +118,14 @@ def test_travel_must_do_for_the_bend():
 def test_its_files_read_back_equal_whether_tables_make_it_or_not(ideal, bought, tmp_path):
     for robot in (ideal, bought, replace(bought)):
         path = blueprint.write(robot, tmp_path / "robot.toml")
-        assert blueprint.read(path, Robot, dict(ROBOTS)) == robot
+        assert blueprint.read_design(path, Robot, dict(ROBOTS)) == robot
     assert tables_of(replace(bought)) is not None  # its measures alone
     assert actuator(bought).winding is not None
     path.write_text('base = "caiman"\n[tail]\ndrive = "linear_actuator"\n[tail.actuator]\ntravel = 0.05\nforze = 3.0\n')
     with pytest.raises(MistakenFile, match=r"actuator\.forze is not known \(did you mean tail\.actuator\.force\?\)"):
-        blueprint.read(path, Robot, dict(ROBOTS))
+        blueprint.read_design(path, Robot, dict(ROBOTS))
     path.write_text('base = "caiman"\n[tail]\ndrive = "linear_actuator"\n')
-    assert blueprint.read(path, Robot, dict(ROBOTS)).cables == ideal.cables
+    assert blueprint.read_design(path, Robot, dict(ROBOTS)).cables == ideal.cables
 
 
 def test_servos_are_changed_in_it_as_elsewhere(ideal):
@@ -144,7 +144,7 @@ def test_servos_are_changed_in_it_as_elsewhere(ideal):
 @given(factor=st.floats(0.1, 5.0))
 def test_in_another_size_it_is_the_actuator_of_the_servo_in_that_size(factor):
     cable = with_tail(drive="linear_actuator").cables[0]
-    there, servo = scaled(cable, length_factor=factor), scaled(cable.turning, length_factor=factor)
+    there, servo = rescale(cable, length_factor=factor), rescale(cable.turning, length_factor=factor)
     for name in ("kp", "kd", "torque", "speed", "armature", "friction", "damping"):
         assert getattr(there.turning, name) == pytest.approx(getattr(servo, name)), name
     assert there.linear is not None
@@ -172,7 +172,7 @@ def test_what_only_servos_that_turn_can_do_is_refused_in_a_sentence(bought):
     with pytest.raises(UnsuitedRobot, match=r"tail_cable by a linear actuator.*suchus export-commands"):
         wired(bought, [BusPlace(port="/dev/ttyUSB0", protocol="feetech")], "STS3250")
     with pytest.raises(UnsuitedRobot, match=r"tail_cable by a linear actuator.*plain URDF"):
-        ros.described(bought)
+        ros.ros_urdf(bought)
     assert ("tail_cable",) in places(CAIMAN)
     assert ("tail_cable",) not in places(bought)  # no family of servos is tried there
 

@@ -27,7 +27,7 @@ from suchus.robot.design import (
     with_spring,
     with_values,
 )
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.robots import ROBOTS
 
 CAIMAN, STRIDER = ROBOTS["caiman"], ROBOTS["strider"]
@@ -49,7 +49,7 @@ def test_equal_robots_are_one_however_they_were_made(name, tmp_path):
     robot = ROBOTS[name]
     file = tmp_path / f"{name}.toml"
     file.write_text(blueprint.render(part_by_part(robot)))
-    for same in (part_by_part(robot), blueprint.read(file, Robot, ROBOTS), pickle.loads(pickle.dumps(robot))):
+    for same in (part_by_part(robot), blueprint.read_design(file, Robot, ROBOTS), pickle.loads(pickle.dumps(robot))):
         assert same == robot
         assert hash(same) == hash(robot)
         assert tables_of(same) == robot.tables
@@ -97,7 +97,7 @@ def test_legs_of_other_bodies_are_legs_too():
 
 
 def test_a_robot_of_another_size_is_measured_as_the_chain_it_still_is():
-    small = scaled(CAIMAN, length_factor=0.3)
+    small = rescale(CAIMAN, length_factor=0.3)
     assert small.tables is None
     assert not lacking(small, MEASURED)
     assert small.spine.link == pytest.approx(0.3 * CAIMAN.spine.link)

@@ -8,15 +8,15 @@ import pytest
 from suchus.robot.control import OpenLoop, Runs
 from suchus.robot.design import with_named_servos
 from suchus.robot.design.body import servos_of
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.design.skeleton import skeleton
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import Batch, intended, movement
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, Tolerances
 
 CAIMAN = ROBOTS["caiman"]
-SIZED = [*(ROBOTS[name] for name in ROBOTS), *(scaled(CAIMAN, length_factor=factor) for factor in (0.05, 4.0))]
+SIZED = [*(ROBOTS[name] for name in ROBOTS), *(rescale(CAIMAN, length_factor=factor) for factor in (0.05, 4.0))]
 
 
 def other_girdle(**values):
@@ -27,7 +27,7 @@ def other_girdle(**values):
 
 @pytest.mark.parametrize("robot", SIZED, ids=lambda robot: f"{robot.name} of {robot.length:.2g} m")
 def test_robots_that_are_built_of_a_design_have_one_skeleton(robot):
-    run = Run(robot=robot, gait=own_gait(robot))
+    run = Run(robot=robot, gait=default_gait(robot))
     built = [one.robot for one in Tolerances().repeats([run], 2)]
     stronger = with_named_servos(robot, {name: replace(one, kp=2 * one.kp) for name, one in servos_of(robot).items()})
     assert len({robot, stronger, *built}) == 4

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from suchus.core import rotation
-from suchus.experiments.catalog.floating.cases import BALLAST, DEEP, KEEL, SPHEROID, public_table
+from suchus.experiments.catalog.floating.cases import BALLAST_MASS, DEEP_LAKE, KEEL_ACCELERATION, SPHEROID, public_table
 from suchus.sim.land import Lake
 from suchus.sim.land.float_body import FloatBody, FloatTank
 
@@ -25,7 +25,7 @@ def hull(share, added=VIRTUAL):
     """A tank with the thread's hull, so many times as dense as water."""
     own = tuple(1000.0 * volume / DISPLACED for volume in added)
     body = FloatBody(shape="ellipsoid", half=HALF, mass=share * DISPLACED, inertia=(0.1, 1.1, 1.1), added=own)
-    return FloatTank(body, DEEP)
+    return FloatTank(body, DEEP_LAKE)
 
 
 def pushed(tank):
@@ -44,7 +44,7 @@ def test_added_mass_resists_acceleration_and_without_it_the_error_is_the_threads
 @pytest.mark.parametrize(("ballast", "force"), [(0.5, -4.905), (1.0, -9.81), (3.0, -29.43)])
 def test_ballast_pulls_a_trimmed_float_down(ballast, force):
     body = FloatBody(shape="box", half=(0.15, 0.15, 0.15), mass=27.0 + ballast, inertia=(1.0, 1.0, 1.0))
-    tank = FloatTank(body, DEEP)
+    tank = FloatTank(body, DEEP_LAKE)
     tank.place((0.0, 0.0, 0.0))
     assert tank.acceleration[0][2] * body.mass == pytest.approx(force, rel=2e-4)  # the thread has g = 9.81 m/s2
 
@@ -52,8 +52,8 @@ def test_ballast_pulls_a_trimmed_float_down(ballast, force):
 def test_the_rest_of_the_table():
     found = public_table()
     assert found["neutral"] == pytest.approx(0.0, abs=1e-9)
-    assert found["ballast"] == pytest.approx(-9.81 * BALLAST, rel=2e-4)
-    assert found["keel"] == pytest.approx(KEEL, rel=1e-4)
+    assert found["ballast"] == pytest.approx(-9.81 * BALLAST_MASS, rel=2e-4)
+    assert found["keel"] == pytest.approx(KEEL_ACCELERATION, rel=1e-4)
 
 
 @pytest.mark.parametrize(("height", "wanted"), [(-1000.0, 0.0), (100.0, -9.81)])
@@ -65,7 +65,7 @@ def test_the_force_depends_on_the_depth(height, wanted):
 
 
 def test_the_mass_matrix_is_that_of_body_and_water_in_any_attitude():
-    tank, turn = hull(1.0), rotation.about(np.array([0.6, 0.0, 0.8]), 0.7)
+    tank, turn = hull(1.0), rotation.from_axis_angle(np.array([0.6, 0.0, 0.8]), 0.7)
     tank.place((0.0, 0.0, 0.0))
     level = tank.mass_matrix()
     assert np.diag(level)[:3] == pytest.approx([DISPLACED + 1000.0 * volume for volume in VIRTUAL])

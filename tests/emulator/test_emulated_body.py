@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from suchus.experiments.catalog.rehearsal.experiment import (
-    ENOUGH,
-    LOSES,
-    TURNS,
+    MAX_DISPLACEMENT_CHANGE,
+    MAX_HEADING_CHANGE,
+    MIN_JUDGED_CYCLES,
     Rehearsal,
-    flagged,
+    exceeds_tolerance,
     rehearse,
     sent_directly,
 )  # fmt: skip
@@ -99,13 +99,13 @@ def test_a_wire_that_is_late_is_not_taken_for_the_step_of_the_goals():
 
 
 def test_flags_have_both_sides():
-    assert not flagged(-LOSES, TURNS)
-    assert flagged(-1.01 * LOSES, 0.0)
-    assert flagged(0.0, 1.01 * TURNS)
-    assert flagged(np.nan, 0.0)
-    assert flagged(0.0, np.nan)
-    assert not Rehearsal(rule_cycles=0.9 * ENOUGH).judges("closed")
-    assert Rehearsal(rule_cycles=ENOUGH).judges("closed")
+    assert not exceeds_tolerance(-MAX_DISPLACEMENT_CHANGE, MAX_HEADING_CHANGE)
+    assert exceeds_tolerance(-1.01 * MAX_DISPLACEMENT_CHANGE, 0.0)
+    assert exceeds_tolerance(0.0, 1.01 * MAX_HEADING_CHANGE)
+    assert exceeds_tolerance(np.nan, 0.0)
+    assert exceeds_tolerance(0.0, np.nan)
+    assert not Rehearsal(rule_cycles=0.9 * MIN_JUDGED_CYCLES).judges("closed")
+    assert Rehearsal(rule_cycles=MIN_JUDGED_CYCLES).judges("closed")
 
 
 def test_the_same_trouble_with_the_same_seed_gives_the_same_bytes():
@@ -127,7 +127,7 @@ def test_a_swapped_pair_of_servos_shows_in_their_angles():
     )
     truth = crawl(ROBOT, GAIT, duration=1.5)
     off = {
-        built: np.degrees(_off(rehearse(ROBOT, GAIT, OpenLoop(), 1.5, built=built).log, truth))
+        built: np.degrees(_off(rehearse(ROBOT, GAIT, OpenLoop(), 1.5, actual_wiring=built).log, truth))
         for built in (None, swapped)
     }
     assert off[None].max() < 0.2 < off[swapped].sel(servo=["LF_pitch", "LH_knee"]).min()

@@ -27,7 +27,7 @@ def served(links=(), *, clocked=True, sockets=False, trouble=None, made=None):
     """Serve a robot whose servos are where they were sent, from a thread."""
     body, done = Obedient(), threading.Event()
     body.angles[:] = body.goals[:] = REST
-    server = Server(Emulator(made or wiring(), body, trouble or Trouble(), clocked=clocked), links, sockets=sockets)
+    server = Server(Emulator(made or wiring(), body, trouble or Trouble(), has_clock=clocked), links, sockets=sockets)
     thread = threading.Thread(target=server.serve, args=(done.is_set,), daemon=True)
     thread.start()
     try:
@@ -39,7 +39,7 @@ def served(links=(), *, clocked=True, sockets=False, trouble=None, made=None):
 
 
 def bus_to(server, baud=1_000_000):
-    return Bus(open_port(server.ports[0], baud), FRAMINGS["dynamixel"], wait=SOON, clocked=True)
+    return Bus(open_port(server.ports[0], baud), FRAMINGS["dynamixel"], wait=SOON, has_clock=True)
 
 
 @pytest.mark.parametrize(("protocol", "sockets"), [("dynamixel", False), ("dynamixel", True), ("line", False)])
@@ -47,7 +47,7 @@ def test_it_is_driven_through_a_port(protocol, sockets, tmp_path):
     made = wiring(protocol)
     with served([] if sockets else [tmp_path / "bus"], sockets=sockets, made=made) as server:
         made = replace(made, bus=(replace(made.bus[0], port=server.ports[0]),))
-        rig = Rig(ROBOT, made, clocked=True)
+        rig = Rig(ROBOT, made, has_clock=True)
         log = drive(rig, GAIT, settings=DriveSettings(duration=0.05, stop="off"), clock=BusClock(rig))
         rig.close()
         assert log.sizes["time"] == 6
@@ -64,7 +64,7 @@ def test_servos_hear_nothing_at_another_bit_rate_and_the_one_that_answers_is_nam
         made = replace(made, bus=(replace(made.bus[0], port=server.ports[0], baud=2_000_000),))
         rig = Rig(ROBOT, made, rate=20.0)
         monkeypatch.setattr("suchus.hardware.rig.Bus", lambda port, framing: Bus(port, framing, wait=SOON))
-        monkeypatch.setattr("suchus.hardware.rig.TRIED", (57_600, 1_000_000))
+        monkeypatch.setattr("suchus.hardware.rig.BAUD_RATES", (57_600, 1_000_000))
         with pytest.raises(BusFailure, match=r"nobody answers .* at 2000000 baud, but at 1000000 baud number 1 does"):
             rig.check()
 
@@ -139,7 +139,7 @@ def test_a_bus_whose_other_end_closes_or_reads_no_more_is_told_of_by_the_deadlin
 def test_a_pseudo_terminal_that_is_closed_in_mid_drive_stops_it_with_its_log():
     body = Obedient()
     body.angles[:] = body.goals[:] = REST
-    server = Server(Emulator(wiring(), body, clocked=True))
+    server = Server(Emulator(wiring(), body, has_clock=True))
 
     def unplug():
         server.serve(lambda: body.time > 0.3)
@@ -148,7 +148,7 @@ def test_a_pseudo_terminal_that_is_closed_in_mid_drive_stops_it_with_its_log():
     thread = threading.Thread(target=unplug, daemon=True)
     thread.start()
     made = wiring()
-    rig = Rig(ROBOT, replace(made, bus=(replace(made.bus[0], port=server.ports[0]),)), clocked=True)
+    rig = Rig(ROBOT, replace(made, bus=(replace(made.bus[0], port=server.ports[0]),)), has_clock=True)
     with pytest.raises(BusFailure, match=r"is gone|has ended.*the robot was stopped") as caught:
         drive(rig, GAIT, settings=DriveSettings(duration=5.0), clock=BusClock(rig))
     assert caught.value.record.sizes["time"] > 10

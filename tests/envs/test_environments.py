@@ -21,10 +21,10 @@ from suchus.apps.envs.task import Terms  # noqa: E402
 from suchus.core import rotation  # noqa: E402
 from suchus.core.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.robot.design import LINE, layout, leg_joints, servo_names, with_values  # noqa: E402
-from suchus.robot.design.scale import scaled  # noqa: E402
-from suchus.robot.gaits import GAITS, own_gait  # noqa: E402
+from suchus.robot.design.scale import rescale  # noqa: E402
+from suchus.robot.gaits import GAITS, default_gait  # noqa: E402
 from suchus.robot.motion import intended  # noqa: E402
-from suchus.robot.motion.rising import stretched  # noqa: E402
+from suchus.robot.motion.rising import stretched_length  # noqa: E402
 from suchus.robot.robots import ROBOTS  # noqa: E402
 from suchus.sim.faults import Locked, Weak  # noqa: E402
 
@@ -44,7 +44,7 @@ def test_an_environment_passes_gymnasium_s_own_check_without_a_warning(name):
     pictures = name == envs.IDS[0]  # they are drawn the same way for all
     check_env(gymnasium.make(name).unwrapped, skip_render_check=not pictures)  # pytest turns warnings into errors
     task = name.removeprefix("suchus/").removesuffix("-v0")
-    assert gymnasium.spec(name).max_episode_steps == envs.LONGER.get(task, envs.STEPS)
+    assert gymnasium.spec(name).max_episode_steps == envs.MAX_STEPS_BY_TASK.get(task, envs.MAX_STEPS)
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
@@ -121,10 +121,10 @@ def test_a_robot_that_broke_begins_anew_as_if_nothing_had_happened(kind):
 def test_the_shelf_s_gait_fits_into_the_actions_and_comes_out_of_them():
     env = envs.CrocodileVectorEnv(1, CRAWL)
     gait = CRAWL.gait
-    follow = envs.Follow(task=CRAWL, centre=tuple(env.pack.centre), gait=gait)
+    follow = envs.GaitFollower(task=CRAWL, centre=tuple(env.pack.centre), gait=gait)
     clock = np.linspace(0.0, 1.0, 50, endpoint=False)
     seen = np.zeros((50, env.single_observation_space.shape[0]))
-    envs.part(seen, "clock")[:] = np.column_stack([np.sin(2 * np.pi * clock), np.cos(2 * np.pi * clock)])
+    envs.reading_columns(seen, "clock")[:] = np.column_stack([np.sin(2 * np.pi * clock), np.cos(2 * np.pi * clock)])
     actions = follow(seen)
     assert np.abs(actions).max() < 1.0
     ahead = 1.0 + gait.period * clock + CRAWL.decision
@@ -138,9 +138,9 @@ def test_an_action_is_the_last_commanded_angle():
     action = np.linspace(-0.5, 0.5, 19)[None]
     for _ in range(12):
         seen, *_ = env.step(action)
-    np.testing.assert_allclose(envs.part(seen, "last_action"), action, atol=1e-6)
+    np.testing.assert_allclose(envs.reading_columns(seen, "last_action"), action, atol=1e-6)
     low, high = env.pack._low, env.pack._high
-    angles = np.pi * envs.part(seen, "servo_position")[0]
+    angles = np.pi * envs.reading_columns(seen, "servo_position")[0]
     commanded = np.clip(env.pack.centre + CRAWL.span * action[0], low, high)
     arms = np.array(["yaw" in name for name in servo_names()])  # these carry no weight
     np.testing.assert_allclose(angles[arms], commanded[arms], atol=0.03)
@@ -152,15 +152,17 @@ def test_what_presses_on_the_ground_is_the_weight():
     pressed = []
     for _ in range(40):
         seen, *_ = env.step(np.zeros((1, 19)))
-        pressed.append(sum(envs.part(seen, f"{where}_pressure").sum() for where in ("foot", "belly", "tail")))
+        pressed.append(
+            sum(envs.reading_columns(seen, f"{where}_pressure").sum() for where in ("foot", "belly", "tail"))
+        )
     assert np.mean(pressed[10:]) == pytest.approx(1.0, abs=0.01)
-    np.testing.assert_allclose(envs.part(seen, "upward")[0], [0, 0, 1], atol=0.1)
-    np.testing.assert_allclose(envs.part(seen, "acceleration")[0], np.array([0, 0, 0.25]), atol=0.03)
+    np.testing.assert_allclose(envs.reading_columns(seen, "upward")[0], [0, 0, 1], atol=0.1)
+    np.testing.assert_allclose(envs.reading_columns(seen, "acceleration")[0], np.array([0, 0, 0.25]), atol=0.03)
 
 
 def test_the_world_s_axes_are_felt_as_the_pelvis_turns():
     turns = Rotation.random(20, random_state=3)
-    upward, ahead = (turn(turns.as_quat(scalar_first=True)) for turn in (rotation.upward, rotation.ahead))
+    upward, ahead = (turn(turns.as_quat(scalar_first=True)) for turn in (rotation.upward, rotation.world_x))
     np.testing.assert_allclose(upward, turns.inv().apply([0, 0, 1]), atol=1e-12)
     np.testing.assert_allclose(ahead, turns.inv().apply([1, 0, 0]), atol=1e-12)
 
@@ -171,7 +173,7 @@ def test_readings_off_their_scale_are_cut_and_lost_ones_are_zero():
     env.pack.loop.batch.readings[0, :19] = np.nan
     env.pack.loop.batch.readings[1, :19] = -7.0
     seen = env.pack.feel()
-    np.testing.assert_array_equal(envs.part(seen, "servo_position"), np.repeat([[0.0], [-1.0]], 19, axis=1))
+    np.testing.assert_array_equal(envs.reading_columns(seen, "servo_position"), np.repeat([[0.0], [-1.0]], 19, axis=1))
 
 
 def test_the_reward_is_the_weighted_sum_of_what_happened():
@@ -216,7 +218,10 @@ def test_the_joint_that_was_drawn_breaks_when_it_was_drawn(kind):
     yaw = servo_names().index("RH_yaw")
     wave = [np.eye(19)[yaw] * np.sin(0.9 * i) for i in range(14)]
     seen = np.array([env.step(action)[0] for action in wave])
-    torque, angle = envs.part(seen, "servo_torque")[:, yaw], np.pi * envs.part(seen, "servo_position")[:, yaw]
+    torque, angle = (
+        envs.reading_columns(seen, "servo_torque")[:, yaw],
+        np.pi * envs.reading_columns(seen, "servo_position")[:, yaw],
+    )
     assert np.abs(torque[:6]).min() > 0
     if kind == "limp":
         assert (torque[6:] == 0).all()
@@ -235,7 +240,7 @@ def test_faults_are_drawn_from_all_that_are_named():
 
 def test_a_standing_robot_stays_up_unless_it_is_pushed_too_hard():
     pushed = envs.Pushes(most=40.0, earliest=0.2, latest=0.2)
-    calm = envs.play(replace(STAND, pushes=None), envs.Still(STAND), episodes=1, steps=60)
+    calm = envs.play(replace(STAND, pushes=None), envs.HoldStill(STAND), episodes=1, steps=60)
     assert calm.lasted.tolist() == pytest.approx([3.0])
     assert calm.returns[0] > 2.5
     env = gymnasium.make("suchus/Stand-v0", pushes=pushed).unwrapped
@@ -298,10 +303,10 @@ def test_a_snout_in_the_ground_is_a_fall_only_where_a_height_is_asked_for(least,
 
 
 def test_a_robot_of_another_size_stands_when_its_episode_begins_and_one_too_weak_is_refused():
-    small = scaled(ROBOTS["caiman"], length_factor=0.3, mass_factor=0.027)
+    small = rescale(ROBOTS["caiman"], length_factor=0.3, mass_factor=0.027)
     pack = Pack(envs.TASKS["Stand"].on(small), 1)
     pack.restart([0], [np.random.default_rng(0)])
-    assert pack.loop.sensors["snout_position"][0, 2] > 0.8 * stretched(small)
+    assert pack.loop.sensors["snout_position"][0, 2] > 0.8 * stretched_length(small)
     weak = with_values(ROBOTS["caiman"], {"spine.pitch_servo.torque": 0.5})
     with pytest.raises(InvalidDesign, match=r"robot 'caiman' falls over as it stands up: its snout is 0\.\d+ m high"):
         Pack(envs.TASKS["Stand"].on(weak), 1)
@@ -319,10 +324,10 @@ def test_a_robot_on_its_back_has_fallen():
 
 def test_the_gait_beats_standing_still_and_standing_still_beats_anything():
     centre = tuple(Pack(CRAWL, 1).centre)
-    follow = envs.Follow(task=CRAWL, centre=centre, gait=CRAWL.gait)
+    follow = envs.GaitFollower(task=CRAWL, centre=centre, gait=CRAWL.gait)
     returns = [
         envs.play(CRAWL, policy, episodes=4, steps=90).returns.mean()
-        for policy in (follow, envs.Still(CRAWL), envs.Anything(CRAWL, np.random.default_rng(0)))
+        for policy in (follow, envs.HoldStill(CRAWL), envs.RandomActions(CRAWL, np.random.default_rng(0)))
     ]
     assert returns[0] > 2 > returns[1] > -0.5 > returns[2]
 
@@ -446,14 +451,14 @@ def test_every_robot_of_the_shelf_acts_in_spaces_of_its_own(name):
 def test_the_open_loop_gait_of_another_body_walks_through_the_environment(name, lengths):
     env = envs.CrocodileVectorEnv(2, "Crawl", robot=name)
     task = env.task
-    assert task.gait == own_gait(task.robot)
-    follow = envs.Follow(task=task, centre=tuple(env.pack.centre), gait=task.gait)
+    assert task.gait == default_gait(task.robot)
+    follow = envs.GaitFollower(task=task, centre=tuple(env.pack.centre), gait=task.gait)
     cycles = 60 * task.decision / task.gait.period
     assert cycles > 1.4
     played = envs.play(task, follow, episodes=2, steps=60)
     assert played.forward.min() > lengths * task.robot.length
     assert played.returns.min() > 1.0
-    held = envs.play(task, envs.Still(task), episodes=1, steps=10)
+    held = envs.play(task, envs.HoldStill(task), episodes=1, steps=10)
     assert abs(held.forward[0]) < 0.02 * task.robot.length
 
 
@@ -469,10 +474,10 @@ def test_a_crank_turns_by_its_action_and_its_angle_is_given_within_a_turn():
     turned = (env.pack._commanded - before)[0]
     assert turned[cranks[:2]] == pytest.approx([0.9 * speed * 1.5, speed * 1.5])
     assert turned[cranks[0]] > 2 * np.pi
-    assert envs.part(np.array(seen), "last_action", "salamandra")[-1, cranks].tolist() == pytest.approx(
+    assert envs.reading_columns(np.array(seen), "last_action", "salamandra")[-1, cranks].tolist() == pytest.approx(
         [0.9, 1.0, 0.0, 0.0]
     )
-    angles = np.pi * envs.part(np.array(seen), "servo_position", "salamandra")[:, cranks[0]].astype(float)
+    angles = np.pi * envs.reading_columns(np.array(seen), "servo_position", "salamandra")[:, cranks[0]].astype(float)
     assert np.abs(angles).max() <= np.pi
     assert np.ptp(angles) > 5.0
     assert np.unwrap(angles)[-1] - angles[0] == pytest.approx(0.9 * speed * 1.5, abs=1.0)
@@ -500,9 +505,11 @@ def test_the_senses_of_the_article_s_robot_are_its_readings_over_fixed_scales():
     *_, (seen, *_) = acting(env, 3)
     felt = env.pack.loop.sensed()
     np.testing.assert_array_equal(
-        envs.part(seen, "servo_velocity"), np.clip(felt.servo_velocity / 10, -1, 1, dtype="f4")
+        envs.reading_columns(seen, "servo_velocity"), np.clip(felt.servo_velocity / 10, -1, 1, dtype="f4")
     )
-    np.testing.assert_array_equal(envs.part(seen, "angular_velocity"), (felt.angular_velocity / 10).astype("f4"))
+    np.testing.assert_array_equal(
+        envs.reading_columns(seen, "angular_velocity"), (felt.angular_velocity / 10).astype("f4")
+    )
     assert envs.senses(ROBOTS["caiman"]) == envs.SENSES
     assert env.single_observation_space.shape == (101,)
 

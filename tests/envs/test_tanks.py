@@ -7,7 +7,7 @@ import pytest
 import suchus.apps.envs
 from suchus.apps.envs import CrocodileEnv, CrocodileVectorEnv, Landing
 from suchus.apps.envs.pack import Pack
-from suchus.apps.envs.shelf import chosen
+from suchus.apps.envs.shelf import resolve_task
 from suchus.core.errors import Diverged, InvalidDesign, UnknownName
 from suchus.robot.design import layout
 from suchus.sim.land import Lake
@@ -35,10 +35,10 @@ def test_robots_swim_side_by_side_in_flows_of_their_own_as_each_does_alone():
 
 
 def test_a_flow_takes_the_place_of_the_lake_and_moves_what_it_sees():
-    task = chosen("Swim", {"water": "space"})
+    task = resolve_task("Swim", {"water": "space"})
     assert (task.solved, task.lake) == (Space(), None)
-    assert chosen("Swim", {"water": "sections"}).lake == Lake(level=0.5)
-    moved = Pack(chosen("Swim", {"water": WATER}), 1)._tanks.moved
+    assert resolve_task("Swim", {"water": "sections"}).lake == Lake(level=0.5)
+    moved = Pack(resolve_task("Swim", {"water": WATER}), 1)._tanks.moved
     names = [name for name, does in zip(layout(task.robot).servos, moved, strict=True) if does]
     assert names == ["spine_yaw_1", "spine_yaw_2", "spine_yaw_3", "tail_cable"]
 
@@ -74,10 +74,10 @@ def test_what_ends_a_swim_ends_the_episode_with_its_sentence(monkeypatch):
 )
 def test_tasks_that_a_flow_cannot_hold_are_refused(task, changes, said):
     with pytest.raises(InvalidDesign, match=said):
-        chosen(task, changes)
+        resolve_task(task, changes)
 
 
 def test_a_rung_that_there_is_not_is_refused():
     with pytest.raises(UnknownName, match="sections, slice, space"):
-        chosen("Swim", {"water": "tank"})
+        resolve_task("Swim", {"water": "tank"})
     assert "suchus/Swim-v0" in suchus.apps.envs.IDS

@@ -11,13 +11,13 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed:
 
 from suchus.apps import envs  # noqa: E402
 from suchus.apps.envs.pack import Pack  # noqa: E402
-from suchus.apps.envs.senses import felt  # noqa: E402
+from suchus.apps.envs.senses import decode_observations  # noqa: E402
 from suchus.core.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Swimming  # noqa: E402
 from suchus.robot.motion import cycle_targets  # noqa: E402
 from suchus.robot.robots import ROBOTS  # noqa: E402
 from suchus.sim.land import Ground, Lake, Wave  # noqa: E402
-from suchus.sim.land.lake import up  # noqa: E402
+from suchus.sim.land.lake import up_direction  # noqa: E402
 
 SWIM, SHORE = envs.TASKS["Swim"], envs.TASKS["Shore"]
 NEAR = envs.Goal(distance=0.4, within=0.1, bearing=0.3)
@@ -96,15 +96,15 @@ def test_the_goal_is_seen_in_the_frame_of_the_root():
     pack._goals[0] = centre + 0.9 * np.array([0.6, 0.8])
     seen = pack.feel()
     np.testing.assert_allclose(
-        envs.part(seen, "goal_direction", SWIM.robot)[0], turn.inv().apply([0.6, 0.8, 0.0]), atol=1e-6
+        envs.reading_columns(seen, "goal_direction", SWIM.robot)[0], turn.inv().apply([0.6, 0.8, 0.0]), atol=1e-6
     )
     scale = 4 * SWIM.robot.length
-    assert envs.part(seen, "goal_distance", SWIM.robot)[0, 0] == pytest.approx(0.8 / scale, rel=1e-6)
+    assert envs.reading_columns(seen, "goal_distance", SWIM.robot)[0, 0] == pytest.approx(0.8 / scale, rel=1e-6)
     pack._goals[0] = centre
-    assert not envs.part(pack.feel(), "goal_direction", SWIM.robot).any()
+    assert not envs.reading_columns(pack.feel(), "goal_direction", SWIM.robot).any()
     dry = envs.CrocodileVectorEnv(1, "Crawl")
     with pytest.raises(UnknownName, match="no reading named 'goal_direction'"):
-        envs.part(dry.reset(seed=0)[0], "goal_direction")
+        envs.reading_columns(dry.reset(seed=0)[0], "goal_direction")
 
 
 def test_who_swims_to_the_goal_gets_more_than_who_rests_and_who_drifts_away_less():
@@ -115,8 +115,8 @@ def test_who_swims_to_the_goal_gets_more_than_who_rests_and_who_drifts_away_less
         envs.play(task, policy, episodes=3, steps=70)
         for task, policy in (
             (near, envs.SwimToGoal(task=near, centre=centre)),
-            (near, envs.Still(near)),
-            (away, envs.Still(away)),
+            (near, envs.HoldStill(near)),
+            (away, envs.HoldStill(away)),
         )
     )
     assert swims.goal.all()
@@ -133,15 +133,17 @@ def test_the_shelf_s_swim_fits_into_the_actions_and_the_steering_turns_both_ways
     swim = envs.SwimToGoal(task=SWIM, centre=centre)
     clock = np.linspace(0.0, 1.0, 20, endpoint=False)
     seen = np.zeros((20, envs.CrocodileEnv("Swim").observation_space.shape[0]))
-    envs.part(seen, "clock", SWIM.robot)[:] = np.column_stack([np.sin(2 * np.pi * clock), np.cos(2 * np.pi * clock)])
-    envs.part(seen, "goal_direction", SWIM.robot)[:] = [1.0, 0.0, 0.0]
+    envs.reading_columns(seen, "clock", SWIM.robot)[:] = np.column_stack(
+        [np.sin(2 * np.pi * clock), np.cos(2 * np.pi * clock)]
+    )
+    envs.reading_columns(seen, "goal_direction", SWIM.robot)[:] = [1.0, 0.0, 0.0]
     straight = swim(seen)
     assert np.abs(straight).max() < 1.0
     expected = cycle_targets(SWIM.robot, SWIM.swum, clock + SWIM.decision)
     np.testing.assert_allclose(np.array(centre) + SWIM.span * straight, expected, atol=1e-12)
-    envs.part(seen, "goal_direction", SWIM.robot)[:] = [0.0, 1.0, 0.0]
+    envs.reading_columns(seen, "goal_direction", SWIM.robot)[:] = [0.0, 1.0, 0.0]
     left = swim(seen)
-    envs.part(seen, "goal_direction", SWIM.robot)[:] = [0.0, -1.0, 0.0]
+    envs.reading_columns(seen, "goal_direction", SWIM.robot)[:] = [0.0, -1.0, 0.0]
     cable = -1
     assert np.ptp(np.sign((left - swim(seen))[:, cable])) == 0
     assert np.abs(left).max() < 1.0
@@ -152,7 +154,7 @@ def test_a_controller_feels_through_the_observation_what_the_robot_feels(name):
     task = envs.TASKS[name]
     pack = begun(task, 2)
     pack.act(0.1 * np.ones((2, 19)), np.ones(2, dtype=bool))
-    ours, theirs = felt(pack.feel(), task.robot, 0.05), pack.loop.sensed()
+    ours, theirs = decode_observations(pack.feel(), task.robot, 0.05), pack.loop.sensed()
     for field in fields(ours):
         if field.name not in ("time", "depth", "orientation"):
             np.testing.assert_allclose(getattr(ours, field.name), getattr(theirs, field.name), atol=1e-5, rtol=1e-5)
@@ -164,11 +166,11 @@ def test_a_controller_of_the_shelf_swims_through_the_actions_with_its_heading_he
     near = replace(SWIM, goal=replace(NEAR, bearing=0.0), jitter=0.0)
     centre = tuple(Pack(near, 1).centre)
     control, gait = Swimming(heading=HeadingHold()), SWIM.swum
-    policy = envs.Controlled(near, centre, control, steps=100, gait=gait)
+    policy = envs.ControllerPolicy(near, centre, control, steps=100, gait=gait)
     played = envs.play(near, policy, episodes=1, steps=100)
     assert played.goal.all()
     away = replace(control, heading=HeadingHold(direction=1.5))
-    policy = envs.Controlled(near, centre, away, steps=100, gait=gait)
+    policy = envs.ControllerPolicy(near, centre, away, steps=100, gait=gait)
     played = envs.play(near, policy, episodes=1, steps=100)
     assert not played.goal.any()
 
@@ -185,8 +187,8 @@ def test_a_controller_of_the_shelf_comes_ashore_through_the_actions_and_gets_mor
     centre = tuple(Pack(near, 1).centre)
     holds = Swimming(heading=HeadingHold())
     control, steps = Amphibious(swim=near.swum, swimming=holds, heading=HeadingRule()), 400
-    comes = envs.play(near, envs.Controlled(near, centre, control, steps=steps), episodes=1, steps=steps)
-    rests = envs.play(near, envs.Still(near), episodes=1, steps=40)
+    comes = envs.play(near, envs.ControllerPolicy(near, centre, control, steps=steps), episodes=1, steps=steps)
+    rests = envs.play(near, envs.HoldStill(near), episodes=1, steps=40)
     assert comes.goal.all()
     assert comes.approach[0] == pytest.approx(comes.forward[0], abs=0.02)  # it overshoots the line a little
     assert comes.returns[0] > 10 * comes.approach[0] > 10 > 1 > abs(rests.returns[0])
@@ -197,7 +199,7 @@ def test_an_episode_ends_ashore_beyond_the_line_and_not_before(short_of, reached
     env = envs.CrocodileEnv("Shore")
     env.reset(seed=0)
     pack, line = env.pack, SHORE.lake.level / np.sin(SHORE.ground.uphill)
-    assert (up(SHORE.ground) @ [line, 0.0, 0.0]) == pytest.approx(SHORE.lake.level)
+    assert (up_direction(SHORE.ground) @ [line, 0.0, 0.0]) == pytest.approx(SHORE.lake.level)
     assert env.step(np.zeros(19))[2] is False
     ahead = line + 1.0 - short_of - pack.loop.sensors["centre_of_mass"][0, 0]
     shifted(pack, [ahead, 0.3, 0.3])
@@ -236,7 +238,7 @@ def test_any_body_that_floats_and_bends_swims_to_the_goal(name):
     near = replace(SWIM.on(ROBOTS[name]), goal=replace(NEAR, bearing=0.0), jitter=0.0)
     policy = envs.SwimToGoal(task=near, centre=tuple(Pack(near, 1).centre))
     swum = envs.play(near, policy, episodes=1, steps=100)
-    rests = envs.play(near, envs.Still(near), episodes=1, steps=100)
+    rests = envs.play(near, envs.HoldStill(near), episodes=1, steps=100)
     assert swum.forward[0] > 0.1 > 10 * abs(rests.forward[0])
 
 

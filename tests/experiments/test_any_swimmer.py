@@ -8,11 +8,11 @@ import pytest
 from body_files import eight, giant, hatchling, imported_quadruped, six
 from suchus.core.errors import UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.catalog.swim_free.experiment import _motions, _steered
+from suchus.experiments.catalog.swim_free.experiment import _motions, _steered_gait
 from suchus.robot.control import LoadRule, PatternGenerator
 from suchus.robot.design import check_needs, lacking
-from suchus.robot.gaits import GAITS, own_gait
-from suchus.robot.motion import START, check_speeds, still, suits
+from suchus.robot.gaits import GAITS, default_gait
+from suchus.robot.motion import START, check_speeds, straight_gait, suits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.swimming.water import swim_of
@@ -30,7 +30,7 @@ def test_every_axial_chain_has_a_swim_that_its_joints_and_servos_can_follow(one)
     swim = swim_of(robot)
     assert suits(robot, swim)
     check_speeds(robot, swim)
-    steered = _steered(robot, swim, tail=0.6, trunk=0.3)
+    steered = _steered_gait(robot, swim, tail=0.6, trunk=0.3)
     assert suits(robot, steered)
     assert steered.number("tail_offset") > 0.0
 
@@ -72,7 +72,7 @@ def test_the_shore_takes_every_walker_in_a_gait_that_can_be_steered():
 def test_the_pattern_generator_swims_whoever_bends_and_by_the_felt_load_whoever_walks(name, walks):
     """At the drive for walking a body with limbs gets nowhere in deep water unless it feels that nothing carries it."""
     robot = ROBOTS[name]
-    gait, lake = own_gait(robot), Lake(level=2 * robot.length)
+    gait, lake = default_gait(robot), Lake(level=2 * robot.length)
     controls = [PatternGenerator(drive=4.0)]
     controls += [PatternGenerator(drive=2.0, load=rule) for rule in (None, LoadRule())] if walks else []
     runs = [Run(robot=robot, gait=gait, lake=lake, control=control) for control in controls]
@@ -100,6 +100,6 @@ def test_it_answers(name, one):
 
 def test_limbs_whose_joints_do_not_reach_zero_are_held_as_near_as_they_go(tmp_path):
     robot = imported_quadruped(tmp_path)
-    assert suits(robot, still(robot))
+    assert suits(robot, straight_gait(robot))
     knees = [hinge.range for hinge in robot.girdles[0].limb.hinges if not hinge.range[0] <= 0.0 <= hinge.range[1]]
     assert knees

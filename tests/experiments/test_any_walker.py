@@ -10,13 +10,13 @@ from tests.bodies import eel, eight, hatchling, six
 from body_files import giant
 from suchus.apps.cli.entry import main
 from suchus.apps.cli.options import choose
-from suchus.apps.cli.run import moves
+from suchus.apps.cli.run import gait_sentence
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot import blueprint
 from suchus.robot.design import NEEDS, lacking, layout
 from suchus.robot.design.scale import coarse_step, control_period
-from suchus.robot.gaits import DRAFTED, GAITS, conditions_of, own_gait, suits
+from suchus.robot.gaits import DRAFTED, GAITS, conditions_of, default_gait, suits
 from suchus.robot.robots import ROBOTS
 
 WALKERS = ("caiman", "long_tail", "pleurobot", "salamander", "salamandra", "strider")
@@ -125,7 +125,7 @@ def answers(name, robot):
 @pytest.mark.parametrize("robot", [*ROBOTS, "six"])
 def test_every_robot_has_one_gait_of_its_own_that_it_can_follow(robot):
     body = robot_of(robot)
-    gait = own_gait(body)
+    gait = default_gait(body)
     assert suits(body, gait)
     made = [name for name in GAITS if robot in GAITS.beside(name, "made_for", ())]
     assert made == ([gait.name] if robot != "six" else [])
@@ -134,9 +134,9 @@ def test_every_robot_has_one_gait_of_its_own_that_it_can_follow(robot):
 @pytest.mark.parametrize("body", [eight(), eel()], ids=lambda body: body.name)
 def test_a_robot_that_no_gait_of_the_shelf_suits_gets_one_drafted_and_that_is_said(body, tmp_path, capsys):
     assert not any(suits(body, gait) for gait in GAITS.values())
-    gait = own_gait(body)
+    gait = default_gait(body)
     assert (gait.name, suits(body, gait)) == (DRAFTED, True)
-    assert gait is own_gait(body)
+    assert gait is default_gait(body)
     blueprint.write(body, tmp_path / "body.toml")
     words = ["run", "gait_diagram", "--quick", "--cycles", "2", "--out", str(tmp_path / "out")]
     if not lacking(body, EXPERIMENTS["gait_diagram"].needs):
@@ -151,21 +151,21 @@ def test_of_a_robot_that_a_gait_of_the_shelf_suits_none_is_said_to_be_drafted(tm
 
 def test_which_gaits_another_robot_moves_in_is_said_with_their_period_in_its_size():
     asked = EXPERIMENTS["gait_diagram"]
-    assert moves(asked) == moves(asked.on(ROBOTS["caiman"])) == []
-    assert moves(asked.on(ROBOTS["strider"])) == ["strider moves in the gait tripod."]
-    (told,) = moves(asked.on(hatchling()))
+    assert gait_sentence(asked) == gait_sentence(asked.on(ROBOTS["caiman"])) == []
+    assert gait_sentence(asked.on(ROBOTS["strider"])) == ["strider moves in the gait tripod."]
+    (told,) = gait_sentence(asked.on(hatchling()))
     assert told == "hatchling moves in the gait belly_crawl (a cycle in 2.18 s; 4 s on the shelf)."
-    (told,) = moves(EXPERIMENTS["turning"].on(hatchling()))
+    (told,) = gait_sentence(EXPERIMENTS["turning"].on(hatchling()))
     assert told.startswith("hatchling moves in the gaits ")
     assert " and " in told
-    assert moves(EXPERIMENTS["leg_kinematics"]) == moves(EXPERIMENTS["floating"].on(hatchling())) == []
+    assert gait_sentence(EXPERIMENTS["leg_kinematics"]) == gait_sentence(EXPERIMENTS["floating"].on(hatchling())) == []
 
 
 def test_a_robot_that_floats_goes_ashore_itself_under_the_pattern_generator():
     asked = EXPERIMENTS["pattern_generator"]
     floats = asked.on(ROBOTS["pleurobot"])
     longer = ROBOTS["pleurobot"].length / asked.swimmer.length
-    assert (floats.swimmer, floats.swimmer_gait) == (ROBOTS["pleurobot"], own_gait(ROBOTS["pleurobot"]))
+    assert (floats.swimmer, floats.swimmer_gait) == (ROBOTS["pleurobot"], default_gait(ROBOTS["pleurobot"]))
     assert floats.water_line == pytest.approx(longer * asked.water_line)
     assert floats.shore_time == pytest.approx(sqrt(longer) * asked.shore_time)
     sinks = asked.on(ROBOTS["strider"])
@@ -177,7 +177,7 @@ def test_a_robot_that_floats_goes_ashore_itself_under_the_pattern_generator():
 def test_a_turn_is_measured_over_cycles_that_are_no_whole_number_of_samples():
     """The path is taken at the samples nearest to the ends of the cycles, so that one cycle is enough."""
     body = eight()
-    assert own_gait(body).period % control_period(body) > 1e-4
+    assert default_gait(body).period % control_period(body) > 1e-4
     record = shortest("turning", body).simulate().record
     for name in ("curvature_bend", "curvature_asymmetry", "curvature_mixture"):
         assert np.isfinite(record[name]).all(), name
@@ -193,7 +193,7 @@ def test_a_robot_that_no_gait_suits_is_refused_in_a_sentence():
     )
     girdles = tuple(replace(girdle, limb=replace(short, links=stiff)) for girdle in body.girdles)
     with pytest.raises(UnsuitedRobot, match="no gait on the shelf suits robot 'stiff', which has LF, RF, LM"):
-        own_gait(replace(body, name="stiff", girdles=girdles))
+        default_gait(replace(body, name="stiff", girdles=girdles))
 
 
 @pytest.mark.parametrize(
@@ -206,7 +206,7 @@ def test_a_robot_that_no_gait_suits_is_refused_in_a_sentence():
 )
 def test_the_conditions_are_those_that_the_bodys_parts_make_possible(robot, names):
     body = ROBOTS[robot]
-    own = own_gait(body)
+    own = default_gait(body)
     assert list(conditions_of(body, own, own.without("axis", name="limbs_only"))) == names
 
 

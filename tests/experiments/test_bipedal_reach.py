@@ -7,10 +7,10 @@ from tests.bodies import eight, six
 
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.catalog.bipedal_reach.experiment import least_lead
+from suchus.experiments.catalog.bipedal_reach.experiment import min_lead
 from suchus.experiments.catalog.bipedal_reach.figure import draw_limits, draw_side_views
 from suchus.robot.design import lacking, with_values
-from suchus.robot.motion.rising import cantilever_torque, stretched
+from suchus.robot.motion.rising import cantilever_torque, stretched_length
 from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
@@ -28,8 +28,8 @@ def value(outcome):
 
 def test_it_stands_all_the_time_and_reaches_at_most_its_own_length(value):
     assert value["held"] >= EXPERIMENTS["bipedal_reach"].quick().hold
-    assert 0.64 < value["reach_standing"] < stretched(CAIMAN) + CAIMAN.hind_leg.foot_radius
-    assert value["reach_standing"] <= value["ceiling"] < stretched(CAIMAN) + CAIMAN.hind_leg.foot_radius
+    assert 0.64 < value["reach_standing"] < stretched_length(CAIMAN) + CAIMAN.hind_leg.foot_radius
+    assert value["reach_standing"] <= value["ceiling"] < stretched_length(CAIMAN) + CAIMAN.hind_leg.foot_radius
 
 
 def test_the_mass_never_passes_the_feet_between_lifting_the_front_and_standing(value):
@@ -74,7 +74,7 @@ def test_figures_are_drawn_from_the_record(outcome):
     texts = [text.get_text() for text in figure.axes[0].texts]
     assert "standing" in texts
     assert f"{float(outcome.measures['reach_standing'].value):.2f} m" in texts
-    limits = draw_limits(CAIMAN, outcome.record, 0.6 * stretched(CAIMAN))
+    limits = draw_limits(CAIMAN, outcome.record, 0.6 * stretched_length(CAIMAN))
     shown = [t.get_text() for t in limits.axes[0].texts]
     assert shown == [f"{v:.2f}" for v in outcome.record.map_reach.values.ravel()]
 
@@ -102,11 +102,11 @@ def story(reach, lead, stretched: float) -> xr.Dataset:
 def test_the_front_lifts_at_the_same_part_of_a_robot_of_any_size(size):
     heights = size * np.array([0.1, 0.1, 0.1, 0.1, 0.3, 0.5, 0.7, 0.7, 0.7, 0.7, 0.1, 0.1])
     leads = size * np.array([0, 0, -0.2, -0.1, -0.05, 0.04, 0.03, 0.01, 0.01, 0, 0, 0])
-    assert least_lead(story(heights, leads, 0.7 * size)) == pytest.approx(-0.05 * size)  # not those while it lies
+    assert min_lead(story(heights, leads, 0.7 * size)) == pytest.approx(-0.05 * size)  # not those while it lies
 
 
 def test_a_robot_whose_front_stays_down_has_no_lead():
-    assert np.isnan(least_lead(story(np.full(12, 0.1), np.zeros(12), 0.7)))
+    assert np.isnan(min_lead(story(np.full(12, 0.1), np.zeros(12), 0.7)))
 
 
 def test_what_decides_follows_from_the_numbers(value):

@@ -9,7 +9,7 @@ from suchus.apps.cli.options import choose
 from suchus.core.errors import OutsideLimits
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.design import layout
-from suchus.robot.gaits import GAITS, control_group, own_gait
+from suchus.robot.gaits import GAITS, control_group, default_gait
 from suchus.robot.motion import as_table, cycle_targets, suits
 from suchus.robot.robots import ROBOTS
 
@@ -19,7 +19,7 @@ CLOCK = np.linspace(0.0, 1.0, 41)
 
 @pytest.mark.parametrize("name", ["caiman", "strider", "salamander", "salamandra"])
 def test_the_control_group_moves_its_limbs_alike_and_its_axis_not_at_all(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     for walked in (gait, gait.strode(0.7), as_table(robot, gait)):
         control = control_group(walked)
         ours, theirs = (cycle_targets(robot, some, CLOCK) for some in (walked, control))

@@ -10,7 +10,7 @@ from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.control import OpenLoop
 from suchus.robot.design import crocodile, layout
-from suchus.robot.motion import Held, intended, roll
+from suchus.robot.motion import FixedLimbs, intended, roll
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.sim.metrics import roll_angle, roll_rate
@@ -162,13 +162,13 @@ def test_who_cannot_bend_up_and_down_is_refused_by_what_is_missing(name):
 
 
 def test_limbs_lie_back_as_far_as_they_can():
-    assert roll(CAIMAN, period=2.0).limbs == (Held(angles=(-pi / 2, 0.0, 0.0)),) * 2
+    assert roll(CAIMAN, period=2.0).limbs == (FixedLimbs(angles=(-pi / 2, 0.0, 0.0)),) * 2
     stiff = replace(CAIMAN.tables, hind_leg=replace(CAIMAN.tables.hind_leg, yaw_range=(-1.0, 1.0)))
     assert roll(crocodile(stiff), period=2.0).limbs == (
-        Held(angles=(-pi / 2, 0.0, 0.0)),
-        Held(angles=(-1.0, 0.0, 0.0)),
+        FixedLimbs(angles=(-pi / 2, 0.0, 0.0)),
+        FixedLimbs(angles=(-1.0, 0.0, 0.0)),
     )
-    assert roll(ROBOTS["salamandra"], period=2.0).limbs == (Held(angles=(0.0,)),) * 2
+    assert roll(ROBOTS["salamandra"], period=2.0).limbs == (FixedLimbs(angles=(0.0,)),) * 2
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ def started(robot, crawl_gait):
     gait = replace(crawl_gait, period=2.0)
     laws = ("off", "cross_load", "wrong_sign")
     runs = [Run(robot=robot, gait=gait, control=STARTS[law], seed=i) for law in laws for i in range(2)]
-    record = simulate(runs, duration=15.0, timestep=STEP, every=10)
+    record = simulate(runs, duration=15.0, timestep=STEP, sample_stride=10)
     error = phase_error(record.limb_phase, gait)
     return {law: error.isel(run=slice(2 * i, 2 * i + 2)) for i, law in enumerate(laws)}
 
@@ -53,7 +53,7 @@ def disturbed(robot, crawl_gait):
         ("limp", "steered"): Run(robot=robot, gait=crawl_gait, control=ARMS["steered"], faults=limp),
         ("tail", "closed"): Run(robot=robot, gait=crawl_gait.lifted(0.4), control=ARMS["tail"]),
     }
-    record = simulate(list(runs.values()), duration=25.0, timestep=STEP, every=10)
+    record = simulate(list(runs.values()), duration=25.0, timestep=STEP, sample_stride=10)
     return {key: record.isel(run=i) for i, key in enumerate(runs)}
 
 
@@ -158,7 +158,7 @@ def test_phases_that_feel_nothing_are_those_of_a_walk_to_the_last_bit(robot, cra
     question = replace(experiment, gait=replace(crawl_gait, period=2.0), starts=2, seed=5)
     laws = ("off", "own_load")
     runs = [Run(robot=robot, gait=question.gait, control=STARTS[law], seed=5 + i) for law in laws for i in range(2)]
-    record = simulate(runs, duration=3.0, timestep=STEP, every=10)
+    record = simulate(runs, duration=3.0, timestep=STEP, sample_stride=10)
     walked = record.limb_phase.transpose("run", "time", "leg").values
     assert question._phases(STARTS["off"], record.time.values).tobytes() == walked[:2].tobytes()
     assert question._phases(STARTS["own_load"], record.time.values).tobytes() != walked[2:].tobytes()

@@ -7,7 +7,12 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import InvalidDesign
-from suchus.experiments.catalog.gallop_limits.experiment import GallopLimits, _first, experiment, fastest
+from suchus.experiments.catalog.gallop_limits.experiment import (
+    GallopLimits,
+    _min_paying_speed,
+    experiment,
+    fastest_gaits,
+)
 from suchus.experiments.catalog.gallop_limits.gaits import BOUNDS, TROTS
 from suchus.robot.design import layout
 from suchus.robot.motion import START, cycle_targets
@@ -18,10 +23,10 @@ SPEEDS = np.array([7.0, 14.0, 28.0])
 
 
 def test_the_servo_that_is_needed_is_the_first_from_which_all_faster_ones_pay():
-    assert _first(SPEEDS, np.array([False, True, True])) == 14.0
-    assert _first(SPEEDS, np.array([True, False, True])) == 28.0  # a lucky cell is none
-    assert _first(SPEEDS, np.array([True, True, True])) == 7.0
-    assert _first(SPEEDS, np.array([True, True, False])) == inf
+    assert _min_paying_speed(SPEEDS, np.array([False, True, True])) == 14.0
+    assert _min_paying_speed(SPEEDS, np.array([True, False, True])) == 28.0  # a lucky cell is none
+    assert _min_paying_speed(SPEEDS, np.array([True, True, True])) == 7.0
+    assert _min_paying_speed(SPEEDS, np.array([True, True, False])) == inf
 
 
 def record(bound, flight, walk=0.4, spread=0.0):
@@ -79,7 +84,7 @@ def test_a_better_servo_does_what_a_lesser_one_does():
     one = record((0.6, 0.3, 0.9), (0.4, 0.0, 0.2))
     strong = one.assign(speed=0.5 * one.speed).assign_coords(torque=[5.0])
     both = xr.concat([one, strong], "torque", data_vars="minimal")
-    bound, walk = fastest(both, "bound"), fastest(both, "trot", "walk")
+    bound, walk = fastest_gaits(both, "bound"), fastest_gaits(both, "trot", "walk")
     assert bound.speed.values.tolist() == [[0.6, 0.6, 0.9]] * 2
     assert bound.flight.values.tolist() == [[0.4, 0.4, 0.2]] * 2  # of the gait that is taken
     assert walk.speed.values.tolist() == [[0.4, 0.4, 0.4]] * 2

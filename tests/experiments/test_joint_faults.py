@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from suchus.article.paper import CLAIMS
-from suchus.article.verdict import between
+from suchus.article.verdict import measure_with_interval
 from suchus.core.errors import Diverged
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.claims import RULES
@@ -17,7 +17,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.motion import cycle_targets, movement
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import FAILED_JOINTS, KINDS, LEGS_FAILED, Limp, Locked, Run, angle_at, joint_failure, simulate
-from suchus.sim.metrics import displacement, loss, swing_lift, swing_loads, whole
+from suchus.sim.metrics import displacement, loss, require_complete, swing_lift, swing_loads
 
 CAIMAN = ROBOTS["caiman"]
 CRAWL = GAITS["belly_crawl"]
@@ -230,10 +230,10 @@ def test_loads_while_a_leg_swings_carry_the_robot():
 
 def test_a_run_that_comes_apart_is_not_measured():
     record = simulate([Run(robot=CAIMAN, gait=CRAWL)] * 2, duration=0.5, timestep=0.005)
-    assert whole(record) is record
+    assert require_complete(record) is record
     broken = record.assign(cause=("run", ["", "a speed of 2e3 was reached"]), ended=("run", [0.5, 0.2]))
     with pytest.raises(Diverged, match=r"run 1 of 2, belly_crawl, diverged at 0\.20 s") as caught:
-        whole(broken)
+        require_complete(broken)
     assert caught.value.time == 0.2
     assert float(caught.value.record.time[-1]) == pytest.approx(0.2)
 
@@ -241,4 +241,4 @@ def test_a_run_that_comes_apart_is_not_measured():
 def _says(claim: str, change: float) -> bool:
     """Tell whether the sentence of a claim about a fault is true of a change of displacement."""
     rule = RULES[claim]
-    return rule.held(between(rule.measure, change, change)) is True
+    return rule.held(measure_with_interval(rule.measure, change, change)) is True

@@ -9,8 +9,8 @@ from tests.metres import with_metres
 from suchus.article.verdict import judge
 from suchus.core.errors import OutsideLimits
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.catalog.leg_kinematics.experiment import _SHOWN as LEG_SHOWN
-from suchus.experiments.catalog.spine_kinematics.experiment import _SHOWN as SPINE_SHOWN
+from suchus.experiments.catalog.leg_kinematics.experiment import _FRAME_ANGLES as LEG_SHOWN
+from suchus.experiments.catalog.spine_kinematics.experiment import _FRAME_ANGLES as SPINE_SHOWN
 from suchus.experiments.experiment import Outcome
 from suchus.robot.design import crocodile
 from suchus.robot.gaits import GAITS

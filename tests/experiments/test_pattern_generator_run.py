@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
-from suchus.experiments.catalog.pattern_generator.experiment import _lags, _locked, experiment, lock_error
+from suchus.experiments.catalog.pattern_generator.experiment import _lags, _lock_measures, experiment, lock_error
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 
@@ -31,7 +31,7 @@ def record(error, within=0.1, hold=2.0):
 
 
 def test_a_start_is_locked_from_when_it_stays_for_long_enough():
-    found = _locked(
+    found = _lock_measures(
         record(
             [
                 [1.0, 1.0, 0.05, 0.05, 0.05, 0.05],  # locked from cycle 2 on
@@ -46,7 +46,7 @@ def test_a_start_is_locked_from_when_it_stays_for_long_enough():
     assert found["locked_share"].value == 0.75
     assert found["lock_cycles"].value == pytest.approx(5 / 3)
     assert found["lock_cycles_most"].value == 3.0
-    none = _locked(record([[1.0] * 6]), "walk", "")
+    none = _lock_measures(record([[1.0] * 6]), "walk", "")
     assert none["locked_share"].value == 0.0
     assert np.isnan(none["lock_cycles"].value)
 

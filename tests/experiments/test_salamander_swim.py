@@ -12,7 +12,7 @@ import evidence.league.cases
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.salamander_swim import own_size
-from suchus.experiments.catalog.salamander_swim.animal_swim import FREQUENCIES, STRIDE, envelope, played
+from suchus.experiments.catalog.salamander_swim.animal_swim import FREQUENCIES, STRIDE, animal_gait, envelope
 from suchus.experiments.catalog.salamander_swim.rules import LADDER
 from suchus.robot.design import WATER_DENSITY, layout
 from suchus.robot.design.pieces import volumes
@@ -28,7 +28,7 @@ RUNGS = [[[0.21, 0.21], [0.23, 0.23]], [[0.0, 0.0], [np.nan, np.nan]], [[0.2, 0.
 
 
 def test_the_wave_runs_from_the_neck_to_the_tail_and_grows():
-    gait = played(ROBOT, 2.6)
+    gait = animal_gait(ROBOT, 2.6)
     check_limits(ROBOT, gait)
     place, clock = layout(ROBOT), np.arange(52) / 52
     angles = cycle_targets(ROBOT, gait, clock)[:, list(place.axial_yaw)] * np.array(place.axial_left)
@@ -46,7 +46,7 @@ def test_the_wave_runs_from_the_neck_to_the_tail_and_grows():
 
 
 def test_its_limbs_lie_back_along_the_body():
-    place, servos = layout(ROBOT), cycle_targets(ROBOT, played(ROBOT, 2.6), np.zeros(1))[0]
+    place, servos = layout(ROBOT), cycle_targets(ROBOT, animal_gait(ROBOT, 2.6), np.zeros(1))[0]
     angles = np.zeros(len(place.hinges))
     for i, name in enumerate(place.servos):
         angles[list(place.hinges).index(name)] = servos[i]
@@ -110,7 +110,7 @@ def test_a_rung_has_the_mean_of_its_swims_and_says_how_far_its_halves_are_apart(
 
 def test_theories_are_asked_of_the_swim_itself_and_sections_of_halves_of_its_cycles(quick_outcome):
     record = quick_outcome("salamander_swim").record
-    outline, gait = Outline(ROBOT), played(ROBOT, FREQUENCIES[0])
+    outline, gait = Outline(ROBOT), animal_gait(ROBOT, FREQUENCIES[0])
     speed = cruise(outline, gait, MODELS["resistive"], Water()).speed
     stride = record.stride_rung.isel(swim=0)
     assert stride.sel(rung="resistive").values == pytest.approx([speed / FREQUENCIES[0] / ROBOT.length] * 2)
@@ -165,7 +165,7 @@ def test_the_wave_of_the_catshark_is_that_of_the_table_that_the_league_reads():
 
 def test_it_says_who_sinks_and_who_rolls_over(record):
     names = ["salamander", "eel"]
-    rows = {key: [0.2, 0.2] for key in own_size._KEPT} | {"surplus": [-0.02, 0.02], "heel": [2.0, 1.0]}
+    rows = {key: [0.2, 0.2] for key in own_size._QUANTITY_UNITS} | {"surplus": [-0.02, 0.02], "heel": [2.0, 1.0]}
     animals = xr.Dataset({f"own_{key}": ("animal", row) for key, row in rows.items()}, coords={"animal": names})
     measures = SWIM.measure(record.merge(animals))
     m = {name: one.value for name, one in measures.items()}

@@ -12,7 +12,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.sensitivity import experiment as sensitivity
 from suchus.experiments.study import Claims, Plan
-from suchus.experiments.study.claim_measures import RUNS, asked_rules
+from suchus.experiments.study.claim_measures import RUNS, swept_rules
 from suchus.robot.gaits import GAITS
 
 FULL = EXPERIMENTS["sensitivity"]
@@ -30,7 +30,7 @@ def share(**changes):
 
 def test_it_asks_what_the_study_of_the_claims_asks(outcome):
     record = outcome.record
-    assert record.claim.values.tolist() == [rule.claim for rule in asked_rules()]
+    assert record.claim.values.tolist() == [rule.claim for rule in swept_rules()]
     assert record.run.values.tolist() == list(RUNS)
     plan = Plan(Claims().study(2048, FULL.timestep))
     for i in range(record.sizes["sample"]):

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import InvalidDesign
-from suchus.core.rotation import about, rotate
+from suchus.core.rotation import from_axis_angle, rotate
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.shore import experiment as shore
 from suchus.experiments.catalog.shore.figure import _obliquely, draw_decides, levelled, posture_times
@@ -61,10 +61,10 @@ def test_who_tilts_by_more_than_sixty_degrees_has_fallen_and_is_not_ashore(degre
     tilt = np.full((3, 20), 0.1)
     tilt[0, 5] = radians(degrees)
     record = kept(tilt=tilt)
-    assert shore.fallen(record)[0] == fell
+    assert shore.find_fallen(record)[0] == fell
     assert np.isnan(shore.times_ashore(record)[0]) == fell
     tilt[0, 5] = np.nan  # diverged
-    assert shore.fallen(kept(tilt=tilt))[0]
+    assert shore.find_fallen(kept(tilt=tilt))[0]
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_who_falls_while_it_swims_and_floats_free_has_capsized(tilt, walks, grou
     heel, legs, load = np.full((3, 20), 0.1), np.ones((3, 20)), np.full((3, 20), 0.5)
     heel[0, 4:], legs[0, :6], load[0, :6] = radians(tilt), walks, ground
     record = kept(tilt=heel, walks=legs, ground=load)
-    assert shore.capsized(record).tolist() == [over, False, False]
+    assert shore.find_capsized(record).tolist() == [over, False, False]
     assert ("after 2 s it capsizes" in shore.ending(record)) == over
     measures = measured(record)
     assert measures["capsized"].value == over
@@ -261,7 +261,7 @@ def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
     names = ("position", "centre_of_mass", "snout", "tail_tip")
     record = xr.Dataset(dict.fromkeys(names, (("time", "xyz"), points)), {"time": [0.0, 1.0]})
     record["foot_position"] = record["foot_force"] = (("time", "leg", "xyz"), points[:, None])
-    record["orientation"] = (("time", "wxyz"), about(np.array([0.0, 0.0, 1.0]), np.zeros(2)))
+    record["orientation"] = (("time", "wxyz"), from_axis_angle(np.array([0.0, 0.0, 1.0]), np.zeros(2)))
     record["stands_on"] = ((), ground_text(Ground(uphill=slope)))
     found = levelled(record.assign_attrs(line=line))
     assert found.position[0].values == pytest.approx(np.zeros(3), abs=1e-12)

@@ -62,7 +62,7 @@ def test_a_robot_dives_in_as_many_ways_as_its_air_allows():
     def names(robot):
         return [run.label for run in submerged.deep_runs(robot, SWIM, LAKE, 0.6)]
 
-    assert names(ROBOT) == list(submerged.DEEP)
+    assert names(ROBOT) == list(submerged.DIVE_LABELS)
     assert names(replace(ROBOT, hull=replace(ROBOT.hull, chambers=()))) == ["deep", "held", "pitched"]
     assert names(replace(ROBOT, hull=replace(ROBOT.hull, air=1e-5))) == []
     assert names(ROBOTS["caiman"]) == []

@@ -22,8 +22,8 @@ from suchus.robot.design.water_table import column
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land.afloat import floats
 from suchus.swimming.coupling.on_joints import floating
-from suchus.swimming.water import Outline, displaced, fit, printed_wave, undulation
-from suchus.swimming.water.immersed import folded, half_heights, trunk
+from suchus.swimming.water import Outline, displaced_mass, fit, printed_wave, undulation
+from suchus.swimming.water.immersed import folded_limbs, half_heights, trunk
 from suchus.swimming.water.resolved import SwimSetting, check_resolved_swim, resolved_swim
 from suchus.visual.figures import caption
 
@@ -34,7 +34,7 @@ MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).gait
 def test_the_trunk_is_the_robots_own_body_divided_at_its_joints():
     outline = Outline(ROBOT, 129)
     body = trunk(outline, MOTION)
-    assert 1000.0 * body.volume(0.3) == pytest.approx(displaced(outline), rel=1e-3)
+    assert 1000.0 * body.volume(0.3) == pytest.approx(displaced_mass(outline), rel=1e-3)
     assert body.bounds(0.0, flow.Pose())[5] == pytest.approx(float(outline.silhouette.half_height.max()))
     places = np.sort(outline.places)
     assert body.cuts == pytest.approx(places)
@@ -55,7 +55,7 @@ def test_a_raised_tail_is_as_high_as_asked_and_nowhere_lower_than_the_robot():
 
 
 def test_folded_limbs_are_the_robots_links_and_feet_beside_the_body_at_their_hips():
-    limbs, place = folded(ROBOT), layout(ROBOT)
+    limbs, place = folded_limbs(ROBOT), layout(ROBOT)
     outline = Outline(ROBOT, 129)
     bare, body = trunk(outline, MOTION), trunk(outline, MOTION, limbs=True)
     assert len(limbs) == sum(len(limb.girdle.limb.links) + 1 for limb in place.limbs)

@@ -9,13 +9,13 @@ from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
 from suchus.core.errors import InvalidDesign
-from suchus.core.rotation import about
+from suchus.core.rotation import from_axis_angle
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swim_free.experiment import _ends, _radius, _speed, _uneven
 from suchus.experiments.catalog.swim_free.figure import draw_below
 from suchus.experiments.catalog.swim_free.flow_figure import _fins
 from suchus.experiments.catalog.swim_free.in_flow import fins, passive_joints
-from suchus.experiments.catalog.swim_free.submerged import DEEP
+from suchus.experiments.catalog.swim_free.submerged import DIVE_LABELS
 from suchus.robot.control import Swimming
 from suchus.robot.design import GRAVITY
 from suchus.robot.motion import LIMBS_UP, intended
@@ -32,7 +32,7 @@ def test_a_circle_has_its_radius_and_its_side(sign):
     part = xr.Dataset(
         {
             "centre_of_mass": (("time", "xyz"), track),
-            "orientation": (("time", "wxyz"), about(np.array([0.0, 0.0, 1.0]), angle)),
+            "orientation": (("time", "wxyz"), from_axis_angle(np.array([0.0, 0.0, 1.0]), angle)),
         },
         coords={"time": time, "xyz": list("xyz")},
     )
@@ -115,10 +115,10 @@ def test_pitch_is_drawn_nose_down_positive_as_in_fig_11():
             "deep_depth": (("dive", "dive_time"), [[0.0, 0.1, 0.2]]),
             "deep_pitch": (("dive", "dive_time"), [[0.0, 0.1, 0.2]]),
         },
-        coords={"dive": [next(iter(DEEP))], "dive_time": time},
+        coords={"dive": [next(iter(DIVE_LABELS))], "dive_time": time},
         attrs={"depth": 0.2, "deep_from": 1.0},
     )
-    pitch = draw_below(record, DEEP).axes[1]
+    pitch = draw_below(record, DIVE_LABELS).axes[1]
     assert "nose down positive" in pitch.get_ylabel()
     assert pitch.lines[0].get_ydata().tolist() == np.degrees(record.deep_pitch.values[0]).tolist()
 

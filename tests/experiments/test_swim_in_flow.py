@@ -9,11 +9,11 @@ import xarray as xr
 from suchus.core.errors import Doubtful, InvalidDesign, UnreadableFile
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swim_free.in_flow import (
+    compare_section_speeds,
     fin_runs,
     flow_speed,
-    nearer,
+    reduces_speed_error,
     residual_text,
-    speeds_beside,
     water_of,
 )
 from suchus.robot.blueprint import read_correction, write
@@ -174,9 +174,9 @@ def test_what_swims_in_a_slice_earn_is_a_file_that_is_taken(tmp_path):
 
 
 def test_forces_that_are_nearer_do_not_earn_a_correction_whose_speeds_are_not():
-    assert nearer([0.02, 0.0], [0.07, 0.03], [0.05, 0.03])
-    assert not nearer([0.02, 0.0], [0.07, -0.01], [0.07, 0.05])
-    assert not nearer([0.02], [0.05], [0.05])
+    assert reduces_speed_error([0.02, 0.0], [0.07, 0.03], [0.05, 0.03])
+    assert not reduces_speed_error([0.02, 0.0], [0.07, -0.01], [0.07, 0.05])
+    assert not reduces_speed_error([0.02], [0.05], [0.05])
 
 
 def test_speeds_beside_a_flow_are_of_its_water_and_decide():
@@ -185,11 +185,11 @@ def test_speeds_beside_a_flow_are_of_its_water_and_decide():
     run = Run(robot=robot, gait=gait, water="space", control=Swimming(ramp=1.0), label="tail_only")
     links = tuple(LinkFactors(bodies=(one.name,), added=1.0, drag=3.0) for one in robot.axis)
     factors = SectionCorrection(name="mine", reynolds=(7e3, 7e3), links=links)
-    text, _ = speeds_beside([run], [0.0], 2, 1.5e-4, factors)
+    text, _ = compare_section_speeds([run], [0.0], 2, 1.5e-4, factors)
     row = next(line for line in text.splitlines() if line.startswith("| tail_only"))
     shipped, corrected = (1e-3 * float(cell.split()[0]) for cell in row.split("|")[3:5])
     assert abs(shipped - corrected) > 1e-3
     for at, expected in ((corrected, True), (shipped, False)):
-        text, is_nearer = speeds_beside([run], [at], 2, 1.5e-4, factors)
+        text, is_nearer = compare_section_speeds([run], [at], 2, 1.5e-4, factors)
         assert is_nearer is expected
         assert ("no file is written" in text) is not expected

@@ -13,16 +13,16 @@ from suchus.core.errors import IncompatibleRecord, InvalidDesign, OutsideLimits,
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swimming import ladder
 from suchus.experiments.catalog.swimming.ladder import (
-    FEWEST,
+    MIN_SETTLED_CYCLES,
     MOTIONS,
-    Settled,
-    climbed,
+    SettledNumber,
     kept_grids,
     measures,
     motions,
+    run_ladder,
     settle,
 )
-from suchus.experiments.catalog.swimming.rules import LADDER, RULES, SETTLED
+from suchus.experiments.catalog.swimming.rules import LADDER, MAX_SETTLED_SPREAD, RULES
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water.field_samples import COURSE, TICKS
 
@@ -71,17 +71,17 @@ def test_a_rung_is_settled_over_the_most_cycles_whose_halves_agree():
     def half(first, last):
         return [float(values[first:last].mean())]
 
-    assert settle(half, 10) == Settled(1.0, 1.0, 1.0, 0.0)  # the last six; the last eight hold a 9
-    values[-1] = 1.0 + 3.5 * SETTLED
-    assert settle(half, 10).apart > SETTLED
-    assert settle(half, 10, scale=2.0).apart < SETTLED  # of what is twice as large
-    assert isnan(settle(half, FEWEST).apart)  # the first cycle does not count
+    assert settle(half, 10) == SettledNumber(1.0, 1.0, 1.0, 0.0)  # the last six; the last eight hold a 9
+    values[-1] = 1.0 + 3.5 * MAX_SETTLED_SPREAD
+    assert settle(half, 10).apart > MAX_SETTLED_SPREAD
+    assert settle(half, 10, scale=2.0).apart < MAX_SETTLED_SPREAD  # of what is twice as large
+    assert isnan(settle(half, MIN_SETTLED_CYCLES).apart)  # the first cycle does not count
 
 
 def test_both_starting_sides_count():
-    found = settle(lambda a, b: [1.0, 1.0 + 1.1 * SETTLED], CYCLES)
-    assert (found.low, found.high) == (1.0, 1.0 + 1.1 * SETTLED)
-    assert found.apart > SETTLED
+    found = settle(lambda a, b: [1.0, 1.0 + 1.1 * MAX_SETTLED_SPREAD], CYCLES)
+    assert (found.low, found.high) == (1.0, 1.0 + 1.1 * MAX_SETTLED_SPREAD)
+    assert found.apart > MAX_SETTLED_SPREAD
 
 
 @pytest.mark.parametrize("drift", [0.0, 0.03])
@@ -124,7 +124,7 @@ def test_a_start_that_is_not_forgotten_is_no_fall_and_not_settled():
     found = numbers(rung(drift=0.5))
     assert found["pressure_fall_share_space"] == pytest.approx(0.0, abs=1e-12)
     assert found["pressure_fall_share_space_high"] > 0.1
-    assert found["pressure_fall_share_space_apart"] > SETTLED
+    assert found["pressure_fall_share_space_apart"] > MAX_SETTLED_SPREAD
 
 
 def test_the_grids_of_a_kept_study_widen_three_dimensions():
@@ -174,7 +174,7 @@ def slices(cycles):
 
 
 def test_a_rung_that_cannot_run_says_so_and_the_others_speak(no_flow):
-    record = climbed(replace(SWIMMING.quick(), cycles=4).climb(), lambda stage, share: None, slices=slices(4))
+    record = run_ladder(replace(SWIMMING.quick(), cycles=4).climb(), lambda stage, share: None, slices=slices(4))
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"slice_taken", "space"}
     assert unable["space"] == "Not run: the grid is too coarse."
@@ -207,7 +207,7 @@ def test_a_body_that_does_not_float_leaves_theories_and_the_slice(no_flow, monke
 
     monkeypatch.setattr(ladder, "swum_in_sections", sinks)
     climb = replace(SWIMMING.quick(), robot=ROBOTS["swimmer"]).climb()
-    record = climbed(climb, lambda stage, share: None, slices=slices(2))
+    record = run_ladder(climb, lambda stage, share: None, slices=slices(2))
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"sections", "slice_taken", "space"}
     assert unable["slice_taken"] == unable["sections"]
@@ -242,7 +242,7 @@ def swum(monkeypatch):
 
 
 def swum_of(**given):
-    return climbed(replace(SWIMMING.quick(), cycles=8).climb(), lambda stage, share: None, **given)
+    return run_ladder(replace(SWIMMING.quick(), cycles=8).climb(), lambda stage, share: None, **given)
 
 
 def test_nothing_swims_for_a_claim_on_which_the_rungs_before_disagree(swum):
@@ -266,7 +266,7 @@ def test_only_what_the_claims_are_read_of_swims(swum):
     swum_of(claims=["swim_s_shape", "swim_tail_sine"])
     assert {name for _, name in swum} == {"trunk and tail"}
     read = {name for rule in RULES for name in (rule.measure, *(one.measure for one in rule.holds))}
-    assert all(sum(name.startswith(start) for start in ladder._READ_OF) == 1 for name in read)
+    assert all(sum(name.startswith(start) for start in ladder._SWIMS_OF_MEASURE) == 1 for name in read)
 
 
 def test_a_motion_that_the_servos_cannot_follow_is_no_swim_for_theories_to_judge(swum):

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.catalog.speed_range.experiment import _UNITS, _models, _with_other
-from suchus.experiments.catalog.terrain.experiment import SINGLE, _met
+from suchus.experiments.catalog.speed_range.experiment import _UNITS, _models, _with_other_servos
+from suchus.experiments.catalog.terrain.experiment import SINGLE, _meets_obstacle
 from suchus.robot.design import layout
 from suchus.robot.design.ground import STONE, Bumps, Step, Stone
 from suchus.robot.design.servos import with_full_torque, with_named_servos, with_servos
@@ -78,8 +78,8 @@ def test_servos_of_two_kinds_are_called_so_and_all_have_their_full_torque_in_the
     assert _models(robot) == (line, full)
     assert _models(some) == ("servos of which 2 of 12 lose torque with speed", full)
     legs = [name for name in layout(robot).servos if name[:2] in ("LF", "RF", "LH", "RH")]
-    assert {_with_other(some).servo(name).winding for name in legs} == {None}
-    assert None not in {_with_other(bare).servo(name).winding for name in legs}
+    assert {_with_other_servos(some).servo(name).winding for name in legs} == {None}
+    assert None not in {_with_other_servos(bare).servo(name).winding for name in legs}
 
 
 def test_the_commanded_circle_comes_out_within_ten_percent(quick_outcome):
@@ -148,7 +148,7 @@ def test_an_obstacle_is_met_where_the_robot_came_to_it(robot):
     for relief, record, met in cases:
         assert isinstance(relief, Bumps | Step | Stone | None)
         run = Run(robot=robot, gait=GAITS["low_crawl"], ground=Ground(relief=relief))
-        assert _met(record, run) is met, relief
+        assert _meets_obstacle(record, run) is met, relief
 
 
 def rough_record(*, ahead=(True, True, False), met=1.0):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from suchus.visual.figures import new, panels, save, styled
-from suchus.visual.figures.data import MOST, carry, table
+from suchus.visual.figures.data import MAX_FIELD_VALUES, carry, table
 
 
 def rows(figure):
@@ -126,7 +126,7 @@ def test_a_fine_field_is_thinned_and_no_coarse_one():
         with styled():
             figure, axes = panels(1, 1)
             axes[0, 0].imshow(np.zeros((size, size)))
-        assert len(rows(figure)) == kept <= MOST
+        assert len(rows(figure)) == kept <= MAX_FIELD_VALUES
 
 
 def test_lines_across_a_panel_tell_their_one_number_and_colour_bars_nothing():

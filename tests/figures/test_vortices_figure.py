@@ -72,7 +72,7 @@ def test_figure_and_film_show_both():
     figure = vortices.draw_vortices(record)
     assert "on 64 cells a length at f L² / ν = 7000" in caption(figure)
     assert "Q = 4 1/s²" in caption(figure)
-    shown = vortices.still(record, 0)
+    shown = vortices.still_picture(record, 0)
     ink = shown.astype(int)
     red, blue = ((ink[..., k] - ink[..., 2 - k] > 40).sum() for k in (0, 2))
     assert min(red, blue) > 1000

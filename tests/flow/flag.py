@@ -21,7 +21,7 @@ import numpy as np
 from suchus import flow
 from suchus.core.writing import keep
 from suchus.flow import checkpoint as store
-from suchus.swimming.coupling.chain import ChainState, MidlineChain, Way
+from suchus.swimming.coupling.chain import ChainPath, ChainState, MidlineChain
 from suchus.swimming.water.outline import BodySilhouette
 
 WATER = 1000.0
@@ -220,7 +220,7 @@ class Flag:
         place = np.zeros(3 + count)
         place[:2] = CENTRE[0] - RADIUS, CENTRE[1]
         self.posture = ChainState(place, np.zeros(3 + count))
-        self.path = Way(0.0, self.posture)
+        self.path = ChainPath(0.0, self.posture)
         body = flow.Body(
             shape=self.chain.body(self.path, 2, 0.0, np.ones(stations)),
             motion=self.chain.motion(self.path, 2, 0.0), name="flag",

@@ -22,9 +22,9 @@ from suchus.flow import simulation
 from suchus.flow.advect import advance
 from suchus.flow.body import measure_all
 from suchus.flow.compiled import PAD
-from suchus.flow.immerse import LEAST_SHARE, fill_source, immerse
-from suchus.flow.momentum import collect, dilatation_work
-from suchus.flow.water import MOST_ROUNDS, Fluid, PlannedStage
+from suchus.flow.immerse import MIN_FLUID_FRACTION, fill_source, immerse
+from suchus.flow.momentum import add_immersion_impulse, dilatation_work
+from suchus.flow.water import MAX_FIRST_STEP_ROUNDS, Fluid, PlannedStage
 
 OUT = 1.5
 """Distance from the wall from which the velocity is carried into the body: all its neighbours are wet [cells]."""
@@ -135,7 +135,7 @@ class SlipWater(Fluid):
             f, self.owners[c], _ = measure_all(bodies, poses, points, time, h)
             near, far = f.distance / h, -(f.thickness + f.distance) / h
             along = np.delete(np.abs(np.stack(f.normal)), c, axis=0)
-            share = np.clip(wet_share(near, along) + wet_share(far, along), LEAST_SHARE, 1)
+            share = np.clip(wet_share(near, along) + wet_share(far, along), MIN_FLUID_FRACTION, 1)
             self.mu0[c][here] = self.passage[c][here] = share
             self.b[c], self._distance[c], self._normal[c] = f.velocity[c], near, np.stack(f.normal)
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
@@ -167,7 +167,11 @@ class SlipWater(Fluid):
         self.border.prepare(self._blended, self.window, float(step), stream, time)
         self._stages(step, force, limits)
         rounds = 0
-        while first and rounds < MOST_ROUNDS and self.border.update_induced(self._corrected, self.window) > limits[1]:
+        while (
+            first
+            and rounds < MAX_FIRST_STEP_ROUNDS
+            and self.border.update_induced(self._corrected, self.window) > limits[1]
+        ):
             self.p[:] = start
             self._stages(step, force, limits)
             rounds += 1
@@ -218,7 +222,7 @@ class SlipWater(Fluid):
         out, blend, bare, mu1 = (self._flat(a) for a in (stage.out, stage.blend, self._bare, self.mu1))
         owners = [self._flat(owner) for owner in self.owners]
         for c, mean in enumerate(self.mean):
-            collect(
+            add_immersion_impulse(
                 sums, out[c], blend[c], bare[c], self._flat(mean), everywhere[c], mu1[c], p, owners[c], c, near, inner,
                 dt, keep,
             )  # fmt: skip

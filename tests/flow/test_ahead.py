@@ -47,7 +47,7 @@ def test_the_solver_is_left_to_a_second_process_once(begun, monkeypatch):
     solved = []
     monkeypatch.setattr(poisson, "solve", lambda *given: solved.append(given))
     for _ in range(2):
-        ahead.compile_ahead(2, np.float32)
+        ahead.precompile(2, np.float32)
     assert len(begun) == 1
     assert "compile_solver(2, 'float32')" in begun[0].words[-1]
     assert begun[0].ended[0] == "waited for"
@@ -57,7 +57,7 @@ def test_the_solver_is_left_to_a_second_process_once(begun, monkeypatch):
 def test_every_kind_of_grid_has_its_own_first_time(begun, monkeypatch):
     monkeypatch.setattr(ahead, "_step", lambda water: None)
     for axes, dtype in ((2, np.float32), (2, np.float64), (3, np.float32)):
-        ahead.compile_ahead(axes, dtype)
+        ahead.precompile(axes, dtype)
     assert len(begun) == 3
 
 
@@ -69,7 +69,7 @@ def test_it_is_left_to_the_flow_where_it_would_not_help(begun, monkeypatch, tmp_
         monkeypatch.setattr(numba.config, "DISABLE_JIT", 1)
     else:
         monkeypatch.setattr(compiled, "FOLDER", None if why == "no place" else tmp_path / "not there")
-    ahead.compile_ahead(2, np.float32)
+    ahead.precompile(2, np.float32)
     assert not begun
 
 
@@ -79,14 +79,14 @@ def test_ctrl_c_ends_the_other_process(begun, monkeypatch):
 
     monkeypatch.setattr(ahead, "_step", stopped)
     with pytest.raises(KeyboardInterrupt):
-        ahead.compile_ahead(2, np.float32)
+        ahead.precompile(2, np.float32)
     assert begun[0].ended == ["killed", "left"]
 
 
 def test_the_other_process_compiles_the_solver(begun, monkeypatch):
     """What it is told to run, with the cache of the tests."""
     monkeypatch.setattr(ahead, "_step", lambda water: None)
-    ahead.compile_ahead(2, np.float32)
+    ahead.precompile(2, np.float32)
     solved = []
     monkeypatch.setattr(poisson, "solve", lambda *given: solved.append(given) or (1, 0.0, 0.0, 0.0, 0.0))
     exec(begun[0].words[-1], {})

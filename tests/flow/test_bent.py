@@ -28,7 +28,7 @@ def test_what_a_map_carries_feels_what_the_same_body_feels_that_is_carried():
     ellipse = flow.Ellipse(length=1.0, width=0.4)
     grid, force = flow.Grid.covering((-1.5, 1.5), (-1.5, 1.5), cell=1 / 24), []
     given_motion = flow.Body(shape=ellipse, motion=flow.Oscillation(frequency=1.0, heave=(0.0, 0.1)))
-    for body in (given_motion, flow.Body(shape=flow.bent(ellipse, heaved))):
+    for body in (given_motion, flow.Body(shape=flow.bend_shape(ellipse, heaved))):
         sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 100, bodies=(body,), step=0.01))
         force.append(sim.run(0.15).force("body"))
     assert np.abs(force[0][5:]).max() > 1.0
@@ -39,7 +39,7 @@ def test_in_space_too():
     ball = mesh_of(icosphere(subdivisions=2, radius=0.5))
     grid, force = flow.Grid(cells=(24, 24, 24), cell=0.125, origin=(-1.5, -1.5, -1.5)), []
     given_motion = flow.Body(shape=ball, motion=flow.Oscillation(frequency=1.0, heave=(0.0, 0.1, 0.0)))
-    for body in (given_motion, flow.Body(shape=flow.bent(ball, heaved))):
+    for body in (given_motion, flow.Body(shape=flow.bend_shape(ball, heaved))):
         sim = flow.Simulation(flow.Setup(grid=grid, viscosity=0.1, bodies=(body,), step=0.02, coarse=True))
         force.append(sim.run(0.06).force("body"))
     assert np.abs(force[0]).max() > 0.1
@@ -53,7 +53,7 @@ def test_a_map_that_turns_a_shape_moves_it_as_a_pose_that_turns():
         c, s = cos(rate * t), sin(rate * t)
         return c * x + s * y, -s * x + c * y
 
-    by_map = flow.bent(PLATE, turned).markers(time, Pose(), spacing)
+    by_map = flow.bend_shape(PLATE, turned).markers(time, Pose(), spacing)
     by_pose = PLATE.markers(time, Pose(angle=rate * time, spin=rate), spacing)
     np.testing.assert_allclose(by_map.points, by_pose.points, atol=1e-9)
     np.testing.assert_allclose(by_map.velocities, by_pose.velocities, atol=1e-6)
@@ -63,7 +63,7 @@ def test_a_map_that_turns_a_shape_moves_it_as_a_pose_that_turns():
 
 def test_shear_keeps_the_area_and_carries_the_momentum_that_it_must():
     """Of a rectangle: V = a x w cos(w t) along y, so that the angular momentum is that times the moment of x^2."""
-    sheared = flow.bent(PLATE, lambda x, y, t: (x, y - 0.3 * x * sin(W * t) - 0.2 * sin(W * t)))
+    sheared = flow.bend_shape(PLATE, lambda x, y, t: (x, y - 0.3 * x * sin(W * t) - 0.2 * sin(W * t)))
     mass, rate = sheared.mass(0.1), W * cos(0.1 * W)
     assert mass.area == pytest.approx(0.2, rel=1e-9)
     assert mass.centre == pytest.approx((0.0, 0.2 * sin(0.1 * W)), abs=1e-9)
@@ -75,7 +75,7 @@ def test_shear_keeps_the_area_and_carries_the_momentum_that_it_must():
 def test_a_mesh_that_swells_and_shears_has_its_volume_and_its_momentum():
     """Of a box: growth along x by g(t), and V along z of a y w cos(w t)."""
     still = mesh_of(box(extents=(1.0, 0.4, 0.2)))
-    body = flow.bent(still, lambda x, y, z, t: (x / (1 + 0.5 * t) - 0.1, y, z - 0.3 * y * sin(W * t)))
+    body = flow.bend_shape(still, lambda x, y, z, t: (x / (1 + 0.5 * t) - 0.1, y, z - 0.3 * y * sin(W * t)))
     mass, grown, rate = body.mass(0.1), 1.05, 0.3 * W * cos(0.1 * W)
     assert mass.volume == pytest.approx(0.08 * grown, rel=1e-9)
     assert mass.centre == pytest.approx((0.1 * grown, 0.0, 0.0), abs=1e-9)
@@ -90,7 +90,7 @@ def test_velocities_are_the_rates_of_places_whatever_the_wave(high, wave, often,
     def waving(x, y, t):
         return x + 0.2 * high * np.sin(often * t) * y, y - high * np.sin(wave * x - often * t)
 
-    body, step = flow.bent(flow.Ellipse(length=1.0, width=0.3), waving), 1e-3
+    body, step = flow.bend_shape(flow.Ellipse(length=1.0, width=0.3), waving), 1e-3
     here, before, after = (body.bend.forth(body._corners, t) for t in (time, time - step, time + step))
     seen, told = (after - before) / (2 * step), body.bend.velocity(here, time)
     np.testing.assert_allclose(told, seen, atol=1e-5 * (1 + often**3))
@@ -104,7 +104,7 @@ def test_a_body_that_bends_is_watched_swims_and_goes_on_from_a_checkpoint(tmp_pa
     def wave(x, y, t):
         return x, y - 0.1 * (x + 0.5) * np.sin(W * (1.2 * x - t)) * min(1.0, t)
 
-    body = flow.FreeBody(shape=flow.bent(flow.Ellipse(length=1.0, width=0.2), wave), start=(0.0, 0.0))
+    body = flow.FreeBody(shape=flow.bend_shape(flow.Ellipse(length=1.0, width=0.2), wave), start=(0.0, 0.0))
     grid = flow.Grid.covering((-1.2, 1.2), (-0.8, 0.8), cell=1 / 32)
     setup = flow.Setup(grid=grid, viscosity=1 / 400, bodies=(body,), step=0.02, coarse=True)
     through = flow.Simulation(setup)
@@ -129,7 +129,7 @@ def test_a_body_that_bends_is_watched_swims_and_goes_on_from_a_checkpoint(tmp_pa
 )
 def test_what_is_no_map_is_refused(shape, back, words):
     with pytest.raises(InvalidDesign, match=words):
-        flow.bent(shape, back)
+        flow.bend_shape(shape, back)
 
 
 def test_a_map_that_leaps_or_is_too_fast_for_its_tick_is_refused():
@@ -137,7 +137,7 @@ def test_a_map_that_leaps_or_is_too_fast_for_its_tick_is_refused():
         return x, y - 0.01 * np.sin(3e4 * t)
 
     with pytest.raises(InvalidDesign, match=r"leaps, or is too fast .* shorter tick"):
-        flow.bent(PLATE, fast).markers(0.0, Pose(), 0.05)
-    flow.bent(PLATE, fast, tick=1e-6).markers(0.0, Pose(), 0.05)
+        flow.bend_shape(PLATE, fast).markers(0.0, Pose(), 0.05)
+    flow.bend_shape(PLATE, fast, tick=1e-6).markers(0.0, Pose(), 0.05)
     with pytest.raises(InvalidDesign, match="tick is 0 s"):
-        flow.bent(PLATE, fast, tick=0)
+        flow.bend_shape(PLATE, fast, tick=0)

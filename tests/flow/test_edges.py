@@ -9,7 +9,7 @@ from flow_cases import still_setup
 from suchus import flow
 from suchus.core.errors import Doubtful, InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import resolution
-from suchus.flow.consistency import Consistency, GivenMotion
+from suchus.flow.consistency import Consistency, MotionSource
 
 CIRCLE = flow.Cylinder(diameter=1.0)
 
@@ -66,7 +66,7 @@ def test_a_motion_that_contradicts_itself_later_is_refused_then():
     flow.Glide(start=(0.1, 0.0), velocity=(0.2, 0.1)),
 ])  # fmt: skip
 def test_kinks_and_smooth_starts_are_no_contradictions(motion):
-    watched = Consistency(GivenMotion("body", motion, 0.5), 1 / 16)
+    watched = Consistency(MotionSource("body", motion, 0.5), 1 / 16)
     watched.start(0.0, 0.02)
     for k in range(100):
         watched.look(0.02 * k, 0.02)
@@ -76,9 +76,9 @@ def test_the_estimate_is_near_what_the_cases_were_off_by():
     """The cases it is fitted to, within a factor of 1.35; the finest is better than that."""
     cases = ((0.88, 0.20), (0.91, 0.18), (1.18, 0.09), (1.76, 0.05), (2.0, 0.04), (2.05, 0.045), (3.5, 0.026))
     for cells, error in cases:
-        assert 1 / 1.35 < resolution.estimate(cells) / error < 1.35
-    assert resolution.estimate(resolution.needed(0.07)) == pytest.approx(0.07)
-    assert resolution.estimate(resolution.cells_across(1.0, 0.5, 1.0, 0.01)) == 0
+        assert 1 / 1.35 < resolution.estimate_force_error(cells) / error < 1.35
+    assert resolution.estimate_force_error(resolution.required_cells(0.07)) == pytest.approx(0.07)
+    assert resolution.estimate_force_error(resolution.cells_across(1.0, 0.5, 1.0, 0.01)) == 0
 
 
 SPHERES = (
@@ -90,8 +90,10 @@ SPHERES = (
 
 def test_the_estimate_for_a_sphere_is_near_what_it_was_off_by():
     for cells, error in SPHERES:
-        assert 1 / 1.25 < resolution.estimate(cells, blunt=True) / error < 1.25
-        assert resolution.needed(resolution.estimate(cells, blunt=True), blunt=True) == pytest.approx(cells)
+        assert 1 / 1.25 < resolution.estimate_force_error(cells, is_compact=True) / error < 1.25
+        assert resolution.required_cells(
+            resolution.estimate_force_error(cells, is_compact=True), is_compact=True
+        ) == pytest.approx(cells)
 
 
 @pytest.mark.parametrize(("shape", "blunt"), [
@@ -107,7 +109,7 @@ def test_the_estimate_for_a_sphere_is_that_of_blunt_bodies_in_space(shape, blunt
     cells = 16 * float(np.ptp(markers.points, axis=1).max()) ** 0.5 / 10
     at_rest = replace(markers, velocities=0 * markers.velocities)
     found = setup.layer_error(setup.bodies[0], at_rest, (1.0, 0.0, 0.0), 0.0)
-    assert found == pytest.approx(resolution.estimate(cells, blunt=blunt), rel=0.02)
+    assert found == pytest.approx(resolution.estimate_force_error(cells, is_compact=blunt), rel=0.02)
 
 
 def in_stream(cells, reynolds, **changes):

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from suchus.core.errors import InvalidDesign
-from suchus.flow.friction import SLOWEST, FrictionBand, along_stations, blasius, ittc
+from suchus.flow.friction import MIN_TURBULENT_REYNOLDS, FrictionBand, along_stations, blasius, ittc
 
 WATER = {"viscosity": 1e-6, "density": 1000.0}
 
@@ -43,7 +43,9 @@ def test_on_a_plate_the_totals_are_those_of_blasius_and_of_the_line(stations):
     def line(number):
         return 0.075 / (np.log10(number) - 2) ** 2
 
-    at_the_nose = (1.328 / SLOWEST**0.5 - line(SLOWEST)) * SLOWEST / reynolds  # laminar there
+    at_the_nose = (
+        (1.328 / MIN_TURBULENT_REYNOLDS**0.5 - line(MIN_TURBULENT_REYNOLDS)) * MIN_TURBULENT_REYNOLDS / reynolds
+    )  # laminar there
     assert band.laminar == pytest.approx(push * 1.328 / reynolds**0.5, rel=1e-9)
     assert band.turbulent == pytest.approx(push * (line(reynolds) + at_the_nose), rel=1e-9)
 
@@ -60,8 +62,8 @@ def test_the_local_law_is_the_rate_of_the_total():
         for reynolds in (3e4, 1e6, 1e8):
             rate = (total(1.0001 * reynolds) - total(0.9999 * reynolds)) / (0.0002 * reynolds)
             assert float(law(np.array(reynolds))) == pytest.approx(rate, rel=1e-5)
-    below, above = ittc(np.array([0.999, 1.001]) * SLOWEST)
-    assert below == blasius(np.array(0.999 * SLOWEST)) < above
+    below, above = ittc(np.array([0.999, 1.001]) * MIN_TURBULENT_REYNOLDS)
+    assert below == blasius(np.array(0.999 * MIN_TURBULENT_REYNOLDS)) < above
 
 
 @pytest.mark.parametrize("slenderness", [6.0, 8.0, 10.0])

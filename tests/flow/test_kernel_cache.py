@@ -99,7 +99,7 @@ def test_the_latest_few_states_are_kept_and_nothing_else_is_touched(room):
         (room / "a.py").write_text(f"from suchus.flow.compiled import part\nN = {n}\n")
         made.append(compiled.folder())
     kept = [one for one in made if one.is_dir()]
-    assert len(kept) == kernel_cache.KEPT
+    assert len(kept) == kernel_cache.MAX_SOURCE_STATES
     assert made[-1] in kept
     assert (room / "__pycache__" / "a.pyc").exists()
 

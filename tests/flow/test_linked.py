@@ -6,7 +6,7 @@ import pytest
 from suchus import flow
 from suchus.core import rotation
 from suchus.core.errors import InvalidDesign
-from suchus.flow.linked import between
+from suchus.flow.linked import interpolate_links
 
 HINGE = np.array([0.1, 0.02, 0.0])
 ROD = flow.Spherocylinder(length=0.3, radius=0.05)
@@ -129,14 +129,14 @@ def test_between_two_states_rates_are_those_of_the_places():
     end = end._replace(position=end.position + np.array([0.05, 0.01, -0.02]))
     span = 0.1
     for at, near in ((0.0, start), (1.0, end)):
-        for one, other in zip(between(start, end, span, at), near, strict=True):
+        for one, other in zip(interpolate_links(start, end, span, at), near, strict=True):
             assert one == pytest.approx(other, abs=1e-12)
-        inner = between(start, end, span, at + (1e-9 if at == 0 else -1e-9))
+        inner = interpolate_links(start, end, span, at + (1e-9 if at == 0 else -1e-9))
         for one, other in zip(inner, near, strict=True):
             assert one == pytest.approx(other, abs=1e-6)
     d = 1e-5
     for share in (-0.3, 0.2, 0.7, 1.4):
-        here, before, after = (between(start, end, span, share + way * d) for way in (0, -1, 1))
+        here, before, after = (interpolate_links(start, end, span, share + way * d) for way in (0, -1, 1))
         assert (after.position - before.position) / (2 * d * span) == pytest.approx(here.velocity, abs=1e-7)
         turned = rotation.vectors(after.matrix @ np.swapaxes(before.matrix, 1, 2)) / (2 * d * span)
         assert turned == pytest.approx(here.spin, abs=1e-7)

@@ -87,7 +87,7 @@ def test_numba_has_the_names_that_linking_needs():
 
 
 def test_a_name_that_is_gone_is_missed(monkeypatch):
-    monkeypatch.setattr(linking, "_NEEDED", (*linking._NEEDED, "_no_such_name"))
+    monkeypatch.setattr(linking, "_NEEDED", (*linking._REQUIRED_NAMES, "_no_such_name"))
     assert linking.missing() == ["_no_such_name"]
     assert linking.options() == {}  # as numba does it
 
@@ -119,7 +119,7 @@ def test_a_function_of_this_room_is_put_together_here():
 
 
 def test_a_part_is_compiled_once_whatever_whole_numbers_it_is_called_with():
-    @compiled.part
+    @compiled.kernel_part
     def raised(x, n):
         return x**n
 
@@ -132,7 +132,7 @@ def test_a_part_is_compiled_once_whatever_whole_numbers_it_is_called_with():
 
 
 def test_a_part_called_from_python_is_plain_python():
-    @compiled.part
+    @compiled.kernel_part
     def half(x):
         return x / 2
 

@@ -93,7 +93,7 @@ def test_the_force_is_smooth_on_a_long_patch():
 
 @pytest.mark.parametrize(("longest", "cycles"), [(4, 1), (31, 1), (32, 2), (628, 2), (629, 3)])
 def test_a_longer_patch_takes_more_cycles(longest, cycles):
-    assert nest.least_cycles(longest) == cycles
+    assert nest.min_pressure_cycles(longest) == cycles
 
 
 @pytest.mark.parametrize("ratio", [2, 4, 8])

@@ -8,7 +8,7 @@ from flow_cases import still_setup
 
 from suchus import flow
 from suchus.core.errors import Diverged, InvalidDesign
-from suchus.flow.consistency import LEAP, Consistency, GivenMidline, GivenMotion
+from suchus.flow.consistency import MAX_POSITION_ERROR, Consistency, MidlineSource, MotionSource
 from suchus.flow.swimmer import Swimmer
 
 EEL = flow.eel(1.0, stations=65)
@@ -153,9 +153,9 @@ def test_a_body_that_leaps_is_refused(motion):
 @pytest.mark.parametrize("shift", [0.95, 1.05])
 def test_a_leap_is_a_cell(shift):
     def motion(time):
-        return flow.Pose(position=(0.0, 0.0 if time < 0.1 else shift * LEAP * CELL))
+        return flow.Pose(position=(0.0, 0.0 if time < 0.1 else shift * MAX_POSITION_ERROR * CELL))
 
-    watched = Consistency(GivenMotion("body", motion, 0.5), CELL)
+    watched = Consistency(MotionSource("body", motion, 0.5), CELL)
     if shift < 1:
         watched.look(0.095, 0.01)
         return
@@ -170,7 +170,7 @@ def test_a_leap_is_a_cell(shift):
     flow.Oscillation(frequency=4.0, heave=(0.3, 0.0), pitch=0.4),
 ])  # fmt: skip
 def test_what_turns_starts_at_once_and_returns_does_not_leap(motion):
-    watched = Consistency(GivenMotion("body", motion, 0.5), 1 / 16)
+    watched = Consistency(MotionSource("body", motion, 0.5), 1 / 16)
     for k in range(400):
         watched.look(0.0137 * k, 0.0137)
 
@@ -182,7 +182,7 @@ def test_a_midline_may_count_its_heading_anew():
         state = EEL.spine(time)
         return replace(state, heading=state.heading + 2 * np.pi * (time > 0.03))
 
-    watched = Consistency(GivenMidline("eel", spine), CELL)
+    watched = Consistency(MidlineSource("eel", spine), CELL)
     for k in range(20):
         watched.look(0.004 * k, 0.004)
 

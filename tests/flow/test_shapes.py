@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from suchus import flow
 from suchus.core.errors import InvalidDesign
-from suchus.flow.midline import Remembered
+from suchus.flow.midline import CachedMidline
 
 STILL = flow.Pose()
 SHAPES = [
@@ -80,7 +80,7 @@ def test_a_remembered_midline_is_the_midline_whatever_becomes_of_what_was_given(
             heading_rate=still,
         )  # fmt: skip
 
-    kept = Remembered(spine)
+    kept = CachedMidline(spine)
     for time in (0.1, 0.2, 0.1, 0.3, 0.4, 0.1, 0.2):
         assert np.array_equal(kept(time).y, time * np.arange(5))
     assert asked == [0.1, 0.2, 0.3, 0.4]
@@ -91,7 +91,7 @@ def test_a_remembered_midline_is_the_midline_whatever_becomes_of_what_was_given(
 
 def test_a_remembered_midline_is_where_it_is_asked_for_and_anew_once_it_is_forgotten():
     spine, eel = flow.eel(1.0, stations=33).spine, {"size": 1.0}
-    kept = Remembered(lambda time: replace(spine(time), half_width=eel["size"] * spine(time).half_width))
+    kept = CachedMidline(lambda time: replace(spine(time), half_width=eel["size"] * spine(time).half_width))
     here, there = flow.Pose(position=(0.1, 0.2), angle=0.3), flow.Pose(position=(0.1, 0.2), angle=0.4)
     for time, pose in ((0.1, here), (0.1, there), (0.2, there), (0.1, here)):
         placed = kept.placed(time, pose)

@@ -7,8 +7,8 @@ from suchus import flow
 from suchus.core.errors import Diverged, InvalidDesign, OutsideLimits, UnreadableFile
 from suchus.flow.body import window_of
 from suchus.flow.compiled import PAD
-from suchus.flow.setup import LAYER_CELLS
-from suchus.flow.simulation import SLACK
+from suchus.flow.setup import MIN_LAYER_CELLS
+from suchus.flow.simulation import LAYER_SPEED_FACTOR
 
 
 @pytest.mark.parametrize(
@@ -211,7 +211,9 @@ def test_a_motion_that_outgrows_the_grid_is_refused_when_it_does():
     sim = flow.Simulation(still_setup(bodies=(body,), viscosity=1 / 500))
     with pytest.raises(InvalidDesign, match=r"at t = 0\..* take cells of at most"):
         sim.run(0.6, progress=False)
-    reached = SLACK * 16**2 / (2000 * LAYER_CELLS**2)  # the Reynolds number is 2000 t, the layer 16 / sqrt(Re) cells
+    reached = (
+        LAYER_SPEED_FACTOR * 16**2 / (2000 * MIN_LAYER_CELLS**2)
+    )  # the Reynolds number is 2000 t, the layer 16 / sqrt(Re) cells
     assert reached - 0.04 < sim.time < reached
 
 

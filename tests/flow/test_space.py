@@ -14,7 +14,7 @@ from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import grid as grids
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
-from suchus.flow.immerse import THINNEST
+from suchus.flow.immerse import MIN_THICKNESS
 from suchus.flow.momentum import Reaction
 from suchus.flow.watch import vorticity_size
 from suchus.flow.water import Fluid
@@ -208,7 +208,7 @@ def test_what_counts_around_bodies_is_kept_there_alone():
     small, large = (ball(grid=flow.Grid(cells=(n, 24, 24), cell=1 / 8, origin=(-1.5,) * 3), steps=0) for n in (24, 48))
     grown = [sim.water.arrays * sim.water.p.size for sim in (small, large)]
     assert (grown[1] - grown[0]) / (large.water.p.size - small.water.p.size) == pytest.approx(
-        grids.arrays_of(3), rel=0.05
+        grids.numbers_per_cell(3), rel=0.05
     )
     assert large.water.mu1.shape == (3, 3, *(end - first + 1 for first, end in np.reshape(large.water.window, (3, 2))))
 
@@ -310,7 +310,7 @@ def test_an_ellipsoid_knows_how_thick_it_is():
     inside = 0.04  # less than a cell: as far as it is thick
     rim = 0.08 * np.sqrt(1 - ((0.5 - inside) / 0.5) ** 2)
     assert disc.thickness[middle, middle, middle + 11] == pytest.approx(rim)
-    ball = flow.Sphere(diameter=THINNEST * h).measure(line, line, line, 0.0, still, 3 * h)
+    ball = flow.Sphere(diameter=MIN_THICKNESS * h).measure(line, line, line, 0.0, still, 3 * h)
     beyond = -(ball.thickness + ball.distance) / h  # from the other surface: no part of it is felt
     assert beyond.max() < -1.0
 

@@ -12,7 +12,7 @@ from suchus import flow
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import body as bodies
 from suchus.flow.added import added_mass
-from suchus.flow.immerse import LEAST_SHARE, close_surface
+from suchus.flow.immerse import MIN_FLUID_FRACTION, close_surface
 from suchus.flow.sections import ellipse_foot
 from suchus.flow.water import Fluid
 
@@ -374,7 +374,7 @@ def test_no_path_from_cell_to_cell_crosses_a_closed_surface(normal, shift):
         before = [slice(1, None)] * 3
         before[axis] = slice(None, -1)
         apart = side[inner] != side[tuple(before)]
-        assert np.array_equal(passage == np.float32(LEAST_SHARE), apart)
+        assert np.array_equal(passage == np.float32(MIN_FLUID_FRACTION), apart)
 
 
 @pytest.mark.parametrize("pose", [

@@ -15,13 +15,13 @@ import suchus
 from suchus import flow
 from suchus.core.progress import silent
 from suchus.flow.added import generalised_added_mass
-from suchus.flow.twist import Twists, joined, none
+from suchus.flow.twist import Twists, join_twists, resting_twists
 from suchus.robot.control import Swimming
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.sim.land.run import Run
 from suchus.sim.land.waters import Slice
 from suchus.swimming.coupling import Swim
-from suchus.swimming.coupling.chain import ChainState, Way
+from suchus.swimming.coupling.chain import ChainPath, ChainState
 from suchus.swimming.water import swim_of
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
@@ -142,9 +142,9 @@ def test_added_mass_of_bent_links():
     modes = []
     for k, (x, y, _) in enumerate(places):
         for linear, spin in (((1.0, 0.0), 0.0), ((0.0, 1.0), 0.0), ((0.0, 0.0), 1.0)):
-            each = [none(1, 2) for _ in places]
+            each = [resting_twists(1, 2) for _ in places]
             each[k] = Twists(about=np.array([[x, y]]), linear=np.array([linear]), angular=np.array([[spin]]))
-            modes.append(joined(each))
+            modes.append(join_twists(each))
     outlines = [one.shape.markers(0.0, one.pose(0.0), grid.cell) for one in bodies]
     ours = generalised_added_mass(sim.water, outlines, modes, WATER).matrix
     theirs = WATER * by_panels(places, a, b)
@@ -171,7 +171,7 @@ def swum(mass_factor=1.0, duration=0.6, **changes):
     """A swim of the limbless swimmer from rest in a slice, so many times as heavy, and its momentum after each step."""
     robot = suchus.ROBOTS["swimmer"]
     if mass_factor != 1.0:
-        robot = scaled(robot, length_factor=1.0, mass_factor=mass_factor)
+        robot = rescale(robot, length_factor=1.0, mass_factor=mass_factor)
     run = Run(
         robot=robot, gait=swim_of(robot, frequency=1.0), water=Slice(cells=64, reynolds=1500.0, **changes),
         control=Swimming(ramp=0.5),
@@ -245,7 +245,7 @@ def course_of(times, states):
     """The joints' course through postures at times, as a function that gives angles and rates: cubics."""
     ways = []
     for t0, t1, one, other in zip(times[:-1], times[1:], states[:-1], states[1:], strict=True):
-        ways.append(Way(t0, one))
+        ways.append(ChainPath(t0, one))
         ways[-1].go(t0, one, t1, other)
 
     def course(time):

@@ -9,7 +9,7 @@ from panels import by_panels
 
 from suchus import flow
 from suchus.flow.added import generalised_added_mass
-from suchus.flow.twist import Twists, joined
+from suchus.flow.twist import Twists, join_twists
 
 HALF, REACH = (0.15, 0.03), 0.18
 """Half of an ellipse's length and width, and from its middle to its joints [m]."""
@@ -146,7 +146,7 @@ class LinkedSwimmer:
         if self.steps < 2 or self.steps % 8 == 0:
             twists = [_twists(places, mode) for mode in modes]
             outlines = [body.shape.markers(start, body.pose(start), sim.setup.grid.cell) for body in sim.setup.bodies]
-            self.added = generalised_added_mass(sim.water, outlines, [joined(each) for each in twists], 1.0).matrix
+            self.added = generalised_added_mass(sim.water, outlines, [join_twists(each) for each in twists], 1.0).matrix
         mass, moment = inertia()
         whole = np.einsum("ikc,jkc,c->ij", modes, modes, np.array([mass, mass, moment])) + self.added
         for _ in range(3):  # the step's end moves a little with what it is told

@@ -8,10 +8,10 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.animals.capture import Camera, SyntheticAnimal, UnusableTracks, driven_share, film, film_animal, observe
-from suchus.animals.forces import Unknown, said, walked_forces
-from suchus.animals.forces.body import Quantities, drawn, errors, unsure, widened
-from suchus.animals.forces.water import THICK, _shared, _spread, _Swum, swum_forces
+from suchus.animals.capture import Camera, SyntheticAnimal, UnusableTracks, driven_fraction, film, film_animal, observe
+from suchus.animals.forces import Unknown, summary_lines, walked_forces
+from suchus.animals.forces.body import Quantities, errors, sample_walk, unsure, widen_body
+from suchus.animals.forces.water import THICK_WATER, _hinge_harmonics, _spread, _SwimCycle, swum_forces
 from suchus.apps.cli import main
 from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.control import Swimming
@@ -76,21 +76,21 @@ def test_the_body_has_the_animals_size_and_goes_as_fast(walked):
 
 
 def test_what_is_said_of_the_speed_is_so(walked):
-    assert not any("does not walk as the animal does" in line for line in said(walked))
+    assert not any("does not walk as the animal does" in line for line in summary_lines(walked))
     slow = walked.copy(deep=True)
     slow["high"] = slow.high.where(slow.quantity != "speed_to_filmed", 0.9)
-    assert any("does not walk as the animal does" in line for line in said(slow))
-    assert sum("0.457 ± 0.063" in line for line in said(walked)) == 1
+    assert any("does not walk as the animal does" in line for line in summary_lines(slow))
+    assert sum("0.457 ± 0.063" in line for line in summary_lines(walked)) == 1
     assert len(ground_forces_figure(walked).axes) == 4
 
 
 def test_the_middle_of_all_distributions_is_the_walk_itself_and_their_ends_are_those_of_intervals(walk):
     names = unsure(walk)
-    same = drawn(walk, dict.fromkeys(names, 0.5))
+    same = sample_walk(walk, dict.fromkeys(names, 0.5))
     assert {name: one.value for name, one in same.numbers.items()} == pytest.approx(
         {name: one.value for name, one in walk.numbers.items()}, nan_ok=True
     )
-    high = drawn(walk, dict.fromkeys(names, 0.975))
+    high = sample_walk(walk, dict.fromkeys(names, 0.975))
     seen, other = walk.numbers["stride"], high.numbers["stride"]
     assert other.value == pytest.approx(seen.value + seen.error)
     assert errors(0.975) == pytest.approx(1.0)
@@ -150,25 +150,25 @@ def test_bad_words_are_one_sentence(words, told, tmp_path, monkeypatch, capsys):
 )
 def test_hinges_share_all_of_the_bend(bends, hinges):
     places = np.arange(1, len(bends) + 1) / (len(bends) + 1)
-    each = _shared(np.array(bends, complex), places, sorted(hinges))
+    each = _hinge_harmonics(np.array(bends, complex), places, sorted(hinges))
     assert sum(each) == pytest.approx(sum(bends), abs=1e-9)
 
 
 def test_hinges_where_keypoints_are_bend_as_these_do():
     places, bends = np.array([0.25, 0.5, 0.75]), np.array([0.1 + 0.2j, -0.3, 0.05j])
-    np.testing.assert_allclose(_shared(bends, places, (0.25, 0.5, 0.75)), bends)
+    np.testing.assert_allclose(_hinge_harmonics(bends, places, (0.25, 0.5, 0.75)), bends)
 
 
 def test_a_body_of_another_volume_has_its_length():
     eel = ROBOTS["swimmer"]
-    wide = widened(eel, 1.7 * sum(volumes(eel).values()))
+    wide = widen_body(eel, 1.7 * sum(volumes(eel).values()))
     assert sum(volumes(wide).values()) == pytest.approx(1.7 * sum(volumes(eel).values()))
     assert wide.length == pytest.approx(eel.length)
 
 
 def test_a_flow_has_the_interval_of_the_sections_in_proportion_to_its_forces():
-    sections = [_Swum(size * np.ones((3, 4)), speed) for size, speed in ((1.0, 0.5), (0.8, 0.4), (1.3, 0.6))]
-    spread = _spread([_Swum(3.0 * np.ones((3, 4)), 0.1)], sections)
+    sections = [_SwimCycle(size * np.ones((3, 4)), speed) for size, speed in ((1.0, 0.5), (0.8, 0.4), (1.3, 0.6))]
+    spread = _spread([_SwimCycle(3.0 * np.ones((3, 4)), 0.1)], sections)
     np.testing.assert_allclose([one.force[0, 0] for one in spread], [3.0, 2.4, 3.9])
     np.testing.assert_allclose([one.speed for one in spread], [0.1, 0.08, 0.12])
     assert _spread(sections, sections) == sections
@@ -189,7 +189,7 @@ def test_the_forces_of_our_own_crawl_come_back():
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     record = crawl(robot, gait, cycles=3.4)
     camera = replace(ABOVE, noise=0.002, lost=0.02)
-    walk = observe(film(robot, record, camera), tail_share=driven_share(robot))
+    walk = observe(film(robot, record, camera), tail_share=driven_fraction(robot))
     data = walked_forces(walk, robot, unknown=Unknown(draws=19))
     true = stance_forces(record, Window(START + gait.period, gait.period, 2))
     grid = np.arange(true.sizes["phase"]) / true.sizes["phase"]
@@ -245,14 +245,14 @@ def test_power_and_force_of_the_water_come_back(swim, tmp_path):
 def test_three_models_of_the_water_stand_side_by_side(swim):
     _, walk = swim
     data = swum_forces(walk, ROBOTS["swimmer"], unknown=FEW, cells={"slice": 48})
-    assert list(data.rung.values) == ["sections", THICK, "slice", "space"]
+    assert list(data.rung.values) == ["sections", THICK_WATER, "slice", "space"]
     assert bool(np.isfinite(data.thrust).all())
     assert (data.mean_power > 0.0).all()
     # a body that nothing holds is pushed as much as it is braked
     for rung in data.rung.values:
         one = data.sel(rung=rung)
         assert abs(float(one.thrust.mean())) < 0.35 * float(one.peak_thrust)
-    assert any("outside the interval" in line or "within the interval" in line for line in said(data))
+    assert any("outside the interval" in line or "within the interval" in line for line in summary_lines(data))
     assert len(water_forces_figure(data).axes) == 3
 
 
@@ -267,4 +267,4 @@ def test_the_speed_of_the_film_is_held_against_every_model():
     table.add("displaced", [1.0], "kg", "")
     for seen, told in ((2.0, "within the interval of slice"), (3.0, "outside the interval of every model")):
         table.add("speed_filmed", [seen], "m/s", "")
-        assert said(data.merge(table.dataset().isel(quantity=[0, 1, -1])))[-1].endswith(told)
+        assert summary_lines(data.merge(table.dataset().isel(quantity=[0, 1, -1])))[-1].endswith(told)

@@ -39,7 +39,7 @@ from suchus.experiments.study import Plan, read_study
 from suchus.robot import blueprint
 from suchus.robot.design import Robot, layout, servo_names
 from suchus.robot.design.ground import Bumps, Step, Stone
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.motion import check_limits, draft_gait
 from suchus.sim.land import (
     Backlash,
@@ -177,7 +177,7 @@ def _imported(self: Doors, dice: Random, end: str) -> None:
         if whole > 0 and abs(robot.mass - whole) > 1e-3 * whole and not draft.remarks:
             raise Silent(f"a robot of {robot.mass:g} kg from a file of {whole:g} kg, and nothing is said")
     if dice.random() < 0.05:
-        again = blueprint.read(blueprint.write(robot, self.place / "odd.toml"), Robot, suchus.ROBOTS)
+        again = blueprint.read_design(blueprint.write(robot, self.place / "odd.toml"), Robot, suchus.ROBOTS)
         if again != robot:
             raise Silent("what was written is read as another robot")
     if dice.random() < 0.1:
@@ -252,7 +252,7 @@ def walks(self: Doors, dice: Random) -> int:
     robot, duration = suchus.ROBOTS[name], dice.choice((0.02, 0.04, 0.06))
     if dice.random() < 0.5:
         factor = 10 ** dice.uniform(-0.5, 0.5)
-        robot = scaled(robot, length_factor=factor, mass_factor=factor**3 * dice.uniform(0.5, 2.0))
+        robot = rescale(robot, length_factor=factor, mass_factor=factor**3 * dice.uniform(0.5, 2.0))
     gait = draft_gait(robot, "own") if dice.random() < 0.1 else suchus.GAITS[other]
     if dice.random() < 0.5:
         one = dice.choice(sorted(gait.numbers()))

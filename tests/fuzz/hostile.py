@@ -25,7 +25,7 @@ import xarray as xr
 import suchus
 from suchus import flow
 from suchus.animals.capture import observe, read_tracks
-from suchus.animals.capture.tracks import NEEDED
+from suchus.animals.capture.tracks import GAIT_KEYPOINTS
 from suchus.apps.cli import main
 from suchus.apps.cli.entry import COMMANDS
 from suchus.apps.report import load_result, render_page
@@ -41,7 +41,7 @@ from suchus.robot import blueprint, kinematics
 from suchus.robot.design import Robot, layout, servo_names, value_at, with_values
 from suchus.robot.motion import check_limits
 from suchus.sim.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
-from suchus.visual.replay.frames import checked
+from suchus.visual.replay.frames import check_record
 
 PATIENCE = 10
 """A case that takes more of a processor's time hangs, and one that waits for something else for longer [s]."""
@@ -303,7 +303,7 @@ def written(self: Range, name: str, dice: Random, how: Any = None, to: str | Non
 
 
 def robot_files(self: Range, dice: Random) -> None:
-    made = blueprint.read(written(self, "robot.toml", dice), Robot, suchus.ROBOTS)
+    made = blueprint.read_design(written(self, "robot.toml", dice), Robot, suchus.ROBOTS)
     check_limits(made, suchus.GAITS["belly_crawl"])
 
 
@@ -387,7 +387,7 @@ def foreign_records(self: Range, dice: Random) -> None:
     there = load(self.place / "foreign.nc")
     if dice.random() < 0.5:
         one = there.isel(run=0) if "run" in there.dims and there.sizes["run"] else there
-        checked(one, suchus.ROBOTS["caiman"])
+        check_record(one, suchus.ROBOTS["caiman"])
     else:
         dice.choice((takes, films))(self.place / "foreign.nc")
 
@@ -712,7 +712,7 @@ def _swim() -> xr.Dataset:
 def _tracks() -> str:
     """Return a walk of three seconds as a table; the points go about as those of a sprawling animal do."""
     rng = np.random.default_rng(0)
-    names = list(NEEDED)
+    names = list(GAIT_KEYPOINTS)
     rows = ["time [s], " + ", ".join(f"{name}_{axis} [m]" for name in names for axis in "xy")]
     for i in range(90):
         time = i / 30

@@ -7,7 +7,7 @@ import pytest
 
 from suchus.core.errors import BusFailure, InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog._driven import Driven
-from suchus.hardware import BlindRig, DriveSettings, drive, held, straight
+from suchus.hardware import BlindRig, DriveSettings, drive, fix_in_place, straight
 from suchus.hardware.bus.pca9685 import Pulses, open_wires
 from suchus.robot.control import Coordinated
 from suchus.robot.gaits import GAITS
@@ -94,7 +94,7 @@ def test_it_is_driven_blind_and_switched_off_in_the_end():
     assert wires.written[-1][1] == 0xFD
     outcome = Driven(robot=ROBOT, gait=GAIT).tell(log, 0.0)
     assert "they tell nothing of it" in outcome.decides
-    assert np.isfinite(held(log, ROBOT).position).all()
+    assert np.isfinite(fix_in_place(log, ROBOT).position).all()
     rig.close()
     assert wires.closed
 

@@ -31,8 +31,8 @@ def misbuilt(protocol="dynamixel"):
 
 def rigged(built, trouble=None):
     body = Obedient()
-    emulator = Emulator(built, body, trouble or Trouble(), clocked=True)
-    rig = Rig(ROBOT, wiring(built.bus[0].protocol), [MemoryPort(emulator)], clocked=True)
+    emulator = Emulator(built, body, trouble or Trouble(), has_clock=True)
+    rig = Rig(ROBOT, wiring(built.bus[0].protocol), [MemoryPort(emulator)], has_clock=True)
     return body, rig
 
 

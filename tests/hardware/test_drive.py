@@ -7,9 +7,19 @@ import pytest
 from tests.wires import Obedient, wiring
 
 from suchus.core.errors import BusFailure, InvalidDesign, OutsideLimits, UnsuitedRobot
-from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, about, drive, read_wiring, senses, write_wiring
+from suchus.hardware import (
+    BusClock,
+    DriveLimits,
+    DriveSettings,
+    Rig,
+    drive,
+    read_wiring,
+    senses,
+    wire_statistics,
+    write_wiring,
+)
 from suchus.hardware.bus import BusGone, BusPlace, straight
-from suchus.hardware.drive import ASKED, check_drive
+from suchus.hardware.drive import STOP_PREFIX, check_drive
 from suchus.hardware.emulator import Emulator, MemoryPort, Trouble
 from suchus.robot.control import Coordinated, HeadingRule, OpenLoop
 from suchus.robot.design import layout
@@ -30,15 +40,15 @@ class Drive:
         self.wiring = wiring(protocol)
         self.body = Obedient()
         self.body.angles[:] = self.body.goals[:] = REST + start
-        self.emulator = Emulator(built or self.wiring, self.body, trouble or Trouble(), clocked=True)
+        self.emulator = Emulator(built or self.wiring, self.body, trouble or Trouble(), has_clock=True)
         self.port = MemoryPort(self.emulator)
-        self.rig = Rig(ROBOT, self.wiring, [self.port], clocked=True, without=without)
+        self.rig = Rig(ROBOT, self.wiring, [self.port], has_clock=True, limp_servos=without)
         self.settings = DriveSettings(**{"duration": 0.3} | settings)
         self.said = []
 
     def go(self, gait=GAIT, control=None, asked=lambda: ""):
         return drive(
-            self.rig, gait, control, self.settings, clock=BusClock(self.rig), asked=asked, say=self.said.append
+            self.rig, gait, control, self.settings, clock=BusClock(self.rig), stop_request=asked, say=self.said.append
         )
 
     @property
@@ -55,7 +65,7 @@ def test_goals_are_those_of_the_gait_to_half_a_step_and_the_robot_ends_limp(prot
     assert np.abs(driven.servo_target.values - wanted[log.time.values >= 0.0]).max() <= np.pi / 4096 + 1e-12
     assert log.cause.item() == ""
     assert one.limp
-    assert about(log)["holes"] == 0.0
+    assert wire_statistics(log)["holes"] == 0.0
 
 
 @PROTOCOLS
@@ -283,9 +293,9 @@ def test_servos_that_stood_still_since_the_computer_was_busy_take_goals_again(ti
 def boarded(needed):
     """Return a rig with a board of each kind, and the numbers that are asked in each of some ticks."""
     made = wiring(boards=True)
-    emulator = Emulator(made, Obedient(), clocked=True)
+    emulator = Emulator(made, Obedient(), has_clock=True)
     port, asked = MemoryPort(emulator), []
-    rig = Rig(ROBOT, made, [port], clocked=True, needed=needed)
+    rig = Rig(ROBOT, made, [port], has_clock=True, required_senses=needed)
     hear = emulator._listening
     emulator._listening = lambda line, servo: (asked[-1].append(servo), hear(line, servo))[1]
     for _ in range(100):
@@ -361,7 +371,7 @@ def test_a_place_that_cannot_be_reached_so_fast_is_refused_thrice_and_then_stops
 def test_a_key_ends_it_without_an_error():
     one = Drive(duration=5.0)
     log = one.go(asked=lambda: "a key." if one.body.time > 0.2 else "")
-    assert log.cause.item() == f"{ASKED}a key."
+    assert log.cause.item() == f"{STOP_PREFIX}a key."
     assert log.time[-1] < 0.3
     assert one.limp
 
@@ -422,7 +432,7 @@ def test_a_control_that_must_sense_what_the_robot_cannot_is_refused():
     with pytest.raises(UnsuitedRobot, match="orientation"):
         check_drive(rig, GAIT, Coordinated(heading=HeadingRule()))
     boards = wiring(boards=True)
-    full = Rig(ROBOT, boards, [MemoryPort(Emulator(boards, Obedient(), clocked=True))], clocked=True)
+    full = Rig(ROBOT, boards, [MemoryPort(Emulator(boards, Obedient(), has_clock=True))], has_clock=True)
     check_drive(full, GAIT, Coordinated(heading=HeadingRule()))
     assert "foot_pressure" in senses(ROBOT, boards.board)
     assert "foot_pressure" not in senses(ROBOT, ())

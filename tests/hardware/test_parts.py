@@ -9,12 +9,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from suchus.apps.report.building_sheet import floats_said, mass_said, printed, tables
+from suchus.apps.report.building_sheet import floating_sentence, mass_sentences, printed_parts, tables
 from suchus.article.paper.tables import LEG_CHAIN, SPINE_CHAIN
 from suchus.hardware import commands, straight, trajectory_text
 from suchus.hardware.outlines import CORD_HOLE, plates_dxf, stl, top_dxf
 from suchus.hardware.parts import area, sheet
-from suchus.hardware.ros import PLUGIN, controllers, described, note
+from suchus.hardware.ros import PLUGIN, controllers, note, ros_urdf
 from suchus.robot.design import Servo, layout, with_servos
 from suchus.robot.kinematics.tail import cable_changes
 from suchus.robot.motors import motor
@@ -26,7 +26,7 @@ NAMES = ["caiman", "floating_caiman", "strider", "salamandra", "swimmer"]
 
 @pytest.fixture(scope="module")
 def bought(robot):
-    return with_servos(robot, lambda servo: Servo.of(motor("STS3250"), like=servo))
+    return with_servos(robot, lambda servo: Servo.of(motor("STS3250"), template=servo))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -55,14 +55,14 @@ def test_servos_sit_on_the_body_ahead_of_their_hinge_and_weigh_what_they_are_bou
     pelvis = next(one for one in found.bodies if one.name == "pelvis")
     assert pelvis.servos == pytest.approx(7 * motor("STS3250").mass)  # four of the hips, three of the axis
     assert pelvis.rest == pytest.approx(pelvis.simulated - pelvis.servos - pelvis.printed)
-    said = mass_said(found)
+    said = mass_sentences(found)
     assert f"{19 * motor('STS3250').mass:.2f} kg are servos" in said[0]
     assert not any("Heavier" in one for one in said)
     thick = sheet(bought, wall=0.006)
     heavy = [one for one in thick.bodies if one.rest < 0.0]
     assert heavy
-    assert all(f"{one.name} by {-1000 * one.rest:.0f} g" in mass_said(thick)[-1] for one in heavy)
-    assert "suchus size chooses some" in mass_said(sheet(former))[0]
+    assert all(f"{one.name} by {-1000 * one.rest:.0f} g" in mass_sentences(thick)[-1] for one in heavy)
+    assert "suchus size chooses some" in mass_sentences(sheet(former))[0]
     unknown = sheet(former).bodies[0]
     assert np.isnan(unknown.servos)
     assert np.isnan(unknown.rest)
@@ -120,9 +120,9 @@ def test_what_floats_is_told_from_what_sinks():
     afloat, sinks = sheet(ROBOTS["floating_caiman"]), sheet(ROBOTS["caiman"])
     whole = afloat.floating.bare + sum(volume for _, volume, _ in afloat.floating.foam)
     assert -afloat.floating.lacking == pytest.approx(0.05 * whole)  # as it is designed
-    assert floats_said(afloat).startswith(f"It floats with {50000 * whole:.0f} cm3")
+    assert floating_sentence(afloat).startswith(f"It floats with {50000 * whole:.0f} cm3")
     assert sinks.floating.lacking > 0.0
-    assert floats_said(sinks).startswith("It sinks: ")
+    assert floating_sentence(sinks).startswith("It sinks: ")
     raised = {body: up for body, _, up in afloat.floating.foam}
     assert raised["thorax"] > 0.0
 
@@ -131,7 +131,7 @@ def test_what_floats_is_told_from_what_sinks():
 def test_the_urdf_has_a_joint_for_each_servo_and_a_block_that_counts_them(name):
     body = ROBOTS[name]
     servos = layout(body).servos
-    root = ElementTree.fromstring(described(body, numbers=range(11, 11 + len(servos))))
+    root = ElementTree.fromstring(ros_urdf(body, numbers=range(11, 11 + len(servos))))
     joints = {joint.get("name"): joint for joint in root.findall("joint")}
     assert set(servos) <= set(joints)
     block = root.find("ros2_control")
@@ -168,7 +168,7 @@ def test_outlines_have_the_lengths_of_the_parts(bought):
     trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
     ezdxf = pytest.importorskip("ezdxf", reason="ezdxf is not installed")
     found = sheet(bought)
-    names = {part.name for part in printed(found)}
+    names = {part.name for part in printed_parts(found)}
     assert {"LF_femur", "pelvis", "tail_root"} <= names
     assert not any(name.startswith(("RF_", "RH_")) for name in names)
     for name in ("LF_femur", "pelvis", "LF_foot"):

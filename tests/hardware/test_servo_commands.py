@@ -29,7 +29,7 @@ from suchus.hardware import (
 )
 from suchus.robot.blueprint import MistakenFile
 from suchus.robot.design import Servo, cable_joints, crocodile, layout, servo_names, with_named_servos
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.kinematics.tail import servo_angle
 from suchus.robot.motion import START, intended
 from suchus.robot.motors import motor
@@ -137,7 +137,7 @@ def load(**changes):
 
 def test_other_servos_are_put_in_their_places_in_an_equal_robot_too(robot):
     again = crocodile(copy.deepcopy(robot.tables))
-    other = Servo.of(motor("XM540-W270"), like=robot.servo("spine_yaw_1"))
+    other = Servo.of(motor("XM540-W270"), template=robot.servo("spine_yaw_1"))
     for one in (robot, again, copy.deepcopy(robot)):
         made = with_named_servos(one, {"spine_yaw_1": other, "RH_knee": other, "tail_cable": other})
         changed = {name for name in servo_names() if made.servo(name) != one.servo(name)}
@@ -261,7 +261,7 @@ def test_the_trajectory_has_the_fields_of_the_ros_message_and_the_joints_of_the_
 @pytest.mark.parametrize("name", ["strider", "salamander", "salamandra"])
 def test_any_robot_gets_its_commands_and_they_can_be_repeated(name):
     body = ROBOTS[name]
-    gait, servos = own_gait(body), layout(body).servos
+    gait, servos = default_gait(body), layout(body).servos
     told = commands(body, gait, straight(body), cycles=2)
     assert told.servos == servos
     assert told.angles.shape == told.pulses.shape == (len(told.time), len(servos))
@@ -277,4 +277,4 @@ def test_any_robot_gets_its_commands_and_they_can_be_repeated(name):
 
 def test_a_map_for_another_robot_is_refused():
     with pytest.raises(InvalidDesign, match=r"lacks LF_elbow, RF_elbow, LM_yaw.*robot 'strider'"):
-        commands(ROBOTS["strider"], own_gait(ROBOTS["strider"]), STRAIGHT)
+        commands(ROBOTS["strider"], default_gait(ROBOTS["strider"]), STRAIGHT)

@@ -49,7 +49,7 @@ def test_every_gait_of_the_shelf_is_below_the_limits_or_it_is_said_which_servo_w
 
 
 def test_of_weaker_servos_it_is_said_which_would_do():
-    former = blueprint.read(ROOT / "examples" / "former_caiman.toml", Robot, ROBOTS)
+    former = blueprint.read_design(ROOT / "examples" / "former_caiman.toml", Robot, ROBOTS)
     found = measured(former, cycles=1, timestep=0.005, names=("belly_crawl", "spine_only", "limbs_only"))
     assert {gait for gait, told in found.items() if "spine_yaw_1" in told["servos"]} == {"belly_crawl", "spine_only"}
     agrees(found)

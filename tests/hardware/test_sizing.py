@@ -9,8 +9,8 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from suchus.core.errors import InvalidDesign, UnknownName, UnsuitedRobot
-from suchus.hardware import cases, fitted, loads_of_each, share_at_limit, size, with_better
-from suchus.hardware.loads import FULL_WOUND, borne, given_in, use_of_each
+from suchus.hardware import cases, loads_of_cases, share_at_limit, size, with_better, with_motors
+from suchus.hardware.loads import FULL_WOUND, measure_loads, torque_use, use_of_each
 from suchus.hardware.sizing import FACTORS, does, families_of, places, use
 from suchus.robot.design import Servo, layout, servo_names, with_servos
 from suchus.robot.design.motor import COPPER
@@ -24,7 +24,7 @@ STS = motor("STS3250")
 
 @pytest.fixture(scope="module")
 def bought(robot):
-    return with_servos(robot, lambda servo: Servo.of(STS, like=servo))
+    return with_servos(robot, lambda servo: Servo.of(STS, template=servo))
 
 
 @pytest.fixture(scope="module")
@@ -55,25 +55,25 @@ def test_what_a_servo_uses_is_told_by_its_line(bought):
     assert use_of_each(bought, braking).sel(servo="LF_yaw").values == pytest.approx(0.5)
     full = made(bought, np.r_[np.full(2, given), np.full(48, 0.9 * given)], np.full(50, speed))
     assert float(share_at_limit(bought, full).sel(servo="LF_yaw")) == pytest.approx(2 / 50)
-    assert given_in(servo, np.full(50, 0.5 * given), np.full(50, speed)) == pytest.approx(0.5)
+    assert torque_use(servo, np.full(50, 0.5 * given), np.full(50, speed)) == pytest.approx(0.5)
 
 
 def test_currents_and_heat_follow_from_torque_and_speed(bought):
     servo, heat = bought.servo("LF_yaw"), STS.heat
-    stalled = borne(bought, made(bought, np.full(50, servo.torque), np.zeros(50)))["LF_yaw"]
+    stalled = measure_loads(bought, made(bought, np.full(50, servo.torque), np.zeros(50)))["LF_yaw"]
     assert stalled.current == stalled.peak_current == pytest.approx(STS.idle_current + STS.stall_current)
     assert stalled.steady == inf
-    rated = borne(bought, made(bought, np.full(50, STS.continuous_torque), np.zeros(50)))["LF_yaw"]
+    rated = measure_loads(bought, made(bought, np.full(50, STS.continuous_torque), np.zeros(50)))["LF_yaw"]
     assert rated.rms == pytest.approx(STS.continuous_torque)
     assert rated.steady == pytest.approx(STS.temperature_limit)
-    turning = borne(bought, made(bought, np.full(50, 1.0), np.full(50, 2.0)))["LF_yaw"]
+    turning = measure_loads(bought, made(bought, np.full(50, 1.0), np.full(50, 2.0)))["LF_yaw"]
     assert turning.power == pytest.approx(2.0)
     electric = servo.winding.volts * (turning.current - STS.idle_current)
     assert electric > turning.power  # a motor takes more than it gives
-    braking = borne(bought, made(bought, np.full(50, -0.1), np.full(50, 2.0)))["LF_yaw"]
+    braking = measure_loads(bought, made(bought, np.full(50, -0.1), np.full(50, 2.0)))["LF_yaw"]
     assert braking.current == pytest.approx(STS.idle_current)  # nothing is given back
     assert braking.power == 0.0
-    hot = borne(bought, made(bought, np.full(50, 1.5 * STS.continuous_torque), np.zeros(50)))["LF_yaw"]
+    hot = measure_loads(bought, made(bought, np.full(50, 1.5 * STS.continuous_torque), np.zeros(50)))["LF_yaw"]
     loss = STS.volts * STS.stall_current * (1.5 * STS.continuous_torque / STS.stall_torque) ** 2
 
     def warms(_, warm):
@@ -85,17 +85,17 @@ def test_currents_and_heat_follow_from_torque_and_speed(bought):
     reached.terminal = True
     found = solve_ivp(warms, (0, 1e4), [0.0], events=reached, rtol=1e-10)
     assert hot.warm_after == pytest.approx(float(found.t_events[0][0]), rel=1e-6)
-    cooler = borne(bought, made(bought, np.full(50, 0.999 * STS.continuous_torque), np.zeros(50)))
+    cooler = measure_loads(bought, made(bought, np.full(50, 0.999 * STS.continuous_torque), np.zeros(50)))
     assert cooler["LF_yaw"].warm_after == inf
 
 
 def test_a_servo_without_a_winding_has_no_current_and_no_heat(former):
     robot = former
-    load = borne(robot, made(robot, np.full(9, 1.0), np.zeros(9)))["tail_cable"]
+    load = measure_loads(robot, made(robot, np.full(9, 1.0), np.zeros(9)))["tail_cable"]
     assert isnan(load.current)
     assert isnan(load.steady)
     assert load.tension == pytest.approx(1.0 / robot.tail.pulley)
-    assert isnan(borne(robot, made(robot, np.full(9, 1.0), np.zeros(9)))["LF_yaw"].tension)
+    assert isnan(measure_loads(robot, made(robot, np.full(9, 1.0), np.zeros(9)))["LF_yaw"].tension)
 
 
 def test_cases_are_gaits_slopes_faults_standing_and_a_swim(robot, crawl_gait):
@@ -123,7 +123,7 @@ def test_left_and_right_limbs_get_equal_servos(name):
     limbs = {one for limb in layout(body).limbs for one in layout(body).servos[limb.servos]}
     assert all(len(names) == (2 if names[0] in limbs else 1) for names in found)
     chosen = dict.fromkeys(layout(body).servos, STS)
-    made = fitted(body, chosen, 11.0)
+    made = with_motors(body, chosen, 11.0)
     assert {made.servo(one).winding.motor for one in layout(body).servos} == {"STS3250"}
     assert {made.servo(one).winding.volts for one in layout(body).servos} == {11.0}
 
@@ -159,7 +159,7 @@ def test_each_place_gets_the_cheapest_servo_that_does_by_simulation(robot, quick
     assert order[0] == use(family.chosen[family.binding()[0][0]], walk[family.binding()[0][0]])
     # one step cheaper and it does no more
     weaker = dict.fromkeys(family.chosen, WEAK)
-    (again,) = loads_of_each(fitted(robot, weaker, 12.0), cases(robot, [quick]))
+    (again,) = loads_of_cases(with_motors(robot, weaker, 12.0), cases(robot, [quick]))
     assert not all(does(WEAK, load) for load in again.values())
 
 
@@ -191,7 +191,7 @@ def test_a_family_whose_servos_do_not_bear_one_supply_is_refused(robot, quick):
 def test_a_servo_at_its_limit_is_told_the_cheapest_one_that_does_and_a_strong_one_nothing(former, quick):
     weak = with_servos(former, lambda servo: replace(servo, torque=0.25) if servo.torque == 3.0 else servo)
     (case,) = cases(weak, [quick])
-    (before,) = loads_of_each(weak, [case])
+    (before,) = loads_of_cases(weak, [case])
     assert any(load.at_limit > 0.02 for load in before.values())
     after = with_better(weak, case, before, {"good": GOOD, "poor": POOR})
     for load in after.values():

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.scale import physics_step
-from suchus.robot.design.water_table import FORCE, LANES, UNDER, packed, unpacked
+from suchus.robot.design.water_table import FORCE, LANES, SUBMERGED_VOLUME, pack_table, unpack_table
 from suchus.robot.robots import ROBOTS
 from suchus.sim.hydro.forces import _arcsine
 from suchus.sim.land import Lake, Wave, wetting
@@ -32,7 +32,9 @@ def acted(model, numbers, lake):
     mujoco.mj_fwdPosition(model, data)
     mujoco.mj_fwdVelocity(model, data)
     passive = np.array(data.qfrc_passive)
-    return np.concatenate([passive, data.M, data.userdata[FORCE : FORCE + 4], data.userdata[UNDER : UNDER + 1]])
+    return np.concatenate(
+        [passive, data.M, data.userdata[FORCE : FORCE + 4], data.userdata[SUBMERGED_VOLUME : SUBMERGED_VOLUME + 1]]
+    )
 
 
 def test_pieces_together_do_what_each_does_alone():
@@ -44,10 +46,10 @@ def test_pieces_together_do_what_each_does_alone():
     model = wet_model(ROBOT, physics_step(ROBOT), None, len(table), acting=True)
     lake = Lake(level=0.06, wave=Wave(height=0.05, length=0.7, heading=0.4), current=(0.3, -0.2))
     whole = np.array(model.numeric_data)
-    rows, length = unpacked(whole), whole[2]
+    rows, length = unpack_table(whole), whole[2]
     try:
-        without = acted(model, packed(rows[:0], length, len(rows)), lake)
-        alone = [acted(model, packed(rows[i : i + 1], length, len(rows)), lake) - without for i in range(len(rows))]
+        without = acted(model, pack_table(rows[:0], length, len(rows)), lake)
+        alone = [acted(model, pack_table(rows[i : i + 1], length, len(rows)), lake) - without for i in range(len(rows))]
         together = acted(model, whole, lake) - without
     finally:
         model.numeric_data[:] = whole

@@ -10,9 +10,9 @@ from scipy.stats import qmc
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Foam, Hull, Rod, Segment, Shell
 from suchus.robot.design.flotation import float_hull
-from suchus.robot.design.pieces import masses, pieces, swollen, volumes
+from suchus.robot.design.pieces import masses, pieces, swell, volumes
 from suchus.robot.design.profile import profile, stations
-from suchus.robot.design.water_table import BALL, LANES, column, packed, unpacked
+from suchus.robot.design.water_table import BALL, LANES, column, pack_table, unpack_table
 from suchus.robot.robots import ROBOTS
 
 
@@ -67,7 +67,7 @@ def test_a_hull_adds_its_volume_its_mass_and_its_height():
 
 def test_swollen_pieces_keep_their_shape():
     table = pieces(ROBOTS["caiman"])
-    out = swollen(table, 8.0)
+    out = swell(table, 8.0)
     ball = table[:, 1] == BALL
     assert column(out, "half")[ball] == pytest.approx(2 * column(table, "half")[ball])
     assert column(out, "half")[~ball][:, 2] == pytest.approx(column(table, "half")[~ball][:, 2])
@@ -79,7 +79,7 @@ def test_swollen_pieces_keep_their_shape():
 
 def test_the_hull_that_floats_has_the_volume_that_it_needs():
     bare = ROBOTS["caiman"]
-    hull = float_hull(bare, above=0.2)
+    hull = float_hull(bare, freeboard_fraction=0.2)
     whole = replace(bare, hull=hull)
     assert whole.mass / 1000.0 / sum(volumes(whole).values()) == pytest.approx(0.8, rel=1e-12)
     light = {body for body, mass in masses(bare).items() if mass / 800.0 <= volumes(bare)[body]}
@@ -89,8 +89,8 @@ def test_the_hull_that_floats_has_the_volume_that_it_needs():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda r: float_hull(r, above=0.95), "above is 0.95; 0 to 0.9 is allowed"),
-        (lambda r: float_hull(r, above=0.88), "more than three times as thick"),
+        (lambda r: float_hull(r, freeboard_fraction=0.95), "above is 0.95; 0 to 0.9 is allowed"),
+        (lambda r: float_hull(r, freeboard_fraction=0.88), "more than three times as thick"),
         (lambda r: float_hull(replace(r, hull=float_hull(r))), "has a hull; take it off"),
         (lambda r: float_hull(ROBOTS["pleurobot"]), "without any foam: ask for a greater share"),
         (lambda r: Foam(body="pelvis", volume=-1.0), "volume is -1 m3"),
@@ -112,7 +112,7 @@ def test_impossible_hulls_are_refused(make, message):
 
 def test_a_packed_table_has_room():
     table = pieces(ROBOTS["caiman"])
-    row = packed(table, 1.0, len(table) + LANES)
-    assert len(row) == len(packed(table, 1.0)) + LANES * table.shape[1]
+    row = pack_table(table, 1.0, len(table) + LANES)
+    assert len(row) == len(pack_table(table, 1.0)) + LANES * table.shape[1]
     assert row[1] == len(table)
-    assert unpacked(row)[:, :-1] == pytest.approx(table[:, :-1], abs=0.0)
+    assert unpack_table(row)[:, :-1] == pytest.approx(table[:, :-1], abs=0.0)

@@ -18,9 +18,9 @@ from suchus.core.errors import IncompatibleRecord, InvalidDesign
 from suchus.core.fingerprint import fingerprint
 from suchus.core.jobs import NoCluster, conduct_sweep, connected
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.catalog.swim_3d.experiment import Item, _swum_here, swum_in_space
+from suchus.experiments.catalog.swim_3d.experiment import Item, _swim_locally, swim_in_space
 from suchus.experiments.optimise import Aim, Optimisation, optimise
-from suchus.experiments.optimise.conduct import tried
+from suchus.experiments.optimise.conduct import try_candidates
 from suchus.experiments.optimise.evaluate import evaluate
 from suchus.experiments.study import Study, Vary, conduct
 from suchus.experiments.study.varied import conduct_varied, varied_study
@@ -140,7 +140,7 @@ def swims(robot):
     wave = fit(robot, printed_wave(robot, "I", sign=-1)).gait
     return (
         "swims",
-        partial(swum_in_space, robot),
+        partial(swim_in_space, robot),
         [Item(wave, SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, frames=2))],
     )
 
@@ -154,7 +154,7 @@ def test_a_worker_gets_the_swim_that_is_asked(swims):
 def test_a_swim_in_three_dimensions_has_the_bytes_of_one_here(robot, swims, machines, tmp_path):
     with connected(machines.address) as client:
         conduct_sweep(*swims, tmp_path / "there", client=client)
-    (swum,) = conduct_sweep(*swims, tmp_path / "here", local=partial(_swum_here, robot, str(tmp_path / "kept")))
+    (swum,) = conduct_sweep(*swims, tmp_path / "here", local=partial(_swim_locally, robot, str(tmp_path / "kept")))
     assert contents(tmp_path / "there") == contents(tmp_path / "here")
     assert swum.sizes["frame"] == 2
     assert float(swum.power[-1]) > 0.0
@@ -173,7 +173,7 @@ class Backwards:
 def test_a_generation_in_pieces_is_the_generation(search):
     shares = np.random.default_rng(0).uniform(-0.2, 1.2, (5, 2))  # some cannot be
     place, told = Backwards(), []
-    found = tried(place, search, shares, lambda _, share: told.append(share))
+    found = try_candidates(place, search, shares, lambda _, share: told.append(share))
     xr.testing.assert_identical(found, evaluate(search, shares))
     assert place.sizes == [2, 2, 1]
     assert told == sorted(told)

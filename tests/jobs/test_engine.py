@@ -8,7 +8,18 @@ import pytest
 
 from suchus.core import threads
 from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.core.jobs import Cluster, Died, InMemory, Job, ProcessDied, Processes, Tally, ThisProcess, finish, place_for
+from suchus.core.jobs import (
+    Cluster,
+    InMemory,
+    Job,
+    PieceCrash,
+    ProcessCrash,
+    Processes,
+    Tally,
+    ThisProcess,
+    finish,
+    place_for,
+)
 
 
 def squared(item, progress):
@@ -46,7 +57,7 @@ def test_only_what_is_missing_is_done_and_all_is_told(at_once):
         store,
         place=ThisProcess(at_once),
         progress=lambda *said: told.append(said),
-        each=lambda number: lambda stage, share: each.append((number, stage, share)),
+        progress_of=lambda number: lambda stage, share: each.append((number, stage, share)),
         finished=lambda number, result: finished.append((number, result)),
     )
     assert results(store) == [1, 4, 9, 16, 25]
@@ -115,12 +126,12 @@ class Deadly:
     at_once = 1
 
     def results(self, job, items, begun):
-        yield from ((number, Died(-9)) for number in range(len(items)))
+        yield from ((number, PieceCrash(-9)) for number in range(len(items)))
 
 
 def test_the_result_of_a_piece_whose_processes_died_is_what_the_job_says_or_the_end():
     with pytest.raises(
-        ProcessDied, match="the process at term 0 of sum 'squares' ended with exit code -9, 3 times; what was finished"
+        ProcessCrash, match="the process at term 0 of sum 'squares' ended with exit code -9, 3 times; what was finished"
     ):
         finish(job(), InMemory(), place=Deadly())
     store = InMemory()
@@ -131,9 +142,9 @@ def test_the_result_of_a_piece_whose_processes_died_is_what_the_job_says_or_the_
 def test_a_place_is_this_machine_some_processes_of_it_or_a_cluster():
     client = object()
     assert place_for("a sum") == ThisProcess(1)
-    assert place_for("a sum", here=ThisProcess(2)) == ThisProcess(2)
+    assert place_for("a sum", local_place=ThisProcess(2)) == ThisProcess(2)
     assert place_for("a sum", jobs=3) == Processes(3)
-    assert place_for("a sum", jobs=3, each=1) == Processes(3, each=1)
+    assert place_for("a sum", jobs=3, threads_per_process=1) == Processes(3, each=1)
     assert place_for("a sum", client=client) == Cluster(client)
     with pytest.raises(OutsideLimits, match="a sum in 0 processes cannot be; at least 1 is needed"):
         place_for("a sum", jobs=0)
@@ -145,7 +156,7 @@ def test_a_tally_tells_count_rate_time_left_failures_and_more(monkeypatch):
     now = [100.0]
     monkeypatch.setattr("suchus.core.jobs.engine.time.perf_counter", lambda: now[0])
     told = []
-    tally = Tally(20, "runs", lambda *said: told.append(said), done=4, failed=1)
+    tally = Tally(20, "runs", lambda *said: told.append(said), done_units=4, failed=1)
     tally.finished(0, 2, fresh=False)  # of an earlier start: it says nothing of the rate
     assert told[-1] == ("6 of 20 runs, 1 failed", 0.3)
     now[0] = 102.0

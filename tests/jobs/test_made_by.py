@@ -5,8 +5,8 @@ import pytest
 
 from suchus.core.files import code_digest
 from suchus.core.files.provenance import syntax_of
-from suchus.core.jobs.made_by import FLOW, MADE_BY, deciding
-from suchus.experiments.optimise.conduct import ROOMS
+from suchus.core.jobs.made_by import FLOW_SOURCES, LAND_SOURCES, source_versions
+from suchus.experiments.optimise.conduct import SOURCE_FILES
 
 HARMLESS = (
     "suchus.core.errors",
@@ -29,9 +29,9 @@ def graph():
 @pytest.mark.parametrize(
     ("begins", "places"),
     [
-        ("suchus.experiments.study.chunk", MADE_BY),
-        ("suchus.experiments.optimise.evaluate", ROOMS),
-        ("suchus.swimming.water.resolved", FLOW),
+        ("suchus.experiments.study.chunk", LAND_SOURCES),
+        ("suchus.experiments.optimise.evaluate", SOURCE_FILES),
+        ("suchus.swimming.water.resolved", FLOW_SOURCES),
     ],
 )
 def test_all_code_that_makes_a_part_is_in_the_digest(graph, begins, places):
@@ -53,7 +53,7 @@ def test_another_source_has_another_digest():
     assert code_digest("robot/design") == code_digest("robot/design")
     assert code_digest("flow") != code_digest("flow", "sim") != code_digest("sim", "flow")
     assert code_digest("experiments/study/claims.py") != code_digest("experiments/study/answers.py")
-    assert deciding()["source"] == code_digest(*MADE_BY)[:12]
+    assert source_versions()["source"] == code_digest(*LAND_SOURCES)[:12]
 
 
 def test_the_numbers_of_the_motors_are_in_the_digest(tmp_path, monkeypatch):

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import InvalidDesign
-from suchus.core.jobs import ProcessDied, conduct_sweep
+from suchus.core.jobs import ProcessCrash, conduct_sweep
 
 
 def squared(item, progress):
@@ -44,7 +44,7 @@ def test_processes_give_the_same_as_this_one(tmp_path):
 def test_an_error_or_a_death_of_a_process_loses_nothing_that_was_finished(tmp_path):
     with pytest.raises(InvalidDesign, match="no root"):
         conduct_sweep("roots", squared, (4, -1), tmp_path / "a", jobs=2)
-    with pytest.raises(ProcessDied, match="at item 0 of sweep 'roots' ended with exit code 3, 3 times"):
+    with pytest.raises(ProcessCrash, match="at item 0 of sweep 'roots' ended with exit code 3, 3 times"):
         conduct_sweep("roots", squared, (101,), tmp_path / "b", jobs=2)
 
 

@@ -217,7 +217,7 @@ def test_printed_wave_runs_from_tail_to_head():
         body = np.linspace(0, 1, 401)
         product = np.mean(wave.speed(swim, body, t) * wave.slope(swim, body, t), axis=0)
         assert np.sign(np.trapezoid(product, body)) == sign  # the reactive thrust goes with its negative
-    assert wave.as_printed(angular_frequency=2 * pi).sign == 1
+    assert wave.printed_wave(angular_frequency=2 * pi).sign == 1
 
 
 @shows("eq_20_units")

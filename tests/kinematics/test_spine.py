@@ -66,7 +66,7 @@ def test_pitched_spine_lies_in_the_sagittal_plane():
 @pytest.mark.parametrize("ahead", [0.0, 0.2125])
 def test_jacobian_is_the_derivative(ahead):
     q = postures(100)
-    J = spine.jacobian(SPINE, q, ahead=ahead)
+    J = spine.jacobian(SPINE, q, forward_offset=ahead)
     assert J.shape == (100, 6, 5)
     step = 1e-6
     for i, e in enumerate(np.eye(5)):

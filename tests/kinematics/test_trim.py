@@ -11,17 +11,17 @@ from suchus.robot.control.holding import neutral_air_fraction
 from suchus.robot.design import Chamber, Hull, layout
 from suchus.robot.design.flotation import float_hull
 from suchus.robot.design.pieces import SOLID, chambers, masses, pieces, volumes
-from suchus.robot.design.water_table import column, unpacked
+from suchus.robot.design.water_table import column, unpack_table
 from suchus.robot.kinematics.tree import centre_of_mass
 from suchus.robot.kinematics.trim import level_chambers, spare_volume
-from suchus.robot.motion import cycle_targets, limbs_back, still
+from suchus.robot.motion import cycle_targets, limbs_back, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model.build import TIMESTEP, joint_addresses
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.sim.model.wet import wet_model
 
 BARE, ROBOT = ROBOTS["caiman"], ROBOTS["floating_caiman"]
-BACK = cycle_targets(ROBOT, still(ROBOT), np.zeros(1))[0]
+BACK = cycle_targets(ROBOT, straight_gait(ROBOT), np.zeros(1))[0]
 IN_FOAM = replace(ROBOT, hull=replace(ROBOT.hull, chambers=()))
 
 
@@ -44,7 +44,7 @@ def test_the_centre_of_mass_counts_the_foam(name):
 
 def test_what_hovers_is_displaced_where_the_mass_is():
     model, data = posed(ROBOT, limbs_back(ROBOT))
-    table = unpacked(model.numeric_data)
+    table = unpack_table(model.numeric_data)
     ids = table[:, 0].astype(int)
     at = data.xpos[ids] + np.einsum("nij,nj->ni", data.xmat[ids].reshape(-1, 3, 3), column(table, "at"))
     kept = column(table, "volume")[:, 0] - (1.0 - neutral_air_fraction(ROBOT)) * column(table, "air").sum(axis=1)
@@ -93,7 +93,7 @@ def test_a_robot_lets_out_what_it_displaces_beyond_its_weight():
 
 
 def hulled(**fields):
-    return replace(BARE, hull=replace(float_hull(BARE, raised=0.016, air=4e-4), **fields))
+    return replace(BARE, hull=replace(float_hull(BARE, foam_offset=0.016, air=4e-4), **fields))
 
 
 def split(front, rear):

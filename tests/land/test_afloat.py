@@ -12,7 +12,7 @@ from suchus.robot.control import Swimming
 from suchus.robot.design import WATER_DENSITY, Foam, Hull, Inertia, Shell
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.water import Water
-from suchus.robot.motion import cycle_targets, still
+from suchus.robot.motion import cycle_targets, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import HEAVIER, INDIFFERENT, check_afloat
@@ -21,7 +21,7 @@ from suchus.sim.model.hydrostatics import hydrostatics
 
 def straight(robot):
     """The servo angles of a straight body, its limbs back."""
-    return cycle_targets(robot, still(robot), np.zeros(1), np.zeros(1))[0]
+    return cycle_targets(robot, straight_gait(robot), np.zeros(1), np.zeros(1))[0]
 
 
 def doubts(robot, lake=Lake(level=1.0)):  # noqa: B008  frozen
@@ -117,7 +117,7 @@ def test_who_lies_in_the_air_is_told_what_mass_brings_it_down(share, told):
 def test_it_is_said_before_a_swim_and_not_before_a_walk():
     caiman, lake = ROBOTS["caiman"], Lake(level=2.0)
     with pytest.warns(Doubtful, match="robot 'caiman' sinks: it is 999 g heavier"):
-        simulate([Run(robot=caiman, gait=still(caiman), lake=lake, control=Swimming())], duration=0.1)
+        simulate([Run(robot=caiman, gait=straight_gait(caiman), lake=lake, control=Swimming())], duration=0.1)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         simulate([Run(robot=caiman, gait="belly_crawl", lake=lake)], duration=0.1)

@@ -9,7 +9,7 @@ from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.robot import blueprint
 from suchus.robot.control import Coordinated
 from suchus.robot.design import Robot, layout
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START
 from suchus.robot.robots import ROBOTS
@@ -69,8 +69,8 @@ def test_three_grams_and_sixty_kilograms_walk_alike(name, gait):
     body, strides = ROBOTS[name], []
     for length, mass in ((0.1, 0.003), (3.0, 60.0)):
         factor = length / body.length
-        robot = scaled(body, length_factor=factor, mass_factor=mass / body.mass)
-        step = scaled(GAITS[gait], length_factor=factor)
+        robot = rescale(body, length_factor=factor, mass_factor=mass / body.mass)
+        step = rescale(GAITS[gait], length_factor=factor)
         assert (robot.mass, robot.length) == pytest.approx((mass, length))
         record = crawl(robot, step, duration=round(START + step.period, 2))
         strides.append(stride(record, robot, step, 1))
@@ -82,7 +82,7 @@ def test_three_grams_and_sixty_kilograms_walk_alike(name, gait):
 def test_six_spine_joints_and_a_servo_tail_in_five_lines_crawl(tmp_path):
     file = tmp_path / "six.toml"
     file.write_text('base = "caiman"\n[spine]\njoints = 6\n[tail]\ndrive = "servos"\n')
-    robot = blueprint.read(file, Robot, ROBOTS)
+    robot = blueprint.read_design(file, Robot, ROBOTS)
     assert len(layout(robot).trunk_yaw) == 3
     assert len(layout(robot).trunk_pitch) == 3
     assert len(layout(robot).tail_yaw) == 6

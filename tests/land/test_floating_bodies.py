@@ -12,7 +12,17 @@ from hypothesis import strategies as st
 from suchus.experiments.catalog.floating import cases
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.scale import physics_step
-from suchus.robot.design.water_table import ADDED, CROSS_DRAG, DENSITY, FORCE, POWER, UNDER, column, packed, unpacked
+from suchus.robot.design.water_table import (
+    ADDED_MASS_FACTOR,
+    CROSS_DRAG,
+    DENSITY,
+    FORCE,
+    POWER,
+    SUBMERGED_VOLUME,
+    column,
+    pack_table,
+    unpack_table,
+)
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Wave, wetting
 from suchus.sim.land.float_body import FloatBody, FloatTank
@@ -26,24 +36,24 @@ def test_drafts_are_exact(one):
 
 @pytest.mark.parametrize("added", [0.0, 0.6])
 def test_the_period_of_heave_is_exact_with_and_without_added_mass(added):
-    watched, exact = cases.heave(added, 0.002, 3, 0.002)
-    assert cases.period_of(watched) == pytest.approx(exact, rel=1e-4)
+    watched, exact = cases.simulate_heave(added, 0.002, 3, 0.002)
+    assert cases.heave_period(watched) == pytest.approx(exact, rel=1e-4)
 
 
 def test_momentum_is_kept_in_ideal_water():
-    assert cases.drift(cases.drifting("RK4", 0.002)) < 1e-9
+    assert cases.relative_momentum_drift(cases.simulate_drift("RK4", 0.002)) < 1e-9
     # the couples of the water are what keeps it: without Munk's, or with another sign, it is lost
-    assert cases.drift(cases.drifting("implicitfast", 0.001)) > 1e-6
+    assert cases.relative_momentum_drift(cases.simulate_drift("implicitfast", 0.001)) > 1e-6
 
 
 def test_a_rocking_box_gains_no_energy():
-    assert cases.gained_energy(cases.rocking(4.0, "RK4", 0.002)) < 1e-5
-    assert cases.gained_energy(cases.rocking(4.0, "implicitfast", 0.002)) < 0.02
+    assert cases.relative_energy_gain(cases.simulate_rocking(4.0, "RK4", 0.002)) < 1e-5
+    assert cases.relative_energy_gain(cases.simulate_rocking(4.0, "implicitfast", 0.002)) < 0.02
 
 
 @pytest.mark.parametrize("kind", ["disc", "ball", "slab"])
 def test_volumes_under_water_are_those_of_counted_points(kind):
-    body = cases.kinds()[kind]
+    body = cases.bodies_by_piece()[kind]
     assert cases.volume_errors(body, 6, 2**17).max() < 1e-3
     assert cases.volume_errors(replace(body, half=(0.25, 0.1, 0.061)), 6, 2**17).max() < 1e-3
 
@@ -63,7 +73,7 @@ def test_a_box_heels_to_its_angle_of_loll():
     body = FloatBody(
         shape="box", half=half, mass=500 * 8 * np.prod(half), inertia=(1, 1, 1), centre=(0, 0, height), parts=24
     )
-    pool = FloatTank(body, cases.SURFACE)
+    pool = FloatTank(body, cases.SURFACE_LAKE)
     exact = np.arctan(np.sqrt(2 * 0.004 / bm))
 
     def moment(angle):
@@ -140,10 +150,10 @@ def _dragged(body):
 def _write(pool, **columns):
     """Change columns of the table that a model carries."""
     numbers = pool.model.numeric_data
-    rows = unpacked(numbers)
+    rows = unpack_table(numbers)
     for name, values in columns.items():
         column(rows, name)[:] = values
-    numbers[:] = packed(rows, numbers[2])
+    numbers[:] = pack_table(rows, numbers[2])
 
 
 def test_what_is_shed_pushes_forward_and_takes_what_lighthill_says():
@@ -163,12 +173,12 @@ def test_what_is_shed_pushes_forward_and_takes_what_lighthill_says():
 
 def test_the_water_says_what_it_did():
     body = replace(cases.SPHEROID, mass=0.5 * cases.SPHEROID.mass)
-    pool = FloatTank(body, cases.DEEP)
+    pool = FloatTank(body, cases.DEEP_LAKE)
     pool.place((0, 0, 0), velocity=(0.0, 0.0, 0.1))
     for _ in range(50):
         pool.step()
     told = pool.data.userdata
-    assert told[UNDER] == pytest.approx(body.volume)
+    assert told[SUBMERGED_VOLUME] == pytest.approx(body.volume)
     assert told[DENSITY] == 1000.0
     # Newton: what pulls and the water together accelerate the mass; one step late
     data = pool.data
@@ -187,12 +197,12 @@ def test_every_robot_on_the_shelf_is_carried_by_what_it_displaces(name):
     data.userdata[:] = Lake(level=5.0, added_mass=0.0).numbers(np.array([0.0, 0.0, 1.0]))
     mujoco.mj_forward(model, data)
     volume = column(pieces(robot), "volume").sum()
-    assert data.userdata[UNDER] == pytest.approx(volume)
+    assert data.userdata[SUBMERGED_VOLUME] == pytest.approx(volume)
     assert data.userdata[FORCE : FORCE + 3] == pytest.approx([0.0, 0.0, 9.81e3 * volume], abs=1e-9)
     moved = np.zeros((2, model.nv))
     sideways = np.eye(model.nv)[1]
     for i, added in enumerate((0.0, 1.0)):
-        data.userdata[ADDED] = added
+        data.userdata[ADDED_MASS_FACTOR] = added
         mujoco.mj_forward(model, data)
         mujoco.mj_mulM(model, data, moved[i], sideways)
     table = pieces(robot)

@@ -16,14 +16,14 @@ from suchus.robot.control import Swimming
 from suchus.robot.design import crocodile
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.water import Water
-from suchus.robot.motion import LIMBS_UP, still
+from suchus.robot.motion import LIMBS_UP, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.record import WATER
 
 WAVE = crocodile_swim(yaw=(0.1, 0.1, 0.1), yaw_lag=(0.2, 0.1, 0.0), tail=0.6, tail_lag=-0.1, limbs=LIMBS_UP)
-REST = still(ROBOTS["caiman"], limbs=LIMBS_UP)
+REST = straight_gait(ROBOTS["caiman"], limbs=LIMBS_UP)
 
 
 def runs(*lakes, **more):
@@ -119,7 +119,7 @@ def test_let_go_heeled_by_150_degrees_it_rights_itself_and_with_its_foam_no_high
     some = [
         Run(robot=one, gait=REST, lake=Lake(level=3.0, heel=radians(150)), control=Swimming()) for one in (robot, flat)
     ]
-    record = simulate(some, duration=9.0, timestep=0.01, every=10)
+    record = simulate(some, duration=9.0, timestep=0.01, sample_stride=10)
     heel = np.abs(rotation.heel(record.orientation.values))[:, -20:]
     assert heel[0].max() < 0.035
     assert heel[1].min() > radians(150)

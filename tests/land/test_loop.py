@@ -41,7 +41,7 @@ def test_samples_that_are_not_kept_change_none_of_those_that_are(run, robots):
     if robots == 2:
         heavier = with_values(run.robot, {"pelvis.mass": 1.1 * run.robot.pelvis.mass})
         runs += [replace(run, robot=heavier, faults=some) for some in faults]
-    all_kept, few = (simulate(runs, duration=0.3, timestep=COARSE, every=every) for every in (1, 3))
+    all_kept, few = (simulate(runs, duration=0.3, timestep=COARSE, sample_stride=every) for every in (1, 3))
     for name in all_kept.data_vars:
         kept = all_kept[name].isel(time=slice(None, None, 3)) if "time" in all_kept[name].dims else all_kept[name]
         np.testing.assert_array_equal(kept.values, few[name].values, err_msg=str(name))

@@ -6,7 +6,7 @@ import pytest
 from suchus.robot.design import crocodile, with_speed_line
 from suchus.robot.gaits import GAITS
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import between, displacement, heading_change, roll_peak_to_peak
+from suchus.sim.metrics import displacement, heading_change, roll_peak_to_peak, time_window
 
 NAMES = ("low_crawl", "semi_erect", "high_walk")
 
@@ -21,7 +21,9 @@ def limited(former):
 
 @pytest.fixture(scope="module")
 def walks(robot):
-    return simulate([Run(robot=robot, gait=GAITS[name]) for name in NAMES], duration=7.0, every=2, timestep=0.005)
+    return simulate(
+        [Run(robot=robot, gait=GAITS[name]) for name in NAMES], duration=7.0, sample_stride=2, timestep=0.005
+    )
 
 
 def test_postures_reach_their_speeds_on_even_ground(walks):
@@ -33,21 +35,26 @@ def test_postures_reach_their_speeds_on_even_ground(walks):
 def test_postures_are_steady_straight_and_off_the_belly(walks):
     assert np.degrees(roll_peak_to_peak(walks, 2.0).values).max() < 10
     assert np.degrees(abs(heading_change(walks)).values).max() < 5
-    assert float(between(walks, 2.0).belly_force.sel(xyz="z").max()) == 0.0
+    assert float(time_window(walks, 2.0).belly_force.sel(xyz="z").max()) == 0.0
 
 
 def test_the_body_rises_from_crawl_to_high_walk(walks):
-    height = between(walks, 2.0).centre_of_mass.sel(xyz="z").mean("time").values
+    height = time_window(walks, 2.0).centre_of_mass.sel(xyz="z").mean("time").values
     assert height[0] < height[1] - 0.03 < height[2] - 0.04
 
 
 def test_a_torque_speed_line_costs_the_postures_no_speed_and_makes_the_fastest_joints_slower(former, limited):
     hasty = [replace(GAITS[name], period=min(GAITS[name].period, 0.8)) for name in NAMES[1:]]
     runs = [Run(robot=who, gait=gait) for who in (former, limited) for gait in hasty]
-    walks = simulate(runs, duration=5.0, every=2, timestep=0.005)
+    walks = simulate(runs, duration=5.0, sample_stride=2, timestep=0.005)
     way = displacement(walks, 2.0).sel(xyz="x").values
     assert way[2:] == pytest.approx(way[:2], rel=0.05)
-    legs = abs(between(walks, 2.0).servo_velocity.isel(servo=slice(0, 12))).quantile(0.99, ["time"]).max("servo").values
+    legs = (
+        abs(time_window(walks, 2.0).servo_velocity.isel(servo=slice(0, 12)))
+        .quantile(0.99, ["time"])
+        .max("servo")
+        .values
+    )
     fast = legs[:2] > limited.hind_leg.servo.speed
     assert fast.any()
     assert (legs[2:][fast] < legs[:2][fast]).all()

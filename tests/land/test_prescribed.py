@@ -12,7 +12,7 @@ from tests.swims import crocodile_swim
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.water import Water
 from suchus.robot.design.water_table import column
-from suchus.robot.motion import still
+from suchus.robot.motion import straight_gait
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake
@@ -25,7 +25,7 @@ from water_coefficients import NAMES, QUANTITIES, WaterCoefficients, composed, f
 ROBOT = ROBOTS["caiman"]
 TABLE = pieces(replace(ROBOT, girdles=(), hull=None))
 SWIM = crocodile_swim(frequency=0.8)
-STILL = still(ROBOT, frequency=0.8)
+STILL = straight_gait(ROBOT, frequency=0.8)
 HEAD = {"sway": -0.03 + 0.01j, "turn": 0.13 + 0.02j}
 THICK = 1.5e-4
 NOTHING = WaterCoefficients(cross_drag=0.0, thickening=0.0, added_mass=0.0)

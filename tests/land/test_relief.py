@@ -4,7 +4,7 @@ import pytest
 from suchus.robot.design.ground import Bumps, Step, Stone
 from suchus.robot.gaits import GAITS
 from suchus.sim.land import ARENAS, Ground, Run, simulate
-from suchus.sim.metrics import between, displacement, tilt
+from suchus.sim.metrics import displacement, tilt, time_window
 
 GRAVITY = 9.81
 
@@ -26,7 +26,7 @@ def test_bumps_slow_a_walk_and_shake_it(robot):
     gait = GAITS["semi_erect"]
     runs = [Run(robot=robot, gait=gait, ground=g) for g in (Ground(), bumps(0), bumps(1))]
     record = simulate(runs, duration=6.0, timestep=0.005)
-    way, roll = displacement(record).sel(xyz="x").values, tilt(between(record, 2.0))["roll"].std("time").values
+    way, roll = displacement(record).sel(xyz="x").values, tilt(time_window(record, 2.0))["roll"].std("time").values
     assert (way[1:] < way[0]).all()
     assert (roll[1:] > 1.5 * roll[0]).all()
     assert way[1] != way[2]
@@ -34,7 +34,7 @@ def test_bumps_slow_a_walk_and_shake_it(robot):
 
 def test_the_ground_carries_the_weight_on_bumps_too(robot, crawl_gait):
     start = Ground(relief=Bumps(height=0.03, correlation=0.06, start=-1.0, seed=0))
-    record = between(simulate([Run(robot=robot, gait=crawl_gait.strode(0.0), ground=start)], duration=3.0), 1.0)
+    record = time_window(simulate([Run(robot=robot, gait=crawl_gait.strode(0.0), ground=start)], duration=3.0), 1.0)
     vertical = record.foot_force.sel(xyz="z").sum("leg") + record.belly_force.sel(xyz="z").sum("segment")
     vertical = vertical + record.tail_force.sel(xyz="z")
     assert vertical.mean("time").values == pytest.approx(record.mass.values * GRAVITY, rel=0.01)

@@ -11,7 +11,7 @@ from suchus.article.paper import CLAIMS
 from suchus.core.errors import Diverged, InvalidDesign, OutsideLimits
 from suchus.robot.design import crocodile
 from suchus.sim.land import Ground, Run, crawl, simulate
-from suchus.sim.metrics import between, displacement, heading_change
+from suchus.sim.metrics import displacement, heading_change, time_window
 from suchus.sim.record import PER_RUN, VARIABLES
 
 GRAVITY = 9.81
@@ -38,14 +38,16 @@ def test_both_groups_get_identical_leg_commands(arms):
 
 
 def test_forces_of_the_ground_carry_the_weight_on_average(arms):
-    vertical = between(arms).foot_force.sel(xyz="z").sum("leg")
-    vertical = vertical + between(arms).belly_force.sel(xyz="z").sum("segment") + between(arms).tail_force.sel(xyz="z")
+    vertical = time_window(arms).foot_force.sel(xyz="z").sum("leg")
+    vertical = (
+        vertical + time_window(arms).belly_force.sel(xyz="z").sum("segment") + time_window(arms).tail_force.sel(xyz="z")
+    )
     assert vertical.mean("time").values == pytest.approx(arms.mass.values * GRAVITY, rel=0.01)
 
 
 def test_momentum_changes_by_the_forces_of_the_ground(arms):
     """Forces are means over the control period, so their sum over time is the change of momentum."""
-    one = between(arms.isel(run=0), 2.0, 3.0)
+    one = time_window(arms.isel(run=0), 2.0, 3.0)
     total = one.foot_force.sum("leg") + one.belly_force.sum("segment") + one.tail_force
     impulse = 0.01 * total.isel(time=slice(1, None)).sum("time").values
     mass = float(one.mass)
@@ -57,17 +59,19 @@ def test_momentum_changes_by_the_forces_of_the_ground(arms):
 
 
 def test_reversed_spine_phase_walks_backwards(robot, crawl_gait):
-    record = simulate([Run(robot=robot, gait=crawl_gait.with_numbers(axis_lag=0.5))], every=100)
+    record = simulate([Run(robot=robot, gait=crawl_gait.with_numbers(axis_lag=0.5))], sample_stride=100)
     assert way(record)[0] < -0.3
 
 
 def test_legs_without_stroke_and_spine_go_nowhere(robot, limbs_gait):
-    record = simulate([Run(robot=robot, gait=limbs_gait.strode(0.0))], every=100)
+    record = simulate([Run(robot=robot, gait=limbs_gait.strode(0.0))], sample_stride=100)
     assert abs(way(record)[0]) < 0.01
 
 
 def test_halving_the_time_step_changes_the_way_by_under_one_percent(robot, crawl_gait, limbs_gait, arms):
-    half = simulate([Run(robot=robot, gait=gait) for gait in (crawl_gait, limbs_gait)], timestep=0.001, every=100)
+    half = simulate(
+        [Run(robot=robot, gait=gait) for gait in (crawl_gait, limbs_gait)], timestep=0.001, sample_stride=100
+    )
     assert way(half) == pytest.approx(way(arms), rel=0.01)
 
 
@@ -84,19 +88,21 @@ def test_grip_of_the_feet_hardly_matters(robot, crawl_gait):
         Run(robot=replace(robot, contact=replace(robot.contact, foot_friction=float(mu))), gait=crawl_gait)
         for mu in friction
     ]
-    ways = way(simulate(runs, every=100, timestep=0.005))
+    ways = way(simulate(runs, sample_stride=100, timestep=0.005))
     assert np.ptp(ways) < 0.1 * ways.mean()
 
 
 def test_uphill_is_slower_than_level_and_downhill_faster(robot, crawl_gait):
     slopes = [Ground(uphill=angle) for angle in (0.12, 0.0, -0.12)]
-    ways = way(simulate([Run(robot=robot, gait=crawl_gait, ground=g) for g in slopes], every=100, timestep=0.005))
+    ways = way(
+        simulate([Run(robot=robot, gait=crawl_gait, ground=g) for g in slopes], sample_stride=100, timestep=0.005)
+    )
     assert ways[0] < ways[1] < ways[2]
 
 
 def test_a_side_slope_drifts_downhill(robot, crawl_gait):
     left_up = Run(robot=robot, gait=crawl_gait, ground=Ground(sideways=0.12))
-    assert float(displacement(simulate([left_up], every=100, timestep=0.005)).sel(xyz="y")[0]) < -0.02
+    assert float(displacement(simulate([left_up], sample_stride=100, timestep=0.005)).sel(xyz="y")[0]) < -0.02
 
 
 def test_the_record_has_its_schema_and_units(arms):
@@ -151,7 +157,7 @@ def test_noise_follows_its_seed(robot, crawl_gait):
 
 
 def test_every_keeps_one_sample_in_so_many(robot, crawl_gait, arms):
-    coarse = simulate([Run(robot=robot, gait=crawl_gait)], every=25)
+    coarse = simulate([Run(robot=robot, gait=crawl_gait)], sample_stride=25)
     fine = arms.isel(run=0, time=slice(0, None, 25))
     assert (coarse.centre_of_mass.isel(run=0).values == fine.centre_of_mass.values).all()
 

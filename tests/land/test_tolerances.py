@@ -8,7 +8,7 @@ import pytest
 
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import servo_names
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run, Tolerances, simulate
 
@@ -24,7 +24,7 @@ def run(robot, crawl_gait):
 @pytest.mark.parametrize("name", ["caiman", "strider", "salamander"])
 def test_errors_lie_evenly_about_the_design(name):
     robot = ROBOTS[name]
-    run = Run(robot=robot, gait=own_gait(robot), ground=Ground(friction_scale=0.5))
+    run = Run(robot=robot, gait=default_gait(robot), ground=Ground(friction_scale=0.5))
     sizes = Tolerances()
     built = sizes.repeats([run], 200, seed=3)
     zero = np.array([one.zero_error for one in built])

@@ -13,7 +13,7 @@ from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.pieces import masses, volumes
 from suchus.robot.design.scale import control_period, servo_for
 from suchus.robot.design.water import Water
-from suchus.robot.motion.swim import still, swimming_gait
+from suchus.robot.motion.swim import straight_gait, swimming_gait
 from suchus.robot.robots._animals import pleurodeles
 from suchus.sim.land import Run, simulate
 from suchus.swimming.water import Outline, reactive, resistive, undulation
@@ -56,7 +56,7 @@ def test_sections_have_no_word_of_a_beat_that_servos_cannot_be_commanded(ticks, 
     robot = ROW.robot()
 
     def build(numbers, frequency):
-        return ModelSwimmer(robot=robot, gait=still(robot, frequency=1.0 / (ticks * control_period(robot))))
+        return ModelSwimmer(robot=robot, gait=straight_gait(robot, frequency=1.0 / (ticks * control_period(robot))))
 
     monkeypatch.setattr(swims, "sections", lambda swimmers, **_: ["swum"] * len(swimmers))
     monkeypatch.setattr(swims, "_sound", lambda *_: {"speed": 1.0})
@@ -71,7 +71,7 @@ def test_sections_have_no_word_of_a_beat_that_servos_cannot_be_commanded(ticks, 
 def test_from_rest_follows_the_exact_solution_of_square_drag():
     """Constant thrust T and drag c U^2: U = sqrt(T / c) tanh(t sqrt(T c) / m), its mean over time a logarithm."""
     robot = ROW.robot()
-    swimmer = ModelSwimmer(robot=robot, gait=still(robot, frequency=1.0))
+    swimmer = ModelSwimmer(robot=robot, gait=straight_gait(robot, frequency=1.0))
     push, rub = 0.5, 2.0
     last, rate = (push / rub) ** 0.5, (push * rub) ** 0.5 / robot.mass
 
@@ -87,7 +87,7 @@ def test_from_rest_follows_the_exact_solution_of_square_drag():
 
 def test_a_straight_body_coasts_as_its_friction_says_and_a_bent_one_stops_sooner():
     robot, speed = ROW.robot(), 0.5
-    straight = ModelSwimmer(robot=robot, gait=still(robot, frequency=2.0), water=Water(), ramp=0.0)
+    straight = ModelSwimmer(robot=robot, gait=straight_gait(robot, frequency=2.0), water=Water(), ramp=0.0)
     (found,) = _coasting([straight], [speed], lambda *_: None)
     outline = Outline(robot, 257)
     wide, high = outline.silhouette

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.article.verdict import between
+from suchus.article.verdict import measure_with_interval
 from suchus.experiments.claims import RULES
 from suchus.sim.metrics import swing_height, swing_lift, swing_unloaded, tail_joint_spread
 
@@ -69,7 +69,12 @@ def test_a_sentence_is_true_within_the_bounds_of_its_rule():
         (measure,) = {clause.measure for clause in RULES[claim].holds}
         assert measure == RULES[claim].measure  # a change of displacement alone decides
     rule = RULES["fault_hind_pitch_limbs_only"]
-    assert [rule.held(between(rule.measure, x, x)) for x in (-0.39, -0.41, -0.69, -0.71)] == [False, True, True, False]
+    assert [rule.held(measure_with_interval(rule.measure, x, x)) for x in (-0.39, -0.41, -0.69, -0.71)] == [
+        False,
+        True,
+        True,
+        False,
+    ]
 
 
 OTHERS = ("fault_support", "fault_tolerance")

@@ -7,7 +7,6 @@ import xarray as xr
 from suchus.core.errors import IncompatibleRecord
 from suchus.robot.motion import START
 from suchus.sim.metrics import (
-    between,
     cost_of_transport,
     diagonal_phase_error,
     displacement,
@@ -35,6 +34,7 @@ from suchus.sim.metrics import (
     tail_swing_least,
     tail_swings,
     tilt,
+    time_window,
     two_feet_alone_share,
     two_feet_share,
     work,
@@ -288,4 +288,4 @@ def standing(*feet) -> np.ndarray:
 
 def test_a_window_outside_the_record_is_a_sentence():
     with pytest.raises(IncompatibleRecord, match="nothing to measure is left between 20"):
-        between(hand_made(), 20.0, 30.0)
+        time_window(hand_made(), 20.0, 30.0)

@@ -9,7 +9,7 @@ import suchus
 from suchus.robot.control.standing import Standing
 from suchus.robot.design import crocodile
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import held, lead, reach, static_margin
+from suchus.sim.metrics import lead, longest_hold, reach, static_margin
 from suchus.sim.model import compile_model
 
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
@@ -20,7 +20,7 @@ def rising():
     """Two robots that get up, one of them shaking."""
     standing = Standing(at=0.2, hold=1.0)
     runs = [Run(robot=CAIMAN, gait=CRAWL, control=standing, noise=noise) for noise in (0.0, 0.05)]
-    return simulate(runs, duration=10.0, timestep=0.005, every=25)
+    return simulate(runs, duration=10.0, timestep=0.005, sample_stride=25)
 
 
 def highest_vertex(robot, now):
@@ -91,10 +91,10 @@ def test_a_standing_robot_has_its_mass_behind_its_feet_and_a_crawling_one_ahead(
 
 def test_held_is_the_longest_time_without_a_break():
     height = xr.DataArray([0, 1, 1, 1, 0, 1, 1, 0], dims="time", coords={"time": 0.5 * np.arange(8)})
-    assert float(held(height, 0.5)) == pytest.approx(1.0)
-    assert float(held(height, 2.0)) == 0.0
+    assert float(longest_hold(height, 0.5)) == pytest.approx(1.0)
+    assert float(longest_hold(height, 2.0)) == 0.0
     both = xr.concat([height, height * 0 + 1], "run")
-    assert held(both, 0.5).values == pytest.approx([1.0, 3.5])
+    assert longest_hold(both, 0.5).values == pytest.approx([1.0, 3.5])
 
 
 def test_a_taller_head_reaches_higher(rising):

@@ -169,7 +169,7 @@ def test_the_command_writes_a_robot_and_a_gait_that_load(desk, capsys):
     assert "limbs LF, RF on base: pitch, roll, roll" in out
     assert "note: Front:" in out
     assert sorted(path.name for path in Path().glob("[!.]*")) == ["quad.toml", "quad.urdf", "quad_walk.toml"]
-    robot = blueprint.read(Path("quad.toml"), Robot, ROBOTS)
+    robot = blueprint.read_design(Path("quad.toml"), Robot, ROBOTS)
     assert (robot.name, len(robot.girdles)) == ("quad", 2)
     assert blueprint.read_gait(Path("quad_walk.toml"), robot, GAITS).period > 0
     assert Path("quad.toml").read_text().startswith("# A draft that suchus read from quad.urdf.")
@@ -186,7 +186,7 @@ def test_an_include_of_its_own_folder_is_read(desk):
     Path("part.xml").write_text(f"<mujocoinclude>{BODY}</mujocoinclude>")
     Path("it.xml").write_text(mjcf().replace(BODY, '<include file="part.xml"/>'))
     assert main(["import", "it.xml"]) == 0
-    assert [s.name for s in blueprint.read(Path("it.toml"), Robot, ROBOTS).axis] == ["b", "a"]
+    assert [s.name for s in blueprint.read_design(Path("it.toml"), Robot, ROBOTS).axis] == ["b", "a"]
 
 
 def test_files_that_include_each_other_in_a_chain_are_a_sentence(tmp_path, monkeypatch, capsys):
@@ -207,7 +207,7 @@ def test_a_leg_with_a_joint_that_nothing_powers_is_imported_and_walks(tmp_path, 
     Path("one.urdf").write_text(before + knee + after.replace('effort="30.0"', 'effort="0.0"', 1))
     assert main(["import", "one.urdf"]) == 0
     assert "gait: one_walk.toml" in capsys.readouterr().out
-    robot = blueprint.read(Path("one.toml"), Robot, ROBOTS)
+    robot = blueprint.read_design(Path("one.toml"), Robot, ROBOTS)
     gait = blueprint.read_gait(Path("one_walk.toml"), robot, GAITS)
     targets = cycle_targets(robot, gait, np.linspace(0.0, 1.0, 9))
     assert targets.shape == (9, len(layout(robot).servos))

@@ -13,7 +13,7 @@ from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, Unwrit
 from suchus.core.writing import MANIFEST
 from suchus.robot import blueprint
 from suchus.robot.design import GRAVITY, Robot, crocodile, joint_names
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import check_limits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model import compile_model, joint_addresses
@@ -212,7 +212,7 @@ def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, 
     if kind == "usd":
         pytest.importorskip("pxr")
     folder = export(robot, crawl_gait, tmp_path / "it", kind)
-    assert blueprint.read(folder / "robot.toml", Robot, ROBOTS) == robot
+    assert blueprint.read_design(folder / "robot.toml", Robot, ROBOTS) == robot
     readme = (folder / "README.md").read_text()
     assert "A crocodile-like robot of 3.52 kg and 1.01 m" in readme
     for file in folder.rglob("*"):
@@ -235,7 +235,7 @@ def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, 
 
 def test_a_body_that_no_tables_make_is_called_a_robot(tmp_path):
     strider = ROBOTS["strider"]
-    folder = export(strider, own_gait(strider), tmp_path / "it", "mjcf")
+    folder = export(strider, default_gait(strider), tmp_path / "it", "mjcf")
     assert "A robot of 3.00 kg and 0.60 m" in (folder / "README.md").read_text()
 
 

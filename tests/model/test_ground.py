@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus.core.errors import InvalidDesign
-from suchus.robot.design.ground import ASIDE, CELL, REACH, Bumps, Step, Stone, field, heights, profile
+from suchus.robot.design.ground import CELL, HALF_WIDTH, REACH, Bumps, Step, Stone, field, heights, profile
 from suchus.sim.model import compile_model
 
 STEP = Step(at=0.7, height=0.03)
@@ -73,7 +73,7 @@ def test_the_same_seed_gives_the_same_bumps_and_another_gives_others():
 
 
 def test_bumps_span_the_ground_to_both_sides():
-    assert field(BUMPS).shape == (round(2 * ASIDE / CELL) + 1, round((REACH[1] - REACH[0]) / CELL) + 1)
+    assert field(BUMPS).shape == (round(2 * HALF_WIDTH / CELL) + 1, round((REACH[1] - REACH[0]) / CELL) + 1)
 
 
 def test_reliefs_of_one_type_share_a_topology(robot):

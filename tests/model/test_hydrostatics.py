@@ -9,18 +9,18 @@ import pytest
 
 from suchus.core import rotation
 from suchus.core.errors import InvalidDesign
-from suchus.core.rotation import about
+from suchus.core.rotation import from_axis_angle
 from suchus.robot.design import servo_names
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import column, unpacked
-from suchus.robot.motion import LIMBS_UP, cycle_targets, still
+from suchus.robot.design.water_table import column, unpack_table
+from suchus.robot.motion import LIMBS_UP, cycle_targets, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model.build import TIMESTEP
 from suchus.sim.model.hydrostatics import Hydrostatics, _root, hydrostatics
 from suchus.sim.model.wet import wet_model
 
 BARE, FLOATING = ROBOTS["caiman"], ROBOTS["floating_caiman"]
-POSTURE = cycle_targets(BARE, still(BARE, limbs=LIMBS_UP), np.zeros(1))[0]
+POSTURE = cycle_targets(BARE, straight_gait(BARE, limbs=LIMBS_UP), np.zeros(1))[0]
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def test_under_water_the_lever_is_that_of_buoyancy_over_mass(bare):
         if name != "tail_cable":
             data.joint(name).qpos = angle
     mujoco.mj_fwdPosition(model, data)
-    rows = unpacked(model.numeric_data)
+    rows = unpack_table(model.numeric_data)
     ids = rows[:, 0].astype(int)
     at = data.xpos[ids] + np.einsum("nij,nj->ni", data.xmat[ids].reshape(-1, 3, 3), column(rows, "at"))
     over = np.average(at, axis=0, weights=column(rows, "volume")[:, 0]) - data.subtree_com[0]
@@ -119,7 +119,7 @@ def test_a_moment_that_never_vanishes_is_told_and_one_that_does_is_found():
 
 def test_heel_is_told_all_round():
     angles = np.radians([-170, -90, -10, 0, 10, 90, 170])
-    assert rotation.heel(about(np.array([1.0, 0.0, 0.0]), angles)) == pytest.approx(angles)
+    assert rotation.heel(from_axis_angle(np.array([1.0, 0.0, 0.0]), angles)) == pytest.approx(angles)
 
 
 @pytest.mark.parametrize("name", sorted(ROBOTS))

@@ -17,7 +17,7 @@ from suchus.core.errors import OutsideLimits, UnknownName, UnreadableFile
 from suchus.robot import blueprint
 from suchus.robot.design import Crank, Inertia, Robot, Servo, Spring, layout
 from suchus.robot.design.scale import coarse_step
-from suchus.robot.design.segment import together
+from suchus.robot.design.segment import combine_inertias
 from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.motion import check_limits, cycle_targets, draft_gait
@@ -129,7 +129,7 @@ def test_the_draft_says_what_becomes_of_a_cable(shelf):
 def test_the_written_file_is_the_draft_and_it_walks_with_its_own_gait(shelf, tmp_path):
     _, draft, kind = shelf
     file = blueprint.write(draft.robot, tmp_path / "it.toml", notes=draft.notes, head=draft.remarks)
-    assert blueprint.read(file, Robot, ROBOTS) == draft.robot
+    assert blueprint.read_design(file, Robot, ROBOTS) == draft.robot
     if kind == "mjcf" or not draft.robot.girdles:
         return
     gait = draft_gait(draft.robot, "it_walk")
@@ -381,7 +381,7 @@ def stiff(model, root):
         if model.body_parentid[body] in those and model.body_jntnum[body] == 0:
             those.append(body)
     turns = data.ximat.reshape(-1, 3, 3)
-    return together(
+    return combine_inertias(
         [
             (
                 model.body_mass[i],
@@ -476,7 +476,7 @@ def test_what_a_file_says_of_inertia_is_kept_and_comes_out_of_the_export_again(t
         [*inertia.moments, *inertia.products], [0.02, 0.09, 0.1, 0.003, -0.002, 0.001], atol=1e-12
     )
     file = blueprint.write(robot, tmp_path / "it.toml")
-    assert blueprint.read(file, Robot, ROBOTS) == robot
+    assert blueprint.read_design(file, Robot, ROBOTS) == robot
     gait = draft_gait(robot, "walk")
     for kind, name in (("mjcf", "scene.xml"), ("urdf", "it.urdf")):
         folder = export(robot, gait, tmp_path / kind, kind)

@@ -10,7 +10,7 @@ import suchus
 from suchus.animals.capture import Camera, SyntheticAnimal, film_animal, write_table
 from suchus.apps.cli import main, run
 from suchus.robot import blueprint
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model.export import export
@@ -39,7 +39,7 @@ def captured(*robot):
 
 
 def captured_on_a_file():
-    blueprint.write(scaled(ROBOTS["caiman"], length_factor=0.5), "hatchling.toml")
+    blueprint.write(rescale(ROBOTS["caiman"], length_factor=0.5), "hatchling.toml")
     return captured("--robot", "hatchling.toml")
 
 

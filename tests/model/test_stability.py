@@ -6,7 +6,7 @@ import pytest
 from body_files import giant
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.design import with_servos, with_values
-from suchus.robot.design.scale import physics_step, scaled, swim_servo_for
+from suchus.robot.design.scale import physics_step, rescale, swim_servo_for
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, Run, simulate
@@ -15,7 +15,7 @@ from suchus.sim.model import longest_step
 
 def test_the_longest_step_is_a_time_of_the_body():
     robot = ROBOTS["caiman"]
-    assert longest_step(scaled(robot, length_factor=0.25)) == pytest.approx(longest_step(robot) / 2, rel=1e-6)
+    assert longest_step(rescale(robot, length_factor=0.25)) == pytest.approx(longest_step(robot) / 2, rel=1e-6)
 
 
 def test_shorter_steps_hold_the_joints_and_longer_ones_do_not():

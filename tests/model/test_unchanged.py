@@ -27,7 +27,7 @@ are of its bytes with the arithmetic that is named."""
 def former(name):
     """Return a robot of the shelf with the servos and the name that it had then."""
     path = Path(__file__).parents[2] / "examples" / "former_caiman.toml"
-    was, tables = blueprint.read(path, Robot, ROBOTS).tables, ROBOTS[name].tables
+    was, tables = blueprint.read_design(path, Robot, ROBOTS).tables, ROBOTS[name].tables
     parts = {"hind_leg": ("servo",), "front_leg": ("servo",), "spine": ("yaw_servo", "pitch_servo"),
              "tail": ("pitch_servo", "cable_servo")}  # fmt: skip
     changed = {

@@ -10,7 +10,7 @@ import xarray as xr
 
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import LINE, Servo, with_servos, with_speed_lines
-from suchus.robot.design.motor import COPPER, ROOM
+from suchus.robot.design.motor import COPPER, ROOM_TEMPERATURE
 from suchus.robot.gaits import GAITS
 from suchus.robot.motors import motor
 from suchus.sim.land import Backlash, Limp, Run, Slow, Weak, crawl, simulate
@@ -30,7 +30,7 @@ def robot(former):
 
 @pytest.fixture(scope="module")
 def bought(robot):
-    return with_servos(robot, lambda servo: Servo.of(STS, like=servo))
+    return with_servos(robot, lambda servo: Servo.of(STS, template=servo))
 
 
 def torque_at(robot, speed, *, supply=1.0, warmer=0.0, sign=1.0, joint="RH_knee"):
@@ -63,7 +63,7 @@ def test_the_torque_falls_in_a_straight_line_to_what_the_gear_takes_at_the_speed
 
 def test_a_gear_that_eats_the_torque_is_refused(robot):
     with pytest.raises(InvalidDesign, match=r"take 4\.75 N m at 7\.873 rad/s, of a torque of 4\.903 N m"):
-        Servo.of(STS, like=replace(robot.servo("RH_knee"), damping=0.6))
+        Servo.of(STS, template=replace(robot.servo("RH_knee"), damping=0.6))
 
 
 def test_a_servo_that_is_driven_backwards_gives_no_more_than_at_standstill(bought):
@@ -90,13 +90,15 @@ def test_a_servo_without_a_winding_gives_all_its_torque_at_any_speed(robot):
 @pytest.mark.parametrize("volts", [12.0, 9.0])
 def test_at_its_continuous_torque_the_winding_stays_at_its_limit(robot, volts):
     """Whatever the supply: the heat goes with the torque."""
-    bought = with_servos(robot, lambda servo: Servo.of(STS, volts, like=servo))
+    bought = with_servos(robot, lambda servo: Servo.of(STS, volts, template=servo))
     model = compile_model(bought)
     data = mujoco.MjData(model)
     number, heat = model.actuator("RH_knee").id, STS.heat
     warm = warming(model, bought)[number]
     held = STS.continuous_torque / bought.servo("RH_knee").kp
-    hot = 1.0 + COPPER * (heat.limit - ROOM)  # the drive's voltage is that for a cold winding, which resists less
+    hot = 1.0 + COPPER * (
+        heat.limit - ROOM_TEMPERATURE
+    )  # the drive's voltage is that for a cold winding, which resists less
     for more, sign in ((0.9, -1), (1.0, 0), (1.1, 1)):
         data.act[:] = 0.0
         data.act[model.actuator_actadr[number]] = more * held * hot
@@ -111,20 +113,20 @@ def test_at_its_continuous_torque_the_winding_stays_at_its_limit(robot, volts):
     data.ctrl[:] = data.act[model.actuator_actadr]
     mujoco.mj_forward(model, data)
     assert float(data.act_dot[warm]) == pytest.approx(cold / heat.capacity)
-    assert heat.ambient == ROOM
+    assert heat.ambient == ROOM_TEMPERATURE
 
 
 def test_a_record_knows_how_warm_the_servos_are(bought, robot):
     record = crawl(bought, "belly_crawl", duration=0.8, timestep=COARSE)
     warm = record.servo_temperature
     assert warm.attrs["units"] == "degC"
-    assert (warm.isel(time=0) == ROOM).all()
+    assert (warm.isel(time=0) == ROOM_TEMPERATURE).all()
     assert (warm.diff("time") >= -1e-6).all()  # a minute would be needed to cool visibly
     current = (record.servo_torque / STS.stall_torque) ** 2
     heated = STS.volts * STS.stall_current * current.sum("time") * 0.01 / STS.heat.capacity
-    np.testing.assert_allclose(warm.isel(time=-1) - ROOM, heated, rtol=0.05, atol=2e-3)
+    np.testing.assert_allclose(warm.isel(time=-1) - ROOM_TEMPERATURE, heated, rtol=0.05, atol=2e-3)
     assert "servo_temperature" not in crawl(robot, "belly_crawl", duration=0.1)
-    mixed = with_servos(robot, lambda servo: Servo.of(STS, like=servo) if servo.torque == 3.0 else servo)
+    mixed = with_servos(robot, lambda servo: Servo.of(STS, template=servo) if servo.torque == 3.0 else servo)
     record = crawl(mixed, "belly_crawl", duration=0.1)
     assert bool(record.servo_temperature.sel(servo="tail_cable").isnull().all())
     assert bool(record.servo_temperature.sel(servo="LF_yaw").notnull().all())

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.robot.control.pattern_posture import PatternPosture
 from suchus.robot.design import layout, unit_at, value_at, with_values
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import (
     NUMBERS,
     Bend,
     Curve,
+    FixedLimbs,
     FootPath,
     Gait,
-    Held,
     Sweep,
     check_limits,
     cycle_targets,
@@ -141,8 +141,8 @@ def test_a_share_of_one_and_a_lag_of_nothing_change_nothing(gait):
 
 @pytest.mark.parametrize("name", BODIES[1:-1])
 def test_what_is_held_straight_bends_no_more_and_the_rest_as_before(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
-    place, whole = layout(robot), cycle_targets(robot, own_gait(robot), CLOCK)
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
+    place, whole = layout(robot), cycle_targets(robot, default_gait(robot), CLOCK)
     ahead = [i for i in place.axial_yaw if i not in place.tail_yaw]
     for parts, still in ((("axis",), (True, True)), (("neck", "trunk"), (True, False)), (("tail",), (False, True))):
         held = cycle_targets(robot, gait.straightened(*parts), CLOCK)
@@ -167,7 +167,7 @@ def test_control_groups_differ_in_nothing_but_the_part_that_they_lack():
 
 def test_limbs_without_motion_stand_in_the_middle_of_their_stance():
     for name in BODIES[:-1]:
-        robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+        robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
         place = layout(robot)
         limbs = [i for limb in place.limbs for i in range(limb.servos.start, limb.servos.stop)]
         still = cycle_targets(robot, gait.without("limbs"), np.array([0.3]))[0, limbs]
@@ -274,7 +274,7 @@ def test_numbers_are_addressed_like_fields_by_studies_and_searches():
 
 
 def test_abilities_say_what_a_gait_has():
-    held = replace(WALK, limbs=(Held(angles=()),) * 2)
+    held = replace(WALK, limbs=(FixedLimbs(angles=()),) * 2)
     names = ("belly_crawl", "salamandra_walk", "undulation", "animal_walk")
     assert [GAITS[name].has("foot paths") for name in names] == [True, False, False, False]
     assert GAITS["salamandra_walk"].has("strokes")

@@ -8,7 +8,7 @@ from tests.metres import with_metres
 
 from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.robot.design import crocodile, layout
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import (
     START,
     Bend,
@@ -20,9 +20,9 @@ from suchus.robot.motion import (
     cycle_targets,
     excess,
     intended,
-    longest_strokes,
+    max_stroke_factor,
+    min_gait_period,
     servo_parts,
-    shortest_period,
     suits,
 )
 from suchus.robot.robots import ROBOTS
@@ -54,7 +54,7 @@ def test_a_cable_that_is_bent_beyond_its_limit_is_refused_though_the_pulley_is_h
 
 
 def test_a_servo_that_is_too_slow_is_named_with_the_shortest_period(robot, crawl_gait):
-    shortest, servo = shortest_period(robot, crawl_gait)
+    shortest, servo = min_gait_period(robot, crawl_gait)
     check_speeds(robot, replace(crawl_gait, period=1.001 * shortest))
     with pytest.raises(OutsideLimits, match=rf"asks {servo} of robot 'caiman' for 7\.88 rad/s; .* 7\.87 rad/s at most"):
         check_speeds(robot, replace(crawl_gait, period=0.999 * shortest))
@@ -62,8 +62,8 @@ def test_a_servo_that_is_too_slow_is_named_with_the_shortest_period(robot, crawl
 
 @pytest.mark.parametrize("name", WALKERS)
 def test_the_longest_strokes_can_just_be_walked(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
-    most = longest_strokes(robot, gait)
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
+    most = max_stroke_factor(robot, gait)
     assert most >= 1.0
     check_limits(robot, gait.strode(most))
     if most < 7.9:
@@ -73,8 +73,8 @@ def test_the_longest_strokes_can_just_be_walked(name):
 
 def test_longest_strokes_count_from_where_the_foot_stands(robot):
     walk = GAITS["high_walk"]
-    assert longest_strokes(robot, walk) < longest_strokes(robot, with_metres(walk, front_ahead=0.0, hind_ahead=0.0))
-    assert longest_strokes(ROBOTS["swimmer"], GAITS["undulation"]) == 1.0
+    assert max_stroke_factor(robot, walk) < max_stroke_factor(robot, with_metres(walk, front_ahead=0.0, hind_ahead=0.0))
+    assert max_stroke_factor(ROBOTS["swimmer"], GAITS["undulation"]) == 1.0
 
 
 def test_the_excess_is_none_where_a_robot_can_follow_and_grows_with_what_it_cannot(robot):
@@ -100,7 +100,7 @@ def test_a_sawtooth_needs_the_time_of_its_steepest_side():
     teeth = tuple(float(angle) for angle in np.interp(np.arange(200) / 200, [0.0, 0.75, 1.0], [0.0, 0.3, 0.0]))
     curve = Curve(servo="LF_yaw", part="limb", angles=teeth)
     gait = Gait(name="teeth", period=1.0, limb_phases=(0.0, 0.5, 0.5, 0.0), curves=(curve,))
-    period, servo = shortest_period(ROBOT, gait)
+    period, servo = min_gait_period(ROBOT, gait)
     assert servo == "LF_yaw"
     assert period == pytest.approx(0.3 / 0.25 / speed, rel=1e-6)
 
@@ -108,8 +108,8 @@ def test_a_sawtooth_needs_the_time_of_its_steepest_side():
 @pytest.mark.parametrize(("name", "gait"), WALKS[:2])
 def test_the_shortest_period_is_the_one_at_which_a_servo_turns_as_fast_as_it_can(name, gait):
     robot, gait = ROBOTS[name], GAITS[gait]
-    period, servo = shortest_period(robot, gait)
-    assert shortest_period(robot, replace(gait, period=3.0 * gait.period)) == (period, servo)
+    period, servo = min_gait_period(robot, gait)
+    assert min_gait_period(robot, replace(gait, period=3.0 * gait.period)) == (period, servo)
     i = layout(robot).servos.index(servo)
     clock = np.arange(201) / 200
     assert np.abs(np.diff(cycle_targets(robot, gait, clock)[:, i])).max() * 200 / period == pytest.approx(

@@ -14,14 +14,14 @@ from suchus.robot.control import Coordinated, OpenLoop, Runs, Walking
 from suchus.robot.control.limbs import LAWS
 from suchus.robot.design import crocodile, layout, servo_names
 from suchus.robot.design.scale import control_period
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.kinematics import landmarks
 from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.motion import (
     START,
     Batch,
     Bend,
-    Held,
+    FixedLimbs,
     Steer,
     check_limits,
     cycle_targets,
@@ -194,12 +194,12 @@ def test_a_crank_stands_slowly_below_and_returns_over_the_top():
 
 
 def test_limbs_can_be_held_back_as_in_swimming():
-    held = Held(angles=(radians(-85),))
+    held = FixedLimbs(angles=(radians(-85),))
     swim = replace(WALK, name="swim", limbs=(held, held))
     targets, limb = cycle_targets(SALAMANDER, swim, CLOCK), layout(SALAMANDER).limbs[0]
     assert (targets[:, limb.servos.start] == radians(-85)).all()
     assert not targets[:, limb.servos.start + 1 : limb.servos.stop].any()  # those that are not named are held at zero
-    five = Held(angles=(0.0,) * 5)
+    five = FixedLimbs(angles=(0.0,) * 5)
     with pytest.raises(OutsideLimits, match="holds 5 angles of girdle F; its limbs have 4 servos"):
         check_limits(SALAMANDER, replace(swim, limbs=(five, held)))
 
@@ -260,7 +260,7 @@ def test_a_bend_is_shared_evenly_by_the_hinges_of_its_part_whatever_their_number
     bend = Bend(part="trunk", amplitude=(0.6,))
     for name in ("caiman", "pleurobot", "salamander"):
         robot = ROBOTS[name]
-        gait = replace(own_gait(robot), axis=(bend,), coupling=())
+        gait = replace(default_gait(robot), axis=(bend,), coupling=())
         angles = cycle_targets(robot, gait, CLOCK)[:, list(layout(robot).trunk_yaw)]
         assert np.ptp(angles, axis=1).max() < 1e-15
         assert np.abs(angles.sum(axis=1)).max() == pytest.approx(0.6, rel=1e-3)
@@ -270,7 +270,7 @@ def test_a_bend_is_shared_evenly_by_the_hinges_of_its_part_whatever_their_number
 def test_knots_run_from_the_head_and_are_met_at_every_hinge_of_as_many():
     robot = ROBOTS["pleurobot"]
     knots = (0.4, 0.8, 0.2, 0.6)
-    gait = replace(own_gait(robot), axis=(Bend(part="trunk", amplitude=knots),))
+    gait = replace(default_gait(robot), axis=(Bend(part="trunk", amplitude=knots),))
     amplitude = np.abs(cycle_targets(robot, gait, CLOCK)).max(axis=0)
     hinges = yaw_hinges(robot)
     trunk = [hinges.servos[k] for k in hinges.within("trunk")]
@@ -318,7 +318,7 @@ def test_a_vertical_bend_is_shared_by_the_pitch_hinges_and_down_is_positive(robo
 
 @pytest.mark.parametrize("name", BODIES)
 def test_bends_of_trunk_and_tail_are_the_sums_of_the_hinges(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     place, clock, here = layout(robot), np.linspace(0.0, 1.0, 7), movement(robot, gait)
     z, targets = here.axis_of_clock(clock), cycle_targets(robot, gait, clock)
     assert here.bend_of("trunk", z) == pytest.approx(targets[:, list(place.trunk_yaw)].sum(axis=1), abs=1e-9)
@@ -331,7 +331,7 @@ def test_bends_of_trunk_and_tail_are_the_sums_of_the_hinges(name):
 
 @pytest.mark.parametrize("name", BODIES)
 def test_with_nothing_asked_it_is_the_gait_itself(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     clock = np.linspace(0.0, 3.0, 17)
     assert at(robot, gait, clock, Steer()) == pytest.approx(cycle_targets(robot, gait, clock), abs=1e-12)
 
@@ -339,7 +339,7 @@ def test_with_nothing_asked_it_is_the_gait_itself(name):
 @pytest.mark.parametrize("name", BODIES)
 @pytest.mark.parametrize("control", [Walking(), Coordinated(limbs=LAWS["off"], spine=None, tail=None)])
 def test_controllers_without_a_rule_command_the_open_loop_on_every_body(name, control):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     runs, period = Runs.alike(control, robot, gait, ticks=400), control_period(robot)
     ours, theirs = control.start(runs, period), OpenLoop.start(Runs.alike(OpenLoop(), robot, gait, ticks=400), period)
     first, moved = ours.rest().copy(), 0.0
@@ -362,7 +362,7 @@ def test_size_shrinks_strokes_and_bends_and_leaves_what_is_steady(robot, crawl_g
 
 @pytest.mark.parametrize("name", WALKERS)
 def test_a_steady_bend_is_shared_out_over_the_trunk_and_nothing_else_moves(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     yaw = list(layout(robot).trunk_yaw)
     change = at(robot, gait, 0.2, Steer(bend=np.array([0.1]))) - at(robot, gait, 0.2, Steer())
     assert change[0, yaw] == pytest.approx(0.1 / len(yaw))
@@ -371,7 +371,7 @@ def test_a_steady_bend_is_shared_out_over_the_trunk_and_nothing_else_moves(name)
 
 @pytest.mark.parametrize("name", ["pleurobot", "salamander", "strider", "caiman"])
 def test_a_shorter_stroke_on_one_side_moves_the_limbs_of_that_side_alone(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     place = layout(robot)
     left = np.array([[0.5 if limb.side > 0 else 1.0 for limb in place.limbs]])
     change = abs(at(robot, gait, 0.05, Steer(stroke=left)) - at(robot, gait, 0.05, Steer()))[0]

@@ -10,7 +10,7 @@ from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.robot.design import Spring, crocodile, layout
 from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.motion.posture import Keyed, hind_leg, plan
-from suchus.robot.motion.rising import STRETCH, stand_up, stretched, tallest
+from suchus.robot.motion.rising import STRETCH, max_snout_height, stand_up, stretched_length
 from suchus.sim.model import compile_model, joint_addresses
 
 CAIMAN = suchus.ROBOTS["caiman"]
@@ -85,7 +85,7 @@ def test_one_pitch_joint_bends_for_both_and_three_share():
     ],
 )
 def test_who_cannot_stand_up_is_told_what_it_lacks(name, missing):
-    for refused in (stand_up, stretched):
+    for refused in (stand_up, stretched_length):
         with pytest.raises(
             UnsuitedRobot, match=f"standing up on hind legs and tail needs .* robot '{name}' lacks"
         ) as no:
@@ -144,11 +144,11 @@ def test_a_hind_leg_reaches_points_that_do_not_turn_with_the_pelvis():
 
 def test_nothing_reaches_higher_than_the_stretched_robot():
     parts = CAIMAN.hind_leg.femur + CAIMAN.hind_leg.tibia + CAIMAN.spine.length + CAIMAN.head.snout
-    assert stretched(CAIMAN) == pytest.approx(parts, abs=1e-15)
-    assert stretched(hatchling()) == pytest.approx(parts * 0.3 / CAIMAN.length)
-    heights = tallest(CAIMAN, np.array([0.0, 0.03, 0.06, 0.1]))
-    assert heights.max() < stretched(CAIMAN) + CAIMAN.hind_leg.foot_radius
-    assert heights.max() > stretched(CAIMAN)
+    assert stretched_length(CAIMAN) == pytest.approx(parts, abs=1e-15)
+    assert stretched_length(hatchling()) == pytest.approx(parts * 0.3 / CAIMAN.length)
+    heights = max_snout_height(CAIMAN, np.array([0.0, 0.03, 0.06, 0.1]))
+    assert heights.max() < stretched_length(CAIMAN) + CAIMAN.hind_leg.foot_radius
+    assert heights.max() > stretched_length(CAIMAN)
     assert np.all(np.diff(heights[1:]) < 0)  # safety costs height
 
 

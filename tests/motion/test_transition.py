@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from suchus.robot.design import layout, servo_names
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import cycle_targets, servo_range
 from suchus.robot.motion.transition import transition
 from suchus.robot.robots import ROBOTS
@@ -54,7 +54,7 @@ def test_the_way_up_begins_where_the_way_down_ends(robot):
 
 @pytest.mark.parametrize("name", ["pleurobot", "salamander", "strider"])
 def test_a_change_of_height_of_any_body_ends_in_the_new_posture(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     other = replace(gait, name="low", height=0.9 * gait.height)
     course = transition(robot, gait, other)
     assert course.targets.shape == (len(course.times), len(layout(robot).servos))

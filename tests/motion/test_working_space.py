@@ -14,7 +14,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.gaits.belly_crawl import LIMBS
 from suchus.robot.kinematics.tree import centre_of_mass, landmarks
 from suchus.robot.motion import GaitInMetres
-from suchus.robot.motion.working_space import extent, outline, over, reached
+from suchus.robot.motion.working_space import extent, is_inside, outline, sample_configurations
 
 CRAWL = GAITS["belly_crawl"]
 METRES = GaitInMetres.near(CRAWL, LIMBS)
@@ -30,7 +30,7 @@ def world(pelvis, points):
 
 @pytest.fixture(scope="module", params=[False, True], ids=["crawling", "standing"])
 def found(request, robot):
-    return request.param, reached(robot, CRAWL, standing=request.param, count=2**14)
+    return request.param, sample_configurations(robot, CRAWL, standing=request.param, count=2**14)
 
 
 def test_feet_stand_where_the_gait_puts_them(found, robot):
@@ -72,14 +72,14 @@ def test_a_robot_whose_trunk_is_stiff_reaches_less(robot):
     stiff = crocodile(
         replace(robot.tables, spine=replace(robot.tables.spine, yaw_range=(-0.01, 0.01), pitch_range=(-0.01, 0.01)))
     )
-    ours, theirs = (reached(one, CRAWL, standing=True, count=2**12).snout for one in (robot, stiff))
+    ours, theirs = (sample_configurations(one, CRAWL, standing=True, count=2**12).snout for one in (robot, stiff))
     assert np.ptp(theirs[:, 1]) < 0.1 * np.ptp(ours[:, 1])
 
 
 def test_a_leg_keeps_to_a_narrow_range_and_the_trunk_off_the_ground(robot):
     narrow = crocodile(replace(robot.tables, hind_leg=replace(robot.tables.hind_leg, knee_range=(0.0, 1.0))))
     for standing in (False, True):
-        some = reached(narrow, CRAWL, standing=standing, count=2**14)
+        some = sample_configurations(narrow, CRAWL, standing=standing, count=2**14)
         assert some.angles[:, joint_names(robot).index("LH_knee")].max() <= 1.0
         line, _ = outline(narrow, some.angles, some.pelvis)
         assert line[:, -6:-1, 2].min() >= robot.spine.radius  # the trunk's joints come before the snout
@@ -94,7 +94,7 @@ def test_the_outline_ends_at_snout_and_feet(found, robot):
 
 def test_a_square_holds_its_middle_and_not_what_is_beyond_its_sides():
     square = np.array([[[1, -1], [1, 1], [-1, 1], [-1, -1]]]).repeat(3, axis=0)
-    assert over(np.array([[0.0, 0.99], [0.0, 1.01], [-1.01, 0.0]]), square).tolist() == [True, False, False]
+    assert is_inside(np.array([[0.0, 0.99], [0.0, 1.01], [-1.01, 0.0]]), square).tolist() == [True, False, False]
 
 
 @pytest.mark.parametrize("count", [3_000, 100_000])
@@ -117,7 +117,7 @@ def test_the_area_of_a_rectangle_and_of_nothing():
 @pytest.mark.parametrize("standing", [False, True])
 def test_how_the_tail_is_driven_changes_nothing(robot, standing):
     servos = crocodile(replace(robot.tables, tail=replace(robot.tables.tail, drive="servos")))
-    cable, driven = (reached(body, CRAWL, standing=standing, count=2**10) for body in (robot, servos))
+    cable, driven = (sample_configurations(body, CRAWL, standing=standing, count=2**10) for body in (robot, servos))
     np.testing.assert_array_equal(cable.snout, driven.snout)
     np.testing.assert_array_equal(cable.pelvis, driven.pelvis)
 

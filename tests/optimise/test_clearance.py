@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from tests.bodies import eight, hatchling
 
 from suchus.core.errors import UnsuitedRobot
-from suchus.experiments.optimise.clearance import between_parts, segments_apart
+from suchus.experiments.optimise.clearance import part_distance, segment_distance
 from suchus.robot.design import joint_names, layout
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import middle_stance
 from suchus.robot.robots import ROBOTS
 
@@ -28,13 +28,13 @@ POINT = st.tuples(*[st.floats(-1.0, 1.0, allow_subnormal=False)] * 3).map(np.arr
 )
 def test_segments_are_as_far_apart_as_geometry_says(one, other, apart):
     p, p_end, q, q_end = (np.array(x, dtype=float) for x in (*one, *other))
-    assert segments_apart(p, p_end, q, q_end) == pytest.approx(apart, abs=1e-12)
-    assert segments_apart(q_end, q, p, p_end) == pytest.approx(apart, abs=1e-12)
+    assert segment_distance(p, p_end, q, q_end) == pytest.approx(apart, abs=1e-12)
+    assert segment_distance(q_end, q, p, p_end) == pytest.approx(apart, abs=1e-12)
 
 
 @given(POINT, POINT, POINT, POINT)
 def test_no_two_points_of_two_segments_are_nearer(p, p_end, q, q_end):
-    apart = float(segments_apart(p, p_end, q, q_end))
+    apart = float(segment_distance(p, p_end, q, q_end))
     share = np.linspace(0.0, 1.0, 41)[:, None]
     one, other = p + share * (p_end - p), q + share * (q_end - q)
     nearest = np.linalg.norm(one[:, None] - other[None], axis=-1).min()
@@ -53,46 +53,46 @@ def posture(robot, **angles):
 
 def test_a_straight_robot_is_clear_and_one_that_folds_is_not(robot):
     # a thigh 11 mm thick from 63 mm aside, and a head 40 mm thick that begins 40 mm ahead of it; the thorax carries it
-    assert between_parts(robot, posture(robot)) == pytest.approx(np.hypot(0.040, 0.063) - 0.040 - 0.011)
+    assert part_distance(robot, posture(robot)) == pytest.approx(np.hypot(0.040, 0.063) - 0.040 - 0.011)
     bent = {f"spine_yaw_{i}": 0.78 for i in (1, 2, 3)}
     forward, back = {"LH_yaw": 1.0}, {"LF_yaw": -1.0}
-    assert between_parts(robot, posture(robot, **bent, **forward, **back)) < 0.0
+    assert part_distance(robot, posture(robot, **bent, **forward, **back)) < 0.0
 
 
 @pytest.mark.parametrize("name", [name for name in ROBOTS if name != "swimmer"])
 def test_every_body_with_limbs_is_clear_where_it_stands(name):
     robot = ROBOTS[name]
     angles = np.zeros(len(joint_names(robot)))
-    assert between_parts(robot, angles) > 0.0
-    place, servos = layout(robot), middle_stance(robot, own_gait(robot))
+    assert part_distance(robot, angles) > 0.0
+    place, servos = layout(robot), middle_stance(robot, default_gait(robot))
     for limb in place.limbs:
         angles[limb.hinges] = servos[limb.servos]
-    assert between_parts(robot, angles) > 0.0
+    assert part_distance(robot, angles) > 0.0
 
 
 def test_legs_in_the_middle_are_held_against_the_trunk_and_against_each_other():
     """Their hips lie 63 mm from the axis, the trunk is 32 mm thick, the thigh 11 mm; legs are 60.5 mm apart."""
     robot = eight()
-    assert between_parts(robot, posture(robot)) == pytest.approx(0.063 - 0.032 - 0.011)
+    assert part_distance(robot, posture(robot)) == pytest.approx(0.063 - 0.032 - 0.011)
     meeting = posture(robot, LM_yaw=-0.3, LN_yaw=0.3)
-    assert between_parts(robot, meeting) < 0.0
-    assert between_parts(robot, posture(robot, LM_yaw=0.3, LN_yaw=-0.3)) > 0.0
+    assert part_distance(robot, meeting) < 0.0
+    assert part_distance(robot, posture(robot, LM_yaw=0.3, LN_yaw=-0.3)) > 0.0
 
 
 def test_a_body_in_another_size_is_as_clear_in_that_size(robot):
     small, angles = hatchling(), {"spine_yaw_1": 0.5, "LF_yaw": -0.6, "LH_yaw": 0.7, "LF_knee": 0.3}
-    large = between_parts(robot, posture(robot, **angles))
-    assert between_parts(small, posture(small, **angles)) == pytest.approx(large * 0.3 / robot.length, rel=1e-9)
+    large = part_distance(robot, posture(robot, **angles))
+    assert part_distance(small, posture(small, **angles)) == pytest.approx(large * 0.3 / robot.length, rel=1e-9)
 
 
 def test_a_body_without_limbs_is_refused():
     swimmer = ROBOTS["swimmer"]
     with pytest.raises(UnsuitedRobot, match="distance between limbs and body needs limbs to walk on; robot 'swimmer'"):
-        between_parts(swimmer, posture(swimmer))
+        part_distance(swimmer, posture(swimmer))
 
 
 def test_a_mirrored_posture_is_as_clear(robot):
     left = posture(robot, spine_yaw_1=0.5, spine_yaw_3=0.3, LF_yaw=-0.4, RH_pitch=0.5, tail_yaw_1=0.2)
     right = posture(robot, spine_yaw_1=-0.5, spine_yaw_3=-0.3, RF_yaw=-0.4, LH_pitch=0.5, tail_yaw_1=-0.2)
-    both = between_parts(robot, np.array([left, right]))
+    both = part_distance(robot, np.array([left, right]))
     assert both[0] == pytest.approx(both[1], abs=1e-12)

@@ -19,12 +19,12 @@ from suchus.core.files import load
 from suchus.core.jobs.store import unpacked
 from suchus.experiments.optimise import Limit, evaluate, optimise, read_optimisation
 from suchus.experiments.optimise.aims import LIMITS
-from suchus.experiments.optimise.conduct import CONDITIONS, _under
+from suchus.experiments.optimise.conduct import CONDITIONS, _run_under_condition
 from suchus.experiments.study import Arm, Vary
 from suchus.robot import blueprint
 from suchus.robot.control import Walking
 from suchus.robot.design.scale import coarse_step
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
@@ -100,8 +100,8 @@ def test_an_interrupt_keeps_the_best_so_far_and_a_greater_budget_goes_on(small, 
 
     with pytest.raises(KeyboardInterrupt):
         optimise(spec, tmp_path / "s", progress=stop)
-    best = blueprint.read(tmp_path / "s" / "best.toml", Gait, GAITS)
-    record = simulate([replace(spec.run, gait=best)], duration=spec.duration, timestep=spec.timestep, every=2)
+    best = blueprint.read_design(tmp_path / "s" / "best.toml", Gait, GAITS)
+    record = simulate([replace(spec.run, gait=best)], duration=spec.duration, timestep=spec.timestep, sample_stride=2)
     parts = [unpacked(load(part)) for part in (tmp_path / "s" / "best" / "parts").glob("*.nc")]
     farthest = max(float(part.aim_displacement.max()) for part in parts)
     assert float(displacement(record).sel(xyz="x")[0]) == pytest.approx(farthest, abs=1e-12)
@@ -147,7 +147,7 @@ def test_a_generation_says_what_each_candidate_does_alone(small):
     told = evaluate.evaluate(spec, shares)
     assert told.status.values.tolist() == ["walked", "refused", "walked"] or told.beyond.values[1] == 0.0
     runs = [replace(spec.run, ground=replace(spec.run.ground, friction_scale=grip)) for grip in spec.friction_scales]
-    record = simulate(runs, duration=spec.duration, timestep=spec.timestep, every=2)
+    record = simulate(runs, duration=spec.duration, timestep=spec.timestep, sample_stride=2)
     assert told.aim_displacement.values[0] == pytest.approx(displacement(record).sel(xyz="x").values.mean(), abs=1e-12)
     assert told.limit_slip.values[0] == pytest.approx(slip(record).values.max(), abs=1e-12)
 
@@ -194,7 +194,7 @@ def test_the_command_leaves_gaits_numbers_and_a_page(page, tmp_path, monkeypatch
     told = json.loads((result / "outcome.json").read_text())
     assert list(told["arms"]) == ["free", "straight"]
     for name, arm in told["arms"].items():
-        gait = blueprint.read(result / f"{name}.toml", Gait, GAITS)
+        gait = blueprint.read_design(result / f"{name}.toml", Gait, GAITS)
         assert gait.name == f"small_{name}"
         assert gait.number("stroke") == arm["best"][name]["fields"]["gait.stroke"]["best"]
         assert set(arm["best"][name]["limits"]) == {"clearance"}
@@ -225,7 +225,7 @@ def test_arms_of_one_have_no_comparison(small):
 @pytest.mark.parametrize("name", ["salamander", "swimmer"])
 def test_a_body_of_its_own_is_searched_with_its_own_time_step(name, tmp_path):
     """A small one, whose results need a finer step than the caiman's, and one without limbs to replay."""
-    own = own_gait(ROBOTS[name])
+    own = default_gait(ROBOTS[name])
     gait = next(key for key in GAITS if GAITS[key] == own)
     page = tmp_path / "own.toml"
     page.write_text(f"""
@@ -250,7 +250,7 @@ name = "displacement"
 def test_a_check_shakes_no_servo_and_builds_robots_of_the_design():
     """White noise shakes a robot forward, so that it would flatter what was found."""
     run = Run(robot="caiman", gait="belly_crawl")
-    tried = {condition.tells: _under(run, condition) for condition in CONDITIONS}
+    tried = {condition.tells: _run_under_condition(run, condition) for condition in CONDITIONS}
     built = {one.zero_error for one in tried.values() if one.zero_error}
     assert {one.noise for one in tried.values()} == {0.0}
     assert len(built) == sum(condition.built is not None for condition in CONDITIONS) == 2

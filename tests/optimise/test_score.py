@@ -10,10 +10,10 @@ from suchus.core.errors import OutsideLimits, SuchusError
 from suchus.experiments.optimise import Aim, Limit
 from suchus.experiments.optimise import evaluate as evaluating
 from suchus.experiments.optimise.aims import AIMS, LIMITS
-from suchus.experiments.optimise.evaluate import allowed, evaluate, excesses, losses, score, units
+from suchus.experiments.optimise.evaluate import evaluate, excesses, is_allowed, losses, score, units
 from suchus.experiments.optimise.search import SearchResult
 from suchus.robot.design import servo_names
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.kinematics.tail import servo_angle
 from suchus.robot.motion import excess
 from suchus.robot.robots import ROBOTS
@@ -36,7 +36,7 @@ def table(ways, clear, status=None, beyond=None):
 def test_farther_is_better_until_a_limit_breaks(small):
     tried = table([0.5, 1.0, 2.0], [0.02, 0.02, 0.001])
     assert excesses(small, tried)[:, 0] == pytest.approx([-3.0, -3.0, 0.8])
-    assert allowed(small, tried).tolist() == [True, True, False]
+    assert is_allowed(small, tried).tolist() == [True, True, False]
     assert np.argsort(score(small, tried, np.array([0.5]))).tolist() == [1, 0, 2]
     assert score(small, tried, np.array([0.5]))[0] == -1.0
 
@@ -97,7 +97,7 @@ def test_a_gait_that_can_be_followed_has_no_excess_and_others_more_the_farther_t
 @pytest.mark.parametrize("name", ["salamander", "salamandra", "strider", "swimmer", "pleurobot"])
 def test_the_own_gait_of_any_body_has_no_excess_and_a_faster_one_has(name):
     robot = ROBOTS[name]
-    own = own_gait(robot)
+    own = default_gait(robot)
     assert excess(robot, own) == 0.0
     speed = min(robot.servo(servo).speed for servo in servo_names(robot))
     assert excess(robot, replace(own, period=1e-3 * own.period)) > 0.1 * speed

@@ -13,7 +13,7 @@ import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord, SuchusError, UnreadableFile, Unwritable, shortened
 from suchus.core.files import check_name, check_writable, load, new_folder, read_json, read_toml, save
-from suchus.core.reading import LARGEST
+from suchus.core.reading import MAX_FILE_SIZE
 
 
 @pytest.fixture
@@ -33,7 +33,7 @@ def test_every_flipped_bit_of_a_record_is_known(record, tmp_path):
         with pytest.raises(IncompatibleRecord, match="can be read"):
             load(torn)
         with pytest.raises(IncompatibleRecord, match="is damaged"):
-            load(torn, whole=True)
+            load(torn, require_seal=True)
 
 
 def test_the_seal_is_no_part_of_the_record_for_others(record, tmp_path):
@@ -106,7 +106,7 @@ def test_a_file_that_python_cannot_hold_is_a_sentence(text, tmp_path):
         read_toml(path)
     assert "int" not in str(told.value).split()
     with path.open("wb") as file:
-        file.truncate(LARGEST + 1)
+        file.truncate(MAX_FILE_SIZE + 1)
     with pytest.raises(UnreadableFile, match="larger than 64 MiB"):
         read_toml(path)
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from suchus.core.errors import IncompatibleRecord
 from suchus.core.files import load, save
-from suchus.robot.design.ground import ASIDE, CELL, REACH, Bumps, Ground, Step, Stone
+from suchus.robot.design.ground import CELL, HALF_WIDTH, REACH, Bumps, Ground, Step, Stone
 from suchus.sim.land import VACUUM, Run, simulate
 from suchus.sim.record import ground_of, ground_text
 
@@ -18,7 +18,7 @@ RELIEFS = st.one_of(
     st.none(),
     st.builds(Step, at=ALONG, height=HEIGHTS),
     st.builds(
-        Stone, at=ALONG, aside=st.floats(-ASIDE, ASIDE), height=HEIGHTS,
+        Stone, at=ALONG, aside=st.floats(-HALF_WIDTH, HALF_WIDTH), height=HEIGHTS,
         length=st.floats(0.005, 1.0), width=st.floats(0.005, 1.0),
     ),
     st.builds(

@@ -16,9 +16,9 @@ from suchus.robot.design.ground import Bumps, Ground, Step, Stone, field
 from suchus.robot.gaits import GAITS
 from suchus.sim.record import ground_text
 from suchus.visual.replay import replay, save
-from suchus.visual.replay.frames import MOST, frames
-from suchus.visual.skin import ankles, footed, poses, skin
-from suchus.visual.skin.ankles import NEAR, REACH
+from suchus.visual.replay.frames import MAX_FRAMES, frames
+from suchus.visual.skin import ankles, poses, skin, skin_with_ankles
+from suchus.visual.skin.ankles import FLAT_FOOT_HEIGHTS, REACH
 
 
 def opened(page):
@@ -100,12 +100,12 @@ def test_standing_feet_lie_flat_and_balls_stay(robot, crawled):
             if reach == 0.0:
                 assert np.allclose(turned, 0.0, atol=1e-6)
             else:
-                flat = feet[:, i, 2] < robot.leg(leg).foot_radius + NEAR[0]
+                flat = feet[:, i, 2] < robot.leg(leg).foot_radius + FLAT_FOOT_HEIGHTS[0]
                 assert np.allclose(turned[flat], np.minimum(leaned[flat], REACH), atol=1e-4)
 
 
 def test_feet_hang_on_ankles_and_nothing_else_does(robot):
-    surface, bodies = footed(robot), len(skin(robot).bones)
+    surface, bodies = skin_with_ankles(robot), len(skin(robot).bones)
     on_foot = surface.indices[:, 0] >= bodies
     away = surface.vertices - surface.rest[surface.indices[:, 0]]
     for i, leg in enumerate(LEGS):
@@ -143,9 +143,9 @@ def test_words_cannot_break_the_page(robot, crawled, label):
 
 def test_frames_are_thirty_a_second_and_fewer_of_long_runs(robot, crawled):
     assert 25 < frames(crawled, robot).rate < 40
-    long = crawled.isel(time=np.resize(np.arange(crawled.sizes["time"]), 3 * MOST * 4))
+    long = crawled.isel(time=np.resize(np.arange(crawled.sizes["time"]), 3 * MAX_FRAMES * 4))
     long = long.assign_coords(time=0.01 * np.arange(long.sizes["time"]))
-    assert len(frames(long, robot).mass) <= MOST
+    assert len(frames(long, robot).mass) <= MAX_FRAMES
     assert len(replay(long, robot).encode()) < 5_000_000
 
 

@@ -44,10 +44,10 @@ def test_a_page_has_its_runs_a_slider_and_a_question_whose_answer_was_measured(w
 @pytest.mark.parametrize(
     ("right", "far", "which"),
     [
-        (lessons._farthest, [0.1, 0.3, 0.2], 1),
-        (lessons._least, [0.1, 0.3, -0.2], 2),
-        (lessons._backwards, [0.1, -0.1, -0.2], 1),
-        (lessons._backwards, [0.3, 0.1, 0.2], 1),
+        (lessons._index_of_farthest, [0.1, 0.3, 0.2], 1),
+        (lessons._index_of_nearest, [0.1, 0.3, -0.2], 2),
+        (lessons._index_of_backward, [0.1, -0.1, -0.2], 1),
+        (lessons._index_of_backward, [0.3, 0.1, 0.2], 1),
     ],
 )
 def test_what_is_right_follows_from_the_distances(right, far, which):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from suchus.apps.report import load_result, render_outcome_page, render_page, write_outcome_page, write_page
-from suchus.apps.report.beside import beside
+from suchus.apps.report.beside import compare_with_animals
 from suchus.apps.report.page import robot_of
 from suchus.article.paper.animals import ANIMALS
 from suchus.core.files import plain
@@ -123,7 +123,7 @@ def test_without_a_robot_that_can_be_built_the_articles_is_shown(make, robot):
 
 def test_article_ours_and_animal_stand_side_by_side(make):
     results = {"displacement": load_result(make("displacement"))}
-    rows = {row.animal.key: row for row in beside(CAIMAN, results)}
+    rows = {row.animal.key: row for row in compare_with_animals(CAIMAN, results)}
     assert set(rows) == {"tail_length", "tail_mass", "mass", "speed", "stride_share"}
     assert (rows["speed"].ours, rows["speed"].article, rows["speed"].seen) == (
         "0.1 m/s",
@@ -140,7 +140,7 @@ def test_article_ours_and_animal_stand_side_by_side(make):
 @pytest.mark.parametrize("name", ["caiman", "salamander", "pleurobot"])
 def test_the_tail_of_any_body_stands_beside_the_animals(name):
     robot = ROBOTS[name]
-    rows = {row.animal.key: row for row in beside(robot, {})}
+    rows = {row.animal.key: row for row in compare_with_animals(robot, {})}
     marks = landmarks(robot, np.zeros(len(layout(robot).hinges)))
     behind = marks.feet[-1, 0] - marks.tail[0]  # a leg stands straight out from its hip
     mass = sum(shape.mass for part in robot.axis if part.name.startswith("tail") for shape in part.shapes)
@@ -150,7 +150,7 @@ def test_the_tail_of_any_body_stands_beside_the_animals(name):
 
 @pytest.mark.parametrize("name", ["strider", "swimmer"])
 def test_who_has_no_tail_or_no_hips_has_none_beside_the_animals(name):
-    assert not {"tail_length", "tail_mass"} & {row.animal.key for row in beside(ROBOTS[name], {})}
+    assert not {"tail_length", "tail_mass"} & {row.animal.key for row in compare_with_animals(ROBOTS[name], {})}
 
 
 def test_every_number_of_an_animal_has_a_source_and_a_range():

@@ -11,13 +11,13 @@ import xarray as xr
 
 from suchus.apps.report import Failure, load_result, number, quantity, render_outcome_page, render_page, save_outcome
 from suchus.apps.report.page import _place
-from suchus.apps.report.saving import differing
+from suchus.apps.report.saving import changed_settings
 from suchus.article.paper import CLAIMS, ERRATA
 from suchus.article.verdict import Rule, Verdict
 from suchus.core import files as record
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.claims import counted
+from suchus.experiments.claims import count_evidence
 from suchus.experiments.experiment import Experiment, Measure, Outcome, silent
 from suchus.robot.design import with_values
 from suchus.robot.gaits import GAITS
@@ -209,14 +209,14 @@ def test_the_page_of_an_outcome_tells_answer_numbers_verdicts_settings_and_data(
 
 def test_settings_that_differ_from_the_shelf_stand_on_the_page():
     question = replace(EXPERIMENTS["displacement"], cycles=3, gait=GAITS["high_walk"], bends=(0.0, 1.0))
-    rows = {row["name"]: (row["value"], row["shelf"]) for row in differing(question)}
+    rows = {row["name"]: (row["value"], row["shelf"]) for row in changed_settings(question)}
     assert set(rows) == {"cycles", "gait", "bends"}
     assert rows["cycles"] == ("3", "2")
     assert rows["gait"] == ("high_walk", "belly_crawl")
     assert rows["bends"][0] == "0, 1"
     heavier = with_values(ROBOTS["caiman"], {"pelvis.mass": 1.0})
-    assert differing(replace(EXPERIMENTS["displacement"], robot=heavier))[0]["value"] == "another caiman"
-    assert differing(EXPERIMENTS["displacement"]) == []
+    assert changed_settings(replace(EXPERIMENTS["displacement"], robot=heavier))[0]["value"] == "another caiman"
+    assert changed_settings(EXPERIMENTS["displacement"]) == []
 
 
 def test_a_run_that_was_cut_short_says_so_and_has_no_verdicts(result, tmp_path):
@@ -347,8 +347,8 @@ def test_wide_figures_take_the_whole_page_and_others_half(result, tmp_path):
 def test_the_page_counts_as_the_readme_does_and_names_what_is_no_evidence(result):
     text = render_page([result], [])
     words = {row["claim"]: row["verdict"] for row in result.outcome["verdicts"]}
-    assert str(counted(words)) in text
-    assert "1 not testable" in str(counted(words))
+    assert str(count_evidence(words)) in text
+    assert "1 not testable" in str(count_evidence(words))
     first = text[text.index("Read this first") : text.index("</aside>")]
     assert "Fitted" in first  # of another word, and fitted nonetheless
     assert "same sense" in first

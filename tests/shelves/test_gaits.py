@@ -12,8 +12,8 @@ from suchus.article.paper import CYCLE_PERIOD
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.design import layout, value_at, with_values
 from suchus.robot.design.reasons import numbers
-from suchus.robot.design.scale import control_period, scaled
-from suchus.robot.gaits import DRAFTED, GAITS, in_size, own_gait
+from suchus.robot.design.scale import control_period, rescale
+from suchus.robot.gaits import DRAFTED, GAITS, default_gait, in_size
 from suchus.robot.gaits.belly_crawl import LIMBS
 from suchus.robot.motion import check_limits, cycle_targets, limb_reaches, suits
 from suchus.robot.robots import ROBOTS
@@ -104,23 +104,23 @@ def test_a_body_of_another_size_takes_the_gait_in_the_time_that_gravity_needs_fo
     caiman = ROBOTS["caiman"]
     for body in (hatchling(), giant()):
         period, step = CYCLE_PERIOD * (body.length / caiman.length) ** 0.5, control_period(body)
-        own = own_gait(body)
+        own = default_gait(body)
         assert own == replace(GAITS["belly_crawl"], period=own.period)
         assert abs(own.period - period) <= step / 2
         assert own.period / step == pytest.approx(round(own.period / step), abs=1e-9)
-    nearly = scaled(caiman, length_factor=1.4)
-    assert own_gait(nearly) is GAITS["belly_crawl"]  # a variant of a design is compared with it in one gait
+    nearly = rescale(caiman, length_factor=1.4)
+    assert default_gait(nearly) is GAITS["belly_crawl"]  # a variant of a design is compared with it in one gait
     assert in_size(GAITS["high_walk"], caiman, caiman) is GAITS["high_walk"]
 
 
 def test_a_quarter_of_a_body_walks_alike_at_half_the_period():
     """By dynamic similarity: all of the model scales but what MuJoCo's solver takes as a number."""
     caiman = ROBOTS["caiman"]
-    small = scaled(caiman, length_factor=0.25)
+    small = rescale(caiman, length_factor=0.25)
     assert control_period(small) == control_period(caiman) / 2
-    assert own_gait(small).period == CYCLE_PERIOD / 2
+    assert default_gait(small).period == CYCLE_PERIOD / 2
     whole, quarter = (
-        float(displacement(suchus.crawl(one, own_gait(one), cycles=1)).sel(xyz="x")) for one in (caiman, small)
+        float(displacement(suchus.crawl(one, default_gait(one), cycles=1)).sel(xyz="x")) for one in (caiman, small)
     )
     assert whole > 0.1
     assert 4 * quarter == pytest.approx(whole, rel=0.05)
@@ -140,5 +140,5 @@ def test_limbs_that_turn_about_other_axes_than_those_of_a_gaits_maker_get_a_gait
     """They could follow the crocodile's crawl, and would walk backwards in it."""
     body = imported_quadruped(tmp_path)
     assert suits(body, GAITS["belly_crawl"])
-    assert own_gait(body).name == DRAFTED
-    assert float(displacement(suchus.crawl(body, own_gait(body), cycles=4)).sel(xyz="x")) > 0.1 * body.length
+    assert default_gait(body).name == DRAFTED
+    assert float(displacement(suchus.crawl(body, default_gait(body), cycles=4)).sel(xyz="x")) > 0.1 * body.length

@@ -10,7 +10,7 @@ from suchus.robot.design import GRAVITY, joint_names, layout, leg_joints, servo_
 from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import masses, volumes
 from suchus.robot.design.scale import gravity_time, physics_step
-from suchus.robot.gaits import own_gait, suits
+from suchus.robot.gaits import default_gait, suits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model import build, compile_model, joint_addresses, sensor_names
 
@@ -64,7 +64,7 @@ def test_every_number_not_from_the_article_has_a_range_and_a_reason(shelved):
 
 
 def test_a_gait_of_the_shelf_is_its_own(shelved):
-    assert suits(shelved, own_gait(shelved))
+    assert suits(shelved, default_gait(shelved))
 
 
 def test_mass_and_dimensions_arrive_in_the_model(shelved):

@@ -15,7 +15,7 @@ from suchus.robot.design import LEGS, crocodile, joint_names, layout
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model import compile_model, joint_addresses
 from suchus.visual.skin import bone_names, poses, skin
-from suchus.visual.skin.ankles import ankles, footed
+from suchus.visual.skin.ankles import ankles, skin_with_ankles
 from suchus.visual.skin.bones import Poses
 from suchus.visual.skin.surface import _blended
 
@@ -214,7 +214,7 @@ def test_who_has_the_chains_wears_a_crocodiles_skin_and_any_other_body_a_hide(ro
     feet = np.zeros((1, len(layout(robot).limbs), 3))
     turned = ankles(robot, Poses(*(part[None] for part in still)), feet)
     more = 0 if plain else 4  # a round foot has no ankle
-    assert len(footed(robot).bones) == turned.positions.shape[1] == len(found.bones) + more
+    assert len(skin_with_ankles(robot).bones) == turned.positions.shape[1] == len(found.bones) + more
 
 
 def test_a_hatchling_looks_like_the_robot_that_it_is_made_after():

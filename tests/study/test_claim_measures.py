@@ -11,7 +11,7 @@ from suchus.article.verdict import Clause, Rule
 from suchus.core.errors import IncompatibleRecord
 from suchus.experiments.claims import RULES, examples_of
 from suchus.experiments.study import Claims, Plan
-from suchus.experiments.study.claim_measures import RUNS, asked_rules, held, measures_of
+from suchus.experiments.study.claim_measures import RUNS, judge_samples, measures_of, swept_rules
 from suchus.robot.gaits import CONDITIONS, conditions_of
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import FAILED_JOINTS, Limp
@@ -98,14 +98,14 @@ RULE = Rule(
 
 def test_a_rule_is_applied_to_every_sample_whose_number_is_there():
     measures = {"ratio": np.array([1.01, 0.99, np.nan, 2.0, 2.0]), "duty": np.array([0.5, 0.5, 0.5, 2.1, np.nan])}
-    number, holds = held(RULE, measures)
+    number, holds = judge_samples(RULE, measures)
     assert number.tobytes() == measures["ratio"].tobytes()
     assert holds.tolist() == [True, False, False, False, False]
 
 
 def test_repeats_that_were_measured_are_not_replaced():
     measures = {"ratio": np.array([2.0, 2.0]), "ratio_low": np.array([0.9, 1.1]), "duty": np.array([0.5, 0.5])}
-    number, holds = held(RULE, measures)
+    number, holds = judge_samples(RULE, measures)
     assert holds.tolist() == [False, True]
     assert np.isnan(number).tolist() == [True, False]  # undecided is not judged
 
@@ -113,7 +113,7 @@ def test_repeats_that_were_measured_are_not_replaced():
 def test_of_a_claim_about_water_a_sample_is_judged_where_the_models_agree():
     rows = {word: row for row, word in reversed(examples_of("swimming")["swim_tail_thrust"])}
     words, rule = ["reproduced", "contradicted", "models disagree"], RULES["swim_tail_thrust"]
-    number, holds = held(rule, {name: np.array([rows[word][name] for word in words]) for name in rule.needs})
+    number, holds = judge_samples(rule, {name: np.array([rows[word][name] for word in words]) for name in rule.needs})
     assert np.isfinite(number).tolist() == [True, True, False]
     assert holds.tolist() == [True, False, False]
 
@@ -121,22 +121,22 @@ def test_of_a_claim_about_water_a_sample_is_judged_where_the_models_agree():
 def test_a_sample_whose_control_group_does_not_walk_is_not_judged():
     rows = {word: row for row, word in reversed(examples_of("crawl_stability")["com_fluctuation"])}
     words, rule = ["reproduced", "contradicted", "not testable"], RULES["com_fluctuation"]
-    number, holds = held(rule, {name: np.array([rows[word][name] for word in words]) for name in rule.needs})
+    number, holds = judge_samples(rule, {name: np.array([rows[word][name] for word in words]) for name in rule.needs})
     assert np.isfinite(number).tolist() == [True, True, False]
     assert holds.tolist() == [True, False, False]
 
 
 def test_a_rule_that_needs_what_is_not_measured_is_named():
     with pytest.raises(IncompatibleRecord, match=r"displacement_ratio needs duty.*unswept"):
-        held(RULE, {"ratio": np.array([2.0])})
+        judge_samples(RULE, {"ratio": np.array([2.0])})
 
 
 def test_every_rule_that_has_no_excuse_can_be_answered():
     nothing = measures_of(xr.Dataset(coords={"sample": [], "run": list(RUNS)}), LEAST)
-    assert asked_rules()
-    for rule in asked_rules():
+    assert swept_rules()
+    for rule in swept_rules():
         assert rule.claim in CLAIMS
-        assert held(rule, nothing)[0].shape == (0,)
+        assert judge_samples(rule, nothing)[0].shape == (0,)
 
 
 def test_the_runs_of_a_sample_are_the_conditions_of_its_own_gait_with_and_without_faults():

@@ -10,13 +10,13 @@ import pytest
 from suchus.article.verdict.judging import Share, digest
 from suchus.core.catalog import Catalog
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.core.jobs.made_by import deciding
+from suchus.core.jobs.made_by import source_versions
 from suchus.experiments.claims import RULES
 from suchus.experiments.study import Claims, answer_finished, claims, conduct_claims
 from suchus.experiments.study.answers import first_order
-from suchus.experiments.study.claim_measures import RUNS, asked_rules
+from suchus.experiments.study.claim_measures import RUNS, swept_rules
 from suchus.experiments.study.claims_page import OUTCOME, SHARES, TABLE, write_claims
-from suchus.experiments.study.claims_table import claim_row, deciders, turned
+from suchus.experiments.study.claims_table import border_texts, claim_row, deciders
 from suchus.experiments.study.claims_table import shares as shares_of
 from suchus.robot.gaits import GAITS
 
@@ -56,7 +56,7 @@ def test_a_time_step_agrees_with_itself_and_is_taken(conducted):
 
 def test_every_claim_without_an_excuse_is_answered_from_every_run(conducted):
     record = conducted[0]
-    assert record.claim.values.tolist() == [rule.claim for rule in asked_rules()]
+    assert record.claim.values.tolist() == [rule.claim for rule in swept_rules()]
     assert record.sizes["run"] == len(RUNS)
     assert np.isfinite(record.displacement_x.values).all()
     assert record.number.sel(claim="displacement_coordinated").values == pytest.approx(
@@ -82,7 +82,7 @@ def test_the_shares_are_written_as_the_verdicts_read_them(conducted):
     written = json.loads((result / SHARES).read_text())
     assert written["digest"] == digest(written["claims"])
     assert (written["samples"], written["became"], written["timestep"]) == (2, {"walked": 2}, 0.01)
-    assert written["source"]["runs"] == deciding()["source"]
+    assert written["source"]["runs"] == source_versions()["source"]
     for claim, row in written["claims"].items():
         share = Share(claim=claim, **row)
         assert (share.of, share.rule) == ("", RULES[claim].asked)
@@ -116,7 +116,7 @@ def test_another_source_goes_on_with_no_store_but_may_answer_from_it(conducted, 
     folder = conducted[3]
     shutil.copytree(folder, tmp_path / "store", ignore=shutil.ignore_patterns("result"))
     mark = tmp_path / "store" / "runs" / "study.json"
-    mark.write_text(mark.read_text().replace(deciding()["source"], "of last year"))
+    mark.write_text(mark.read_text().replace(source_versions()["source"], "of last year"))
     with pytest.raises(IncompatibleRecord, match="source of last year"):
         conduct_claims(small, tmp_path / "store")
     assert json.loads(answer_finished(small, tmp_path / "store").attrs["made_by"])["source"] == "of last year"
@@ -125,9 +125,9 @@ def test_another_source_goes_on_with_no_store_but_may_answer_from_it(conducted, 
 def test_what_turns_a_claim_is_told_where_designs_disagree():
     edge = {"parameter": "gait.lift", "unit": "m", "at": 0.03, "true": "below", "separation": 0.5}
     row = {"claim": "tail_swing", "samples": 100, "interval": (0.5, 0.7), "border": edge}
-    assert turned([row | {"true": 0.6}]) == {"tail_swing": "lift (gait) below 0.03 m"}
-    assert turned([row | {"true": 0.91}]) == turned([row | {"true": 0.09}]) == {}
-    assert turned([row | {"true": 0.6, "border": None}]) == {}
+    assert border_texts([row | {"true": 0.6}]) == {"tail_swing": "lift (gait) below 0.03 m"}
+    assert border_texts([row | {"true": 0.91}]) == border_texts([row | {"true": 0.09}]) == {}
+    assert border_texts([row | {"true": 0.6, "border": None}]) == {}
     assert shares_of([row | {"true": 0.6, "samples": 0}], {}) == {}
 
 

@@ -16,7 +16,7 @@ import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord, OutsideLimits, Unwritable
 from suchus.core.files import load
-from suchus.core.jobs import Died, ProcessDied, processes
+from suchus.core.jobs import PieceCrash, ProcessCrash, processes
 from suchus.core.jobs.store import MARK, RESULTS, TABLE, Store, packed, unpacked
 from suchus.experiments.study import Plan, Study, Vary, conduct, read_study, run_chunk
 from suchus.sim.land import Run, simulate
@@ -279,6 +279,8 @@ def test_no_process_and_processes_beside_a_cluster_are_refused(asked, tmp_path):
 
 
 def test_a_batch_whose_processes_die_is_told(asked, tmp_path, monkeypatch):
-    monkeypatch.setattr(processes, "side_by_side", lambda *_, **__: (said for said in [(1, Died(-9))]))
-    with pytest.raises(ProcessDied, match="the process at batch 1 of study 'strokes' ended with exit code -9, 3 times"):
+    monkeypatch.setattr(processes, "side_by_side", lambda *_, **__: (said for said in [(1, PieceCrash(-9))]))
+    with pytest.raises(
+        ProcessCrash, match="the process at batch 1 of study 'strokes' ended with exit code -9, 3 times"
+    ):
         conduct(asked, tmp_path / "s", jobs=2)

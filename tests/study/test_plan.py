@@ -8,7 +8,7 @@ import pytest
 from suchus.core.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName
 from suchus.experiments.study import MEASURES, Plan, Study, Vary
 from suchus.experiments.study.arm import Arm
-from suchus.experiments.study.chunk import called
+from suchus.experiments.study.chunk import label_of
 from suchus.experiments.study.plan import value_of
 from suchus.robot.design import with_values
 from suchus.robot.gaits import GAITS
@@ -137,7 +137,7 @@ def test_a_whole_gait_and_its_fields_can_vary_together(base):
 def test_faults_vary_as_wholes_and_by_their_numbers(base):
     both = study(base, Vary(field="faults", values=((), (Limp("LF_yaw"),))))
     assert [Plan(both).run(i).faults for i in range(2)] == [(), (Limp("LF_yaw"),)]
-    assert [called(v) for v in column(Plan(both), "faults")] == ["none", "limp LF_yaw"]
+    assert [label_of(v) for v in column(Plan(both), "faults")] == ["none", "limp LF_yaw"]
     weak = replace(base, faults=(Weak("LH_knee"),))
     parts = study(weak, Vary(field="faults[0].fraction", values=(0.1, 0.9)))
     assert Plan(parts).run(1).faults[0].fraction == 0.9

@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.article.verdict import TooFew, Varied
+from suchus.article.verdict import SparseShare, Variation
 from suchus.article.verdict.judging import digest
 from suchus.core.errors import IncompatibleRecord, InvalidDesign, OutsideLimits
 from suchus.core.files import read_json
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.claims import RULES, examples_of, varied_of
+from suchus.experiments.claims import RULES, design_sweep_of, examples_of
 from suchus.experiments.study.answers import share_interval
-from suchus.experiments.study.claim_measures import asked_rules, claims_varied, held, words
-from suchus.experiments.study.claims_table import claim_row, renewed, shares
+from suchus.experiments.study.claim_measures import claims_varied, judge_samples, swept_rules, words
+from suchus.experiments.study.claims_table import claim_row, renewed_table, shares
 from suchus.experiments.study.study import Vary
 from suchus.experiments.study.varied import (
-    LEAST,
+    MIN_POINTS,
     VariedStudy,
     answer_varied,
     conduct_varied,
@@ -41,7 +41,7 @@ OF_A_PART = {
     "terrain": "falls_switching",
 }
 """Questions that are asked in part for their claims, and a measure that takes the whole."""
-DECLARED = {name: varied_of(name) for name in EXPERIMENTS if varied_of(name) is not None}
+DECLARED = {name: design_sweep_of(name) for name in EXPERIMENTS if design_sweep_of(name) is not None}
 
 
 @dataclass(frozen=True)
@@ -108,12 +108,12 @@ def test_too_few_designs_make_no_share_but_their_words_are_told():
         columns = {"error_of_eq_17_max": ("sample", numbers), "error": ("sample", error)}
         return answer_varied(study(samples=12), xr.Dataset(columns, coords={"sample": range(12)}))
 
-    record = of(LEAST - 1)
-    assert set(record.word.sel(claim=CLAIM).values[LEAST - 1 :]) == {""}
-    few, enough = (shares([claim_row(one, CLAIM)], {"gap": one})[CLAIM] for one in (record, of(LEAST)))
-    assert few == {"words": {"reproduced": LEAST - 1}, "of": "gap", "rule": RULES[CLAIM].asked}
-    assert enough["designs"] == LEAST
-    told = TooFew(claim=CLAIM, words={"contradicted": 2, "reproduced": 1}, of="gap", rule="")
+    record = of(MIN_POINTS - 1)
+    assert set(record.word.sel(claim=CLAIM).values[MIN_POINTS - 1 :]) == {""}
+    few, enough = (shares([claim_row(one, CLAIM)], {"gap": one})[CLAIM] for one in (record, of(MIN_POINTS)))
+    assert few == {"words": {"reproduced": MIN_POINTS - 1}, "of": "gap", "rule": RULES[CLAIM].asked}
+    assert enough["designs"] == MIN_POINTS
+    told = SparseShare(claim=CLAIM, words={"contradicted": 2, "reproduced": 1}, of="gap", rule="")
     assert str(told).endswith("too few of which could judge it to know a share: 1 reproduced and 2 contradicted.")
 
 
@@ -135,7 +135,7 @@ def test_a_study_goes_on_where_it_was_stopped_and_answers_from_what_is_there(tmp
     with pytest.raises(KeyboardInterrupt):
         conduct_varied(asked, tmp_path, progress=stopped)
     there = varied_finished(asked, tmp_path)
-    assert LEAST <= there.sizes["sample"] < 16
+    assert MIN_POINTS <= there.sizes["sample"] < 16
     whole = conduct_varied(asked, tmp_path)
     xr.testing.assert_identical(
         there.drop_attrs().number, whole.drop_attrs().number.isel(sample=slice(0, there.sizes["sample"]))
@@ -149,7 +149,7 @@ def test_rows_of_one_experiment_are_put_into_the_table_and_those_of_another_rule
     rows = {"tail_swing": row | {"rule": RULES["tail_swing"].asked}, "spine_swing": row | {"rule": "another"},
             CLAIM: row | {"rule": RULES[CLAIM].asked}}  # fmt: skip
     before = json.dumps({"claims": rows, "samples": 2048, "varied": {"terrain": {"samples": 8}}})
-    table = json.loads(renewed(before, [claim_row(record, CLAIM)], {"gap": record}))
+    table = json.loads(renewed_table(before, [claim_row(record, CLAIM)], {"gap": record}))
     assert set(table["claims"]) == {"tail_swing", CLAIM}
     assert table["claims"]["tail_swing"] == rows["tail_swing"]
     assert table["claims"][CLAIM]["designs"] == 32
@@ -182,7 +182,7 @@ def test_what_is_measured_of_a_part_is_what_the_whole_measures(name, quick_outco
     asked = sorted(wanted) if name != "swimming" else [one for one in sorted(wanted) if isfinite(part[one].value)]
     np.testing.assert_array_equal([part[one].value for one in asked], [whole[one].value for one in asked])
     for claim in DECLARED[name].claims:  # what no word of swimming needs does not swim
-        said = [held(RULES[claim], {key: np.array([of[key].value]) for key in wanted}) for of in (part, whole)]
+        said = [judge_samples(RULES[claim], {key: np.array([of[key].value]) for key in wanted}) for of in (part, whole)]
         np.testing.assert_array_equal(*said)
 
 
@@ -207,7 +207,7 @@ def test_no_other_gait_is_walked_than_those_that_are_asked_for(monkeypatch):
 @pytest.mark.parametrize("name", DECLARED)
 def test_what_is_declared_can_be_asked_and_meets_what_is_judged(name):
     declared, shelf = DECLARED[name], EXPERIMENTS[name]
-    assert isinstance(declared, Varied)
+    assert isinstance(declared, Variation)
     assert replace(shelf, **declared.settings).unjudged() == ""
     assert set(declared.claims) <= {rule.claim for rule in shelf.rules()}
     asked = varied_study(shelf)
@@ -219,7 +219,7 @@ def test_what_is_declared_can_be_asked_and_meets_what_is_judged(name):
 
 
 def test_a_claim_is_answered_once_or_says_why_nothing_can_vary():
-    walked, again = {rule.claim for rule in asked_rules()}, claims_varied()
+    walked, again = {rule.claim for rule in swept_rules()}, claims_varied()
     excused = {claim for claim, rule in RULES.items() if rule.unswept}
     assert walked | again | excused == set(RULES)
     assert not walked & again

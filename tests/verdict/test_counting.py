@@ -7,7 +7,7 @@ import pytest
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict import Clause, Rule
 from suchus.article.verdict.judging import WORDS
-from suchus.experiments.claims import RULES, counted, standings
+from suchus.experiments.claims import RULES, count_evidence, standings
 
 MEASURED = Rule(claim="a", experiment="e", measure="x", holds=(Clause("x", ">", 0.0, "more is more"),), why="why")
 OTHER = replace(MEASURED, claim="b", holds=(Clause("x", ">", 1.0, "more is more"),))
@@ -52,7 +52,7 @@ def test_a_fit_and_an_identity_that_fail_are_no_evidence_either():
     rules["g"] = replace(rules["g"], kind="animals")
     words = dict(zip("abcdefgh", ["reproduced", "contradicted", "fitted", "same sense", "by construction",
                                   "contradicted", "same sense", "not testable"], strict=True))  # fmt: skip
-    count = counted(words, ["b", "d"], rules)
+    count = count_evidence(words, ["b", "d"], rules)
     assert count.claims == sum(count.standing.values()) == 8
     assert count.words == {"reproduced": 1, "contradicted": 1}
     assert count.fragile == 1
@@ -65,13 +65,13 @@ def test_a_fit_and_an_identity_that_fail_are_no_evidence_either():
 
 
 def test_nothing_is_counted_of_no_verdicts_and_a_claim_without_a_rule_counts_as_measured():
-    assert str(counted({})) == ""
-    assert str(counted({"a": "reproduced"}, (), {"a": MEASURED})).startswith("Of 1 claim of the article 1 could")
+    assert str(count_evidence({})) == ""
+    assert str(count_evidence({"a": "reproduced"}, (), {"a": MEASURED})).startswith("Of 1 claim of the article 1 could")
     (published,) = [name for name, claim in CLAIMS.items() if claim.of][:1]
-    assert str(counted({published: "reproduced"})) == (
+    assert str(count_evidence({published: "reproduced"})) == (
         "Of 1 statement of other publications on salamanders: 1 reproduced."
     )
-    assert counted({"of nobody": "contradicted"}).words == {"contradicted": 1}
+    assert count_evidence({"of nobody": "contradicted"}).words == {"contradicted": 1}
 
 
 def test_of_the_article_s_claims_the_algebra_is_named_and_one_is_said_twice():

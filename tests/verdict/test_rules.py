@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import suchus.experiments.catalog
 from suchus.article.paper import CLAIMS
-from suchus.article.verdict import Clause, Share, TooFew, between, judge
+from suchus.article.verdict import Clause, Share, SparseShare, judge, measure_with_interval
 from suchus.article.verdict.judging import ROBUST, fragile
 from suchus.core.errors import IncompatibleRecord, InvalidDesign
 from suchus.experiments.claims import RULES, UNRULED, examples_of, rules_of
@@ -57,13 +57,13 @@ def test_a_clause_is_undecided_where_the_interval_covers_both_sides(relation, wo
     ends = [(1.8, 1.9), (1.9, 2.0), (1.9, 2.1), (2.0, 2.1), (2.1, 2.2)]
     clause, other = Clause("x", relation, 2.0, "why"), Clause("x", relation, "y", "why")
     for (low, high), word in zip(ends, words, strict=True):
-        assert clause.holds(between("x", low, high), ("x",)) is word
-        assert other.holds(between("x", low, high) | {"y": 2.0}, ("x",)) is word
-    assert clause.holds(between("x", 1.0, 3.0)) is clause.holds({"x": 2.0})
-    apart = between("x", 1.0, 2.0) | between("y", 3.0, 4.0)
+        assert clause.holds(measure_with_interval("x", low, high), ("x",)) is word
+        assert other.holds(measure_with_interval("x", low, high) | {"y": 2.0}, ("x",)) is word
+    assert clause.holds(measure_with_interval("x", 1.0, 3.0)) is clause.holds({"x": 2.0})
+    apart = measure_with_interval("x", 1.0, 2.0) | measure_with_interval("y", 3.0, 4.0)
     assert other.holds(apart, ("x", "y")) is (relation in ("<", "<="))
-    assert other.holds(apart | between("y", 1.5, 4.0), ("x", "y")) is None
-    assert clause.holds(between("x", nan, 3.0), ("x",)) is False
+    assert other.holds(apart | measure_with_interval("y", 1.5, 4.0), ("x", "y")) is None
+    assert clause.holds(measure_with_interval("x", nan, 3.0), ("x",)) is False
 
 
 def test_one_clause_that_fails_for_sure_contradicts_whatever_is_undecided():
@@ -74,7 +74,7 @@ def test_one_clause_that_fails_for_sure_contradicts_whatever_is_undecided():
         (open_, sure, False), (sure, open_, False), (sure, not_so, False), (open_, not_so, None), (open_, open_, None),
         (not_so, not_so, True),
     ):  # fmt: skip
-        assert rule.held(between("a", *a) | between("b", *b)) is held
+        assert rule.held(measure_with_interval("a", *a) | measure_with_interval("b", *b)) is held
 
 
 @given(
@@ -99,7 +99,7 @@ def test_an_interval_that_reaches_the_printed_number_does_not_make_it_that_numbe
     rule, said = RULES["fault_front_yaw_coordinated"], examples_of("joint_faults")["fault_front_yaw_coordinated"][0][0]
     for middle, word in ((-0.22, "reproduced"), (-0.2, "same sense")):
         for half in (0.0, 0.01, 0.1):
-            ends = between(rule.measure, middle - half, middle + half)
+            ends = measure_with_interval(rule.measure, middle - half, middle + half)
             assert judge(rule, said | ends | {rule.measure: middle}).verdict == word
 
 
@@ -150,7 +150,7 @@ def test_a_verdict_is_fragile_where_other_designs_say_otherwise():
 )
 def test_few_designs_make_a_verdict_fragile_too(words, reproduced, contradicted):
     rule = RULES["tail_swing"]
-    few = TooFew(claim="tail_swing", words=words, of="", rule=rule.asked)
+    few = SparseShare(claim="tail_swing", words=words, of="", rule=rule.asked)
     assert fragile(rule, "reproduced", few) is reproduced
     assert fragile(rule, "contradicted", few) is contradicted
     assert not fragile(rule, "undecided", few)

@@ -6,11 +6,11 @@ from importlib import resources
 
 import pytest
 
-from suchus.article.verdict import SHARES, TOO_FEW, Share, judge
+from suchus.article.verdict import SHARES, SPARSE_SHARES, Share, judge
 from suchus.article.verdict.judging import digest
 from suchus.experiments.claims import RULES, examples_of
 from suchus.experiments.study.claim_measures import claims_varied
-from suchus.experiments.study.varied import LEAST
+from suchus.experiments.study.varied import MIN_POINTS
 from suchus.robot.design import value_at
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
@@ -36,8 +36,8 @@ def test_its_digest_is_that_of_its_rows():
 
 @shipped
 def test_every_rule_without_an_excuse_has_a_row_and_every_row_a_rule():
-    assert not set(SHARES) & set(TOO_FEW)
-    assert set(SHARES) | set(TOO_FEW) == {claim for claim, rule in RULES.items() if not rule.unswept}
+    assert not set(SHARES) & set(SPARSE_SHARES)
+    assert set(SHARES) | set(SPARSE_SHARES) == {claim for claim, rule in RULES.items() if not rule.unswept}
 
 
 @shipped
@@ -52,12 +52,12 @@ def test_a_row_is_of_the_rule_of_today_and_says_what_was_asked_and_by_which_sour
 
 @shipped
 def test_what_too_few_designs_could_judge_says_what_they_say():
-    for claim, few in TOO_FEW.items():
+    for claim, few in SPARSE_SHARES.items():
         assert few.rule == RULES[claim].asked, f"{claim}: renew it with suchus study claims"
         assert few.of == RULES[claim].experiment
-        assert LEAST <= sum(few.words.values()) == TOLD["varied"][few.of]["became"]["asked"]
+        assert MIN_POINTS <= sum(few.words.values()) == TOLD["varied"][few.of]["became"]["asked"]
         judged = sum(few.words.get(word, 0) for word in ("reproduced", "same sense", "contradicted"))
-        assert judged < LEAST
+        assert judged < MIN_POINTS
 
 
 def test_a_share_of_another_rule_says_nothing_of_this_one():
@@ -76,7 +76,7 @@ def test_a_share_of_another_rule_says_nothing_of_this_one():
 @pytest.mark.parametrize("share", SHARES.values(), ids=list(SHARES))
 def test_a_row_says_a_share_with_its_interval_and_what_turns_it(share):
     assert 0.0 <= share.low <= share.share <= share.high <= 1.0
-    assert LEAST <= share.designs <= TOLD["samples"]
+    assert MIN_POINTS <= share.designs <= TOLD["samples"]
     assert share.high - share.low < 4 / share.designs**0.5
     assert (share.turned_by == "") == (share.at is None)
     if share.turned_by:

@@ -8,7 +8,7 @@ import pytest
 
 from suchus.animals.capture import Camera, SyntheticAnimal, UnusableTracks, film_animal, write_table
 from suchus.apps.cli.entry import main
-from suchus.apps.viewer.replay import Take, beside, takes
+from suchus.apps.viewer.replay import Take, place_animal, takes
 from suchus.core.files import save
 from suchus.robot.design.ground import Ground
 from suchus.robot.gaits import GAITS
@@ -26,7 +26,7 @@ CAIMAN, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
 
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
-    record = simulate([Run(robot=CAIMAN, gait=CRAWL)], duration=1.2, timestep=0.005, every=5)
+    record = simulate([Run(robot=CAIMAN, gait=CRAWL)], duration=1.2, timestep=0.005, sample_stride=5)
     return save(record, tmp_path_factory.mktemp("record") / "walk.nc")
 
 
@@ -47,14 +47,17 @@ def spine_length(animal):
 
 
 def test_the_animal_is_as_long_as_the_robot_whatever_its_own_size(take, tracks):
-    animal, pixels = beside(tracks, take), beside(replace(tracks, position=700.0 * tracks.position, unit="px"), take)
+    animal, pixels = (
+        place_animal(tracks, take),
+        place_animal(replace(tracks, position=700.0 * tracks.position, unit="px"), take),
+    )
     assert np.median(spine_length(animal)) == pytest.approx(CAIMAN.length)
     assert pixels.scale == pytest.approx(animal.scale / 700.0)
     np.testing.assert_allclose(pixels.position, animal.position, atol=1e-9)
 
 
 def test_its_cycle_takes_as_long_as_the_robots(take, tracks):
-    animal = beside(tracks, take)
+    animal = place_animal(tracks, take)
     assert animal.pace == pytest.approx(CRAWL.period / LIZARD.period, rel=0.01)
     hip = [np.interp(START + k * CRAWL.period, animal.time, animal.position[:, 0, 0]) for k in range(3)]
     assert np.diff(hip) == pytest.approx(
@@ -63,7 +66,7 @@ def test_its_cycle_takes_as_long_as_the_robots(take, tracks):
 
 
 def test_it_begins_to_the_left_of_the_robot_and_walks_where_the_robot_faces(take, tracks):
-    animal = beside(tracks, take)
+    animal = place_animal(tracks, take)
     first, last = animal.at(0.0), animal.at(1e6)
     assert first[:, 1].mean() - take.origin[1] == pytest.approx(0.35 * CAIMAN.length, abs=0.15 * CAIMAN.length)
     assert last[0, 0] - first[0, 0] > 2 * animal.scale * LIZARD.stride
@@ -74,22 +77,22 @@ def test_it_begins_to_the_left_of_the_robot_and_walks_where_the_robot_faces(take
 def test_lost_points_are_bridged_and_a_film_without_heights_lies_above_the_ground(take, tracks):
     flat = replace(tracks, position=tracks.position[..., :2].copy())
     flat.position[20:22, 3] = np.nan
-    animal = beside(flat, take)
+    animal = place_animal(flat, take)
     assert np.isfinite(animal.position).all()
     assert np.unique(animal.position[..., 2]).tolist() == pytest.approx([0.0, 0.06 * CAIMAN.length])
-    whole = beside(replace(tracks, position=tracks.position[..., :2]), take)
+    whole = place_animal(replace(tracks, position=tracks.position[..., :2]), take)
     assert abs(animal.position - whole.position).max() < 0.03 * CAIMAN.length
 
 
 def test_a_record_that_names_no_period_plays_the_film_at_its_own_pace(take, tracks):
     bare = Take(label=take.label, robot=take.robot, record=take.record.drop_vars("period"), ground=Ground())
-    assert beside(tracks, bare).pace == 1.0
+    assert place_animal(tracks, bare).pace == 1.0
 
 
 def test_what_does_not_walk_is_refused(take, tracks):
     still = replace(tracks, position=np.repeat(tracks.position[:1], len(tracks.time), axis=0))
     with pytest.raises(UnusableTracks):
-        beside(still, take)
+        place_animal(still, take)
 
 
 def test_the_command_refuses_a_file_without_tracks_in_one_sentence(walk, tmp_path, capsys):
@@ -105,7 +108,7 @@ def test_lines_and_feet_are_drawn_where_the_animal_is(take, tracks):
     def node(name, *_, **settings):
         return made.setdefault(name, SimpleNamespace(**settings))
 
-    animal = beside(tracks, take)
+    animal = place_animal(tracks, take)
     drawn.DrawnAnimal(SimpleNamespace(add_line_segments=node, add_icosphere=node), "/w", animal).show(2.0)
     place = animal.at(2.0)
     assert made["/w/lines"].points.shape == (len(animal.bones), 2, 3)
@@ -115,7 +118,7 @@ def test_lines_and_feet_are_drawn_where_the_animal_is(take, tracks):
 
 def test_the_head_of_the_page_names_the_film_and_its_pace(take, tracks):
     status_text = pytest.importorskip("suchus.apps.viewer.replay_page").status_text
-    animal = beside(replace(tracks, source="<lizard>.csv"), take)
+    animal = place_animal(replace(tracks, source="<lizard>.csv"), take)
     text = status_text(take, None, 1.0, animal)
     assert "&lt;lizard&gt;.csv" in text
     assert "slowed down by a factor of 5" in text

@@ -226,7 +226,7 @@ def test_walks_in_two_browsers_do_not_disturb_each_other(tabs, watched, tmp_path
 
 def test_a_record_and_a_swim_are_played_back(tabs, tmp_path):
     runs = [Run(robot=ROBOTS["caiman"], gait=GAITS[name], label=name) for name in ("belly_crawl", "limbs_only")]
-    walk = takes(save(simulate(runs, duration=1.5, timestep=0.005, every=5), tmp_path / "walk.nc"))
+    walk = takes(save(simulate(runs, duration=1.5, timestep=0.005, sample_stride=5), tmp_path / "walk.nc"))
     swim, curves = films(save(swimming(), tmp_path / "swim.nc"))
     space = vortex_film(save(ringed(), tmp_path / "space.nc"))
     for page, told in (

@@ -11,15 +11,24 @@ from hypothesis import strategies as st
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.bodies import BodyPoses, pieces
 from suchus.apps.viewer.history import columns
-from suchus.apps.viewer.knobs import BUMPS, FORCE, GAIT_KNOBS, bumps_under, force_on, knobs_of, shown, tuned
+from suchus.apps.viewer.knobs import (
+    BUMPS,
+    FORCE,
+    GAIT_KNOBS,
+    bumps_under,
+    displayed_value,
+    force_on,
+    knobs_of,
+    tune_gait,
+)
 from suchus.apps.viewer.live_page import Controls, gait_file, robot_file, status
 from suchus.apps.viewer.plots import gait_bars, plans
 from suchus.apps.viewer.session import _PLAIN
 from suchus.core.errors import OutsideLimits
-from suchus.robot.blueprint import read
+from suchus.robot.blueprint import read_design
 from suchus.robot.design import crocodile, layout
-from suchus.robot.design.scale import control_period, scaled
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.design.scale import control_period, rescale
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import Gait, check_limits, suits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.faults import Limp, Locked
@@ -56,14 +65,14 @@ def test_both_ends_of_every_slider_leave_a_gait_that_the_robot_can_walk(gait):
     assert {"period", "duty_factor", "stroke", "lift", "height", "trunk_bend", "tail_bend", "axis_lag"} <= set(knobs)
     for name, knob in knobs.items():
         for end in (knob.low, knob.high):
-            found, notice = tuned(ROBOT, gait, name, end)
+            found, notice = tune_gait(ROBOT, gait, name, end)
             check_limits(ROBOT, found)
-            assert notice or shown(found, name) == pytest.approx(end, abs=1e-9)
+            assert notice or displayed_value(found, name) == pytest.approx(end, abs=1e-9)
 
 
 def test_hips_too_high_for_the_legs_stop_where_they_end():
-    found, notice = tuned(ROBOT, CRAWL, "height", 110.0)
-    assert 52.0 < shown(found, "height") < 110.0
+    found, notice = tune_gait(ROBOT, CRAWL, "height", 110.0)
+    assert 52.0 < displayed_value(found, "height") < 110.0
     assert "cannot follow 110 % of reach" in notice
     further = replace(found, height=found.height + 1e-3)
     with pytest.raises(OutsideLimits):
@@ -73,10 +82,10 @@ def test_hips_too_high_for_the_legs_stop_where_they_end():
 @settings(max_examples=40, deadline=None)
 @given(st.sampled_from(sorted(knobs_of(ROBOT, CRAWL))), st.one_of(st.floats(), st.text(), st.none(), st.integers()))
 def test_whatever_is_typed_the_gait_stays_one_that_can_be_walked(name, value):
-    found, notice = tuned(ROBOT, CRAWL, name, value)
+    found, notice = tune_gait(ROBOT, CRAWL, name, value)
     check_limits(ROBOT, found)
     knob = GAIT_KNOBS[name]
-    assert knob.low - 1e-9 <= shown(found, name) <= knob.high + 1e-9
+    assert knob.low - 1e-9 <= displayed_value(found, name) <= knob.high + 1e-9
     if notice:
         assert knob.label in notice
 
@@ -256,7 +265,7 @@ def test_the_article_s_robot_has_the_sliders_that_others_are_scaled_from():
 
 @pytest.mark.parametrize("name", list(ROBOTS))
 def test_every_robot_walks_live_and_is_drawn_pushed_and_broken(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     session, calm = Session(robot, gait), Session(robot, gait)
     period, weight, place = control_period(robot), 9.81 * robot.mass, layout(robot)
     assert session.settings.force == pytest.approx(0.434 * weight, rel=0.05)
@@ -290,16 +299,16 @@ def test_every_robot_walks_live_and_is_drawn_pushed_and_broken(name):
 
 @pytest.mark.parametrize("name", ["pleurobot", "salamander", "salamandra", "strider", "swimmer"])
 def test_both_ends_of_the_sliders_of_another_body_leave_a_gait_that_it_can_walk(name):
-    robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
+    robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
     knobs = knobs_of(robot, gait)
     assert {"period", "trunk_offset", "axis_bend" if name == "swimmer" else "trunk_bend"} <= set(knobs)
     assert ("stroke" in knobs, "crank" in knobs) == (name not in ("salamandra", "swimmer"), name == "salamandra")
     for field, knob in knobs.items():
-        assert knob.low - 1e-9 <= shown(gait, field) <= knob.high + 1e-9
+        assert knob.low - 1e-9 <= displayed_value(gait, field) <= knob.high + 1e-9
         for end in (knob.low, knob.high):
-            found, notice = tuned(robot, gait, field, end)
+            found, notice = tune_gait(robot, gait, field, end)
             check_limits(robot, found)
-            assert notice or shown(found, field) == pytest.approx(end, rel=1e-3)
+            assert notice or displayed_value(found, field) == pytest.approx(end, rel=1e-3)
             assert notice == "" or knob.label in notice
     session = Session(robot, gait)
     assert session.tune("trunk_offset", 1.0) == ""
@@ -310,7 +319,7 @@ def test_both_ends_of_the_sliders_of_another_body_leave_a_gait_that_it_can_walk(
 
 
 def test_a_smaller_crocodile_has_the_sliders_of_its_gait_and_lower_bumps():
-    small = scaled(ROBOT, length_factor=0.5)
+    small = rescale(ROBOT, length_factor=0.5)
     half = knobs_of(small, CRAWL)
     assert half == knobs_of(ROBOT, CRAWL)  # shares of the limbs' reach, and angles
     assert bumps_under(small).high == pytest.approx(30.0)
@@ -324,7 +333,7 @@ def test_a_table_of_angles_has_nothing_to_turn_and_is_refused_in_a_sentence():
 
 
 def test_a_body_without_limbs_is_watched_but_has_no_heading_loop():
-    session = Session(ROBOTS["swimmer"], own_gait(ROBOTS["swimmer"]))
+    session = Session(ROBOTS["swimmer"], default_gait(ROBOTS["swimmer"]))
     assert "needs limbs to walk on; robot 'swimmer' lacks that" in session.switch("heading", True)
     assert session.settings.heading is False
     session.advance(0.05)
@@ -337,7 +346,7 @@ def test_a_saved_gait_reads_back_as_the_gait_that_is_walked(tmp_path):
     session.switch("spine", False)
     file = gait_file(ROBOT, session.settings)
     (tmp_path / file.name).write_bytes(file.content)
-    read_back = read(tmp_path / file.name, Gait, GAITS)
+    read_back = read_design(tmp_path / file.name, Gait, GAITS)
     assert file.name == "belly_crawl_tuned.toml"
     assert read_back == replace(session.settings.walked(ROBOT), name="belly_crawl_tuned")
     assert (read_back.number("stroke"), read_back.number("trunk_bend")) == (pytest.approx(0.25), 0.0)
@@ -348,7 +357,7 @@ def test_a_gait_as_on_the_shelf_keeps_its_name_and_the_robot_reads_back_equal(tm
     assert gait_file(ROBOT, session.settings).name == "belly_crawl.toml"
     file = robot_file(ROBOT)
     (tmp_path / file.name).write_bytes(file.content)
-    assert read(tmp_path / file.name, type(ROBOT), ROBOTS) == ROBOT
+    assert read_design(tmp_path / file.name, type(ROBOT), ROBOTS) == ROBOT
 
 
 def test_the_buttons_give_the_browser_gait_and_robot():

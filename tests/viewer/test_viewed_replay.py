@@ -7,7 +7,7 @@ import xarray as xr
 from suchus.apps.viewer.bodies import BodyPoses, pieces, support
 from suchus.apps.viewer.history import columns
 from suchus.apps.viewer.plots import gait_bars
-from suchus.apps.viewer.replay import _NEEDED, Player, takes
+from suchus.apps.viewer.replay import _VARIABLES, Player, takes
 from suchus.apps.viewer.stage import RodShape, rod, upright
 from suchus.apps.viewer.swim import films
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
@@ -25,7 +25,9 @@ stage = pytest.importorskip("suchus.apps.viewer.stage", reason="the extra viewer
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     runs = [Run(robot=ROBOTS["caiman"], gait=GAITS[name], label=name) for name in ("belly_crawl", "limbs_only")]
-    return save(simulate(runs, duration=1.5, timestep=0.005, every=5), tmp_path_factory.mktemp("record") / "walk.nc")
+    return save(
+        simulate(runs, duration=1.5, timestep=0.005, sample_stride=5), tmp_path_factory.mktemp("record") / "walk.nc"
+    )
 
 
 def test_a_record_gives_a_take_for_every_run(walk):
@@ -108,7 +110,7 @@ def test_feet_that_stand_do_not_dip_into_the_ground(relief):
     (piece,) = pieces(robot, 1)
     feet = piece.weights[:, [name.endswith("ankle") for name in piece.bones]].sum(axis=1) > 0.5
     for sample in (100, 120, 140):
-        posture.put({name: values.values[0, sample] for name, values in record[list(_NEEDED)].items()})
+        posture.put({name: values.values[0, sample] for name, values in record[list(_VARIABLES)].items()})
         at = np.zeros_like(piece.vertices)
         for i, (place, turn) in enumerate(posture.bones(relief)[name] for name in piece.bones):
             at += piece.weights[:, i : i + 1] * (place + rotate(turn, piece.vertices - piece.rest[i]))

@@ -17,7 +17,7 @@ from suchus.core.files import save
 @pytest.mark.parametrize(("level", "lower"), [(2.0, False), (4.0, True), (6.0, False)])
 def test_the_surface_lies_where_the_field_has_the_chosen_value(level, lower):
     film = VortexFilm(ringed())
-    points = film.surfaces(1, level, lower=lower).vertices
+    points = film.surfaces(1, level, lower_half_only=lower).vertices
     off = np.hypot(np.hypot(points[:, 1], points[:, 2]) - RADIUS, points[:, 0] - 0.6)
     assert off == pytest.approx(CORE * (2.0 - level / film.level), abs=0.004)
     assert (points[:, 2].max() > 0.1) != lower

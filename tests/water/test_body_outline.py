@@ -7,7 +7,7 @@ from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.robot.design import cable_joints, layout
 from suchus.robot.kinematics import landmarks
 from suchus.robot.kinematics import tail as tail_kinematics
-from suchus.robot.motion import check_limits, cycle_targets, lateral_servos, still, swimming_gait
+from suchus.robot.motion import check_limits, cycle_targets, lateral_servos, straight_gait, swimming_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model import compile_model
 from suchus.swimming.water import Outline, silhouette, swim, undulation
@@ -47,7 +47,7 @@ def test_velocities_are_the_derivatives_of_positions(name):
 
 
 def test_straight_joints_make_a_straight_line(robot):
-    curve = undulation(Outline(robot), still(robot)).curve(np.zeros(()))
+    curve = undulation(Outline(robot), straight_gait(robot)).curve(np.zeros(()))
     np.testing.assert_allclose(curve.x, Outline(robot).s, atol=1e-12)
     assert np.all(curve.y == 0.0)
     assert np.all(curve.x_rate == 0.0)

@@ -5,11 +5,11 @@ import pytest
 
 import suchus
 from suchus.robot.design import crocodile, with_values
-from suchus.robot.motion import still
+from suchus.robot.motion import straight_gait
 from suchus.robot.robots import ROBOTS
-from suchus.swimming.water import Outline, fit, printed_wave, sprung, undulation
+from suchus.swimming.water import Outline, fit, printed_wave, undulation, with_passive_end
 
-STILL = still(ROBOTS["caiman"])
+STILL = straight_gait(ROBOTS["caiman"])
 
 
 def _stiffer(robot, factor):
@@ -21,7 +21,7 @@ def _stiffer(robot, factor):
 
 def _tip(robot, motion, speed=0.2):
     outline = Outline(robot)
-    return sprung(outline, motion, speed).stations[1] - undulation(outline, motion).stations[1]
+    return with_passive_end(outline, motion, speed).stations[1] - undulation(outline, motion).stations[1]
 
 
 def test_a_still_body_leaves_its_end_straight(robot):
@@ -54,7 +54,9 @@ def test_a_hard_spring_bends_by_moment_over_stiffness(robot):
 
 def test_a_springy_end_changes_the_speed_by_little(robot):
     motion = fit(robot, printed_wave(robot)).gait
-    straight, bent = (suchus.swim(robot, m, stations=129) for m in (motion, sprung(Outline(robot, 129), motion, 0.2)))
+    straight, bent = (
+        suchus.swim(robot, m, stations=129) for m in (motion, with_passive_end(Outline(robot, 129), motion, 0.2))
+    )
     change = bent.speed.values / straight.speed.values - 1
     assert np.all(np.abs(change) < 0.2)
     assert np.all(change != 0.0)

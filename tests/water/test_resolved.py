@@ -7,7 +7,7 @@ from tests.swims import crocodile_swim
 import suchus
 from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.core.progress import silent
-from suchus.robot.motion import still
+from suchus.robot.motion import straight_gait
 from suchus.swimming.water import ExactWave, Outline
 from suchus.swimming.water.immersed import immersed
 from suchus.swimming.water.resolved import (
@@ -40,7 +40,7 @@ def test_a_motion_grows_from_a_straight_body_at_rest(robot):
 
 
 def test_a_body_that_does_not_move_feels_nothing(robot):
-    record = resolved_swim(robot, still(robot), COARSE_TETHERED)
+    record = resolved_swim(robot, straight_gait(robot), COARSE_TETHERED)
     assert float(abs(record.thrust).max()) < 1e-9
     assert float(abs(record.joint_torque).max()) < 1e-9
 

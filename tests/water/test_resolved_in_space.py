@@ -7,7 +7,7 @@ import pytest
 
 from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.core.progress import silent
-from suchus.robot.motion import still
+from suchus.robot.motion import straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water import Outline, Water, fit, printed_wave, recoil
 from suchus.swimming.water.resolved import TETHERED, SwimSetting, resolved_swim, towed_drag
@@ -29,7 +29,7 @@ def swum():
 
 
 def test_a_body_at_rest_feels_nothing():
-    found = held(still(ROBOT), progress=silent)
+    found = held(straight_gait(ROBOT), progress=silent)
     assert all(np.abs(found[name].values).max() == 0.0 for name in ("thrust", "aside", "power", "sway", "turn"))
 
 

@@ -14,26 +14,26 @@ from suchus.core.progress import silent
 from suchus.robot.design.water import Water
 from suchus.swimming.water.sections import (
     TABLE,
-    attached,
+    attached_coefficients,
     coefficients,
-    held_out,
-    likely,
+    correction_factors,
+    held_out_errors,
     table,
 )
 
 
 def test_where_the_flow_is_attached_the_round_section_is_that_of_stokes_and_wang():
     drag, added = coefficients(1.0, 1.0)
-    exact = attached(1.0)
+    exact = attached_coefficients(1.0)
     assert drag == pytest.approx(exact[0], rel=0.03)
     assert added == pytest.approx(exact[1], rel=0.03)
-    assert coefficients(1.0, 10.0)[0] > 1.5 * attached(10.0)[0]  # there it separates
+    assert coefficients(1.0, 10.0)[0] > 1.5 * attached_coefficients(10.0)[0]  # there it separates
 
 
 def test_the_formula_of_stokes_and_wang_is_theirs():
     """Their leading terms: drag 3 pi^3 / 2 KC (pi beta)^-1/2, added mass 1 + 4 (pi beta)^-1/2."""
-    assert attached(2.0, 1e8)[0] == pytest.approx(1.5 * np.pi**3 / 2.0 / np.sqrt(np.pi * 1e8), rel=1e-4)
-    assert attached(1.0, 1e8)[1] - 1.0 == pytest.approx(4.0 / np.sqrt(np.pi * 1e8), rel=1e-4)
+    assert attached_coefficients(2.0, 1e8)[0] == pytest.approx(1.5 * np.pi**3 / 2.0 / np.sqrt(np.pi * 1e8), rel=1e-4)
+    assert attached_coefficients(1.0, 1e8)[1] - 1.0 == pytest.approx(4.0 / np.sqrt(np.pi * 1e8), rel=1e-4)
 
 
 def test_the_round_section_is_that_of_the_published_experiment():
@@ -50,7 +50,7 @@ def test_the_fit_to_the_published_curve_does_not_hang_on_how_it_is_read():
 
 
 def test_interpolation_is_near_the_points_that_were_held_out():
-    errors = held_out()
+    errors = held_out_errors()
     assert errors.shape == (len(sections.HELD_OUT), 2)
     assert errors.max() <= 0.15
     assert errors.max() > 0.0  # none of them is a node
@@ -69,7 +69,7 @@ def test_nodes_are_what_was_computed():
 def test_the_page_says_how_the_swims_own_coefficients_compare():
     """Beyond the attached layer a round section has the model's drag, a high one more, a flat one less."""
     for keulegan in (10.0, 20.0):
-        layer, model = attached(keulegan)[0], Water().cross_drag
+        layer, model = attached_coefficients(keulegan)[0], Water().cross_drag
         assert coefficients(1.0, keulegan)[0] - layer == pytest.approx(model, rel=0.05)
         assert coefficients(2.0, keulegan)[0] - layer > 1.5 * model
         assert coefficients(4.0, keulegan)[0] - layer > 1.5 * model
@@ -80,19 +80,21 @@ def test_the_page_says_how_the_swims_own_coefficients_compare():
 def test_a_high_section_widens_the_band_and_a_flat_one_too(aspect, low, high):
     """KC 10: the drag of a round section is the swims' own, that of a high one more, of a flat one less."""
     height = np.full(5, 0.05)
-    drag, _ = likely(height / aspect, height, 10.0 / np.pi * height)
+    drag, _ = correction_factors(height / aspect, height, 10.0 / np.pi * height)
     assert low < drag < high
-    assert drag == pytest.approx((coefficients(aspect, 10.0)[0] - attached(10.0)[0]) / Water().cross_drag)
+    assert drag == pytest.approx((coefficients(aspect, 10.0)[0] - attached_coefficients(10.0)[0]) / Water().cross_drag)
 
 
 def test_sections_count_as_much_as_they_swing():
     height, swing = np.array([0.05, 0.05]), np.array([0.16, 0.0016])
-    both = likely(np.array([0.05, 0.0125]), height, swing)
-    first = likely(np.array([0.05, 0.05]), height, swing)
+    both = correction_factors(np.array([0.05, 0.0125]), height, swing)
+    first = correction_factors(np.array([0.05, 0.05]), height, swing)
     assert both == pytest.approx(first, rel=1e-2)
-    assert likely(np.array([0.0125, 0.05]), height, swing)[0] > 1.5 * first[0]
-    assert likely(np.array([0.0125, 0.05]), height, swing)[1] > 1.5 * first[1]
-    pointed = likely(np.array([0.05, 0.05, 0.0]), np.array([0.05, 0.05, 0.0]), np.array([0.16, 0.0016, 0.2]))
+    assert correction_factors(np.array([0.0125, 0.05]), height, swing)[0] > 1.5 * first[0]
+    assert correction_factors(np.array([0.0125, 0.05]), height, swing)[1] > 1.5 * first[1]
+    pointed = correction_factors(
+        np.array([0.05, 0.05, 0.0]), np.array([0.05, 0.05, 0.0]), np.array([0.16, 0.0016, 0.2])
+    )
     assert pointed == pytest.approx(first)
 
 
@@ -143,5 +145,5 @@ def test_a_flow_of_the_table_is_computed():
     (case,) = [one for one in sections.cases() if one.name == "section_1_1"]
     found = compute(case, quick=True, progress=silent)
     assert not found.failed
-    assert found.curves["drag"][1, -1] == pytest.approx(attached(1.0)[0], rel=0.25)
-    assert found.curves["added"][1, -1] == pytest.approx(attached(1.0)[1], rel=0.25)
+    assert found.curves["drag"][1, -1] == pytest.approx(attached_coefficients(1.0)[0], rel=0.25)
+    assert found.curves["added"][1, -1] == pytest.approx(attached_coefficients(1.0)[1], rel=0.25)

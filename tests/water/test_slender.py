@@ -6,14 +6,14 @@ from tests.swims import crocodile_swim
 
 import suchus
 from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.robot.motion import still
+from suchus.robot.motion import straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water import (
     Outline,
     Water,
     cruise,
     cycle,
-    displaced,
+    displaced_mass,
     fit,
     printed_wave,
     reactive,
@@ -22,7 +22,7 @@ from suchus.swimming.water import (
     wave_speed,
 )
 
-STILL = still(ROBOTS["caiman"])
+STILL = straight_gait(ROBOTS["caiman"])
 SMOOTH = Water(thickening=0.0)
 
 
@@ -162,8 +162,8 @@ def test_the_reactive_power_is_never_less_than_what_moves_it_on(outline, forward
 
 
 def test_the_displaced_mass_is_that_of_its_ellipses(robot):
-    assert displaced(Outline(robot, 2049)) == pytest.approx(displaced(Outline(robot)), rel=1e-3)
-    assert 1.5 < displaced(Outline(robot)) < robot.mass
+    assert displaced_mass(Outline(robot, 2049)) == pytest.approx(displaced_mass(Outline(robot)), rel=1e-3)
+    assert 1.5 < displaced_mass(Outline(robot)) < robot.mass
 
 
 def test_impossible_requests_are_refused(robot, forward):

@@ -9,12 +9,12 @@ from suchus.robot.motion import check_limits, check_speeds
 from suchus.swimming.water import (
     Quarters,
     Sway,
-    Swum,
+    SwimMeasures,
     attempts,
     convex_higher,
     efficiency,
     fit,
-    greatest,
+    max_amplitude_factor,
     printed_wave,
     readings_table,
     survey,
@@ -89,7 +89,7 @@ def test_a_swim_in_numbers():
             "heading": ("sample", 0.2 * np.cos(2 * np.pi * t)),
         }
     )
-    swum = Swum.of(free, 2.0)
+    swum = SwimMeasures.of(free, 2.0)
     assert swum.speed == 0.4
     assert swum.gain == pytest.approx(1 / 3)
     assert swum.slip == pytest.approx(0.25)
@@ -135,8 +135,8 @@ def test_the_greatest_amplitude_is_the_last_that_can_be_followed(robot):
     motion = fit(robot, printed_wave(robot)).gait
     for frequency, joint in ((1.5, "asks tail_cable of"), (0.25, "the hinges of cable tail_cable")):
         slow = scaled(motion, 1.0, frequency)
-        most = greatest(robot, slow)
+        most = max_amplitude_factor(robot, slow)
         check_swim(robot, scaled(motion, most, frequency))
         with pytest.raises(OutsideLimits, match=joint):
             check_swim(robot, scaled(motion, most + 2e-4, frequency))
-    assert greatest(robot, scaled(motion, 1e-3, 0.1), most=2.0) == 2.0
+    assert max_amplitude_factor(robot, scaled(motion, 1e-3, 0.1), max_factor=2.0) == 2.0

@@ -12,7 +12,7 @@ import pytest
 
 from pages.stated import keep, kept
 from suchus.robot.robots import ROBOTS
-from suchus.swimming.water import Swum, fit, printed_wave
+from suchus.swimming.water import SwimMeasures, fit, printed_wave
 from suchus.swimming.water.resolved import TETHERED, SwimSetting, resolved_swim
 
 pytestmark = pytest.mark.validate
@@ -31,7 +31,7 @@ def grids():
         setting = SwimSetting(cells=cells, viscosity=viscosity, cycles=3, free=TETHERED)
         held = resolved_swim(robot, fitted.gait, setting, turn=fitted.head)
         free = resolved_swim(robot, fitted.gait, SwimSetting(cells=cells, viscosity=viscosity, cycles=CYCLES))
-        swum = Swum.of(free, 1.0)
+        swum = SwimMeasures.of(free, 1.0)
         rows[cells] = {
             "speed": swum.speed,
             "gain": swum.gain,

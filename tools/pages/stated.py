@@ -26,11 +26,11 @@ if __name__ == "__main__":
 from evidence import renew, store
 from pages import passages
 from suchus.article.paper import AUTHORS, CLAIMS, TITLE
-from suchus.article.verdict import SHARES, TOO_FEW, Verdict, judge, ladder
+from suchus.article.verdict import SHARES, SPARSE_SHARES, Verdict, judge, ladder
 from suchus.article.verdict.judging import ROBUST
 from suchus.experiments import experiment
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.claims import RULES, UNRULED, counted
+from suchus.experiments.claims import RULES, UNRULED, count_evidence
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -164,10 +164,10 @@ def elsewhere() -> dict[str, Verdict]:
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the shelves hold, its words in ``docs/stated/pages``."""
     verdicts = kept("verdicts")
-    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": TOO_FEW,
+    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": SPARSE_SHARES,
              "verdicts": verdicts, "elsewhere": elsewhere(), "unruled": UNRULED,
              "rules": RULES, "servo_loads": kept("servo_loads"),
-             "count": counted({claim: row["verdict"] for claim, row in verdicts.items()},
+             "count": count_evidence({claim: row["verdict"] for claim, row in verdicts.items()},
                               [claim for claim, row in verdicts.items() if row["fragile"]])}  # fmt: skip
     return templates().get_template(f"pages/{name}.md").render(known | content) + "\n"
 

@@ -10,7 +10,7 @@ from evidence.league import Entrant
 from suchus.core.catalog import Catalog
 
 CONTESTANTS: Catalog[Entrant] = Catalog(
-    "contestant", "evidence.league.cases", "evidence.league:Entrant", named=attrgetter("name")
+    "contestant", "evidence.league.cases", "evidence.league:Entrant", name_of=attrgetter("name")
 )
 """Contestants by name; those of a family have a number behind it, as ``catshark_2.5``."""
 

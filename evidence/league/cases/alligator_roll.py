@@ -9,7 +9,7 @@ from suchus.core.errors import OutsideLimits
 from suchus.core.progress import Progress, portion
 from suchus.robot.control import OpenLoop
 from suchus.robot.design import Robot
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.motion import roll
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
@@ -21,7 +21,7 @@ _CYCLES = 3
 
 @lru_cache(maxsize=8)
 def _body(length: float) -> Robot:
-    return scaled(ROBOTS["caiman"], length_factor=length / ROBOTS["caiman"].length)
+    return rescale(ROBOTS["caiman"], length_factor=length / ROBOTS["caiman"].length)
 
 
 def rolled(afloat: Afloat, choices: Sequence[Numbers], progress: Progress) -> list[Found]:

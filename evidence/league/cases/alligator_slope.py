@@ -10,12 +10,12 @@ from evidence.league import Contestant, Found, Given, Numbers, Predictor, Quanti
 from suchus.core.progress import Progress, portion
 from suchus.robot.design import GRAVITY, Robot, with_values
 from suchus.robot.design.ground import Ground
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import between, speed
+from suchus.sim.metrics import speed, time_window
 
 _SLOPE = radians(15.0)
 _CYCLES = 4
@@ -24,7 +24,7 @@ _CYCLES = 4
 @lru_cache(maxsize=64)
 def _body(length: float, friction: float) -> Robot:
     caiman = with_values(ROBOTS["caiman"], {"contact.foot_friction": friction})
-    return scaled(caiman, length_factor=length / caiman.length)
+    return rescale(caiman, length_factor=length / caiman.length)
 
 
 def walked(gait: str, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
@@ -34,7 +34,7 @@ def walked(gait: str, choices: Sequence[Numbers], progress: Progress) -> list[Fo
 
 def _walk(gait: str, numbers: Numbers, progress: Progress) -> Found:
     robot = _body(numbers["length"], numbers["friction"])
-    walk = scaled(GAITS[gait], length_factor=numbers["length"] / ROBOTS["caiman"].length)
+    walk = rescale(GAITS[gait], length_factor=numbers["length"] / ROBOTS["caiman"].length)
     runs = [
         Run(robot=robot, gait=walk, ground=Ground(uphill=slope), label=f"{slope:g} rad")
         for slope in (0.0, _SLOPE, -_SLOPE)
@@ -42,7 +42,7 @@ def _walk(gait: str, numbers: Numbers, progress: Progress) -> Found:
     start = START * walk.period / GAITS[gait].period
     end = start + _CYCLES * walk.period
     record = simulate(runs, duration=end + 0.1 * walk.period, progress=progress)
-    speeds, part = speed(record, start, end).values, between(record, start, end)
+    speeds, part = speed(record, start, end).values, time_window(record, start, end)
     along = part.foot_force.sum("leg") + part.belly_force.sum("segment") + part.tail_force
     pushes = along.sel(xyz="x").mean("time").values / (robot.mass * GRAVITY)
     if not (np.isfinite(speeds).all() and speeds[0] > 0.0):

@@ -63,7 +63,7 @@ def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
 @lru_cache(maxsize=256)
 def _gait(robot: Robot, wavelength: float, head: float, tail: float) -> Gait:
     wave = FilmedWave(length=robot.length, frequency=1.0, wavelength=wavelength, head=head, tail=tail)
-    return fit(robot, wave, name="catshark_film", most=0.4).gait
+    return fit(robot, wave, name="catshark_film", max_misfit=0.4).gait
 
 
 def held(numbers: Numbers) -> float:

@@ -13,7 +13,7 @@ from suchus.core.progress import Progress
 from suchus.robot.design import Robot
 from suchus.robot.design.needs import lacking
 from suchus.robot.design.water import Water
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water import Outline, cruise, cycle, reactive, resistive, swim_of
@@ -34,7 +34,7 @@ def swimmers() -> tuple[tuple[Robot, Gait], ...]:
         try:
             found.append((robot, swim_of(robot)))
         except SuchusError:
-            gait = own_gait(robot)
+            gait = default_gait(robot)
             if not robot.girdles:
                 found.append((robot, gait))
     return tuple(found)

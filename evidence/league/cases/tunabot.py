@@ -43,7 +43,7 @@ def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
         tail=0.5 * numbers["tail"],
     )  # fmt: skip
     return ModelSwimmer(
-        robot=robot, gait=fit(robot, wave, name="tunabot", most=1.0).gait, water=waters(numbers),
+        robot=robot, gait=fit(robot, wave, name="tunabot", max_misfit=1.0).gait, water=waters(numbers),
         shedding=numbers["shedding"], added_mass=numbers["added_mass"], ramp=1.0,
     )  # fmt: skip
 

@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar, get_args
 
 from suchus.core.errors import BrokenFile, InvalidDesign, SuchusError, UnknownName
 from suchus.core.kinds import show
-from suchus.core.reading import there
+from suchus.core.reading import path_exists
 from suchus.core.sources import Source, current, gather
 
 T = TypeVar("T")
@@ -46,14 +46,14 @@ class Catalog(Mapping[str, T], Generic[T]):
         *,
         classes: bool = False,
         scattered: bool = False,
-        named: Callable[[Any], str] | None = None,
-        read: Callable[[Path], Any] | None = None,
+        name_of: Callable[[Any], str] | None = None,
+        read_file: Callable[[Path], Any] | None = None,
     ) -> None:
         """Store the settings; neither file names nor modules are read yet."""
         self.kind = kind
         self._package, self._declares = package, declares
         self._classes, self._scattered = classes, scattered
-        self._name_of, self._read_file = named, read
+        self._name_of, self._read_file = name_of, read_file
         self._from_files: dict[Path, tuple[int, Any]] = {}
         self._loading = _LoadingFiles()
 
@@ -164,7 +164,7 @@ class Catalog(Mapping[str, T], Generic[T]):
         if not isinstance(value, (str, Path)) or self._read_file is None or (isinstance(value, str) and value in self):
             return None
         path = Path(folder) / value
-        return path if path.suffix == ".toml" or there(path) else None
+        return path if path.suffix == ".toml" or path_exists(path) else None
 
     def resolve(self, value: Any, folder: str | Path = Path()) -> T:
         """Return what a value stands for: itself, what carries its name on the shelf, or what a TOML file describes.

@@ -10,7 +10,7 @@ from typing import Any
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import misfits, show
 
-Course = float | tuple[tuple[float, float], ...]
+Schedule = float | tuple[tuple[float, float], ...]
 """A number, or a table of time since the beginning of the run [s] and number; straight between, steady beyond."""
 
 
@@ -129,7 +129,14 @@ class Checks:
             self._complain(field, f"is {_show(value)}; increasing numbers within {limits} are needed, at least one")
 
     def course(
-        self, field: str, lower_bound: float, upper_bound: float, unit: str, *, over: str = "time", start: float = -inf
+        self,
+        field: str,
+        lower_bound: float,
+        upper_bound: float,
+        unit: str,
+        *,
+        abscissa: str = "time",
+        start: float = -inf,
     ) -> None:
         """Refuse a value that is neither a number within the bounds nor a table of increasing times and such numbers.
 
@@ -138,7 +145,7 @@ class Checks:
             lower_bound: least number.
             upper_bound: greatest number.
             unit: of the number.
-            over: noun for the first column of the table, in messages.
+            abscissa: noun for the first column of the table, in messages.
             start: least allowed time [s].
         """
         value = getattr(self._design, field)
@@ -154,8 +161,8 @@ class Checks:
             start_text = "" if start == -inf else f" from {start:g} on"
             self._complain(
                 field,
-                f"is {show(value)}; a number of {limits}, or pairs of a {over} and such a number are allowed, the "
-                f"{over}s rising{start_text}",
+                f"is {show(value)}; a number of {limits}, or pairs of a {abscissa} and such a number are allowed, the "
+                f"{abscissa}s rising{start_text}",
             )
         return None
 

@@ -28,7 +28,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from suchus.core.writing import new_file
 
-KEPT = 4
+MAX_SOURCE_STATES = 4
 """States of the sources whose code is kept [-]."""
 
 
@@ -176,5 +176,5 @@ def _forget(current: Path, prefix: str) -> None:
     with suppress(OSError):
         other_folders = [cache_folder for cache_folder in current.parent.glob(f"{prefix}*") if cache_folder != current]
         other_folders.sort(key=lambda cache_folder: cache_folder.stat().st_mtime, reverse=True)
-        for old in other_folders[KEPT - 1 :]:
+        for old in other_folders[MAX_SOURCE_STATES - 1 :]:
             shutil.rmtree(old, ignore_errors=True)

@@ -13,31 +13,31 @@ from suchus.core.errors import InvalidDesign
 
 OPTION = "--large"
 """Option of every command that lets large work begin."""
-WANTED = "SUCHUS_LARGE"
+LARGE_VARIABLE = "SUCHUS_LARGE"
 """Environment variable that says the same, to the processes that help too."""
-SHARE = 0.5
+MAX_MEMORY_FRACTION = 0.5
 """Share of the memory from which on it is asked for [-]."""
-LONG = 86400.0
+MAX_PROCESSOR_TIME = 86400.0
 """Processor time from which on it is asked for [s]."""
 
 
 @contextmanager
 def allowing(is_allowed: bool = True) -> Iterator[None]:
     """While the block runs, let large work begin, if asked."""
-    environment_value = os.environ.get(WANTED)
+    environment_value = os.environ.get(LARGE_VARIABLE)
     if is_allowed:
-        os.environ[WANTED] = "1"
+        os.environ[LARGE_VARIABLE] = "1"
     try:
         yield
     finally:
         if is_allowed:
-            os.environ.pop(WANTED)
-            os.environ.update({} if environment_value is None else {WANTED: environment_value})
+            os.environ.pop(LARGE_VARIABLE)
+            os.environ.update({} if environment_value is None else {LARGE_VARIABLE: environment_value})
 
 
 def allowed() -> bool:
     """Return whether large work may begin."""
-    return os.environ.get(WANTED, "") not in ("", "0")
+    return os.environ.get(LARGE_VARIABLE, "") not in ("", "0")
 
 
 def memory() -> int | None:
@@ -65,7 +65,7 @@ def check_memory(subject: str, need: float, remedy: str) -> None:
         InvalidDesign: with both numbers.
     """
     have = memory()
-    if have is None or need <= SHARE * have or (allowed() and need <= have):
+    if have is None or need <= MAX_MEMORY_FRACTION * have or (allowed() and need <= have):
         return
     size_text = f"{subject} takes some {need / 1e9:.3g} GB of memory, and this machine has {have / 1e9:.3g} GB"
     raise InvalidDesign(f"{size_text}; {remedy}{'' if need > have else f', or say {OPTION} to begin all the same'}.")
@@ -82,6 +82,6 @@ def check_work(subject: str, seconds: float, remedy: str) -> None:
     Raises:
         InvalidDesign: with the estimate.
     """
-    if seconds > LONG and not allowed():
-        time_text = f"{subject} takes some {seconds / LONG:.3g} days of a processor"
+    if seconds > MAX_PROCESSOR_TIME and not allowed():
+        time_text = f"{subject} takes some {seconds / MAX_PROCESSOR_TIME:.3g} days of a processor"
         raise InvalidDesign(f"{time_text}; {remedy}, or say {OPTION} to begin all the same.")

@@ -23,7 +23,7 @@ import numpy as np
 from suchus.core import threads
 from suchus.core.errors import OutsideLimits
 
-WANTED = "SUCHUS_PORTABLE"
+PORTABLE_VARIABLE = "SUCHUS_PORTABLE"
 """Environment variable: 1 asks for the routines that every processor of this architecture has."""
 PORTABLE: Mapping[str, str] = {
     "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR",  # of NumPy's own choice; its least is X86_V2
@@ -66,7 +66,7 @@ def arithmetic() -> dict[str, str]:
 
 
 @cache
-def described() -> dict[str, str]:
+def describe() -> dict[str, str]:
     """Return a description of this machine for people: processor, vector instructions, kernels, threads."""
     numpy_config = np.show_config(mode="dicts")
     blas = numpy_config["Build Dependencies"]["blas"]
@@ -84,7 +84,7 @@ def described() -> dict[str, str]:
 
 def provenance() -> dict[str, dict[str, str]]:
     """Return what results say of the machine that made them."""
-    return {"arithmetic": arithmetic(), "described": described()}
+    return {"arithmetic": arithmetic(), "described": describe()}
 
 
 def differences(other_arithmetic: Mapping[str, str]) -> list[str]:
@@ -101,7 +101,7 @@ def is_portable() -> bool:
     return all(os.environ.get(name) == value for name, value in PORTABLE.items())
 
 
-def begun_portable(environment: Mapping[str, str]) -> dict[str, str] | None:
+def portable_environment(environment: Mapping[str, str]) -> dict[str, str] | None:
     """Return the environment with which a process that asks for portable arithmetic must be restarted.
 
     Args:
@@ -113,14 +113,16 @@ def begun_portable(environment: Mapping[str, str]) -> dict[str, str] | None:
     Raises:
         OutsideLimits: there are no such settings for this kind of machine, or it is asked for in another word than 1.
     """
-    setting = environment.get(WANTED, "")
+    setting = environment.get(PORTABLE_VARIABLE, "")
     if setting in ("", "0"):
         return None
     if setting != "1":
-        raise OutsideLimits(f"{WANTED} is {setting!r}; 1 asks for portable arithmetic, 0 or nothing for the fastest.")
+        raise OutsideLimits(
+            f"{PORTABLE_VARIABLE} is {setting!r}; 1 asks for portable arithmetic, 0 or nothing for the fastest."
+        )
     if (platform.machine(), platform.libc_ver()[0]) != ("x86_64", "glibc"):
         raise OutsideLimits(
-            f"{WANTED} is for x86-64 with the GNU C library, and this is {platform.machine()} with "
+            f"{PORTABLE_VARIABLE} is for x86-64 with the GNU C library, and this is {platform.machine()} with "
             f"{platform.libc_ver()[0] or 'another C library'}; leave it away, and compare results of machines of one "
             "kind."
         )

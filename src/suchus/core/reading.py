@@ -9,7 +9,7 @@ from typing import Any
 
 from suchus.core.errors import UnreadableFile
 
-LARGEST = 64 * 2**20
+MAX_FILE_SIZE = 64 * 2**20
 """Size of a file that is read [byte]."""
 MESHES = (".stl", ".obj", ".ply", ".off", ".glb")
 """Formats of meshes that trimesh reads without further packages, each in one file."""
@@ -19,7 +19,7 @@ class NoMeshes(UnreadableFile):
     """Trimesh, which reads meshes, is not installed."""
 
 
-def there(path: str | Path) -> bool:
+def path_exists(path: str | Path) -> bool:
     """Return whether something is at a path, or would be if its folder let us look; never raises."""
     path = Path(path)
     try:
@@ -57,7 +57,7 @@ def unreadable(path: str | Path, error: OSError | ValueError) -> UnreadableFile:
     return UnreadableFile(f"{str(path)!r} is no name that a file can have.")
 
 
-def read_bytes(path: str | Path, max_size: int = LARGEST) -> bytes:
+def read_bytes(path: str | Path, max_size: int = MAX_FILE_SIZE) -> bytes:
     """Return what is in a file of at most so many bytes.
 
     Raises:
@@ -106,7 +106,7 @@ def read_mesh(path: str | Path, data: bytes | None = None) -> Any:
     return mesh
 
 
-def read_text(path: str | Path, max_size: int = LARGEST) -> str:
+def read_text(path: str | Path, max_size: int = MAX_FILE_SIZE) -> str:
     """Return the text of a file.
 
     Args:

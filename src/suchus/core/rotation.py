@@ -54,7 +54,7 @@ def upward(q: Quaternion) -> Float[np.ndarray, "*b 3"]:
     return direction
 
 
-def ahead(q: Quaternion) -> Float[np.ndarray, "*b 3"]:
+def world_x(q: Quaternion) -> Float[np.ndarray, "*b 3"]:
     """Return the world's x direction in the frame of the body: the first row of the rotation matrix."""
     w, x, y, z = _parts(q)
     direction = np.empty((*w.shape, 3), w.dtype)
@@ -63,7 +63,7 @@ def ahead(q: Quaternion) -> Float[np.ndarray, "*b 3"]:
     return direction
 
 
-def about(axis: Vector, angle: Float[np.ndarray, "*b"] | float) -> Quaternion:
+def from_axis_angle(axis: Vector, angle: Float[np.ndarray, "*b"] | float) -> Quaternion:
     """Return the quaternions of turns about unit vectors, w positive for turns of less than half a turn.
 
     Args:

@@ -133,7 +133,7 @@ def current() -> Project | None:
 
 
 @contextmanager
-def within(folder: str | None) -> Iterator[None]:
+def project_context(folder: str | None) -> Iterator[None]:
     """Use a project folder in this process while the block runs; with None the project stays.
 
     Raises:
@@ -151,7 +151,7 @@ def within(folder: str | None) -> Iterator[None]:
             os.environ[VARIABLE] = previous_folder
 
 
-class Carried:
+class ProjectPickle:
     """A value whose pickle names the project of this process, so that another process opens the project too.
 
     There the project is opened before the value is read, whose types may stand in it. A process that was told a project

@@ -10,15 +10,17 @@ from threading import Event, Thread, current_thread, main_thread
 from time import monotonic
 from types import FrameType
 
-SOON = 1.5
+STOP_TIMEOUT = 1.5
 """Time after which a process that was told to stop ends, whatever it is at [s]."""
-CUT = "suchus: stopped while it was busy; what was finished is kept, the next run takes away what is half-written.\n"
+CUT_MESSAGE = (
+    "suchus: stopped while it was busy; what was finished is kept, the next run takes away what is half-written.\n"
+)
 """What is said where that time was too short."""
 _POLL_INTERVAL = 0.1  # [s]; between two looks whether it has ended by itself
 _finishing_times: list[float] = []  # what ``finishing`` asks for
 
 
-class Stopped(KeyboardInterrupt):
+class StopSignal(KeyboardInterrupt):
     """A signal asked the process to stop.
 
     Attributes:
@@ -46,16 +48,16 @@ def stopping() -> Iterator[None]:
         del frame
         number[0] = signal.Signals(signum)
         stop_event.set()
-        raise Stopped(signum)
+        raise StopSignal(signum)
 
     def see_to_it() -> None:
         """End the process if it still runs a time after the stop signal."""
         stop_event.wait()
         since = monotonic()
         while not end_event.wait(_POLL_INTERVAL):
-            if monotonic() - since > max((SOON, *_finishing_times)):
+            if monotonic() - since > max((STOP_TIMEOUT, *_finishing_times)):
                 with suppress(OSError):  # nobody may read it
-                    os.write(2, CUT.encode())
+                    os.write(2, CUT_MESSAGE.encode())
                 os._exit(128 + number[0])
 
     handled_signals = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) == signal.SIG_DFL]

@@ -20,7 +20,7 @@ from pathlib import Path
 from urllib.parse import quote_from_bytes, unquote
 
 from suchus.core.errors import InvalidDesign, Unwritable
-from suchus.core.reading import there
+from suchus.core.reading import path_exists
 
 MANIFEST = ".suchus-written"
 """File that says what suchus wrote into its folder: a line for each state, its digest and the name."""
@@ -56,7 +56,7 @@ def check_writable(folder: str | Path) -> None:
     """
     folder = Path(folder)
     ancestor = folder
-    while not there(ancestor) and ancestor != ancestor.parent:
+    while not path_exists(ancestor) and ancestor != ancestor.parent:
         ancestor = ancestor.parent
     try:
         _check_names(folder)
@@ -312,7 +312,7 @@ def check_replaceable(path: str | Path) -> None:
     path = Path(path)
     try:
         _check_names(path)
-        if _replacing.get() or not there(path):
+        if _replacing.get() or not path_exists(path):
             return
         if path.is_dir():
             changed_files = [file for file, is_unchanged in _states(path) if is_unchanged is False]
@@ -337,7 +337,7 @@ _REMEDY = "choose another place, move it away, or say --replace, which keeps a b
 
 def _is_users(path: Path) -> bool:
     """Return whether what is at a path holds something, and not what suchus wrote there."""
-    return there(path) and not (
+    return path_exists(path) and not (
         path.is_file()
         and (path.stat().st_size == 0 or _digest(path) in _recorded_digests(path.parent).get(path.name, ()))
     )

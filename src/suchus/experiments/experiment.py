@@ -17,17 +17,18 @@ import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
 from jinja2.ext import Extension
 
-from suchus.article.verdict import Reading, Rule, Verdict, compared, judge, listed
+from suchus.article.verdict import Reading, Rule, Verdict, comparison_word, judge, listed
 from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
 from suchus.core.progress import Progress, silent, staged
 from suchus.experiments.claims import rules_of
 from suchus.robot.design import Robot, check_needs
-from suchus.robot.design.scale import coarse_step, control_period, scaled_fields
-from suchus.robot.gaits import in_size, own_gait
+from suchus.robot.design.scale import coarse_step, control_period, rescale_fields
+from suchus.robot.gaits import default_gait, in_size
 from suchus.robot.motion import Gait, check_limits, suits
 
 __all__ = [
-    "Experiment", "Measure", "Measures", "Outcome", "Progress", "Replay", "Simulated", "ends", "estimated", "ranged",
+    "Experiment", "Measure", "Measures", "Outcome", "Progress", "Replay", "SimulationResult", "ends", "estimated",
+    "ranged",
     "silent", "staged", "stopwatch", "templates", "write",
 ]  # fmt: skip
 EXPLANATION = "explanation.md"
@@ -151,7 +152,7 @@ class Replay:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Simulated:
+class SimulationResult:
     """Record and files of a simulated experiment, before anything is measured."""
 
     record: xr.Dataset
@@ -167,7 +168,7 @@ class Simulated:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome(Simulated):
+class Outcome(SimulationResult):
     """The result: numbers, verdicts, and the record they were read from."""
 
     experiment: str
@@ -279,7 +280,7 @@ class Experiment(ABC):
                 )
 
     @abstractmethod
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate the experiment and return its record."""
 
     def _judge_claims(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
@@ -295,16 +296,16 @@ class Experiment(ABC):
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return every number, computed from the record alone; ``Measures`` refuse two numbers with the same name."""
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures, with the values of a full run.
 
         By default all runs are simulated; subclasses leave out runs that the wanted measures do not need.
 
         Args:
-            wanted: names of measures.
+            measure_names: names of measures.
             progress: called with the fraction that is done.
         """
-        del wanted
+        del measure_names
         return Measures(self.measure(self.simulate(progress).record))
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -364,12 +365,12 @@ class Experiment(ABC):
         current_robot: Robot = values["robot"]
         gaits = [gait for value in values.values() for gait in _gaits(value)]
         is_similar = control_period(robot) == control_period(current_robot) and (
-            not gaits or own_gait(robot) == own_gait(current_robot)
+            not gaits or default_gait(robot) == default_gait(current_robot)
         )
         if is_similar and all(suits(robot, gait) for gait in gaits):
             return replace(self, robot=robot)  # type: ignore[type-var]
         plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
-        sized = scaled_fields(
+        sized = rescale_fields(
             self, plain, length_factor=robot.length / current_robot.length, mass_factor=robot.mass / current_robot.mass
         )
         step_ratio = coarse_step(robot) / coarse_step(current_robot)  # time steps divide the control period
@@ -391,9 +392,9 @@ class Experiment(ABC):
             UnsuitedRobot: no gait in the catalog suits it.
         """
         current_robot: Robot = self.robot  # type: ignore[attr-defined]
-        default_gait, names = own_gait(robot), [parameter.name for parameter in fields(self)]  # type: ignore[arg-type]
+        own_gait, names = default_gait(robot), [parameter.name for parameter in fields(self)]  # type: ignore[arg-type]
         gait_settings = {name: getattr(self, name) for name in names if _gaits(getattr(self, name))}
-        if default_gait.name == own_gait(current_robot).name:
+        if own_gait.name == default_gait(current_robot).name:
             sized = {
                 name: tuple(in_size(gait, robot, current_robot) for gait in _gaits(value))
                 for name, value in gait_settings.items()
@@ -402,7 +403,7 @@ class Experiment(ABC):
                 return {
                     name: gaits if isinstance(gait_settings[name], tuple) else gaits[0] for name, gaits in sized.items()
                 }
-        gait_fields = {"gait": default_gait, "gaits": (default_gait,)}
+        gait_fields = {"gait": own_gait, "gaits": (own_gait,)}
         return {name: value for name, value in gait_fields.items() if name in names}
 
     def unjudged(self) -> str:
@@ -476,7 +477,7 @@ def templates(folder: Path) -> Environment:
     )
     environment.filters |= {"write": write, "sentence": sentence}
     environment.tests["finite"] = isfinite
-    environment.globals |= {"compared": compared, "listed": listed, "separator": separator}
+    environment.globals |= {"compared": comparison_word, "listed": listed, "separator": separator}
     environment.globals |= {"either_sign": either_sign, "spanned": spanned}
     return environment
 

@@ -8,7 +8,7 @@ Start reading with ``flow.setup``, then ``flow.simulation``.
 
 from suchus.core.isosurface import IsoSurface, isosurface
 from suchus.flow.added import added_mass
-from suchus.flow.bent import BentMesh, BentOutline, bent
+from suchus.flow.bent import BentMesh, BentOutline, bend_shape
 from suchus.flow.body import Body
 from suchus.flow.contact import BodyContact
 from suchus.flow.eel import eel, eel_in_space
@@ -108,7 +108,7 @@ __all__ = [
     "Twists",
     "Wall",
     "added_mass",
-    "bent",
+    "bend_shape",
     "difference",
     "eel",
     "eel_in_space",

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from suchus.flow.markers import Markers
-from suchus.flow.pose import TURNS
-from suchus.flow.twist import Twists, held_faces, none, part_of, rise
+from suchus.flow.pose import ROTATION_PLANES
+from suchus.flow.twist import Twists, face_differences, held_faces, part_indices, resting_twists
 from suchus.flow.water import Fluid
 
 _RESIDUAL_TOLERANCE = 1e-5
@@ -120,7 +120,7 @@ def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndar
         joint_correction: see ``_ModeResponses``.
     """
     axes, h, corner = water.axes, water.grid.cell, np.array(water.grid.origin)
-    turns = len(TURNS[axes])
+    turns = len(ROTATION_PLANES[axes])
     moves = np.array([
         np.concatenate([replace(mode, about=mode.about - corner).at_origin(), h * mode.angular], axis=1)
         for mode in modes
@@ -140,7 +140,7 @@ def symmetric(mirror_cuts: tuple[bool, ...]) -> list[bool]:
     ]
     return [
         *(not is_cut for is_cut in has_mirror),
-        *(not (has_mirror[a] or has_mirror[b]) for a, b in TURNS[len(has_mirror)]),
+        *(not (has_mirror[a] or has_mirror[b]) for a, b in ROTATION_PLANES[len(has_mirror)]),
     ]
 
 
@@ -153,9 +153,9 @@ def _rigid(water: Fluid, reference_point: tuple[float, ...], body: int) -> list[
         body: which body, counted from 0 [-].
     """
     axes, rows, modes = water.axes, water.rows[body], []
-    turns = len(TURNS[axes])
+    turns = len(ROTATION_PLANES[axes])
     for k in range(axes + turns):
-        mode = none(len(water.given), axes)
+        mode = resting_twists(len(water.given), axes)
         mode.about[:] = reference_point
         (mode.linear if k < axes else mode.angular)[rows.start : rows.stop, k if k < axes else k - axes] = 1.0
         modes.append(mode)
@@ -207,7 +207,9 @@ class _ModeResponses:
                 acceleration_field[c].ravel()[component_faces.place] = component_faces.closed * acceleration / scale
             x = water.potential(acceleration_field, limit)
             side_potentials.append([scale * line.astype(np.float64) for line in water.along_sides(x)])
-            rises.append([scale * rise(water, x, component_faces, c) for c, component_faces in enumerate(faces)])
+            rises.append(
+                [scale * face_differences(water, x, component_faces, c) for c, component_faces in enumerate(faces)]
+            )
             part_pressures.append(water.pressures(x, scale))
             joint_corrections.append(water.across(x, scale))
             inward.append([] if sides_held else [scale * side for side in water.answer(acceleration_field)])
@@ -252,7 +254,7 @@ def _rim(
     total = np.zeros((len(modes[0]), len(modes[0])))
     for outline, body_modes, ends in zip(outlines, modes, mirror_cuts, strict=True):
         skin = water.offset * water.grid.cell * 0.5 ** sum(ends) * outline.share
-        row = part_of(outline)
+        row = part_indices(outline)
         moves = np.array([mode.at(row, outline.points) for mode in body_modes])
         total += np.einsum("icm,jcm,m->ij", moves, moves, skin)
     return total

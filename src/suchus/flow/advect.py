@@ -13,12 +13,21 @@ from functools import cache
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, UNIT, part, part_with, signed, threaded, threaded_with, unsigned
+from suchus.flow.compiled import (
+    PAD,
+    UNIT,
+    kernel_part,
+    replace_kernel_parts,
+    replace_threaded_parts,
+    signed,
+    threaded,
+    unsigned,
+)
 from suchus.flow.scheme import QUICK, Scheme, limited_quick
 from suchus.flow.slab import (
     EDGE,
-    LEAST,
-    NONE,
+    MIN_PLANES,
+    ZERO,
     block_of,
     meets,
     near_shift,
@@ -32,7 +41,7 @@ ROWS = 16
 """Rows of a slab in space that are advanced together: they and their neighbours fit in the nearest caches [-]."""
 
 
-@part
+@kernel_part
 def _fluxes(flux, o, shift, rate, c, d, slab, start, stop, dj, di, ej, ei, viscosity):
     """Write the fluxes of component ``c`` along axis ``d`` through the faces before the nodes of a slab.
 
@@ -65,7 +74,7 @@ def _fluxes(flux, o, shift, rate, c, d, slab, start, stop, dj, di, ej, ei, visco
         flux[o, k - shift] = speed * face - viscosity * (value_0 - value_m1)
 
 
-@part
+@kernel_part
 def _net(flux, lower_slot, upper_slot, k, inner):
     """Return the net flux into a cell: through the faces within the slab, and through those below and above it.
 
@@ -82,7 +91,7 @@ def _net(flux, lower_slot, upper_slot, k, inner):
     return net + flux[lower_slot, k] - flux[upper_slot, k]
 
 
-@part
+@kernel_part
 def _update(
     velocity, blend, base, c, flux, lower_slot, upper_slot, shift, p, slab, start, stop, inner, ej, ei, dt, push, keep
 ):
@@ -115,7 +124,7 @@ def _update(
         velocity[c, j, k] = keep * blend[c, j, k] + take * (base[c, j, k] + dt * rate)
 
 
-@part
+@kernel_part
 def _pressure_free_update(
     raw, base, c, flux, lower_slot, upper_slot, shift, slab, rows, layout, near_layout, inner, dt, push
 ):
@@ -150,7 +159,7 @@ def _pressure_free_update(
             )
 
 
-@part
+@kernel_part
 def _advance(
     velocity, blend, base, rate, p, raw, layout, near_layout, inner, repeats, flux, slabs, rows, dt, nu, push, keep
 ):  # fmt: skip
@@ -162,11 +171,11 @@ def _advance(
     row_cells = row_length(inner, velocity.shape[2])
     shift = rows[0] * row_length(inner, velocity.shape[2])
     s, e, first_slab = shift + EDGE, rows[1] * row_cells - EDGE, slabs[0]
-    margin = EDGE if slab_axis > 1 else NONE
+    margin = EDGE if slab_axis > 1 else ZERO
     for j in range(first_slab - 1, slabs[1]):
         for c in range(slab_axis + 1):
             # the first face of component c along axis c lies on a side
-            start, j0, ej, ei = s, first_slab, NONE, NONE
+            start, j0, ej, ei = s, first_slab, ZERO, ZERO
             if c == slab_axis:
                 ej = UNIT
                 j0 = first_slab if repeats[c] else max(first_slab, PAD + 1)
@@ -176,11 +185,11 @@ def _advance(
             if j < j0 - 1:
                 continue
             lower_slot, upper_slot = slab_axis + c + c + j % 2, slab_axis + c + c + 1 - j % 2
-            _fluxes(flux, upper_slot, shift, rate, c, slab_axis, j + 1, start, e, UNIT, NONE, ej, ei, nu)
+            _fluxes(flux, upper_slot, shift, rate, c, slab_axis, j + 1, start, e, UNIT, ZERO, ej, ei, nu)
             if j < j0:
                 continue
             for d in range(slab_axis):
-                _fluxes(flux, d, shift, rate, c, d, j, start, e + inner[d], NONE, inner[d], ej, ei, nu)
+                _fluxes(flux, d, shift, rate, c, d, j, start, e + inner[d], ZERO, inner[d], ej, ei, nu)
             _update(
                 velocity, blend, base, c, flux, lower_slot, upper_slot, shift, p, j, start, e, inner, ej, ei, dt,
                 push[c], keep,
@@ -215,14 +224,14 @@ def advance(velocity, blend, base, rate, p, raw, layout, near_layout, inner, rep
         keep: fraction of ``blend`` that stays [-].
     """
     size = velocity.shape[1] - 2 * PAD
-    block = block_of(inner, size, LEAST)
+    block = block_of(inner, size, MIN_PLANES)
     for n in prange((size + block - 1) // block):
         first_slab = PAD + signed(n) * block
         slabs = first_slab, min(first_slab + block, PAD + size)
         row_cells, rows = row_length(inner, velocity.shape[2]), row_count(inner, velocity.shape[2])
-        margin, rows_per_block = (EDGE, unsigned(ROWS)) if len(inner) > 1 else (NONE, UNIT)
+        margin, rows_per_block = (EDGE, unsigned(ROWS)) if len(inner) > 1 else (ZERO, UNIT)
         flux = np.empty((3 * len(inner) + 2, (rows_per_block + UNIT) * row_cells), velocity.dtype)
-        for row in range(NONE, rows, rows_per_block):
+        for row in range(ZERO, rows, rows_per_block):
             row_range = row + margin, min(row + rows_per_block, rows) + margin
             _advance(
                 velocity, blend, base, rate, p, raw, layout, near_layout, inner, repeats, flux, slabs, row_range,
@@ -237,5 +246,5 @@ def advance_by(scheme: Scheme):
         return advance
     name = scheme.name
     print(f"Compiling the flow solver with the advection scheme {name} ...", file=sys.stderr, flush=True)
-    fluxes = part_with(_fluxes, limited_quick=part(scheme.face))
-    return threaded_with(advance, _advance=part_with(_advance, _fluxes=fluxes))
+    fluxes = replace_kernel_parts(_fluxes, limited_quick=kernel_part(scheme.face))
+    return replace_threaded_parts(advance, _advance=replace_kernel_parts(_advance, _fluxes=fluxes))

@@ -41,7 +41,7 @@ class _PressureWater(Fluid):
         return self._solve(_LIMITS)[0]
 
 
-def compile_ahead(axes: int, dtype: type) -> None:
+def precompile(axes: int, dtype: type) -> None:
     """Compile the kernels of a flow with a body if no flow of this kind has run with these sources on this machine.
 
     Nothing is compiled here if only one thread may be used, if the cache folder cannot be written to, or if another

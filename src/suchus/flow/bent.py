@@ -18,19 +18,19 @@ import numpy as np
 from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, SpaceMass, of_outline
-from suchus.flow.mesh import TriangleMesh, mass_of_mesh, middles_of, paint_mesh, pseudo_normals
+from suchus.flow.mesh import TriangleMesh, face_centres, mass_of_mesh, paint_mesh, pseudo_normals
 from suchus.flow.paint import paint_outline
-from suchus.flow.pose import Pose, turned
+from suchus.flow.pose import Pose, rotate_vectors
 from suchus.flow.shape import Field, Shape, Solid
 from suchus.flow.solid import SpaceField, SpaceShape
 
 CORNERS = 512
 """Least number of corners of the polygon that approximates the outline of a plane shape [-]."""
 
-TICK = 1e-4
+DEFAULT_DIFFERENCE_TIME = 1e-4
 """Default time over which a map is differentiated [s]: short for any motion that takes a hundredth of a second."""
 
-SMOOTH = 1e-2
+MAX_VELOCITY_CHANGE = 1e-2
 """Largest relative change of the fastest velocity when that time is halved; beyond it the map is refused [-]."""
 
 _STEP = 1e-5  # distance over which a map is differentiated, over the shape's size
@@ -155,7 +155,7 @@ class BendingMap:
         half_tick_velocity = self.velocity(places, time, 0.5 * self.tick)
         fastest = float(np.abs(half_tick_velocity).max())
         if (
-            np.abs(full_tick_velocity - half_tick_velocity).max() > SMOOTH * fastest
+            np.abs(full_tick_velocity - half_tick_velocity).max() > MAX_VELOCITY_CHANGE * fastest
             and fastest * self.tick > _POSITION_TOLERANCE * self.size
         ):
             raise InvalidDesign(
@@ -298,13 +298,13 @@ class BentMesh(SpaceShape):
     def _velocity(self, points: np.ndarray, time: float, frame: Pose) -> np.ndarray:
         """Return what bending adds to the velocity at points of the world, shape (3, point) [m/s]."""
         body = frame.matrix.T @ (points - np.array(frame.position)[:, None])
-        return np.stack(turned(frame.matrix, self.bend.velocity(body, time)))
+        return np.stack(rotate_vectors(frame.matrix, self.bend.velocity(body, time)))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
         frame, corners = pose.along(3), self._corners_at(time)
         self.bend.check(corners, time)
-        points, share, normals = middles_of(np.stack(frame.place(corners), axis=1)[self.still.faces], spacing)
+        points, share, normals = face_centres(np.stack(frame.place(corners), axis=1)[self.still.faces], spacing)
         velocities = np.stack(frame.rates(points)) + self._velocity(points, time, frame)
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(points=points, share=share, velocities=velocities, normals=normals, spins=spins)
@@ -371,10 +371,10 @@ _TETRAHEDRON = (5 + 3 * 5**0.5) / 20, (5 - 5**0.5) / 20
 
 
 @overload
-def bent(shape: Solid, back: Back, *, tick: float = TICK) -> BentOutline: ...
+def bend_shape(shape: Solid, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME) -> BentOutline: ...
 @overload
-def bent(shape: TriangleMesh, back: Back, *, tick: float = TICK) -> BentMesh: ...
-def bent(shape: Any, back: Back, *, tick: float = TICK) -> BentOutline | BentMesh:
+def bend_shape(shape: TriangleMesh, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME) -> BentMesh: ...
+def bend_shape(shape: Any, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME) -> BentOutline | BentMesh:
     """Return a body that a map bends, swells, shears or moves, in the plane or in space.
 
     Args:

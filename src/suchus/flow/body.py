@@ -11,7 +11,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import REACH, THINNEST, THINNEST_CLOSED
+from suchus.flow.immerse import MIN_CLOSED_THICKNESS, MIN_THICKNESS, REACH
 from suchus.flow.pose import Motion, Pose
 from suchus.flow.shape import Field, Shape
 from suchus.flow.solid import Ellipsoid, SpaceField, SpaceShape
@@ -42,10 +42,10 @@ class Body:
 AnyBody = Body | FreeBody
 
 
-MOST_ROWS = 127
+MAX_ROWS = 127
 """Largest number of parts of all bodies together: the parts are counted in one byte [-]."""
 
-MIDDLE = 1e-6
+SYMMETRY_TOLERANCE = 1e-6
 """Distance of a body's middle from a mirror, over a cell, up to which the body is symmetric about it [-]."""
 
 
@@ -124,13 +124,13 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
     """
     frame, name = pose.along(3), "xyz"[axis]
     alignment = np.abs(frame.matrix[axis])  # cosines between the body's axes and the mirror's normal
-    upright = float(alignment.max()) > 1 - MIDDLE**2
+    upright = float(alignment.max()) > 1 - SYMMETRY_TOLERANCE**2
     if isinstance(body.shape, SpaceShape) and upright and not body.shape.even[int(alignment.argmax())]:
         raise InvalidDesign(
             f"the Mirror at {name} = {plane:.4g} m cuts {body.name}, whose two halves there are no images of each "
             f"other; move the body or the grid, or take another side. A Trunk may be cut across z."
         )
-    if abs(frame.position[axis] - plane) > MIDDLE * h or frame.velocity[axis] != 0:
+    if abs(frame.position[axis] - plane) > SYMMETRY_TOLERANCE * h or frame.velocity[axis] != 0:
         raise InvalidDesign(
             f"at t = {time:.4g} s the middle of {body.name} is at {name} = {frame.position[axis]:.4g} m and moves with "
             f"{frame.velocity[axis]:.4g} m/s along {name}; the Mirror that cuts it, at {name} = {plane:.4g} m, needs "
@@ -168,8 +168,8 @@ def rows_of(bodies: list[AnyBody]) -> list[range]:
         InvalidDesign: there are more than ``MOST_ROWS`` parts.
     """
     ends = list(accumulate((getattr(body.shape, "parts", 1) for body in bodies), initial=0))
-    if ends[-1] > MOST_ROWS:
-        raise InvalidDesign(f"the bodies have {ends[-1]} parts together; up to {MOST_ROWS} are allowed. Cut them less.")
+    if ends[-1] > MAX_ROWS:
+        raise InvalidDesign(f"the bodies have {ends[-1]} parts together; up to {MAX_ROWS} are allowed. Cut them less.")
     return [range(start, end) for start, end in pairwise(ends)]
 
 
@@ -240,7 +240,7 @@ def _closed(shape: Shape | SpaceShape, time: float) -> bool:
     return isinstance(shape, Ellipsoid) and shape.midsurface(time, Pose()) is not None
 
 
-def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
+def thin_fraction(body: AnyBody, grid: Grid, time: float) -> float:
     """Return the fraction of the body's length that is thinner than ``THINNEST`` cells [-].
 
     Args:
@@ -252,8 +252,8 @@ def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
         InvalidDesign: the body is too thin everywhere.
     """
     station, thickness = body.shape.thickness(time)
-    min_thickness, max_thickness = THINNEST * grid.cell, float(thickness.max())
-    min_cells = THINNEST_CLOSED if _closed(body.shape, time) else THINNEST
+    min_thickness, max_thickness = MIN_THICKNESS * grid.cell, float(thickness.max())
+    min_cells = MIN_CLOSED_THICKNESS if _closed(body.shape, time) else MIN_THICKNESS
     if max_thickness < min_cells * grid.cell:
         raise InvalidDesign(
             f"{body.name} is {max_thickness:.4g} m thick at most, {max_thickness / grid.cell:.2g} cells of "

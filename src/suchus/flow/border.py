@@ -10,13 +10,13 @@ import numpy as np
 
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
-from suchus.flow.compiled import PAD, Window, compiled, part, unsigned
+from suchus.flow.compiled import PAD, Window, compiled, kernel_part, unsigned
 from suchus.flow.farfield import Fading, FarField, OpenWater
 from suchus.flow.grid import Grid
 from suchus.flow.pose import length
 from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
 
-LOST = 1e-6
+BALANCE_TOLERANCE = 1e-6
 """Largest net inflow, over the flow through all sides: the rounding error of single precision [-]."""
 
 _MIRRORED, _PRESCRIBED, _FREE_OF_VORTICITY, _ZERO_GRADIENT = range(4)
@@ -57,7 +57,7 @@ def _fill_side(n, t, face, inner, step, prescribed, straight, condition, value):
                 t[ghost, i] = t[source, i]
 
 
-@part
+@kernel_part
 def _mirror_row(a, ghost, boundary, source, stride, count, straight):  # type: ignore[no-untyped-def]
     """Write a row of the normal velocity beyond a side: its linear continuation, or the values on the side.
 
@@ -81,7 +81,7 @@ def _mirror_row(a, ghost, boundary, source, stride, count, straight):  # type: i
         )
 
 
-@part
+@kernel_part
 def _fill_row(a, ghost, source, stride, count, condition, value):  # type: ignore[no-untyped-def]
     """Write a row of a velocity along a side beyond it from that inside it.
 
@@ -101,7 +101,7 @@ def _fill_row(a, ghost, source, stride, count, condition, value):  # type: ignor
         a[ghost + i * stride] = plus + times * a[source + i * stride]
 
 
-@part
+@kernel_part
 def _free_of_vorticity(a, ghost, n, boundary, previous, stride, start, stop, sign):  # type: ignore[no-untyped-def]
     """Add to a row beyond a side the difference of the normal velocity along the side, so that there is no vorticity.
 
@@ -421,7 +421,7 @@ class Border:
         side_inflows = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
         net = sum(float(p.sum(dtype=np.float64)) for p in side_inflows)
         gross_flow = sum(float(np.abs(p).sum(dtype=np.float64)) for p in side_inflows)
-        if abs(net) > LOST * gross_flow:
+        if abs(net) > BALANCE_TOLERANCE * gross_flow:
             side_names = ", ".join(e.name for e in self.edges if e.side.passes)
             imbalance_text = "enters and cannot leave" if net > 0 else "leaves and none enters"
             raise InvalidDesign(

@@ -111,8 +111,8 @@ class Saver:
     def __init__(self, path: Path | None, interval: float) -> None:
         self._path, self._interval, self._saved = path, interval, monotonic()
 
-    def save(self, sim: Resumable, *, now: bool = False) -> None:
+    def save(self, sim: Resumable, *, is_forced: bool = False) -> None:
         """Save if a path was given and the interval has passed, or if ``now`` is true."""
-        if self._path is not None and (now or monotonic() - self._saved >= self._interval):
+        if self._path is not None and (is_forced or monotonic() - self._saved >= self._interval):
             save(sim, self._path)
             self._saved = monotonic()

@@ -53,7 +53,7 @@ _FAST = {"contract", "reassoc", "nsz", "arcp"}
 
 _OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True, **linking.options()}
 
-_HERE = Path(__file__).parent
+_SOURCE_FOLDER = Path(__file__).parent
 _MAKERS = re.compile(
     r"^from suchus\.flow\.compiled import .*\b(?:compiled|threaded|part|ordered_part|threaded_part)\b", re.M
 )
@@ -62,12 +62,12 @@ _BASE_FILES = ("compiled.py", "linking.py")
 
 def folder() -> Path | None:
     """Return where the code of these sources is kept; None where no place can be written to."""
-    return kernel_cache.folder(_HERE, kernel_files(), "kernels-")
+    return kernel_cache.folder(_SOURCE_FOLDER, kernel_files(), "kernels-")
 
 
 def kernel_files() -> list[Path]:
     """Return the files of this room that hold kernels or parts of them, and those that say how they are compiled."""
-    files = sorted(_HERE.glob("*.py"))
+    files = sorted(_SOURCE_FOLDER.glob("*.py"))
     return [file for file in files if file.name in _BASE_FILES or _MAKERS.search(file.read_text(encoding="utf-8"))]
 
 
@@ -124,7 +124,7 @@ def threaded(function: Callable[P, R]) -> Callable[P, R]:
     return _compile(function, parallel=True)
 
 
-def threaded_with(kernel: Any, **parts: Any) -> Any:
+def replace_threaded_parts(kernel: Any, **parts: Any) -> Any:
     """Compile a threaded kernel with other parts in place of those of its module; its code is not kept.
 
     Args:
@@ -134,9 +134,9 @@ def threaded_with(kernel: Any, **parts: Any) -> Any:
     return _compile(_rewritten(kernel.py_func, parts), parallel=True, use_cache=False)
 
 
-def part_with(kernel_part: "Part[P, R]", **parts: Any) -> "Part[P, R]":
+def replace_kernel_parts(kernel_part: "KernelPart[P, R]", **parts: Any) -> "KernelPart[P, R]":
     """Return a part with other parts in place of those of its module; see ``threaded_with``."""
-    return Part(_rewritten(kernel_part.py_func, parts))
+    return KernelPart(_rewritten(kernel_part.py_func, parts))
 
 
 def _rewritten(function: Any, names: dict[str, Any]) -> Any:
@@ -165,7 +165,7 @@ def _any_number(kind: Any) -> Any:
     return kind.literal_type if isinstance(kind, numba.types.IntegerLiteral) else kind
 
 
-class Part(Generic[P, R]):
+class KernelPart(Generic[P, R]):
     """A function that is compiled as a part of the kernels that call it; called from Python it is plain Python."""
 
     def __init__(self, function: Callable[P, R], *, parallel: bool = False, ordered: bool = False) -> None:
@@ -179,19 +179,19 @@ class Part(Generic[P, R]):
         return self.py_func(*args, **kwargs)
 
 
-def part(function: Callable[P, R]) -> Part[P, R]:
+def kernel_part(function: Callable[P, R]) -> KernelPart[P, R]:
     """Let the kernels that call ``function`` take it in."""
-    return Part(function)
+    return KernelPart(function)
 
 
-def ordered_part(function: Callable[P, R]) -> Part[P, R]:
+def ordered_part(function: Callable[P, R]) -> KernelPart[P, R]:
     """Let the kernels that call ``function`` take it in; its sums are taken in the order in which they are written.
 
     For loops over cells with a sum over the axes: how the compiler orders it else hangs on when it unrolls the loop.
     """
-    return Part(function, ordered=True)
+    return KernelPart(function, ordered=True)
 
 
-def threaded_part(function: Callable[P, R]) -> Part[P, R]:
+def threaded_part(function: Callable[P, R]) -> KernelPart[P, R]:
     """Let the kernels that call ``function`` take it in; its ``prange`` loops run on several threads."""
-    return Part(function, parallel=True)
+    return KernelPart(function, parallel=True)

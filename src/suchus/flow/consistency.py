@@ -16,23 +16,23 @@ from suchus.flow.linked import LinkStates
 from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Motion, Pose
 
-SHARE = 0.1
+RATE_TOLERANCE = 0.1
 """Largest difference of declared and measured rate, over the larger of the two [-]."""
 
-QUIET = 0.05
+MIN_SPEED_RATIO = 0.05
 """Speed, over the fastest so far, below which differences are compared with this speed instead of the rates [-]."""
 
-MINOR = 0.05
+MIN_RATE_RATIO = 0.05
 """Speed, over the fastest now, up to which one kind of rate may be wrong [-]. An undulation changes arc lengths, and so
 half-widths, by some 2 %; the rate of a heading moves an eel's sides by 7 % and more."""
 
-NOTHING = 1e-5
+DISTANCE_TOLERANCE = 1e-5
 """Distance between the two in one step that is always allowed [cells]."""
 
-PATIENCE = 3
+MAX_CONSECUTIVE_ERRORS = 3
 """Consecutive disagreements that raise an error: a kink of the motion causes one [-]."""
 
-LEAP = 1.0
+MAX_POSITION_ERROR = 1.0
 """Largest distance of a body from the position that its rates lead to [cells]. A kink within a step, where the rates
 change at once, may add half of the distance that the greatest rate so far covers in a step."""
 
@@ -40,7 +40,7 @@ _HALVINGS = 40  # of the first step, until no point moves farther than a cell
 _COMPARISON_FRACTION = 0.01  # fraction of a step over which positions are compared
 
 
-class Watched(NamedTuple):
+class CoordinateSeries(NamedTuple):
     """Coordinates of a body at some times, each of shape (time, coordinate)."""
 
     places: np.ndarray
@@ -53,10 +53,10 @@ class Watched(NamedTuple):
     """Kind of each coordinate, counted from 0, shape (coordinate,) [-]."""
 
 
-class Told(Protocol):
+class RateSource(Protocol):
     """A source of coordinates and their rates."""
 
-    def at(self, times: Sequence[float]) -> Watched:
+    def at(self, times: Sequence[float]) -> CoordinateSeries:
         """Return the coordinates and rates at some times [s]."""
 
     def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
@@ -72,7 +72,7 @@ def _wrap_angle(angle: np.ndarray) -> np.ndarray:
     return wrapped_angle
 
 
-class GivenMotion(NamedTuple):
+class MotionSource(NamedTuple):
     """The poses of a body."""
 
     name: str
@@ -82,14 +82,14 @@ class GivenMotion(NamedTuple):
     reach: float
     """Distance of the body's surface from the origin of its frame [m]."""
 
-    def at(self, times: Sequence[float]) -> Watched:
+    def at(self, times: Sequence[float]) -> CoordinateSeries:
         """Return positions and angles, in space rotation vectors from the first pose, and their rates."""
         poses = [self.motion(time) for time in times]
         axes = len(poses[0].position)
         places = np.array([[*p.position, *_turn(poses[0], p)] for p in poses])
         rates = np.array([[*p.velocity, *([p.spin] if axes == 2 else p.spins)] for p in poses])
         turns = (np.arange(places.shape[1]) >= axes).astype(int)
-        return Watched(places - places[0], rates, np.where(turns, self.reach, 1.0), turns)
+        return CoordinateSeries(places - places[0], rates, np.where(turns, self.reach, 1.0), turns)
 
     def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates and the remedy."""
@@ -114,7 +114,7 @@ class GivenMotion(NamedTuple):
         return self.name
 
 
-class GivenMidline(NamedTuple):
+class MidlineSource(NamedTuple):
     """The stations of a body that bends."""
 
     name: str
@@ -122,7 +122,7 @@ class GivenMidline(NamedTuple):
     spine: Callable[[float], MidlineState]
     """Its midline at every time [s]."""
 
-    def at(self, times: Sequence[float]) -> Watched:
+    def at(self, times: Sequence[float]) -> CoordinateSeries:
         """Return position, heading and half-width of the stations, one after the other, and their rates.
 
         Raises:
@@ -141,7 +141,7 @@ class GivenMidline(NamedTuple):
         arms = np.ones(places.shape[1:])
         arms[2] = reference[3]
         kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
-        return Watched(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
+        return CoordinateSeries(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
 
     def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst station and the remedy."""
@@ -158,7 +158,7 @@ class GivenMidline(NamedTuple):
         return f"station {index % self.spine(0.0).x.size} of the midline of {self.name}"
 
 
-class GivenLinks(NamedTuple):
+class LinkSource(NamedTuple):
     """The links of a body, each with a pose of its own."""
 
     name: str
@@ -168,7 +168,7 @@ class GivenLinks(NamedTuple):
     reach: np.ndarray
     """Distance of each link's surface from its origin, shape (link,) [m]."""
 
-    def at(self, times: Sequence[float]) -> Watched:
+    def at(self, times: Sequence[float]) -> CoordinateSeries:
         """Return positions of the links and their rotation vectors from the first time, and their rates."""
         states = [self.motion(time) for time in times]
         reference, count = states[0], len(self.reach)
@@ -178,7 +178,7 @@ class GivenLinks(NamedTuple):
         )
         rates = np.array([[*s.velocity.ravel(), *s.spin.ravel()] for s in states])
         arms = np.concatenate([np.ones(3 * count), np.repeat(self.reach, 3)])
-        return Watched(places, rates, arms, np.repeat([0, 1], 3 * count))
+        return CoordinateSeries(places, rates, arms, np.repeat([0, 1], 3 * count))
 
     def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst link and the remedy."""
@@ -202,7 +202,7 @@ class GivenLinks(NamedTuple):
 class Consistency:
     """Checks the rates of one motion or bending body, step by step."""
 
-    told: Told
+    told: RateSource
     """The motion or body."""
     cell: float
     """Side of a cell [m]."""
@@ -233,7 +233,7 @@ class Consistency:
         step = dt
         for _ in range(_HALVINGS):
             series = self.told.at((time, *(time + fraction * step for fraction in (1 / 3, 1 / 2, 1))))
-            if np.abs(series.places * series.arms).max() <= LEAP * self.cell:
+            if np.abs(series.places * series.arms).max() <= MAX_POSITION_ERROR * self.cell:
                 return step
             step /= 2
         return dt
@@ -248,8 +248,10 @@ class Consistency:
         Raises:
             InvalidDesign: rates and positions disagree, with both numbers.
         """
-        for k in reversed(range(PATIENCE)):  # last at the start of the step, so that the message is about the start
-            self._compare(time + k * dt / PATIENCE, dt)
+        for k in reversed(
+            range(MAX_CONSECUTIVE_ERRORS)
+        ):  # last at the start of the step, so that the message is about the start
+            self._compare(time + k * dt / MAX_CONSECUTIVE_ERRORS, dt)
         self.strikes = 0
 
     def look(self, time: float, dt: float) -> None:
@@ -270,9 +272,9 @@ class Consistency:
         self.slack = max(self.slack, float(np.abs(rate_displacement).max()))
         deviation = displacement - rate_displacement.sum(axis=0)
         self.drift, self.path = self.drift + deviation, self.path + np.abs(displacement)
-        tolerance = LEAP * self.cell + self.slack
+        tolerance = MAX_POSITION_ERROR * self.cell + self.slack
         is_inconsistent = (np.abs(deviation) > tolerance) | (
-            np.abs(self.drift) > np.maximum(tolerance, SHARE * self.path)
+            np.abs(self.drift) > np.maximum(tolerance, RATE_TOLERANCE * self.path)
         )
         if not is_inconsistent.any():
             return
@@ -304,13 +306,17 @@ class Consistency:
             [np.maximum(declared_speed, measured_speed)[series.kinds == k].max() for k in range(series.kinds.max() + 1)]
         )
         self.top = max(self.top, float(sizes.max()))
-        min_speed = max(MINOR * float(sizes.max()), SHARE * QUIET * self.top, NOTHING * self.cell / dt)
-        excess = rate_error / np.maximum(SHARE * sizes, min_speed)[series.kinds]
+        min_speed = max(
+            MIN_RATE_RATIO * float(sizes.max()),
+            RATE_TOLERANCE * MIN_SPEED_RATIO * self.top,
+            DISTANCE_TOLERANCE * self.cell / dt,
+        )
+        excess = rate_error / np.maximum(RATE_TOLERANCE * sizes, min_speed)[series.kinds]
         if not (excess > 1).any():
             self.strikes = 0
             return
         self.strikes += 1
-        if self.strikes >= PATIENCE:
+        if self.strikes >= MAX_CONSECUTIVE_ERRORS:
             raise InvalidDesign(
                 f"at t = {time:.4g} s {self.told.sentence(int(excess.argmax()), declared_rate, measured_rate)}"
             )

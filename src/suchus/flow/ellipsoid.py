@@ -5,7 +5,7 @@
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import compiled, part, signed, threaded
+from suchus.flow.compiled import compiled, kernel_part, signed, threaded
 
 _MAX_STEPS = 12
 """Largest number of Newton steps [-]: with 8 the distance is exact to rounding on an ellipsoid of aspect ratio 20."""
@@ -17,7 +17,7 @@ TINY = 1e-9
 """Least distance of a point from a plane of symmetry, over the half-axis; smaller ones are set to it [-]."""
 
 
-@part
+@kernel_part
 def foot_parameter(p, a):
     """Return the parameter t of the point of an ellipse or an ellipsoid nearest to a point p in its first quadrant.
 
@@ -47,7 +47,7 @@ def foot_parameter(p, a):
     return t
 
 
-@part
+@kernel_part
 def _foot(p, a):
     """Return the distance of a point in the first octant from an ellipsoid, and the normal there.
 
@@ -62,7 +62,7 @@ def _foot(p, a):
     return distance * size, nx * size, ny * size, nz * size
 
 
-@part
+@kernel_part
 def _chord(p, distance, n, a, depth):
     """Return the thickness at a point: the shortest chord along the three axes, ``depth`` inside the surface.
 
@@ -81,7 +81,7 @@ def _chord(p, distance, n, a, depth):
     return 2.0 * min(half_chord, a[2] * np.sqrt(max(remainder + z * z, 0.0)))
 
 
-@part
+@kernel_part
 def _paint_ellipsoid_point(window_field, index, offset, turn, a, reach, depth):
     """Write distance, normal and thickness at one point; see ``paint_ellipsoid``.
 

@@ -36,23 +36,23 @@ from math import ceil
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, UNIT, Window, part, signed, threaded, unsigned
+from suchus.flow.compiled import PAD, UNIT, Window, kernel_part, signed, threaded, unsigned
 from suchus.flow.grid import Grid
 
 SIDE = 8
 """Cells along a block, and faces between two points of a side where the induced velocity is summed up [-]."""
 
-FAINT = 1e-6
+MIN_STRENGTH_RATIO = 1e-6
 """Strength, over the largest one, below which a block is left out: the limit of single precision [-]."""
 
-FADE = 0.25
+FADE_FRACTION = 0.25
 """Share of the domain's length over which a wake is faded before it leaves: about a wavelength of a street [-]."""
 
 PANELS = 16
 """Panels along the side of a cube with as many cells as the domain and its images; the surface lies as far inside the
 sides as a panel is long [-]."""
 
-LEAST = 2
+MIN_PANEL_CELLS = 2
 """Smallest number of cells along a panel [-]."""
 
 KNOT = 1.5
@@ -62,7 +62,7 @@ IMAGES = 3
 """Images that count to each side where two mirrors face each other and have infinitely many [-]."""
 
 
-@part
+@kernel_part
 def _spin_row(total, moment, u, v, row, arm):  # type: ignore[no-untyped-def]
     """Add the circulation of one row of corners, and its moment along y, to the sums of each column.
 
@@ -81,7 +81,7 @@ def _spin_row(total, moment, u, v, row, arm):  # type: ignore[no-untyped-def]
         moment[k] += arm * w
 
 
-@part
+@kernel_part
 def _spread_row(block, u, v, j, arm, b, window):  # type: ignore[no-untyped-def]
     """Add the divergence of row ``j`` of cells in the window to the blocks of row ``b``.
 
@@ -137,7 +137,7 @@ def gather(u, v, window, block):  # type: ignore[no-untyped-def]
             _spread_row(block, u, v, j, j - PAD + 0.5 - middle, b, window)
 
 
-@part
+@kernel_part
 def _induced_at(x, y, block_centres, strength, min_square):  # type: ignore[no-untyped-def]
     """Return the velocity that blocks at ``place`` (2, block) with ``strength`` (4, block) induce at a point."""
     u, v = 0.0, 0.0
@@ -237,7 +237,7 @@ class OpenWater:
             strength, sources = self._fade(strength, fading, window)
             extra.append(sources)
         size = np.abs(strength).max(axis=0)
-        is_strong = size > FAINT * size.max()
+        is_strong = size > MIN_STRENGTH_RATIO * size.max()
         positions = np.concatenate([np.array([x[is_strong], y[is_strong]]), *(e[:2] for e in extra)], axis=1)
         values = np.concatenate([strength[:, is_strong], *(e[2:] for e in extra)], axis=1)
         induced_velocity = np.zeros(self.points.shape)
@@ -274,7 +274,7 @@ class OpenWater:
         clearance = (
             (body_start if fading.low else cells + 2 * PAD - body_stop) - PAD if body_stop > body_start else cells
         )
-        length = max(min(FADE * cells, clearance), SIDE)
+        length = max(min(FADE_FRACTION * cells, clearance), SIDE)
 
         def weight(position: np.ndarray) -> np.ndarray:
             """Return the fraction of the strength that stays, at positions along the axis [cells]."""
@@ -404,7 +404,7 @@ class FarField:
         """Lay out the faces of the surface with their panels, and fill the matrices of all sides."""
         cells, ends = self.grid.cells, list(zip(self.mirrors[::2], self.mirrors[1::2], strict=True))
         cell_count = np.prod([n * (1 + any(pair)) for n, pair in zip(cells, ends, strict=True)], dtype=float)
-        panel = max(LEAST, round(cell_count ** (1 / 3) / PANELS))
+        panel = max(MIN_PANEL_CELLS, round(cell_count ** (1 / 3) / PANELS))
         knots = [np.linspace(0.5, n - 0.5, max(ceil(n / (KNOT * panel)), 3) + 1) for n in cells]
         self.between = [cubic(axis_knots, np.arange(n) + 0.5) for axis_knots, n in zip(knots, cells, strict=True)]
         spans = []

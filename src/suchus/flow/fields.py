@@ -7,7 +7,7 @@ import numpy as np
 from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.log import Log
-from suchus.flow.rake import Sample, read
+from suchus.flow.rake import Sample, sample_water
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
 from suchus.flow.water import Fluid
@@ -40,7 +40,7 @@ class Fields:
         Raises:
             InvalidDesign: a point that is not in the domain.
         """
-        return read(self.water, np.asarray(points, float), self.frame, self.setup.density)
+        return sample_water(self.water, np.asarray(points, float), self.frame, self.setup.density)
 
     @property
     def velocity(self) -> tuple[np.ndarray, ...]:

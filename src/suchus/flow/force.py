@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, compiled, part
+from suchus.flow.compiled import PAD, compiled, kernel_part
 from suchus.flow.grid import Grid
 from suchus.flow.markers import Markers
-from suchus.flow.pose import TURNS
+from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.water import Fluid
 
-GAP = 1.0
+WALL_POINT_SPACING = 1.0
 """Spacing of the points off the wall from which wall pressure and wall shear are fitted [cells]."""
 
 
@@ -67,7 +67,9 @@ class Surface:
         return Load(
             pressure=tuple(push.sum(axis=1).tolist()),
             shear=tuple(rub.sum(axis=1).tolist()),
-            moment=tuple(float((arms[a] * force[b] - arms[b] * force[a]).sum()) for a, b in TURNS[len(force)]),
+            moment=tuple(
+                float((arms[a] * force[b] - arms[b] * force[a]).sum()) for a, b in ROTATION_PLANES[len(force)]
+            ),
             power=float(-(force * m.velocities).sum()),
         )
 
@@ -93,10 +95,11 @@ def sample(water: Fluid, markers: Markers, density: float) -> Surface:
     places, normals = padded(markers.points, water.grid), np.ascontiguousarray(markers.normals)
     pressure, shear = np.empty(places.shape[1]), np.empty(places.shape)
     steps = steps_of(water.p)
-    wall_pressure(water.p.reshape(-1), steps, places, normals, GAP, pressure)
+    wall_pressure(water.p.reshape(-1), steps, places, normals, WALL_POINT_SPACING, pressure)
     wall_shear(
         water.velocity.reshape(water.axes, -1), steps, places, normals, np.ascontiguousarray(markers.velocities),
-        np.ascontiguousarray(markers.spins) * water.grid.cell, np.array(TURNS[water.axes]), GAP, shear,
+        np.ascontiguousarray(markers.spins) * water.grid.cell, np.array(ROTATION_PLANES[water.axes]),
+        WALL_POINT_SPACING, shear,
     )  # fmt: skip
     level = water.level
     return Surface(
@@ -121,7 +124,7 @@ def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
     return total
 
 
-def through(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int, ...]) -> np.ndarray:
+def boundary_flux(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int, ...]) -> np.ndarray:
     """Return the flux into a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
 
     Args:
@@ -183,7 +186,7 @@ class ControlVolume:
         balance = np.array(
             [
                 momentum(water.velocity, self.box), momentum(water.carried, self.box),
-                through(water.velocity, water.p, float(water.nu), self.box),
+                boundary_flux(water.velocity, water.p, float(water.nu), self.box),
             ]
         )  # fmt: skip
         previous_balance, self.before = self.before, balance
@@ -197,8 +200,8 @@ class ControlVolume:
         return tuple(total.tolist())
 
 
-@part
-def at(a, steps, spot):
+@kernel_part
+def interpolate_at(a, steps, spot):
     """Return the interpolation of a flat field at a place in padded indices, linear along each axis.
 
     Args:
@@ -233,7 +236,7 @@ def interpolate(a, steps, places, samples):
     for m in range(places.shape[1]):
         for d in range(spot.size):
             spot[d] = places[d, m]
-        samples[m] = at(a, steps, spot)
+        samples[m] = interpolate_at(a, steps, spot)
 
 
 @compiled
@@ -257,7 +260,7 @@ def wall_pressure(p, steps, places, normals, gap, pressure):
         for k in range(1, 4):
             for d in range(spot.size):
                 spot[d] = places[d, m] + k * gap * normals[d, m]
-            pressure[m] += (3.0, -3.0, 1.0)[k - 1] * at(p, steps, spot)
+            pressure[m] += (3.0, -3.0, 1.0)[k - 1] * interpolate_at(p, steps, spot)
 
 
 @compiled
@@ -293,7 +296,7 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
             for c in range(axes):
                 for d in range(axes):
                     spot[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
-                shear[c, m] += weight * (at(velocity[c], steps, spot) - wall_velocity[c])
+                shear[c, m] += weight * (interpolate_at(velocity[c], steps, spot) - wall_velocity[c])
         normal_shear = 0.0
         for d in range(axes):
             normal_shear += shear[d, m] * normals[d, m]

@@ -16,7 +16,7 @@ from jaxtyping import Float
 
 from suchus.core.errors import InvalidDesign
 
-SLOWEST = 2e4
+MIN_TURBULENT_REYNOLDS = 2e4
 """Reynolds number below which no layer is turbulent; the friction of the turbulent end is laminar up to there [-]."""
 
 
@@ -37,9 +37,9 @@ def ittc(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
     Args:
         reynolds: speed times distance from the nose over the viscosity, above 0 [-].
     """
-    decades = np.log10(np.maximum(reynolds, SLOWEST)) - 2.0
+    decades = np.log10(np.maximum(reynolds, MIN_TURBULENT_REYNOLDS)) - 2.0
     line = 0.075 / decades**2 * (1.0 - 2.0 / (np.log(10.0) * decades))
-    return np.where(reynolds < SLOWEST, blasius(reynolds), line)
+    return np.where(reynolds < MIN_TURBULENT_REYNOLDS, blasius(reynolds), line)
 
 
 class FrictionBand(NamedTuple):
@@ -127,8 +127,8 @@ def _turbulent_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " 
     def line(number: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
         return np.asarray(0.075 * number / (np.log10(number) - 2.0) ** 2)
 
-    turbulent_reynolds = np.maximum(reynolds, SLOWEST)
-    return _laminar_total(np.minimum(reynolds, SLOWEST)) + line(turbulent_reynolds)
+    turbulent_reynolds = np.maximum(reynolds, MIN_TURBULENT_REYNOLDS)
+    return _laminar_total(np.minimum(reynolds, MIN_TURBULENT_REYNOLDS)) + line(turbulent_reynolds)
 
 
 def _check(arc: np.ndarray, girth: np.ndarray, speed: np.ndarray, slope: np.ndarray) -> None:

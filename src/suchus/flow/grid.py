@@ -11,22 +11,22 @@ from suchus.core import large
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import misfits, show
 from suchus.flow.compiled import PAD
-from suchus.flow.multigrid import COARSEST, LONGEST
+from suchus.flow.multigrid import MAX_CHANNEL_CELLS, MAX_COARSEST_CELLS
 
 if TYPE_CHECKING:
     from suchus.flow.sides import Sides
 
-MOST = 2**16
+MAX_CELLS_PER_SIDE = 2**16
 """Cells along a side [-]; the fields of a square of so many would take a hundred gigabytes."""
 
 
-HELD = 1e-6
+POSITION_TOLERANCE = 1e-6
 """Largest distance of a side of the domain from the requested position, over a cell [-]."""
 
 RATIOS = 2, 4, 8
 """Fine cells of a patch along a cell of the grid around it [-]."""
 
-NARROW = 8
+MAX_CHANNEL_WIDTH = 8
 """Most cells across a channel on the coarsest level that may be long [-]."""
 
 
@@ -42,7 +42,7 @@ def _fitting(cells: tuple[int, ...]) -> tuple[int, ...]:
     A long channel may keep up to ``LONGEST`` cells along its length, so that it does not become wider.
     """
     halvings, min_side = 0, min(cells)
-    while ceil(max(cells) / 2**halvings) > (COARSEST if min_side > 4 * 2**halvings else LONGEST):
+    while ceil(max(cells) / 2**halvings) > (MAX_COARSEST_CELLS if min_side > 4 * 2**halvings else MAX_CHANNEL_CELLS):
         halvings += 1
     step = 2**halvings
     return tuple(step * max(4, ceil(n / step)) for n in cells)
@@ -99,14 +99,17 @@ class Grid:
             count = "two" if self.axes == 2 else "three"
             raise InvalidDesign(f"the origin is {show(self.origin)} m; {count} finite numbers are needed.")
         size = _times(self.cells)
-        if max(self.cells) > MOST:
-            raise InvalidDesign(f"the grid has {show(self.cells)} cells; up to {MOST} along each side are allowed.")
+        if max(self.cells) > MAX_CELLS_PER_SIDE:
+            raise InvalidDesign(
+                f"the grid has {show(self.cells)} cells; up to {MAX_CELLS_PER_SIDE} along each side are allowed."
+            )
         if min(self.cells) < 8:
             raise InvalidDesign(f"the grid has {size} cells; at least {_times((8,) * self.axes)} are needed.")
         coarsest = _coarsest(self.cells)
-        if max(coarsest) > (LONGEST if min(coarsest) <= NARROW else COARSEST):
+        if max(coarsest) > (MAX_CHANNEL_CELLS if min(coarsest) <= MAX_CHANNEL_WIDTH else MAX_COARSEST_CELLS):
             raise InvalidDesign(
-                f"a grid of {size} cells cannot be halved down to {COARSEST} cells a side, as multigrid needs; "
+                f"a grid of {size} cells cannot be halved down to {MAX_COARSEST_CELLS} cells a side, as multigrid "
+                f"needs; "
                 f"take {_times(_fitting(self.cells))}, or let Grid.covering choose."
             )
 
@@ -139,18 +142,20 @@ class Grid:
                 f"{count} pairs of finite numbers and one more are needed."
             )
         lengths = [end - start for start, end in pairs]
-        if cell > 0 and max(lengths) / MOST > cell:
-            raise InvalidDesign(f"cells of {cell} m make a side of {max(lengths) / cell:.3g}; {MOST} are allowed.")
+        if cell > 0 and max(lengths) / MAX_CELLS_PER_SIDE > cell:
+            raise InvalidDesign(
+                f"cells of {cell} m make a side of {max(lengths) / cell:.3g}; {MAX_CELLS_PER_SIDE} are allowed."
+            )
         if not (cell > 0 and min(lengths) > 0):
             raise InvalidDesign(
                 f"the {shape_name} {_times(pairs)} m with cells of {cell} m is empty; give rising limits and a "
                 f"positive cell."
             )
-        cells = _fitting(tuple(max(8, ceil(side / cell - HELD)) for side in lengths))
+        cells = _fitting(tuple(max(8, ceil(side / cell - POSITION_TOLERANCE)) for side in lengths))
         origin = []
         for d, ((start, _), n, side) in enumerate(zip(pairs, cells, lengths, strict=True)):
             is_low_held, is_high_held = (False, False) if sides is None else sides.held(len(pairs))[d]
-            if is_low_held and is_high_held and abs(n * cell - side) > HELD * cell:
+            if is_low_held and is_high_held and abs(n * cell - side) > POSITION_TOLERANCE * cell:
                 raise InvalidDesign(
                     f"along {'xyz'[d]} both sides are held, {side:.6g} m apart, and {n} cells of {cell:.6g} m, as "
                     f"multigrid needs, are {n * cell:.6g} m; take cells of {side / n:.12g} m."
@@ -188,13 +193,13 @@ class Grid:
         first_cells, counts = [], []
         for pair, start, n, name in zip(pairs, self.origin, self.cells, "xyz", strict=False):
             a, b = ((place - start) / self.cell for place in pair)
-            if not -HELD <= a < b <= n + HELD:
+            if not -POSITION_TOLERANCE <= a < b <= n + POSITION_TOLERANCE:
                 raise InvalidDesign(
                     f"along {name} the patch reaches from {pair[0]:.6g} to {pair[1]:.6g} m and the grid from "
                     f"{start:.6g} to {start + n * self.cell:.6g} m; give rising places in it."
                 )
-            first_cells.append(floor(a + HELD))
-            counts.append(ceil(b - HELD) - first_cells[-1])
+            first_cells.append(floor(a + POSITION_TOLERANCE))
+            counts.append(ceil(b - POSITION_TOLERANCE) - first_cells[-1])
         fine = _fitting(tuple(ratio * max(n, ceil(8 / ratio)) for n in counts))
         coarse_cells = [ceil(n / ratio) for n in fine]
         if any(a > b for a, b in zip(coarse_cells, self.cells, strict=True)):
@@ -243,7 +248,7 @@ class Grid:
         return self.origin[axis] + self.cell * (np.arange(start, end) - PAD + 0.5)
 
 
-def arrays_of(axes: int) -> float:
+def numbers_per_cell(axes: int) -> float:
     """Return how many numbers are kept per cell of a grid with so many axes; those of the coarser levels count too [-].
 
     They are: the velocity three times, pressure, and the bodies' fraction of each face; three work arrays; and, on all
@@ -255,7 +260,7 @@ def arrays_of(axes: int) -> float:
 def needed_memory(grid: Grid, dtype: type) -> int:
     """Return the memory of all fields of a grid [bytes]."""
     cells = float(np.prod([n + 2.0 * PAD for n in grid.cells]))
-    return int(cells * arrays_of(grid.axes) * np.dtype(dtype).itemsize)
+    return int(cells * numbers_per_cell(grid.axes) * np.dtype(dtype).itemsize)
 
 
 def check_memory(grid: Grid, dtype: type) -> None:
@@ -267,7 +272,7 @@ def check_memory(grid: Grid, dtype: type) -> None:
     need, have = needed_memory(grid, dtype), large.memory()
     if have is None:
         return
-    cell = grid.cell * (need / (large.SHARE * have)) ** (1 / grid.axes)
+    cell = grid.cell * (need / (large.MAX_MEMORY_FRACTION * have)) ** (1 / grid.axes)
     large.check_memory(
         f"a grid of {' x '.join(map(str, grid.cells))} cells",
         need,

@@ -12,10 +12,10 @@ Source: Maertens and Weymouth 2015, Comput. Methods Appl. Mech. Eng. 283, 106-12
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import UNIT, compiled, ordered_part, part, signed, threaded, unsigned
+from suchus.flow.compiled import UNIT, compiled, kernel_part, ordered_part, signed, threaded, unsigned
 from suchus.flow.slab import (
-    LEAST,
-    NONE,
+    MIN_PLANES,
+    ZERO,
     block_of,
     meets,
     near_shift,
@@ -31,16 +31,16 @@ REACH = 3.0
 POINTS = 4096
 """Points whose moments one thread fills at a time [-]."""
 
-FLAT = 1e-9
+DEGENERACY_TOLERANCE = 1e-9
 """Largest distance, over a cell or a triangle, at which a line of cells that misses it still counts as a hit [-]."""
 
-LEAST_SHARE = 1e-3
+MIN_FLUID_FRACTION = 1e-3
 """Fluid fraction kept inside the bodies, so that the pressure equation has no isolated regions [-]."""
 
-THINNEST = 2.0 + 2.0**0.5
+MIN_THICKNESS = 2.0 + 2.0**0.5
 """Thickness below which no cell lies completely inside the body [cells]."""
 
-THINNEST_CLOSED = 1.0
+MIN_CLOSED_THICKNESS = 1.0
 """Smallest maximum thickness of a body whose middle surface is closed to the pressure [cells]. At this thickness the
 added mass and work of a plate that heaves agree within 1 % with those on three times as fine a grid; at half of it they
 differ by 7 %. In space the added mass of a disc of this thickness, across itself, is within 4 % of potential theory."""
@@ -62,7 +62,7 @@ def wall_offset(spread: float) -> float:
     return float(0.66 * spread**0.4)
 
 
-@part
+@kernel_part
 def moment0(distance):
     """Return the fluid fraction at a signed distance [cells] from the surface, 0 inside to 1 outside."""
     if distance <= -1.0:
@@ -72,7 +72,7 @@ def moment0(distance):
     return 0.5 * (1.0 + distance + np.sin(np.pi * distance) / np.pi)
 
 
-@part
+@kernel_part
 def moment1(distance):
     """Return the first moment of the kernel at a signed distance [cells] from the surface [cells]."""
     if abs(distance) >= 1.0:
@@ -101,22 +101,25 @@ def fill(distance, normal, thickness, mu0, mu1):
         for k in range(block * POINTS, min((block + 1) * POINTS, distance.size)):
             near_distance = distance[k]
             far_distance = -thickness[k] - near_distance
-            mu0[k] = min(max(moment0(near_distance) + moment0(far_distance), LEAST_SHARE), 1.0)
+            mu0[k] = min(max(moment0(near_distance) + moment0(far_distance), MIN_FLUID_FRACTION), 1.0)
             first_moment = 0.5 * (moment1(near_distance) - moment1(far_distance))
             for d in range(normal.shape[0]):
                 mu1[d, k] = first_moment * normal[d, k]
 
 
-@part
+@kernel_part
 def _lines_within(p, q, r, origin, h, count):
     """Return the first line of cells that three coordinates span, and the one after the last."""
     lower_bound, upper_bound = min(p, q, r), max(p, q, r)
-    start, stop = np.ceil((lower_bound - origin) / h - FLAT), np.floor((upper_bound - origin) / h + FLAT) + 1.0
+    start, stop = (
+        np.ceil((lower_bound - origin) / h - DEGENERACY_TOLERANCE),
+        np.floor((upper_bound - origin) / h + DEGENERACY_TOLERANCE) + 1.0,
+    )
     return max(int(start), 0), min(int(stop), count)
 
 
 @compiled
-def close(passage, x, y, x0, y0, h):
+def close_faces(passage, x, y, x0, y0, h):
     """Close the faces of one direction whose two cells lie on either side of a line to the pressure.
 
     The kernel of a body thinner than the kernel's width leaves some fluid inside, which the pressure drives through the
@@ -139,7 +142,7 @@ def close(passage, x, y, x0, y0, h):
             crossing_x = start_x + (end_x - start_x) * (y0 + j * h - start_y) / (end_y - start_y)
             i = int(np.floor((crossing_x - x0) / h))
             if 0 <= i < faces:
-                passage[j, i] = min(passage[j, i], LEAST_SHARE)
+                passage[j, i] = min(passage[j, i], MIN_FLUID_FRACTION)
 
 
 @compiled
@@ -160,7 +163,7 @@ def close_surface(passage, c, triangles, origin, h):
     for n in range(triangles.shape[2]):
         p, q, r = triangles[0, :, n], triangles[1, :, n], triangles[2, :, n]
         area = (q[a] - p[a]) * (r[b] - p[b]) - (r[a] - p[a]) * (q[b] - p[b])
-        if abs(area) < FLAT * h * h:
+        if abs(area) < DEGENERACY_TOLERANCE * h * h:
             continue
         start_a, stop_a = _lines_within(p[a], q[a], r[a], origin[a], h, sizes[a])
         start_b, stop_b = _lines_within(p[b], q[b], r[b], origin[b], h, sizes[b])
@@ -169,13 +172,13 @@ def close_surface(passage, c, triangles, origin, h):
                 u, v = origin[a] + i * h - p[a], origin[b] + j * h - p[b]
                 weight_q = (u * (r[b] - p[b]) - (r[a] - p[a]) * v) / area
                 weight_r = ((q[a] - p[a]) * v - u * (q[b] - p[b])) / area
-                if min(weight_q, weight_r, 1.0 - weight_q - weight_r) < -FLAT:
+                if min(weight_q, weight_r, 1.0 - weight_q - weight_r) < -DEGENERACY_TOLERANCE:
                     continue
                 crossing = p[c] + weight_q * (q[c] - p[c]) + weight_r * (r[c] - p[c])
                 cell_index[c], cell_index[a], cell_index[b] = int(np.floor((crossing - origin[c]) / h)) + 1, i, j
                 if 0 <= cell_index[c] < sizes[c]:
                     passage[cell_index[2], cell_index[1], cell_index[0]] = min(
-                        passage[cell_index[2], cell_index[1], cell_index[0]], LEAST_SHARE
+                        passage[cell_index[2], cell_index[1], cell_index[0]], MIN_FLUID_FRACTION
                     )
 
 
@@ -283,12 +286,12 @@ def immerse(velocity, blend, raw, b, mu0, passage, mu1, p, component, near_layou
         dt: length of the stage [cells per (m/s)].
         keep: fraction of ``blend`` that stays [-].
     """
-    ej = UNIT if component == len(inner) else NONE
-    ei = NONE
+    ej = UNIT if component == len(inner) else ZERO
+    ei = ZERO
     for d in range(len(inner)):
         ei = inner[d] if d == component else ei
     w = len(inner) + 2
-    block = block_of(inner, near_layout[w + 1] - near_layout[w], LEAST)
+    block = block_of(inner, near_layout[w + 1] - near_layout[w], MIN_PLANES)
     row_cells = row_length(inner, p.shape[1])
     r0, r1 = window_rows(near_layout, inner)
     s, e = window_columns(near_layout, inner)

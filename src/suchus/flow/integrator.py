@@ -19,7 +19,7 @@ import numpy as np
 from suchus.core.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
 
-ROUNDING = 1e-9
+ROUNDING_TOLERANCE = 1e-9
 """Largest error of the sums over stages in the conditions of an order [-]."""
 
 
@@ -98,7 +98,7 @@ class Integrator:
         )
         order = 0
         for candidate_order, conditions in order_conditions:
-            if any(abs(has - needs) > ROUNDING for has, needs in conditions):
+            if any(abs(has - needs) > ROUNDING_TOLERANCE for has, needs in conditions):
                 break
             order = int(candidate_order)
         return order

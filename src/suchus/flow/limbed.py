@@ -10,8 +10,8 @@ from suchus.core.kinds import show
 from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.midline import MidlineState
-from suchus.flow.pose import Pose, turned
-from suchus.flow.shape import positive
+from suchus.flow.pose import Pose, rotate_vectors
+from suchus.flow.shape import check_positive
 from suchus.flow.solid import SpaceField
 from suchus.flow.trunk import Trunk, in_world
 
@@ -42,7 +42,7 @@ class Capsule:
     """Radius [m]."""
 
     def __post_init__(self) -> None:
-        positive("radius", self.radius)
+        check_positive("radius", self.radius)
         for name in ("at", "start", "end"):
             if not np.isfinite(getattr(self, name)).all():
                 raise InvalidDesign(f"{name} of a capsule is {show(getattr(self, name))} m; give finite numbers.")
@@ -223,7 +223,9 @@ class Limbed(Trunk):
         distance = size - limb.radius
         trunk = window_field.distance[box]
         is_nearer = distance < trunk
-        normal = turned(frame.matrix, [component / np.maximum(size, 1e-12 * limb.radius) for component in offsets])
+        normal = rotate_vectors(
+            frame.matrix, [component / np.maximum(size, 1e-12 * limb.radius) for component in offsets]
+        )
         facing = sum(
             component * present_component[box]
             for component, present_component in zip(normal, window_field.normal, strict=True)
@@ -231,7 +233,7 @@ class Limbed(Trunk):
         sunk = trunk < facing * (
             distance + 2 * limb.radius
         )  # the capsule's far side lies in the body that the field has already
-        limb_velocity = turned(
+        limb_velocity = rotate_vectors(
             frame.matrix, (rate[0] - turn * (py - start[1]), rate[1] + turn * (px - start[0]), 0 * px)
         )
         velocity = [a + b for a, b in zip(limb_velocity, frame.rates((wx, wy, wz)), strict=True)]

@@ -13,9 +13,9 @@ from suchus.core.errors import InvalidDesign
 from suchus.flow.limbed import around_rod
 from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
-from suchus.flow.pose import Pose, turned
-from suchus.flow.shape import positive
-from suchus.flow.solid import INSIDE, Ellipsoid, SpaceField, SpaceShape, is_blunt
+from suchus.flow.pose import Pose, rotate_vectors
+from suchus.flow.shape import check_positive
+from suchus.flow.solid import MIN_INSIDE_DEPTH, Ellipsoid, SpaceField, SpaceShape, is_blunt
 
 _MIN_POINTS_ACROSS = 16
 """Points across a piece, at least, over which its volume is summed [-]."""
@@ -31,9 +31,9 @@ class Spherocylinder(SpaceShape):
     """Radius [m]."""
 
     def __post_init__(self) -> None:
-        positive("radius", self.radius)
+        check_positive("radius", self.radius)
         if self.length != 0.0:
-            positive("length", self.length)
+            check_positive("length", self.length)
 
     @property
     def half(self) -> Float[np.ndarray, "3"]:
@@ -44,7 +44,7 @@ class Spherocylinder(SpaceShape):
         """Return which points of its own frame lie inside, shape (3, ...) [m]."""
         x, y, z = points
         axial_excess = np.maximum(np.abs(x) - 0.5 * self.length, 0.0)
-        return np.asarray(axial_excess * axial_excess + y * y + z * z < (1 - INSIDE) * self.radius**2)
+        return np.asarray(axial_excess * axial_excess + y * y + z * z < (1 - MIN_INSIDE_DEPTH) * self.radius**2)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:  # noqa: ARG002
         """Return the field on the points of a window."""
@@ -54,7 +54,7 @@ class Spherocylinder(SpaceShape):
         dx = px - np.clip(px, -0.5 * self.length, 0.5 * self.length)
         size = np.sqrt(dx * dx + py * py + pz * pz)
         safe = np.maximum(size, 1e-12 * self.radius)
-        normal = turned(frame.matrix, (dx / safe, py / safe, pz / safe))
+        normal = rotate_vectors(frame.matrix, (dx / safe, py / safe, pz / safe))
         u, v, w = (np.broadcast_to(component, size.shape) for component in frame.rates(world))
         return SpaceField(size - self.radius, normal, (u, v, w), np.full(size.shape, 2 * self.radius))
 
@@ -66,7 +66,7 @@ class Spherocylinder(SpaceShape):
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(
             points=points, share=areas, velocities=np.stack(frame.rates(points)),
-            normals=np.stack(turned(frame.matrix, facing)), spins=spins,
+            normals=np.stack(rotate_vectors(frame.matrix, facing)), spins=spins,
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:  # noqa: ARG002
@@ -344,13 +344,13 @@ def _piece_pose(piece: LinkPiece, links: LinkStates, frame: Pose) -> Pose:
     return Pose(position=(x, y, z), angle=yaw, pitch=pitch, roll=roll, velocity=(u, v, w), spin_x=p, spin_y=q, spin=r)
 
 
-def onward(states: LinkStates, time: float) -> LinkStates:
+def extrapolate_links(states: LinkStates, time: float) -> LinkStates:
     """Return the links after they have moved at constant rates for a time [s]."""
     matrix = rotation.turns(time * states.spin) @ states.matrix if time else states.matrix
     return states._replace(position=states.position + time * states.velocity, matrix=matrix)
 
 
-def between(start: LinkStates, end: LinkStates, span: float, fraction: float) -> LinkStates:
+def interpolate_links(start: LinkStates, end: LinkStates, span: float, fraction: float) -> LinkStates:
     """Return links between two states: cubics with the positions and rates of both ends.
 
     Rotations are interpolated as rotation vectors from the start. Before the start and after the end the rates are
@@ -363,7 +363,11 @@ def between(start: LinkStates, end: LinkStates, span: float, fraction: float) ->
         fraction: of the time; 0 at the start, 1 at the end [-].
     """
     if not 0.0 < fraction < 1.0:
-        return onward(start, fraction * span) if fraction <= 0.0 else onward(end, (fraction - 1.0) * span)
+        return (
+            extrapolate_links(start, fraction * span)
+            if fraction <= 0.0
+            else extrapolate_links(end, (fraction - 1.0) * span)
+        )
     t, h = fraction, span
     basis = (1 + 2 * t) * (1 - t) ** 2, h * t * (1 - t) ** 2, t * t * (3 - 2 * t), h * t * t * (t - 1)
     slope = 6 * t * (t - 1) / h, (1 - t) * (1 - 3 * t), 6 * t * (1 - t) / h, t * (3 * t - 2)

@@ -22,13 +22,13 @@ from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 
-OURS = "_ZN6suchus4flow"
+SYMBOL_PREFIX = "_ZN6suchus4flow"
 """Prefix of the symbols of the functions of ``suchus.flow`` in machine code."""
 
 LOOP = "__numba_parfor_gufunc"
 """Part of the symbols of loops that run on threads."""
 
-_NEEDED = (
+_REQUIRED_NAMES = (
     "_optimize_final_module", "_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols",
     "_get_module_for_linking",
 )  # fmt: skip
@@ -40,10 +40,10 @@ class Library(JITCodeLibrary):  # type: ignore[misc]
     def _is_part(self) -> bool:
         """Return whether the code belongs to ``suchus.flow`` and is called only by other compiled code."""
         roots = [f.name for f in self._defined() if f.linkage == binding.Linkage.external]
-        return self._is_ours() and all(name.startswith(OURS) or LOOP in name for name in roots)
+        return self._is_ours() and all(name.startswith(SYMBOL_PREFIX) or LOOP in name for name in roots)
 
     def _is_ours(self) -> bool:
-        return any(f.name.startswith(OURS) for f in self._defined())
+        return any(f.name.startswith(SYMBOL_PREFIX) for f in self._defined())
 
     def _defined(self) -> list[binding.ValueRef]:
         return [f for f in self._final_module.functions if not f.is_declaration]
@@ -97,7 +97,7 @@ def _linked_here(context: BaseContext) -> BaseContext:
 
 def missing() -> list[str]:
     """Return the names that ``Library`` and ``KernelCompiler`` need and that numba lacks."""
-    lacking = [name for name in _NEEDED if not hasattr(JITCodeLibrary, name)]
+    lacking = [name for name in _REQUIRED_NAMES if not hasattr(JITCodeLibrary, name)]
     lacking += [] if hasattr(JITCPUCodegen, "_library_class") else ["_library_class"]
     return lacking + ([] if hasattr(cpu_target.target_context, "_internal_codegen") else ["_internal_codegen"])
 

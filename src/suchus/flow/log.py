@@ -10,14 +10,14 @@ from suchus.flow.body import AnyBody, rows_of
 from suchus.flow.force import ControlVolume, Load
 from suchus.flow.markers import Markers
 from suchus.flow.midline import Midline
-from suchus.flow.momentum import Reaction, contents_of, reaction, skins
+from suchus.flow.momentum import Reaction, contents_of, reaction, skin_contents
 from suchus.flow.pose import Pose, cross
-from suchus.flow.record import COLUMNS, HEAD, PART_COLUMNS, SPACE_COLUMNS, Record
+from suchus.flow.record import COLUMNS, PART_COLUMNS, ROW_HEADER_SIZE, SPACE_COLUMNS, Record
 from suchus.flow.setup import Setup
 from suchus.flow.trunk import Trunk
 from suchus.flow.water import Fluid
 
-FASTEST = 100.0
+MAX_SPEED_RATIO = 100.0
 """Speed, over that of stream and bodies, above which a simulation counts as diverged [-]."""
 
 
@@ -48,7 +48,7 @@ class Log:
     rows: list[np.ndarray] = field(default_factory=list)
     """One row per step."""
     held: np.ndarray = field(init=False)
-    """Contents of the region of each part of each body at the end of the last step; see ``momentum.contents``."""
+    """Contents of the region of each part of each body at the end of the last step; see ``momentum.add_contents``."""
     controls: list[ControlVolume] = field(default_factory=list)
     """Boxes whose momentum is followed."""
     control_rows: list[tuple[float, ...]] = field(default_factory=list)
@@ -60,11 +60,11 @@ class Log:
     def hold(self, water: Fluid, outlines: Sequence[Markers]) -> None:
         """Store the contents of the placed bodies' regions; of a body that mirrors cut, the part inside the domain."""
         grid = self.setup.grid
-        skin_contents = [
-            0.5 ** sum(mirror_cuts) * skins(outline, water.offset, grid.origin, grid.cell, len(rows))
+        body_contents = [
+            0.5 ** sum(mirror_cuts) * skin_contents(outline, water.offset, grid.origin, grid.cell, len(rows))
             for outline, mirror_cuts, rows in zip(outlines, water.cut, water.rows, strict=True)
         ]
-        self.held = water.contents() - np.concatenate([np.zeros((0, contents_of(grid.axes))), *skin_contents])
+        self.held = water.contents() - np.concatenate([np.zeros((0, contents_of(grid.axes))), *body_contents])
 
     def reactions(
         self, water: Fluid, outlines: Sequence[Markers], reference_points: list[tuple[float, ...]], dt: float,
@@ -91,7 +91,13 @@ class Log:
                 else [np.concatenate([part_sums[:1] + part_sums[1:].sum(axis=0), part_sums]) for part_sums in body_sums]
             )
             actions = reaction(
-                *sums, dt=dt, push=push, about=position, origin=grid.origin, h=grid.cell, density=self.setup.density
+                *sums,
+                dt=dt,
+                push=push,
+                reference_point=position,
+                origin=grid.origin,
+                h=grid.cell,
+                density=self.setup.density,
             ).whole(mirror_cuts)
             body_action, parts = actions[0], actions if len(rows) == 1 else actions[1:]
             scale = 2 ** sum(mirror_cuts) * self.setup.density * grid.cell ** (grid.axes + 1) / dt
@@ -117,7 +123,11 @@ class Log:
         Raises:
             Diverged: saying when, and what to change.
         """
-        if np.isfinite(fastest) and np.isfinite(row).all() and not (reference > 0 and fastest > FASTEST * reference):
+        if (
+            np.isfinite(fastest)
+            and np.isfinite(row).all()
+            and not (reference > 0 and fastest > MAX_SPEED_RATIO * reference)
+        ):
             return
         raise Diverged(
             f"at t = {row[0]:.4g} s the fastest water moves with {fastest:.3g} m/s, where stream and bodies "
@@ -134,12 +144,13 @@ class Log:
             len(rows) if _is_divided(body) else 1 for body, rows in zip(bodies, rows_of(list(bodies)), strict=True)
         ]
         body_columns, parts = len(bodies) * len(names), sum(n for n in counts if n > 1)
-        rows = np.array(self.rows).reshape(len(self.rows), HEAD + body_columns + parts * len(PART_COLUMNS))
+        rows = np.array(self.rows).reshape(len(self.rows), ROW_HEADER_SIZE + body_columns + parts * len(PART_COLUMNS))
         return Record(
             names=tuple(b.name for b in bodies), time=rows[:, 0], step=rows[:, 1], cycles=rows[:, 2:4].astype(int),
             divergence=rows[:, 4],
-            bodies=rows[:, HEAD : HEAD + body_columns].reshape(len(rows), len(bodies), len(names)),
-            columns=names, parts=rows[:, HEAD + body_columns :].reshape(len(rows), parts, len(PART_COLUMNS)),
+            bodies=rows[:, ROW_HEADER_SIZE : ROW_HEADER_SIZE + body_columns].reshape(len(rows), len(bodies),
+            len(names)),
+            columns=names, parts=rows[:, ROW_HEADER_SIZE + body_columns :].reshape(len(rows), parts, len(PART_COLUMNS)),
             divided=tuple(n if n > 1 else 0 for n in counts),
         )  # fmt: skip
 

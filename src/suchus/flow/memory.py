@@ -37,7 +37,7 @@ class Snapshot:
     """Skins of the bodies."""
 
 
-def take(sim: "Simulation") -> Snapshot:
+def take_snapshot(sim: "Simulation") -> Snapshot:
     """Return a snapshot of a simulation."""
     log, state = sim._log, sim.water.state()
     extra_arrays = {"frame": sim.frame, "held": log.held, "b": sim.water.b}
@@ -50,7 +50,7 @@ def take(sim: "Simulation") -> Snapshot:
     )  # fmt: skip
 
 
-def give(sim: "Simulation", snapshot: Snapshot) -> None:
+def restore_snapshot(sim: "Simulation", snapshot: Snapshot) -> None:
     """Restore a simulation from a snapshot; the bodies are placed anew in the next step."""
     for name, value in snapshot.numbers.items():
         setattr(sim, name, value)

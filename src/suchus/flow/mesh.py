@@ -18,11 +18,11 @@ from scipy.spatial import KDTree
 from suchus.core.errors import InvalidDesign
 from suchus.core.isosurface import isosurface
 from suchus.core.reading import read_mesh
-from suchus.flow.compiled import part, signed, threaded
+from suchus.flow.compiled import kernel_part, signed, threaded
 from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.pose import Pose
-from suchus.flow.shape import positive
+from suchus.flow.shape import check_positive
 from suchus.flow.solid import SpaceField, SpaceShape, is_blunt
 
 _SYMMETRY_TOLERANCE = 1e-6
@@ -111,7 +111,7 @@ class TriangleMesh(SpaceShape):
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
         frame = pose.along(3)
-        points, areas, normals = middles_of(self._world_vertices(frame)[self.faces], spacing)
+        points, areas, normals = face_centres(self._world_vertices(frame)[self.faces], spacing)
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(
             points=points, share=areas, velocities=np.stack(frame.rates(points)), normals=normals, spins=spins
@@ -171,7 +171,7 @@ def mass_of_mesh(corners: np.ndarray) -> SpaceMass:
     return SpaceMass(volume=volume, centre=(cx, cy, cz), centre_rate=zero, moments=moments, swirl=zero)
 
 
-def middles_of(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def face_centres(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the middles of faces, of large ones those of equal parts, the area of each and its normal.
 
     Args:
@@ -204,7 +204,7 @@ def from_mesh(path: Path | str, *, scale: float = 1.0) -> TriangleMesh:
         InvalidDesign: the mesh is open, wound unevenly or looks inwards.
         UnreadableFile: the file is no mesh, or trimesh is not installed.
     """
-    positive("scale", scale)
+    check_positive("scale", scale)
     mesh = read_mesh(Path(path))
     faces = np.array(mesh.faces)
     is_proper = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
@@ -321,12 +321,12 @@ def _middles(count: int) -> np.ndarray:
     return np.stack([1 - weight_1 - weight_2, weight_1, weight_2], axis=1)
 
 
-@part
+@kernel_part
 def _dot(x1, y1, z1, x2, y2, z2):
     return x1 * x2 + y1 * y2 + z1 * z2
 
 
-@part
+@kernel_part
 def _nearest_point(px, py, pz, t):
     """Return two barycentric weights of a triangle's point nearest to a point, and the feature that it lies on.
 
@@ -367,7 +367,7 @@ def _nearest_point(px, py, pz, t):
     return b / total, c / total, 0
 
 
-@part
+@kernel_part
 def _span(lower_bound, upper_bound, reach, start, h, count):
     """Return the first point of a line that lies within a reach of an interval, and the point after the last.
 
@@ -434,7 +434,7 @@ def paint_mesh(window_field, x, y, z, corners, normals, reach, h):
             _fill_row(window_field, q, j, reach)
 
 
-@part
+@kernel_part
 def _fill_row(window_field, q, j, reach):
     """Give the points of a row that no triangle reached the sign of a neighbour that a triangle reached.
 

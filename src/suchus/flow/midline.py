@@ -13,7 +13,7 @@ from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_midline
 from suchus.flow.paint import paint, ring, sections
 from suchus.flow.pose import Pose
-from suchus.flow.shape import Field, Shape, positive
+from suchus.flow.shape import Field, Shape, check_positive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,17 +72,17 @@ class MidlineState:
         """Arc length from the first station, shape (station,) [m]."""
         return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(self.x), np.diff(self.y)))])
 
-    def thickened(self, least: float) -> "MidlineState":
+    def thickened(self, min_half_width: float) -> "MidlineState":
         """Return the midline with half-widths of at least ``least`` and round ends.
 
         A tail that tapers to nothing is thinner than any grid, and its force is noisy. The solver never thickens a
         body by itself. With 1.75 cells the smoothing kernel fits between the two surfaces.
 
         Args:
-            least: smallest half-width [m].
+            min_half_width: smallest half-width [m].
         """
         inward = np.minimum(self.arc, self.arc[-1] - self.arc)
-        cap = np.sqrt(np.maximum(least**2 - np.maximum(least - inward, 0.0) ** 2, 0.0))
+        cap = np.sqrt(np.maximum(min_half_width**2 - np.maximum(min_half_width - inward, 0.0) ** 2, 0.0))
         return replace(self, half_width=np.maximum(self.half_width, cap))
 
     def placed(self, pose: Pose) -> "MidlineState":
@@ -96,7 +96,7 @@ class MidlineState:
         )  # fmt: skip
 
 
-MOST_PARTS = 64
+MAX_PARTS = 64
 """Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
 
 
@@ -112,11 +112,11 @@ def check_cuts(cuts: tuple[float, ...], body_kind: str) -> None:
     """
     if not all(isfinite(arc) for arc in cuts) or (np.diff((0.0, *cuts)) <= 0).any():
         raise InvalidDesign(f"the cuts of a {body_kind} are at {cuts} m; give rising arc lengths above 0.")
-    if len(cuts) >= MOST_PARTS:
-        raise InvalidDesign(f"a {body_kind} has {len(cuts)} cuts; up to {MOST_PARTS - 1} are allowed.")
+    if len(cuts) >= MAX_PARTS:
+        raise InvalidDesign(f"a {body_kind} has {len(cuts)} cuts; up to {MAX_PARTS - 1} are allowed.")
 
 
-class Remembered:
+class CachedMidline:
     """A midline over time that caches its last states: a step needs the midline at the same times often."""
 
     LAST = 4
@@ -177,7 +177,7 @@ class Midline(Shape):
     def _world_midline(self, time: float, pose: Pose) -> MidlineState:
         """Return the midline at a time in the world."""
         spine = self.spine
-        return spine.placed(time, pose) if isinstance(spine, Remembered) else spine(time).placed(pose)
+        return spine.placed(time, pose) if isinstance(spine, CachedMidline) else spine(time).placed(pose)
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window."""
@@ -281,7 +281,7 @@ def foil(
 
     Source: Jacobs, Ward and Pinkerton 1933, NACA Report 460 (closed trailing edge).
     """
-    positive("chord", chord)
+    check_positive("chord", chord)
     if not (0 < thickness < 0.5 and 0 <= camber < 0.2 and 0 < camber_at < 1):
         raise InvalidDesign(
             f"a foil of thickness {thickness}, camber {camber} at {camber_at} is outside 0 to 0.5, 0 to 0.2, 0 to 1."

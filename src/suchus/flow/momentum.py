@@ -14,15 +14,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, compiled, part, signed
+from suchus.flow.compiled import PAD, compiled, kernel_part, signed
 from suchus.flow.markers import Markers
-from suchus.flow.pose import TURNS
+from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.slab import row_length
 
 
 def sums_of(axes: int) -> int:
     """Return the number of sums per body: momentum, angular momentum (in the plane only about z), energy."""
-    return axes + len(TURNS[axes]) + 1
+    return axes + len(ROTATION_PLANES[axes]) + 1
 
 
 def contents_of(axes: int) -> int:
@@ -30,13 +30,13 @@ def contents_of(axes: int) -> int:
     return sums_of(axes) + 1 + axes
 
 
-@part
+@kernel_part
 def _spin_column(slab_axis):
     """Return the column of the angular momentum about z; in space those about x and y come before it."""
     return slab_axis + 1 if slab_axis == 1 else slab_axis + 3
 
 
-@part
+@kernel_part
 def _tilt(sums, m, component, x, y, z, impulse):
     """Add the angular momentum about x and about y of an impulse along one axis at a place in space.
 
@@ -59,7 +59,7 @@ def _tilt(sums, m, component, x, y, z, impulse):
 
 
 @compiled
-def collect(sums, velocity, blend, raw, mean, passage, mu1, p, owner, component, layout, inner, dt, keep):
+def add_immersion_impulse(sums, velocity, blend, raw, mean, passage, mu1, p, owner, component, layout, inner, dt, keep):
     """Add the impulse of the immersion on one component of the velocity in one stage, with its moments and energy.
 
     ``mean``, ``raw``, ``mu1`` and ``owner`` are near arrays, those of the window; see ``slab``. The mean velocity is
@@ -113,7 +113,7 @@ def collect(sums, velocity, blend, raw, mean, passage, mu1, p, owner, component,
                 sums[m, turn + 1] += mean[j - layout[w], index] * impulse
 
 
-@part
+@kernel_part
 def _add_to_owners(sums, column, owners, o, index, columns, contribution):
     """Add a cell's contribution to the parts that own its faces, an equal amount for each face.
 
@@ -162,7 +162,7 @@ def dilatation_work(sums, p, source, owners, layout, inner, dt):
 
 
 @compiled
-def pressed(sums, p, mu0, owners, layout, near_layout, inner, weight):
+def add_internal_pressure(sums, p, mu0, owners, layout, near_layout, inner, weight):
     """Add the integral of the pressure inside the region of each body and its first moments, times a weight.
 
     Args:
@@ -204,7 +204,7 @@ def pressed(sums, p, mu0, owners, layout, near_layout, inner, weight):
 
 
 @compiled
-def parted(sums, p, mu0, owners, layout, near_layout, inner, weight):
+def subtract_joint_pressure(sums, p, mu0, owners, layout, near_layout, inner, weight):
     """Subtract from the sums what the pressure inside bodies does across joints of their links.
 
     A body has no pressure inside. Where a cell's two faces across an axis belong to two links, the pressure in the cell
@@ -257,7 +257,7 @@ def parted(sums, p, mu0, owners, layout, near_layout, inner, weight):
 
 
 @compiled
-def contents(sums, b, mu0, owner, component, layout, near_layout, inner):
+def add_contents(sums, b, mu0, owner, component, layout, near_layout, inner):
     """Add what the region of each body holds of one component of the velocity.
 
     Args:
@@ -305,7 +305,7 @@ def contents(sums, b, mu0, owner, component, layout, near_layout, inner):
                     sums[m, turn + 5] += axis_fraction * z
 
 
-def skins(
+def skin_contents(
     markers: Markers, offset: float, origin: tuple[float, ...], h: float, count: int
 ) -> np.ndarray:  # fmt: skip
     """Return the contents of the skin of water, ``offset`` cells thick, that ``contents`` counts as body, part by part.
@@ -324,7 +324,7 @@ def skins(
     square = v[0] ** 2 + v[1] ** 2
     if axes == 3:
         square = square + v[2] ** 2
-    angular = (position[a] * v[b] - position[b] * v[a] for a, b in TURNS[axes])
+    angular = (position[a] * v[b] - position[b] * v[a] for a, b in ROTATION_PLANES[axes])
     columns = (*v, *angular, 0.5 * square, np.ones(w.size), *position)
     if count == 1 or markers.part is None:
         return (w * np.array(columns)).sum(axis=1)[None]
@@ -365,13 +365,15 @@ class Reaction:
             ],
         )
         force_factor = np.array([0.0 if is_cut else times for is_cut in has_mirror])
-        moment_factor = np.array([0.0 if has_mirror[a] or has_mirror[b] else times for a, b in TURNS[len(has_mirror)]])
+        moment_factor = np.array(
+            [0.0 if has_mirror[a] or has_mirror[b] else times for a, b in ROTATION_PLANES[len(has_mirror)]]
+        )
         return Reaction(force=force_factor * self.force, moment=moment_factor * self.moment, power=times * self.power)
 
 
 def reaction(
     impulse: np.ndarray, start_contents: np.ndarray, end_contents: np.ndarray, *, dt: float,
-    push: tuple[float, ...], about: np.ndarray, origin: tuple[float, ...], h: float, density: float,
+    push: tuple[float, ...], reference_point: np.ndarray, origin: tuple[float, ...], h: float, density: float,
 ) -> Reaction:  # fmt: skip
     """Return the mean load of the water on a body, or on each of its parts, over a step.
 
@@ -381,16 +383,16 @@ def reaction(
         end_contents: the same at its end.
         dt: the step [s].
         push: uniform acceleration of the water [m/s^2].
-        about: point of the torque, in the frame of the grid [m].
+        reference_point: point of the torque, in the frame of the grid [m].
         origin: corner of the grid [m].
         h: cell [m].
         density: of the water [kg/m^3].
     """
-    axes, turns = len(origin), TURNS[len(origin)]
+    axes, turns = len(origin), ROTATION_PLANES[len(origin)]
     energy = axes + len(turns)
     change = end_contents[..., : energy + 1] - start_contents[..., : energy + 1]
     mean_contents = 0.5 * (end_contents + start_contents)
-    centre = (about - np.array(origin)) / h
+    centre = (reference_point - np.array(origin)) / h
     size, first_moments = mean_contents[..., energy + 1, None], mean_contents[..., energy + 2 :]
     force = (change[..., :axes] - impulse[..., :axes]) / dt - size * np.array(push)
     moment = [

@@ -18,12 +18,12 @@ Numer. Math. 3, 147-168.
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, SERIAL_BELOW, UNIT, compiled, part, signed, threaded_part, unsigned
-from suchus.flow.patch import ONE, end, give_slab, patch, start, take_coefficients
+from suchus.flow.compiled import PAD, SERIAL_BELOW, UNIT, compiled, kernel_part, signed, threaded_part, unsigned
+from suchus.flow.patch import SOLUTION, end, give_slab, patch, start, take_coefficients
 from suchus.flow.slab import (
     EDGE,
-    LEAST,
-    NONE,
+    MIN_PLANES,
+    ZERO,
     block_of,
     row_count,
     row_length,
@@ -44,25 +44,25 @@ from suchus.flow.stencil import (
 X, B, DINV, FACES = range(4)
 """Kinds of values of a level: solution, right side, inverse diagonal, then face coefficients, axis by axis."""
 
-COARSEST = 32
+MAX_COARSEST_CELLS = 32
 """Largest number of cells along a side of the coarsest level, which is solved by Jacobi steps alone [-]."""
 
-LONGEST = 16 * COARSEST
+MAX_CHANNEL_CELLS = 16 * MAX_COARSEST_CELLS
 """Largest number of cells along a side of the coarsest level of a long channel, which takes more steps there [-]."""
 
-LEFT = 0.02
+MAX_RESIDUAL_RATIO = 0.02
 """Fraction of each error that the solve of the coarsest level leaves [-]. With half of the smoothest error left and one
 cycle a stage, the drag of an impulsively started cylinder in a patch, at Re 1000, oscillated by up to 6 %."""
 
 
-@part
+@kernel_part
 def _shape(layout, k, inner):
     """Return the number of slabs of a level, and of cells in a slab, both with the padding."""
     rows = layout[k, 2] + 2 * PAD if len(inner) > 1 else 1
     return layout[k, 1] + 2 * PAD, rows * (layout[k, len(inner) + 1] + 2 * PAD)
 
 
-@part
+@kernel_part
 def level(store, layout, inner, kind, k):
     """Return the array of one kind on level ``k``; see ``slab`` for the rows of the layout.
 
@@ -78,7 +78,7 @@ def level(store, layout, inner, kind, k):
     return store[start : start + slab_count * length].reshape(slab_count, length)
 
 
-@part
+@kernel_part
 def faces_of(store, layout, inner, k):
     """Return the coefficients of the faces on level ``k``, shape (axis, slab, cell)."""
     (slab_count, length), axes = _shape(layout, k, inner), len(inner) + 1
@@ -86,13 +86,13 @@ def faces_of(store, layout, inner, k):
     return store[start : start + axes * slab_count * length].reshape(axes, slab_count, length)
 
 
-@part
+@kernel_part
 def _strides(layout, inner, k):
     """Return the strides within a slab of level ``k``."""
     return strides_like(inner, unsigned(layout[k, len(inner) + 1] + 2 * PAD))
 
 
-@part
+@kernel_part
 def _fold(j, n, periodic):
     """Return the slab of the domain whose values slab ``j`` has; ``j`` may lie beyond a wall."""
     if periodic:
@@ -100,7 +100,7 @@ def _fold(j, n, periodic):
     return min(max(j, PAD), PAD + n - 1)
 
 
-@part
+@kernel_part
 def _first_smoothing(slabs, o, b, patch_values, rect, slab, inner, repeats):
     """Write the solution in one slab after the first smoothing steps, which start from nothing.
 
@@ -115,12 +115,12 @@ def _first_smoothing(slabs, o, b, patch_values, rect, slab, inner, repeats):
         repeats: whether each axis is periodic.
     """
     first_cell, end = run_of(inner, b.shape[1])
-    first_steps(slabs, o, NONE, b, slab, inner, first_cell, end)
+    first_steps(slabs, o, ZERO, b, slab, inner, first_cell, end)
     give_slab(slabs, o, patch_values, rect, slab, inner)
     seal_slab(slabs, o, inner, repeats)
 
 
-@part
+@kernel_part
 def _restrict_residual(coarse, coarse_slab, residual, b, slab, inner, coarse_inner):
     """Write the summed residual of two slabs to a slab of the coarse level's right side.
 
@@ -140,8 +140,8 @@ def _restrict_residual(coarse, coarse_slab, residual, b, slab, inner, coarse_inn
     row_cells, coarse_row_cells = row_length(inner, b.shape[1]), row_length(coarse_inner, coarse.shape[1])
     half = residual.dtype.type(0.5)
     for n in range(row_count(coarse_inner, coarse.shape[1])):
-        fine = (n + n + EDGE) * row_cells if len(inner) > 1 else NONE
-        row = (n + EDGE) * coarse_row_cells if len(inner) > 1 else NONE
+        fine = (n + n + EDGE) * row_cells if len(inner) > 1 else ZERO
+        row = (n + EDGE) * coarse_row_cells if len(inner) > 1 else ZERO
         if len(inner) > 1:
             for k in range(fine + EDGE, fine + row_cells - EDGE):
                 residual[0, k] = half * (residual[0, k] + residual[0, k + row_cells])
@@ -150,7 +150,7 @@ def _restrict_residual(coarse, coarse_slab, residual, b, slab, inner, coarse_inn
             coarse[c, row + k] = residual[0, i] + residual[0, i + UNIT]
 
 
-@part
+@kernel_part
 def _descend(coarse, b, faces, level_layout, buffer, rect, j0, j1, inner, coarse_inner, repeats):
     """Write the summed residual after the first smoothing steps to some slabs of the coarse level.
 
@@ -167,7 +167,7 @@ def _descend(coarse, b, faces, level_layout, buffer, rect, j0, j1, inner, coarse
         coarse_inner: the same on the coarse level.
         repeats: whether each axis is periodic.
     """
-    size, patch_values, is_periodic = level_layout[1], patch(buffer, rect, inner, ONE), repeats[len(inner)]
+    size, patch_values, is_periodic = level_layout[1], patch(buffer, rect, inner, SOLUTION), repeats[len(inner)]
     residual, rows = np.empty((2, b.shape[1]), b.dtype), np.empty((4, b.shape[1]), b.dtype)
     lower_slot, middle_slot, upper_slot, top_slot = 0, 1, 2, 3
     j = 2 * (j0 - PAD) + PAD
@@ -184,7 +184,7 @@ def _descend(coarse, b, faces, level_layout, buffer, rect, j0, j1, inner, coarse
         lower_slot, middle_slot, upper_slot, top_slot = upper_slot, top_slot, lower_slot, middle_slot
 
 
-@part
+@kernel_part
 def _add_coarse(slabs, o, coarse, mix, slab, inner, coarse_inner):
     """Add to a slab the solution of the coarse level, linear between its cells.
 
@@ -212,7 +212,7 @@ def _add_coarse(slabs, o, coarse, mix, slab, inner, coarse_inner):
     line = unsigned(coarse.shape[1])
     for n in range(row_count(inner, slabs.shape[1])):
         row, near_row = (n + EDGE) * row_cells, (n // (UNIT + UNIT) + EDGE) * coarse_row_cells
-        far_row = near_row - coarse_row_cells if n % (UNIT + UNIT) == NONE else near_row + coarse_row_cells
+        far_row = near_row - coarse_row_cells if n % (UNIT + UNIT) == ZERO else near_row + coarse_row_cells
         for k in range(EDGE - UNIT, coarse_row_cells - EDGE + UNIT):
             mix[line + k] = near_weight * mix[near_row + k] + far_weight * mix[far_row + k]
         for k in range(EDGE, coarse_row_cells - EDGE):
@@ -221,7 +221,7 @@ def _add_coarse(slabs, o, coarse, mix, slab, inner, coarse_inner):
             slabs[o, i + UNIT] += near_weight * mix[line + k] + far_weight * mix[line + k + UNIT]
 
 
-@part
+@kernel_part
 def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner, coarse_inner, repeats):
     """Write the first smoothing steps, the coarse correction and the last two steps to some slabs.
 
@@ -240,7 +240,7 @@ def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner
         coarse_inner: the same on the coarse level.
         repeats: whether each axis is periodic.
     """
-    is_periodic, size, patch_values = repeats[len(inner)], level_layout[1], patch(buffer, rect, inner, ONE)
+    is_periodic, size, patch_values = repeats[len(inner)], level_layout[1], patch(buffer, rect, inner, SOLUTION)
     rows = np.empty((6, b.shape[1]), b.dtype)
     mix = np.empty(coarse.shape[1] + signed(row_length(coarse_inner, coarse.shape[1])), b.dtype)
     second_weights, first_weights = weights(inner, b.dtype.type)
@@ -273,20 +273,20 @@ def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner
 
 
 @threaded_part
-def _down_threaded(coarse, b, faces, level_layout, buffer, rect, inner, coarse_inner, repeats):
+def _descend_threaded(coarse, b, faces, level_layout, buffer, rect, inner, coarse_inner, repeats):
     """Do what ``_descend`` does for all slabs, on several threads."""
     end = coarse.shape[0] - PAD
-    block = block_of(inner, end - PAD, LEAST // 2)
+    block = block_of(inner, end - PAD, MIN_PLANES // 2)
     for n in prange((end - PAD + block - 1) // block):
         j0 = PAD + signed(n) * block
         _descend(coarse, b, faces, level_layout, buffer, rect, j0, min(j0 + block, end), inner, coarse_inner, repeats)
 
 
 @threaded_part
-def _up_threaded(x, b, coarse, faces, dinv, level_layout, buffer, rect, inner, coarse_inner, repeats):
+def _ascend_threaded(x, b, coarse, faces, dinv, level_layout, buffer, rect, inner, coarse_inner, repeats):
     """Do what ``_ascend`` does for all slabs, on several threads."""
     end = x.shape[0] - PAD
-    block = block_of(inner, end - PAD, LEAST)
+    block = block_of(inner, end - PAD, MIN_PLANES)
     for n in prange((end - PAD + block - 1) // block):
         j0 = PAD + signed(n) * block
         _ascend(
@@ -295,7 +295,7 @@ def _up_threaded(x, b, coarse, faces, dinv, level_layout, buffer, rect, inner, c
         )  # fmt: skip
 
 
-@part
+@kernel_part
 def _live_mean(b, dinv, inner):
     """Return the mean over the cells that have an open face: without walls that fix it, the pressure has no level.
 
@@ -321,8 +321,8 @@ def _live_mean(b, dinv, inner):
     return b.dtype.type(total / max(live, 1))
 
 
-@part
-def _reaches(cells, axes):
+@kernel_part
+def _relaxation_factors(cells, axes):
     """Return the relaxation factor of each step on the coarsest level, and the weight of its Jacobi steps.
 
     Chebyshev's semi-iteration for eigenvalues from that of the smoothest error along the longest side up to 2. It takes
@@ -335,14 +335,14 @@ def _reaches(cells, axes):
     min_eigenvalue = (1.0 - np.cos(np.pi / cells)) / axes
     middle = 1.0 + 0.5 * min_eigenvalue
     ratio = (1.0 - 0.5 * min_eigenvalue) / middle
-    steps = int(np.ceil(np.arccosh(1.0 / LEFT) / np.arccosh(1.0 / ratio)))
+    steps = int(np.ceil(np.arccosh(1.0 / MAX_RESIDUAL_RATIO) / np.arccosh(1.0 / ratio)))
     factors = np.ones(steps + steps % 2)
     for k in range(1, factors.size):
         factors[k] = 1.0 / (1.0 - (0.5 if k == 1 else 0.25) * ratio**2 * factors[k - 1])
     return factors, 1.0 / middle
 
 
-@part
+@kernel_part
 def _relax(y, step, slab, factor):
     """Write ``y + factor (step - y)`` to a slab of ``y``."""
     j = unsigned(slab)
@@ -350,7 +350,7 @@ def _relax(y, step, slab, factor):
         y[j, k] += factor * (step[j, k] - y[j, k])
 
 
-@part
+@kernel_part
 def _solve_coarsest(x, b, faces, dinv, level_layout, inner, repeats):
     """Solve the coarsest level by Chebyshev's semi-iteration on Jacobi steps, from nothing; ``b`` loses its mean.
 
@@ -374,7 +374,7 @@ def _solve_coarsest(x, b, faces, dinv, level_layout, inner, repeats):
     max_cells = 1
     for axis in range(len(inner) + 1):
         max_cells = max(max_cells, level_layout[1 + axis])
-    factors, weight = _reaches(max_cells, len(inner) + 1)
+    factors, weight = _relaxation_factors(max_cells, len(inner) + 1)
     for factor in factors:
         smooth(step, x, b, faces, dinv, level_layout, real(weight), inner, repeats)
         for j in range(PAD, x.shape[0] - PAD):
@@ -383,7 +383,7 @@ def _solve_coarsest(x, b, faces, dinv, level_layout, inner, repeats):
         x, y = y, x
 
 
-@part
+@kernel_part
 def cycle(x, store, layout, buffer, rects, inner, repeats):
     """Write one V-cycle for the right side ``B`` of level 0, started from nothing, to ``x``.
 
@@ -410,7 +410,7 @@ def cycle(x, store, layout, buffer, rects, inner, repeats):
                 repeats,
             )  # fmt: skip
         else:
-            _down_threaded(coarse, b, faces, level_layout, buffer, rect, level_inner, coarse_inner, repeats)
+            _descend_threaded(coarse, b, faces, level_layout, buffer, rect, level_inner, coarse_inner, repeats)
     _solve_coarsest(
         x if last_level == 0 else level(store, layout, inner, X, last_level),
         level(store, layout, inner, B, last_level),
@@ -431,7 +431,7 @@ def cycle(x, store, layout, buffer, rects, inner, repeats):
                 coarse_inner, repeats,
             )  # fmt: skip
         else:
-            _up_threaded(
+            _ascend_threaded(
                 solution, b, coarse, faces, dinv, level_layout, buffer, rect, level_inner, coarse_inner, repeats
             )
         if rect[1] < rect[2]:
@@ -442,7 +442,7 @@ def cycle(x, store, layout, buffer, rects, inner, repeats):
         seal_ends(solution, repeats[len(inner)])
 
 
-@part
+@kernel_part
 def _coefficients(cx, cy, dinv, level_layout):
     """Fill the inverse diagonal of a plane level in the window; a cell with no open face gets 0.
 
@@ -461,7 +461,7 @@ def _coefficients(cx, cy, dinv, level_layout):
             dinv[j, i] = 1 / total if total > small else 0
 
 
-@part
+@kernel_part
 def _coefficients_in_space(faces, dinv, level_layout, inner):
     """Fill the inverse diagonal of a level in space in the window; a cell with no open face gets 0.
 
@@ -481,7 +481,7 @@ def _coefficients_in_space(faces, dinv, level_layout, inner):
                 dinv[j, k] = 1 / total if total > small else 0
 
 
-@part
+@kernel_part
 def _in_line(c0, c1, c2):
     """Return the coefficient of three faces in line between the middles of two coarse cells, the outer ones halved.
 
@@ -494,7 +494,7 @@ def _in_line(c0, c1, c2):
     return 4 * c0 * c1 * c2 / resistance if resistance > 0 else c0
 
 
-@part
+@kernel_part
 def _joined(face, j, k, axis, inner):
     """Return a coarse face's coefficient from those of its fine faces and of the faces before and behind them.
 
@@ -525,7 +525,7 @@ def _joined(face, j, k, axis, inner):
     return np.sqrt(fraction * parallel_sum * (fraction * series_sum))
 
 
-@part
+@kernel_part
 def _coarse_faces(coarse, fine, level_layout, coarse_row_cells, inner, axis):
     """Fill the coefficients of a coarse level's faces across one axis in its window.
 
@@ -572,7 +572,7 @@ def coarsen(store, layout, inner):
 
 
 @compiled
-def spread(store, layout, buffer, rects, inner):
+def copy_coefficients(store, layout, buffer, rects, inner):
     """Copy the coefficients of all levels to the patches; see ``patch``.
 
     Args:

@@ -29,23 +29,23 @@ from suchus.flow.scheme import Scheme
 from suchus.flow.sides import NAMES, Side, Sides
 from suchus.flow.water import Fluid, PlannedStage
 
-MARGIN = 4
+MIN_SIDE_CLEARANCE = 4
 """Coarse cells between a patch and a side of the domain that it does not share, at least [-]. The stencil around the
 patch must lie inside the domain."""
 
-CLEAR = 2
+MIN_BODY_CLEARANCE = 2
 """Coarse cells between the window of a body and the patch's sides, at least [-]. The stencil around the patch reads
 velocities that far inside, which must not be those of a body."""
 
-NOT_HELD = 1e-6
+ALIGNMENT_TOLERANCE = 1e-6
 """Deviation of a patch from the coarse cells that counts as rounding, over a coarse cell [-]."""
 
-TIGHTER = 0.25
+COARSE_TOLERANCE_RATIO = 0.25
 """Limit of the divergence of the coarse cells, over that of the fine ones [-]. The coarse residual reaches the patch as
 a flux through its sides, which changes from step to step. With a ratio of 1, the force on an oscillating cylinder of 32
 fine cells a diameter, with coarse cells of twice the size, fluctuates by 0.35 % of its rms; with 0.25, by 0.1 %."""
 
-LEFT = 0.05
+MAX_CYCLE_RESIDUAL = 0.05
 """Largest residual of the pressure difference along the patch's sides after one multigrid cycle, over the difference
 before it [-]."""
 
@@ -53,13 +53,13 @@ _SHIFT = -0.8  # of the wall's offset in cells, over the cell: see ``immerse.wal
 
 
 @dataclass(frozen=True, slots=True)
-class Beyond(Side):
+class CoarseSide(Side):
     """The side of a patch beyond which the coarser cells continue."""
 
     ends: ClassVar[bool] = False
 
 
-def place_of(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
+def locate_patch(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
     """Return the refinement ratio of a patch and the coarse cell in its low corner, x first.
 
     Args:
@@ -78,8 +78,8 @@ def place_of(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
         )
     ratio = round(coarse_grid.cell / grid.cell)
     low_corner = [(a - b) / coarse_grid.cell for a, b in zip(grid.origin, coarse_grid.origin, strict=True)]
-    fits = abs(coarse_grid.cell / grid.cell - ratio) < NOT_HELD and all(n % ratio == 0 for n in grid.cells)
-    is_aligned = all(abs(coordinate - round(coordinate)) <= NOT_HELD * ratio for coordinate in low_corner)
+    fits = abs(coarse_grid.cell / grid.cell - ratio) < ALIGNMENT_TOLERANCE and all(n % ratio == 0 for n in grid.cells)
+    is_aligned = all(abs(coordinate - round(coordinate)) <= ALIGNMENT_TOLERANCE * ratio for coordinate in low_corner)
     if ratio not in RATIOS or not fits or not is_aligned:
         raise InvalidDesign(
             f"the patch of {' x '.join(map(str, grid.cells))} cells of {grid.cell:.6g} m from {grid.origin} m on does "
@@ -99,7 +99,7 @@ def place_of(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
     return ratio, corner
 
 
-def sides_of(grid: Grid, coarse_grid: Grid, sides: Sides) -> Sides:
+def patch_sides(grid: Grid, coarse_grid: Grid, sides: Sides) -> Sides:
     """Return the sides of a patch: the side of the domain where it reaches one, else the border to the coarse cells.
 
     Args:
@@ -110,24 +110,25 @@ def sides_of(grid: Grid, coarse_grid: Grid, sides: Sides) -> Sides:
     Raises:
         InvalidDesign: the patch comes near a side of the domain without reaching it, or reaches a side that is open.
     """
-    ratio, corner = place_of(grid, coarse_grid)
+    ratio, corner = locate_patch(grid, coarse_grid)
     patch_sides: dict[str, Side] = {}
     for d, (start, n, m) in enumerate(zip(corner, grid.cells, coarse_grid.cells, strict=True)):
         for k, margin in enumerate((start, m - start - n // ratio)):
             name = NAMES[2 * d + k]
             side: Side = getattr(sides, name)
             shared = margin == 0 and not side.opens and not side.passes
-            if not shared and margin < MARGIN:
+            if not shared and margin < MIN_SIDE_CLEARANCE:
                 raise InvalidDesign(
                     f"the patch comes within {margin * coarse_grid.cell:.4g} m of the {name} side of the domain; keep "
-                    f"{MARGIN * coarse_grid.cell:.4g} m away, {MARGIN} coarse cells, or end on it where it is a wall, "
+                    f"{MIN_SIDE_CLEARANCE * coarse_grid.cell:.4g} m away, {MIN_SIDE_CLEARANCE} coarse cells, or end "
+                    f"on it where it is a wall, "
                     f"a mirror or periodic."
                 )
-            patch_sides[name] = side if shared else Beyond()
+            patch_sides[name] = side if shared else CoarseSide()
     return replace(sides, **patch_sides)
 
 
-def least_cycles(side_cells: int) -> int:
+def min_pressure_cycles(side_cells: int) -> int:
     """Return the fewest pressure cycles with which errors at the sides of a patch do not grow from step to step.
 
     After a stage, the coarse pressure inside the patch is the pressure of the fine cells. It differs slightly from the
@@ -138,7 +139,7 @@ def least_cycles(side_cells: int) -> int:
     Args:
         side_cells: coarse cells along the longest side of the patch [-].
     """
-    return max(1, ceil(log(2 * side_cells / pi) / log(1 / LEFT)))
+    return max(1, ceil(log(2 * side_cells / pi) / log(1 / MAX_CYCLE_RESIDUAL)))
 
 
 def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -227,7 +228,7 @@ def _interpolate(coarse, runs, first_cells, weights, taps, values):  # type: ign
             values[value_start + i - start] = total
 
 
-class Around(NamedTuple):
+class RimStencil(NamedTuple):
     """Interpolation stencil of one velocity component around a patch; see ``_interpolate``."""
 
     places: np.ndarray
@@ -268,10 +269,10 @@ class Rim:
             dtype: precision of the fields.
         """
         self._dtype = dtype
-        ratio, corner = place_of(patch, coarse_grid)
+        ratio, corner = locate_patch(patch, coarse_grid)
         axes = patch.axes
         shape = tuple(n + 2 * PAD for n in reversed(patch.cells))
-        is_coarse_side, repeats = [isinstance(side, Beyond) for side in sides.around(axes)], sides.repeats(axes)
+        is_coarse_side, repeats = [isinstance(side, CoarseSide) for side in sides.around(axes)], sides.repeats(axes)
         self._stencils = []
         for c in range(axes):
             is_rim, is_excluded = np.zeros(shape, bool), np.zeros(shape, bool)
@@ -289,7 +290,7 @@ class Rim:
 
     def _component(
         self, c: int, places: np.ndarray, shape: tuple[int, ...], ratio: int, corner: tuple[int, ...]
-    ) -> Around:
+    ) -> RimStencil:
         """Return the interpolation stencil of one velocity component.
 
         Args:
@@ -310,7 +311,7 @@ class Rim:
             first_cells[flat + axis, :n] = coarse_cells[:, 0] + corner[d] + PAD
             taps[flat + axis] = axis_weights.shape[1]
             weights[flat + axis, :n, : axis_weights.shape[1]] = axis_weights
-        return Around(places, _runs(places, (1,) * flat + shape), first_cells, weights, taps)
+        return RimStencil(places, _runs(places, (1,) * flat + shape), first_cells, weights, taps)
 
     def read(self, coarse: np.ndarray) -> list[np.ndarray]:
         """Return the velocity around the patch, interpolated from the coarse faces, one array for each component [m/s].
@@ -356,12 +357,12 @@ class Nested(Fluid):
             scheme: advection scheme.
             integrator: time integrator.
         """
-        patch_sides = sides_of(grid, coarse_grid, sides)
-        super().__init__(grid, patch_sides, viscosity, dtype, scheme, integrator)
+        sides_of_patch = patch_sides(grid, coarse_grid, sides)
+        super().__init__(grid, sides_of_patch, viscosity, dtype, scheme, integrator)
         self.coarse = Fluid(coarse_grid, sides, viscosity, dtype, scheme, integrator)
-        self.ratio, corner = place_of(grid, coarse_grid)
-        self.coarse.least = least_cycles(max(grid.cells) // self.ratio)
-        self._rim = Rim(grid, coarse_grid, patch_sides, dtype)
+        self.ratio, corner = locate_patch(grid, coarse_grid)
+        self.coarse.least = min_pressure_cycles(max(grid.cells) // self.ratio)
+        self._rim = Rim(grid, coarse_grid, sides_of_patch, dtype)
         self._values: list[np.ndarray] = []  # around the patch, as they were last read
         self._previous_values: list[np.ndarray] = []  # a round of the first step earlier
         counts = [n // self.ratio for n in grid.cells]
@@ -373,7 +374,7 @@ class Nested(Fluid):
             face_slices, axis = list(self._cells), grid.axes - 1 - c
             face_slices[axis] = slice(face_slices[axis].start + (not is_periodic), face_slices[axis].stop)
             self._faces.append(tuple(face_slices))
-        self._shares = any(not isinstance(side, Beyond) for side in patch_sides.around(grid.axes))
+        self._shares = any(not isinstance(side, CoarseSide) for side in sides_of_patch.around(grid.axes))
         self._push: tuple[float, ...] = ()
         self._span = 0.0
         self._coarse_acceleration: np.ndarray = np.zeros(0)
@@ -421,15 +422,16 @@ class Nested(Fluid):
         """Refuse bodies that come too near to where the coarser cells begin."""
         if self.window[1] <= self.window[0]:
             return
-        min_clearance, sides = CLEAR * self.ratio, self.sides.around(self.axes)
+        min_clearance, sides = MIN_BODY_CLEARANCE * self.ratio, self.sides.around(self.axes)
         for d, n in enumerate(self.grid.cells):
             start, end = self.window[2 * (self.axes - 1 - d) : 2 * (self.axes - d)]
             for k, clearance in enumerate((start - PAD, n + PAD - end)):
-                if isinstance(sides[2 * d + k], Beyond) and clearance < min_clearance:
+                if isinstance(sides[2 * d + k], CoarseSide) and clearance < min_clearance:
                     names, missing = ", ".join(body.name for body in bodies), min_clearance - clearance
                     raise InvalidDesign(
                         f"at t = {time:.4g} s the cells around {names} come within {max(clearance, 0)} fine cells of "
-                        f"the {NAMES[2 * d + k]} side of the patch, and {min_clearance} are needed, {CLEAR} coarse "
+                        f"the {NAMES[2 * d + k]} side of the patch, and {min_clearance} are needed, "
+                        f"{MIN_BODY_CLEARANCE} coarse "
                         f"ones; give a patch that is {missing * self.grid.cell:.3g} m larger there, or let the grid "
                         f"follow the body."
                     )
@@ -504,7 +506,11 @@ class Nested(Fluid):
         self._advance(stage, push)
         coarse._advance(coarse_stage, self._push)
         self._replace(stage.out, coarse_stage.out)
-        coarse._project(coarse_stage.out, coarse_stage.solved, (TIGHTER * limits[0], TIGHTER * limits[1]))
+        coarse._project(
+            coarse_stage.out,
+            coarse_stage.solved,
+            (COARSE_TOLERANCE_RATIO * limits[0], COARSE_TOLERANCE_RATIO * limits[1]),
+        )
         self._surround(stage.out, coarse_stage.out)
         self._project(stage.out, stage.solved, limits)
         self._replace(stage.out, coarse_stage.out)
@@ -545,7 +551,7 @@ class Nested(Fluid):
     def potential(self, acceleration: np.ndarray, limit: float) -> np.ndarray:
         """Return the pressure that answers a body acceleration on the patch; see ``Fluid``."""
         self._coarse_acceleration = self._coarsened(acceleration)
-        self.coarse.potential(self._coarse_acceleration, TIGHTER * limit)
+        self.coarse.potential(self._coarse_acceleration, COARSE_TOLERANCE_RATIO * limit)
         return self._answering(acceleration, self._side_velocity(self._coarse_acceleration), limit)
 
     def press(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
@@ -560,7 +566,7 @@ class Nested(Fluid):
             limit: mean divergence that may be left [m/s per cell].
         """
         span = self.dtype(dt / self.grid.cell)
-        self.coarse.press(self._coarsened(velocity_change), dt, TIGHTER * limit)
+        self.coarse.press(self._coarsened(velocity_change), dt, COARSE_TOLERANCE_RATIO * limit)
         x = self._answering(velocity_change, self._side_velocity(self._coarsened(velocity_change)), limit)
         self._answer_with(velocity_change, dt)
         self._surround(self.velocity, self.coarse.velocity)

@@ -12,7 +12,7 @@ from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.flow.mesh import TriangleMesh, mesh_of_sdf
 from suchus.flow.paint import measure_outline, paint_outline
 from suchus.flow.pose import Pose
-from suchus.flow.shape import Field, Solid, positive
+from suchus.flow.shape import Field, Solid, check_positive
 
 _STEPS = 200  # steps per size of a body with which its outline is traced
 _MIN_EXACT_FRACTION = 0.9  # fraction of an outline on which the gradient of a true distance is 1; corners are the rest
@@ -280,7 +280,7 @@ def scaled(shape: Solid, factor: float) -> Implicit:
     Raises:
         InvalidDesign: the factor is not positive.
     """
-    positive("factor", factor)
+    check_positive("factor", factor)
     return from_sdf(lambda x, y: factor * shape.distance(x / factor, y / factor)[0], _box([shape], factor))
 
 

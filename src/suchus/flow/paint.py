@@ -11,7 +11,7 @@ continuous there, and the force would jump from step to step.
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import compiled, part, signed, threaded
+from suchus.flow.compiled import compiled, kernel_part, signed, threaded
 
 ROWS = 16
 """Rows of points that one thread paints at a time [-]."""
@@ -39,7 +39,7 @@ def distance_to_edge(px, py, start_x, start_y, end_x, end_y):
     return dx * dx + dy * dy, fraction
 
 
-@part
+@kernel_part
 def _paint_edge(square, edge, fraction, rows, k, start_x, start_y, end_x, end_y, x0, y0, h, reach):
     """Store edge ``k`` at all points of some rows to which no earlier edge is nearer.
 
@@ -73,7 +73,7 @@ def _paint_edge(square, edge, fraction, rows, k, start_x, start_y, end_x, end_y,
                 fraction[j, i] = f
 
 
-@part
+@kernel_part
 def _wind_edge(winding, start_x, start_y, end_x, end_y, x0, y0, h):
     """Add the crossings of an edge with the rows to ``winding``, each at the first point right of the crossing.
 
@@ -99,7 +99,7 @@ def _wind_edge(winding, start_x, start_y, end_x, end_y, x0, y0, h):
             winding[j, i] += direction
 
 
-@part
+@kernel_part
 def find_section(px, py, start, sx, sy, tx, ty):
     """Return the segment of the midline whose cross-section holds a point, and the position along the segment, 0 to 1.
 
@@ -128,7 +128,7 @@ def find_section(px, py, start, sx, sy, tx, ty):
     return k, min(max(fraction, 0.0), 1.0)
 
 
-@part
+@kernel_part
 def section_velocity(px, py, k, f, spine, width_rate):
     """Return the velocity (x, y) with which a cross-section moves a point.
 
@@ -172,7 +172,7 @@ def ring(spine):
     return outline
 
 
-@part
+@kernel_part
 def _wind(winding, outline, x0, y0, h):
     """Add the crossings of all edges of an outline with the rows to ``winding``; see ``_wind_edge``."""
     count = outline.shape[1]
@@ -182,7 +182,7 @@ def _wind(winding, outline, x0, y0, h):
             _wind_edge(winding, outline[0, k], outline[1, k], outline[0, m], outline[1, m], x0, y0, h)
 
 
-@part
+@kernel_part
 def _paint_edges(square, edge, fraction, rows, outline, x0, y0, h, reach):
     """Store the nearest edge of an outline at each point of some rows; see ``_paint_edge`` for the arguments."""
     count = outline.shape[1]
@@ -193,7 +193,7 @@ def _paint_edges(square, edge, fraction, rows, outline, x0, y0, h, reach):
             _paint_edge(square, edge, fraction, rows, k, start_x, start_y, end_x, end_y, x0, y0, h, reach)
 
 
-@part
+@kernel_part
 def _normal_to_edge(outline, k, fraction, px, py, distance, sign, flat):
     """Return the outward normal (x, y) at a point whose nearest edge is ``k``.
 
@@ -217,7 +217,7 @@ def _normal_to_edge(outline, k, fraction, px, py, distance, sign, flat):
     return ey / size, -ex / size
 
 
-@part
+@kernel_part
 def _paint_row(fields, j, square, edge, fraction, winding, outline, spine, width_rate, tx, ty, x0, y0, h):
     """Write the fields of ``paint`` for row ``j``, whose nearest edges are known.
 

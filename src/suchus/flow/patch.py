@@ -13,11 +13,11 @@ from math import prod
 
 import numpy as np
 
-from suchus.flow.compiled import PAD, UNIT, part, unsigned
-from suchus.flow.slab import NONE, row_length, strides_like
+from suchus.flow.compiled import PAD, UNIT, kernel_part, unsigned
+from suchus.flow.slab import ZERO, row_length, strides_like
 from suchus.flow.stencil import copy_slab, first_steps, relax_patch, weights
 
-ONE, TWO, RIGHT, INVERSE, FACES = range(5)
+SOLUTION, SOLUTION_COPY, RIGHT_SIDE, INVERSE, FACES = range(5)
 """Kinds of values in the buffer: solution, its second copy, right side, inverse diagonal, and the face coefficients of
 each axis."""
 
@@ -26,12 +26,12 @@ RIM = 8, 2
 patch, which must not be near the end of a thin tail. In space, 8 cells would make the patches of the coarser levels as
 large as the levels."""
 
-EXTRA = (6,), (6, 3, 1, 0)
+SMOOTHING_PAIRS = (6,), (6, 3, 1, 0)
 """Pairs of smoothing steps in the patches, before and after the coarse-grid correction, in the plane and in space, from
 the finest level on [-]. The last number holds for all further levels."""
 
 
-def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
+def patch_layouts(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
     """Return the patches of a layout whose windows are placed, shape (level, 2 + 2 axes).
 
     In space a patch takes in the cells beyond a side that its window comes near, but for periodic sides: there its rim
@@ -42,7 +42,7 @@ def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
         repeats: which axes are periodic.
     """
     rows, offset, axes = [], 0, layout.shape[1] // 3
-    rim, pairs = RIM[axes - 2], EXTRA[axes - 2]
+    rim, pairs = RIM[axes - 2], SMOOTHING_PAIRS[axes - 2]
     includes_mirror = [axes == 3 and not is_periodic for is_periodic in reversed(repeats)]
     for k, level_layout in enumerate(layout.tolist()):
         begin, end = level_layout[1 + axes :: 2], level_layout[2 + axes :: 2]
@@ -56,7 +56,7 @@ def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
     return np.array(rows, dtype=np.int64)
 
 
-def room_for(buffer: np.ndarray, patches: np.ndarray) -> np.ndarray:
+def allocate_buffer(buffer: np.ndarray, patches: np.ndarray) -> np.ndarray:
     """Return a buffer that holds all patches: the old one if it is large enough, else a new one.
 
     Args:
@@ -68,7 +68,7 @@ def room_for(buffer: np.ndarray, patches: np.ndarray) -> np.ndarray:
     return buffer if size <= buffer.shape[1] else np.zeros((FACES + len(ends), size + size // 4), buffer.dtype)
 
 
-@part
+@kernel_part
 def _sizes(rect, inner):
     """Return the number of slabs of a patch, the cells of one of its slabs, and the cells of one of its rows."""
     slab_count, column_index = rect[2] - rect[1], 2 * len(inner) + 1
@@ -76,22 +76,22 @@ def _sizes(rect, inner):
     return slab_count, row_cells * (rect[4] - rect[3]) if len(inner) > 1 else row_cells, row_cells
 
 
-@part
+@kernel_part
 def patch(buffer, rect, inner, kind):
     """Return the values of one kind and one patch, a view of the buffer, shape (slab, cell)."""
     slab_count, length, _ = _sizes(rect, inner)
     return buffer[kind, rect[0] : rect[0] + slab_count * length].reshape(slab_count, length)
 
 
-@part
+@kernel_part
 def _rows(rect, inner):
     """Return the first row of a patch in its level's slabs, its end, and first and end of the cells of a row."""
     column_index = 2 * len(inner) + 1
-    r0, r1 = (unsigned(rect[3]), unsigned(rect[4])) if len(inner) > 1 else (NONE, UNIT)
+    r0, r1 = (unsigned(rect[3]), unsigned(rect[4])) if len(inner) > 1 else (ZERO, UNIT)
     return r0, r1, unsigned(rect[column_index]), unsigned(rect[column_index + 1])
 
 
-@part
+@kernel_part
 def _take(target, rect, a, inner):
     """Copy a patch from an array of its level.
 
@@ -110,7 +110,7 @@ def _take(target, rect, a, inner):
                 target[j, patch_start + i] = a[j + unsigned(rect[1]), level_start + i]
 
 
-@part
+@kernel_part
 def _close_sides(buffer, rect, level_layout, inner):
     """Set the coefficients to 0 on the faces where a patch in space extends beyond a side of the domain.
 
@@ -135,7 +135,7 @@ def _close_sides(buffer, rect, level_layout, inner):
                         face[j, i] = 0
 
 
-@part
+@kernel_part
 def take_coefficients(buffer, rect, level_layout, faces, dinv, inner):
     """Copy the coefficients of a patch from its level to the buffer.
 
@@ -164,7 +164,7 @@ def take_coefficients(buffer, rect, level_layout, faces, dinv, inner):
                 inverse[j, length - row_cells + i] = 0
 
 
-@part
+@kernel_part
 def _relax(buffer, rect, inner, first_weight, second_weight):
     """Smooth the solution of a patch by pairs of Jacobi steps with two weights.
 
@@ -175,12 +175,12 @@ def _relax(buffer, rect, inner, first_weight, second_weight):
         first_weight: Jacobi weight of the first step of a pair [-].
         second_weight: Jacobi weight of the second step [-].
     """
-    x, y = patch(buffer, rect, inner, ONE), patch(buffer, rect, inner, TWO)
+    x, y = patch(buffer, rect, inner, SOLUTION), patch(buffer, rect, inner, SOLUTION_COPY)
     _, length, row_cells = _sizes(rect, inner)
     strides = strides_like(inner, unsigned(row_cells)) + (unsigned(length),)  # noqa: RUF005  numba unpacks no tuples
     copy_slab(y, 0, x, 0)
     copy_slab(y, y.shape[0] - 1, x, x.shape[0] - 1)
-    x, y, b = x.reshape(-1), y.reshape(-1), patch(buffer, rect, inner, RIGHT).reshape(-1)
+    x, y, b = x.reshape(-1), y.reshape(-1), patch(buffer, rect, inner, RIGHT_SIDE).reshape(-1)
     faces, offset = buffer[FACES:], unsigned(rect[0])
     dinv = patch(buffer, rect, inner, INVERSE).reshape(-1)
     for _ in range(rect[-1]):
@@ -188,7 +188,7 @@ def _relax(buffer, rect, inner, first_weight, second_weight):
         relax_patch(x, y, b, faces, offset, dinv, strides, second_weight)
 
 
-@part
+@kernel_part
 def start(buffer, rect, b, inner):
     """Write the first smoothing steps on a patch to the buffer; at the edge of the patch they are those without a body.
 
@@ -198,8 +198,8 @@ def start(buffer, rect, b, inner):
         b: right side of the level.
         inner: strides within a slab.
     """
-    _take(patch(buffer, rect, inner, RIGHT), rect, b, inner)
-    x = patch(buffer, rect, inner, ONE)
+    _take(patch(buffer, rect, inner, RIGHT_SIDE), rect, b, inner)
+    x = patch(buffer, rect, inner, SOLUTION)
     row_cells, (r0, r1, s, e) = row_length(inner, b.shape[1]), _rows(rect, inner)
     for j in range(rect[1], rect[2]):
         for row in range(r0, r1):
@@ -209,7 +209,7 @@ def start(buffer, rect, b, inner):
     _relax(buffer, rect, inner, first_weight, second_weight)
 
 
-@part
+@kernel_part
 def end(buffer, rect, x, inner):
     """Smooth the solution of a level on a patch.
 
@@ -219,7 +219,7 @@ def end(buffer, rect, x, inner):
         x: solution of the level, which is changed.
         inner: strides within a slab.
     """
-    solution = patch(buffer, rect, inner, ONE)
+    solution = patch(buffer, rect, inner, SOLUTION)
     _take(solution, rect, x, inner)
     first_weight, second_weight = weights(inner, buffer.dtype.type)
     _relax(buffer, rect, inner, second_weight, first_weight)
@@ -227,7 +227,7 @@ def end(buffer, rect, x, inner):
         give_slab(x, j, solution, rect, j, inner)
 
 
-@part
+@kernel_part
 def give_slab(output, o, solution, rect, slab, inner):
     """Copy one slab of a patch's solution, except the edge of the patch, to a slab of another array.
 

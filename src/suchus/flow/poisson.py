@@ -13,30 +13,30 @@ from dataclasses import dataclass
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, Window, compiled, part, signed, threaded_part, unsigned
+from suchus.flow.compiled import PAD, Window, compiled, kernel_part, signed, threaded_part, unsigned
 from suchus.flow.multigrid import DINV, FACES, B, X, cycle, faces_of, level
-from suchus.flow.slab import EDGE, LEAST, block_of, row_count, row_length
+from suchus.flow.slab import EDGE, MIN_PLANES, block_of, row_count, row_length
 from suchus.flow.stencil import LANES, apply_slabs, copy_slab, largest_size, seal_slab
 
-PARALLEL = 1e-3
+MIN_ENERGY_RATIO = 1e-3
 """Ratio of (z, A z) after to before z is made orthogonal to the last direction, below which z is not changed [-]."""
 
-WORSE = 3.0
+MAX_RESIDUAL_GROWTH = 3.0
 """Ratio of the residual to the smallest so far above which a nearly converged solve drops the iteration [-]; see
 ``NEARLY``."""
 
-STALLED = 3
+MAX_STALLED_CYCLES = 3
 """Cycles without progress after which a nearly converged solve stops, because rounding prevents a smaller residual
 [-]."""
 
-NEARLY = 10.0
+NEAR_CONVERGENCE_RATIO = 10.0
 """Ratio of the residual to its limit below which a solve is nearly converged [-]."""
 
-PATIENCE = 15
+MAX_STALLED_CYCLES_FAR = 15
 """Cycles without progress after which a solve stops that is not nearly converged [-]: a body slows down the cycles."""
 
 
-@part
+@kernel_part
 def _dots(z, az, r, d, slab, inner):
     """Return the products (z, A z), (d, A z), (r, z) and (r, d) of one slab.
 
@@ -79,7 +79,7 @@ def _measure(z, r, d, faces, level_layout, inner, sums):
         sums: the products, shape (slab, 4).
     """
     end = z.shape[0] - PAD
-    block = block_of(inner, end - PAD, LEAST)
+    block = block_of(inner, end - PAD, MIN_PLANES)
     for n in prange((end - PAD + block - 1) // block):
         block_start = PAD + signed(n) * block
         az = np.empty((1, z.shape[1]), z.dtype)
@@ -88,21 +88,21 @@ def _measure(z, r, d, faces, level_layout, inner, sums):
             sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j, inner)
 
 
-@part
+@kernel_part
 def _mix(output, o, z, d, slab, a, b):
     o, j = unsigned(o), unsigned(slab)
     for k in range(unsigned(z.shape[1])):
         output[o, k] = a * z[j, k] + b * d[j, k]
 
 
-@part
+@kernel_part
 def _rise(x, e, slab, alpha):
     j = unsigned(slab)
     for k in range(unsigned(x.shape[1])):
         x[j, k] += alpha * e[j, k]
 
 
-@part
+@kernel_part
 def _subtract_scaled(r, slab, q, alpha, inner):
     """Subtract ``alpha q`` from a slab of ``r`` and return the sum of its absolute values.
 
@@ -139,7 +139,7 @@ def _first_step(r, z, faces, level_layout, alpha, inner, repeats, sums):
         sums: sum and maximum of each slab, shape (slab, 4).
     """
     end = z.shape[0] - PAD
-    block = block_of(inner, end - PAD, LEAST)
+    block = block_of(inner, end - PAD, MIN_PLANES)
     for n in prange((end - PAD + block - 1) // block):
         block_start = PAD + signed(n) * block
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
@@ -167,7 +167,7 @@ def _step(r, z, d, faces, level_layout, alpha, beta, inner, repeats, sums):
         sums: sum and maximum of each slab, shape (slab, 4).
     """
     end, unity = z.shape[0] - PAD, z.dtype.type(1.0)
-    block = block_of(inner, end - PAD, LEAST)
+    block = block_of(inner, end - PAD, MIN_PLANES)
     for n in prange((end - PAD + block - 1) // block):
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         rows = np.empty((3, z.shape[1]), z.dtype)
@@ -200,7 +200,7 @@ def _keep(x, e, z, d, alpha, beta, previous_alpha, inner):
         previous_alpha: step length along ``d`` that is not yet in ``x``.
         inner: strides within a slab.
     """
-    unity, block = z.dtype.type(1.0), block_of(inner, x.shape[0], LEAST)
+    unity, block = z.dtype.type(1.0), block_of(inner, x.shape[0], MIN_PLANES)
     for n in prange((x.shape[0] + block - 1) // block):
         block_start = signed(n) * block
         for j in range(block_start, min(block_start + block, x.shape[0])):
@@ -211,7 +211,7 @@ def _keep(x, e, z, d, alpha, beta, previous_alpha, inner):
                 _rise(x, e, j, alpha)
 
 
-@part
+@kernel_part
 def _total(sums, column):
     total, k = 0.0, unsigned(column)
     for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
@@ -219,7 +219,7 @@ def _total(sums, column):
     return total
 
 
-@part
+@kernel_part
 def _max_of_column(sums, column):
     maximum, k = 0.0, unsigned(column)
     for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
@@ -262,7 +262,9 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
     initial_d, is_pending, is_stored = d, False, False
     mean, maximum, min_excess, stalled_cycles = 0.0, 0.0, np.inf, 0
     k = 0
-    while k < max_cycles and stalled_cycles < (STALLED if min_excess <= NEARLY else PATIENCE):
+    while k < max_cycles and stalled_cycles < (
+        MAX_STALLED_CYCLES if min_excess <= NEAR_CONVERGENCE_RATIO else MAX_STALLED_CYCLES_FAR
+    ):
         if k >= 2:
             _keep(x, q, z, d, real(alpha), real(beta), real(previous_alpha), inner)
             d, q, previous_alpha, is_pending, is_stored = q, d, 0.0, False, True
@@ -271,7 +273,7 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
         z_az, d_az, r_z = _total(sums, 0), _total(sums, 1), _total(sums, 2)
         turn = 0.0 if k == 0 else -d_az / d_ad
         d_ad = z_az + turn * d_az
-        if d_ad < PARALLEL * z_az:
+        if d_ad < MIN_ENERGY_RATIO * z_az:
             turn, d_ad = 0.0, z_az
         if not d_ad > 0:
             break
@@ -288,7 +290,7 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
         if k >= min_cycles and mean <= mean_limit and maximum <= max_limit:
             break
         excess = max(mean / mean_limit, maximum / max_limit)
-        if k > 2 and excess > WORSE * min_excess and min_excess <= NEARLY:
+        if k > 2 and excess > MAX_RESIDUAL_GROWTH * min_excess and min_excess <= NEAR_CONVERGENCE_RATIO:
             mean, maximum = previous_residuals
             is_pending = False
             break

@@ -12,7 +12,7 @@ from suchus.core import rotation
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
 
-TURNS = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
+ROTATION_PLANES = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
 """The planes of rotation for 2 and 3 axes: for each rotation axis, the first and the second axis of its plane."""
 
 
@@ -24,7 +24,7 @@ def cross(
     return b * z - c * y, c * x - a * z, a * y - b * x
 
 
-def turned(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
+def rotate_vectors(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
     """Return vectors of shape (3, ...), rotated by a matrix of shape (3, 3), component by component."""
     x, y, z = vectors
     rotated_x, rotated_y, rotated_z = ((a * x + b * y) + c * z for a, b, c in matrix.tolist())
@@ -134,14 +134,14 @@ class Pose:
         """
         x, y, z = (
             coordinate + origin
-            for coordinate, origin in zip(turned(self.matrix, points), self.along(3).position, strict=True)
+            for coordinate, origin in zip(rotate_vectors(self.matrix, points), self.along(3).position, strict=True)
         )  # fmt: skip
         return x, y, z
 
     def seen(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
         """Return points of the world frame in the body's frame, in space, component by component [m]."""
         relative = [coordinate - origin for coordinate, origin in zip(points, self.along(3).position, strict=True)]
-        return turned(self.matrix.T, relative)
+        return rotate_vectors(self.matrix.T, relative)
 
     def rates(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
         """Return the velocity of the rigid motion at points in space, component by component [m/s].

@@ -5,10 +5,10 @@
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, UNIT, compiled, part, signed, threaded, unsigned
+from suchus.flow.compiled import PAD, UNIT, compiled, kernel_part, signed, threaded, unsigned
 from suchus.flow.slab import (
     EDGE,
-    LEAST,
+    MIN_PLANES,
     block_of,
     meets,
     near_shift,
@@ -21,7 +21,7 @@ from suchus.flow.slab import (
 from suchus.flow.stencil import LANES, largest_size, seal_slab, summed_size
 
 
-@part
+@kernel_part
 def _divergence_slab(r, velocity, slab, mean, inner):
     """Write ``-div u - mean`` to a slab of ``r``.
 
@@ -60,7 +60,7 @@ def residual(r, velocity, source, dinv, level_layout, near_layout, mean, inner, 
         sums: summed and largest absolute value, shape (slab, 4).
     """
     end = r.shape[0] - PAD
-    block = block_of(inner, end - PAD, LEAST)
+    block = block_of(inner, end - PAD, MIN_PLANES)
     for n in prange((end - PAD + block - 1) // block):
         start = PAD + signed(n) * block
         top = np.empty(LANES, r.dtype)
@@ -78,7 +78,7 @@ def residual(r, velocity, source, dinv, level_layout, near_layout, mean, inner, 
             sums[j, 1] = largest_size(r, j, inner, top)
 
 
-@part
+@kernel_part
 def _mean_of_plane(u, v, source, level_layout, near_layout):
     """Return the mean of ``source - div u`` in the plane; see ``mean_residual``."""
     s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
@@ -93,7 +93,7 @@ def _mean_of_plane(u, v, source, level_layout, near_layout):
     return total / ((t - s) * (b - s))
 
 
-@part
+@kernel_part
 def _mean_in_space(velocity, source, level_layout, near_layout, inner):
     """Return the mean of ``source - div u`` in space; see ``mean_residual``."""
     end, row_cells, total = velocity.shape[1] - PAD, signed(row_length(inner, velocity.shape[2])), 0.0
@@ -131,7 +131,7 @@ def mean_residual(velocity, source, level_layout, near_layout, inner):
     return _mean_in_space(velocity, source, level_layout, near_layout, inner)
 
 
-@part
+@kernel_part
 def _add(output, o, d, z, slab, a, b):
     """Write ``a d + b z`` of one slab to slab ``o`` of ``output``."""
     o, j = unsigned(o), unsigned(slab)
@@ -143,7 +143,7 @@ def _add(output, o, d, z, slab, a, b):
             output[o, k] = a * d[j, k] + b * z[j, k]
 
 
-@part
+@kernel_part
 def _correct_plain(velocity, p, slab, x, lower_slab, mid, level, gain, start, stop, inner):
     """Correct velocity and pressure of cells ``start`` to ``stop`` of a slab, outside the window.
 
@@ -169,7 +169,7 @@ def _correct_plain(velocity, p, slab, x, lower_slab, mid, level, gain, start, st
         p[j, k] += gain * (m - level)
 
 
-@part
+@kernel_part
 def _correct_body(velocity, p, slab, x, lower_slab, mid, passage, level, gain, start, stop, inner):
     """Correct cells inside the window, where ``passage`` is the share of each face on which the pressure acts.
 
@@ -184,7 +184,7 @@ def _correct_body(velocity, p, slab, x, lower_slab, mid, passage, level, gain, s
         p[j, k] += gain * (m - level)
 
 
-@part
+@kernel_part
 def _correct_slab(velocity, p, slab, x, lower_slab, mid, passage, level_layout, level, gain, inner):
     """Correct velocity and pressure of one slab, inside and outside the window; see ``correct``."""
     row_cells = row_length(inner, p.shape[1])
@@ -203,7 +203,7 @@ def _correct_slab(velocity, p, slab, x, lower_slab, mid, passage, level_layout, 
         _correct_plain(velocity, p, slab, x, lower_slab, mid, level, gain, f, e, inner)
 
 
-@part
+@kernel_part
 def _along_sides(x, inner):
     """Return the mean of ``x`` over the outermost cells of the domain.
 
@@ -252,7 +252,7 @@ def correct(velocity, p, d, z, a, b, passage, level_layout, inner, gain):
         gain: factor from ``x`` to the pressure.
     """
     end = p.shape[0] - PAD
-    block = block_of(inner, end - PAD, LEAST)
+    block = block_of(inner, end - PAD, MIN_PLANES)
     level = p.dtype.type(a * _along_sides(d, inner) + b * _along_sides(z, inner))
     for n in prange((end - PAD + block - 1) // block):
         block_start = PAD + signed(n) * block
@@ -265,7 +265,7 @@ def correct(velocity, p, d, z, a, b, passage, level_layout, inner, gain):
             _correct_slab(velocity, p, j, x, lower_slab, mid, passage, level_layout, level, gain, inner)
 
 
-@part
+@kernel_part
 def _speeds(output, velocity, slab, inner):
     """Write the sum of the absolute velocity components of each cell of a slab to ``output``, shape (1, cell)."""
     j, slab_axis = unsigned(slab), unsigned(len(inner))
@@ -283,7 +283,7 @@ def _speeds(output, velocity, slab, inner):
 def fastest(velocity, inner, sums):
     """Write the largest sum of absolute velocity components in each slab to ``sums[:, 0]``."""
     end = velocity.shape[1] - PAD
-    block = block_of(inner, end - PAD, LEAST)
+    block = block_of(inner, end - PAD, MIN_PLANES)
     for n in prange((end - PAD + block - 1) // block):
         start = PAD + signed(n) * block
         speed, top = np.empty((1, velocity.shape[2]), velocity.dtype), np.empty(LANES, velocity.dtype)

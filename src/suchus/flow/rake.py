@@ -35,7 +35,7 @@ def line(start: tuple[float, ...], end: tuple[float, ...], count: int) -> np.nda
     return np.linspace(np.asarray(start, float), np.asarray(end, float), count)
 
 
-def read(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) -> Sample:
+def sample_water(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) -> Sample:
     """Return velocity and pressure at points by linear interpolation between the nodes.
 
     Inside a body and within a cell of its surface, they are a mixture of the body's and the water's values.
@@ -107,7 +107,7 @@ class _Probed(Protocol):
     def probe(self, points: np.ndarray) -> Sample: ...
 
 
-Place = np.ndarray | Callable[[float], np.ndarray]
+RakePoints = np.ndarray | Callable[[float], np.ndarray]
 """Points of shape (point, axis) [m], or a function of the time [s] that returns them."""
 
 
@@ -119,7 +119,7 @@ class Rake:
         InvalidDesign: in the run, if a point leaves the domain.
     """
 
-    points: Place
+    points: RakePoints
     """Positions of the points; a function of time for a rake that travels [m]."""
     every: float | None = None
     """Interval of the samples [s]; None samples after every step."""

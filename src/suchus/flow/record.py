@@ -39,7 +39,7 @@ _UNITS = {
     **dict.fromkeys(("spin", "spin_x", "spin_y"), "rad s-1"), "layer_error": "1",
 }  # fmt: skip
 
-HEAD = 5
+ROW_HEADER_SIZE = 5
 """Numbers at the start of a row: time, step, two counts of cycles, divergence [-]."""
 
 
@@ -184,7 +184,7 @@ class Record:
         length: float,
         speed: float,
         density: float = 1.0,
-        along: float = 0.0,
+        stream_angle: float = 0.0,
         area: float | None = None,
     ) -> Coefficients:
         """Return the coefficients of a body's force, torque and power by a reference.
@@ -194,7 +194,7 @@ class Record:
             length: of the reference, say the diameter or chord [m].
             speed: of the reference, say that of the stream [m/s].
             density: of the water; ``Setup`` has the same default [kg/m^3].
-            along: direction of the stream, counter-clockwise from x in the plane of x and y [rad].
+            stream_angle: direction of the stream, counter-clockwise from x in the plane of x and y [rad].
             area: of the reference, in space and only there, say the frontal area [m^2].
 
         Raises:
@@ -212,7 +212,7 @@ class Record:
                 raise OutsideLimits(f"the {name} of the reference is {value} {unit}; give a positive number.")
         pressure = 0.5 * density * speed**2
         fx, fy = self.force(body).T[:2] / (pressure * size)
-        c, s = np.cos(along), np.sin(along)
+        c, s = np.cos(stream_angle), np.sin(stream_angle)
         return Coefficients(
             time=self.time - self.step / 2, drag=c * fx + s * fy, lift=c * fy - s * fx,
             moment=self.column("torque", body) / (pressure * (length**2 if area is None else area * length)),

@@ -49,10 +49,10 @@ ALONG_THE_SKIN = (
 )
 """Statement of the error of ``Surface`` and ``Record.surface_force``, for the caption of each plot of them."""
 
-REFUSED = 0.2
+MAX_FORCE_ERROR = 0.2
 """Estimated relative error of the force above which a grid is refused [-]."""
 
-DOUBTED = 0.1
+WARNING_FORCE_ERROR = 0.1
 """Estimated relative error of the force above which a warning is issued [-]."""
 
 _ERROR_AT_ONE_CELL, _ORDER = (0.14, 0.09), (1.5, 2.25)  # in the plane, of a blunt body in space
@@ -71,21 +71,21 @@ def cells_across(length: float, speed: float, viscosity: float, cell: float) -> 
     return inf if reynolds < 1 else length / sqrt(reynolds) / cell
 
 
-def estimate(cells: float, *, blunt: bool = False) -> float:
+def estimate_force_error(cells: float, *, is_compact: bool = False) -> float:
     """Return the estimated relative error of the force on a body [-].
 
     Args:
         cells: across the boundary layer [-].
-        blunt: whether it is a blunt body in space.
+        is_compact: whether it is a blunt body in space.
     """
-    return 0.0 if cells == inf else _ERROR_AT_ONE_CELL[blunt] * cells ** -_ORDER[blunt]
+    return 0.0 if cells == inf else _ERROR_AT_ONE_CELL[is_compact] * cells ** -_ORDER[is_compact]
 
 
-def needed(error: float, *, blunt: bool = False) -> float:
+def required_cells(error: float, *, is_compact: bool = False) -> float:
     """Return the cells across the boundary layer at which the estimated error of the force has a value [-].
 
     Args:
         error: relative error of the force [-].
-        blunt: whether it is a blunt body in space.
+        is_compact: whether it is a blunt body in space.
     """
-    return float((_ERROR_AT_ONE_CELL[blunt] / error) ** (1 / _ORDER[blunt]))
+    return float((_ERROR_AT_ONE_CELL[is_compact] / error) ** (1 / _ORDER[is_compact]))

@@ -16,14 +16,14 @@ import numpy as np
 
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
-from suchus.flow.compiled import part
+from suchus.flow.compiled import kernel_part
 from suchus.flow.grid import check_kinds
 
-TRIED = -1.0, 0.0, 3.0
+TEST_VELOCITIES = -1.0, 0.0, 3.0
 """Uniform velocities that a scheme must preserve [m/s]."""
 
 
-@part
+@kernel_part
 def median(a, b, c):
     """Return the median of three numbers."""
     smaller = a if a < b else b
@@ -32,7 +32,7 @@ def median(a, b, c):
     return smaller if smaller > capped else capped
 
 
-@part
+@kernel_part
 def limited_quick(upstream, centre, downstream):
     """Return the velocity on a face by QUICK, limited so that it stays between its neighbours.
 
@@ -76,13 +76,13 @@ class Scheme:
         """
         compiled, name = numba.njit(self.face), self.name
         try:
-            face_values = [float(compiled(*(np.float32(value),) * 3)) for value in TRIED]
+            face_values = [float(compiled(*(np.float32(value),) * 3)) for value in TEST_VELOCITIES]
         except Exception as error:  # whatever a user's function raises, and numba's errors, which have no base but this
             raise InvalidDesign(
                 f"the advection scheme {name} cannot be used: {show(str(error).strip())}; it is a function "
                 f"of three numbers (upstream, centre, downstream) that numba compiles and that returns one."
             ) from error
-        for value, face_value in zip(TRIED, face_values, strict=True):
+        for value, face_value in zip(TEST_VELOCITIES, face_values, strict=True):
             if not (isfinite(face_value) and abs(face_value - value) <= 1e-5 * abs(value)):
                 raise InvalidDesign(
                     f"the advection scheme {name} makes {face_value:.6g} m/s of water that moves at {value:g} m/s "

@@ -11,14 +11,14 @@ and at flat ends, and exact for a straight body with round sections.
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import part, signed, threaded
+from suchus.flow.compiled import kernel_part, signed, threaded
 from suchus.flow.ellipsoid import TINY, foot_parameter
 from suchus.flow.paint import find_section, section_velocity
 
-X, Y, HEADING, WIDE, X_RATE, Y_RATE, TURN, HIGH, SWELL, ARC = range(10)
+X, Y, HEADING, HALF_WIDTH, X_RATE, Y_RATE, TURN, HALF_HEIGHT, SWELL, ARC = range(10)
 """Rows of the stations: those of ``MidlineState.rows``, then half-height, rate of the half-width, and arc length."""
 
-PAINTED = 8
+PAINTED_FIELDS = 8
 """Fields at each point: distance, normal (3), velocity (2), thickness, index of the body's part [-]."""
 
 _STRIDE = 4
@@ -28,7 +28,7 @@ _MIN_HALF_AXIS = 1e-9
 """Half-axis, over the cell, below which a section counts as a point [-]."""
 
 
-@part
+@kernel_part
 def ellipse_foot(y, z, half_width, half_height):
     """Return the nearest point on an ellipse to (y, z), as cosine and sine of its angle.
 
@@ -45,7 +45,7 @@ def ellipse_foot(y, z, half_width, half_height):
     return np.copysign(c / size, y), np.copysign(s / size, z)
 
 
-@part
+@kernel_part
 def _nearest_station(px, py, rows, start, end, stride):
     """Return the station that is nearest to a column, and the square of its distance.
 
@@ -65,7 +65,7 @@ def _nearest_station(px, py, rows, start, end, stride):
     return station, square
 
 
-@part
+@kernel_part
 def _column(px, py, rows, tx, ty):
     """Return the section that holds a column of points.
 
@@ -94,7 +94,7 @@ def _column(px, py, rows, tx, ty):
     return k, f, -dx * sin + dy * cos, end_offset, cos, sin
 
 
-@part
+@kernel_part
 def _growth(k, arc, half_width, half_height, rows, reach):
     """Return by how much sections within a reach are wider and higher than the one at an arc length, in sum.
 
@@ -109,16 +109,22 @@ def _growth(k, arc, half_width, half_height, rows, reach):
     max_half_width, max_half_height, last_station = half_width, half_height, rows.shape[1] - 1
     m = k
     while m >= 0 and arc - rows[ARC, m] <= reach:
-        max_half_width, max_half_height = max(max_half_width, rows[WIDE, m]), max(max_half_height, rows[HIGH, m])
+        max_half_width, max_half_height = (
+            max(max_half_width, rows[HALF_WIDTH, m]),
+            max(max_half_height, rows[HALF_HEIGHT, m]),
+        )
         m -= 1
     m = k + 1
     while m <= last_station and rows[ARC, m] - arc <= reach:
-        max_half_width, max_half_height = max(max_half_width, rows[WIDE, m]), max(max_half_height, rows[HIGH, m])
+        max_half_width, max_half_height = (
+            max(max_half_width, rows[HALF_WIDTH, m]),
+            max(max_half_height, rows[HALF_HEIGHT, m]),
+        )
         m += 1
     return max_half_width - half_width + max_half_height - half_height
 
 
-@part
+@kernel_part
 def _to_edge(normal_offset, best, a0, r0, a1, r1):
     """Return the shortest vector from an outline to a point after one more edge.
 
@@ -143,7 +149,7 @@ def _to_edge(normal_offset, best, a0, r0, a1, r1):
     return (da, dr, d2, ea, er) if d2 < best[2] else best
 
 
-@part
+@kernel_part
 def _outline_of(m, rows, c, s, ny, nz, fy, fz):
     """Return the radial offset of the point at an angle of section ``m`` from the foot in the point's own section.
 
@@ -157,10 +163,10 @@ def _outline_of(m, rows, c, s, ny, nz, fy, fz):
         fy: foot, along the width.
         fz: foot, along the height.
     """
-    return ny * (rows[WIDE, m] * c - fy) + nz * (rows[HIGH, m] * s - fz)
+    return ny * (rows[HALF_WIDTH, m] * c - fy) + nz * (rows[HALF_HEIGHT, m] * s - fz)
 
 
-@part
+@kernel_part
 def _nearest_outline(k, arc, normal_offset, stretch, rows, c, s, ny, nz, fy, fz, reach):
     """Return the shortest vector from the outline through the sections to a point; see ``_to_edge`` for its components.
 
@@ -198,7 +204,7 @@ def _nearest_outline(k, arc, normal_offset, stretch, rows, c, s, ny, nz, fy, fz,
     return best
 
 
-@part
+@kernel_part
 def _chord(arc, k, rows, c, s, ny, nz, depth):
     """Return the shorter chord of a section, along width or height, through a point at a depth below its outline.
 
@@ -219,8 +225,8 @@ def _chord(arc, k, rows, c, s, ny, nz, depth):
         k += 1
     span = rows[ARC, k + 1] - rows[ARC, k]
     f = min(max((arc - rows[ARC, k]) / span, 0.0), 1.0) if span > 0.0 else 0.0
-    half_width = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
-    half_height = (1.0 - f) * rows[HIGH, k] + f * rows[HIGH, k + 1]
+    half_width = (1.0 - f) * rows[HALF_WIDTH, k] + f * rows[HALF_WIDTH, k + 1]
+    half_height = (1.0 - f) * rows[HALF_HEIGHT, k] + f * rows[HALF_HEIGHT, k + 1]
     if half_width <= 0.0 or half_height <= 0.0:
         return 0.0
     inset = min(depth, half_width, half_height)
@@ -228,7 +234,7 @@ def _chord(arc, k, rows, c, s, ny, nz, depth):
     return 2.0 * min(half_width * np.sqrt(max(1.0 - z * z, 0.0)), half_height * np.sqrt(max(1.0 - y * y, 0.0)))
 
 
-@part
+@kernel_part
 def _paint_point(fields, indices, px, py, z, column, section, rows, h):
     """Write the fields of ``paint_sections`` at one point.
 
@@ -277,7 +283,7 @@ def _paint_point(fields, indices, px, py, z, column, section, rows, h):
     fields[6, q, j, i] = _chord(arc - (axial_offset + ea * h) / stretch, k, rows, c, s, ny, nz, h)
 
 
-@part
+@kernel_part
 def _part_index(arc, cuts):
     """Return the index of the body's part to which an arc length belongs.
 
@@ -291,7 +297,7 @@ def _part_index(arc, cuts):
     return part_index
 
 
-@part
+@kernel_part
 def _section(column, rows, cuts, reach):
     """Return the section of a column.
 
@@ -307,8 +313,8 @@ def _section(column, rows, cuts, reach):
     """
     k, f = column[0], column[1]
     arc = (1.0 - f) * rows[ARC, k] + f * rows[ARC, k + 1] + column[3]
-    half_width = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
-    half_height = (1.0 - f) * rows[HIGH, k] + f * rows[HIGH, k + 1]
+    half_width = (1.0 - f) * rows[HALF_WIDTH, k] + f * rows[HALF_WIDTH, k + 1]
+    half_height = (1.0 - f) * rows[HALF_HEIGHT, k] + f * rows[HALF_HEIGHT, k + 1]
     reach += _growth(k, arc, half_width, half_height, rows, reach)
     return arc, _part_index(arc, cuts), half_width, half_height, reach
 
@@ -330,7 +336,7 @@ def paint_sections(fields, rows, tx, ty, cuts, x0, y0, z0, h, reach):
         h: distance of the points.
         reach: distance up to which the fields are exact.
     """
-    max_width = np.max(rows[WIDE]) + reach
+    max_width = np.max(rows[HALF_WIDTH]) + reach
     for n in prange(fields.shape[2]):
         j = signed(n)
         for i in range(fields.shape[3]):
@@ -359,7 +365,7 @@ def paint_turned_sections(fields, rows, tx, ty, cuts, x, y, z, turn, origin, rea
         origin: position of the origin of that frame.
         reach: distance up to which the fields are exact.
     """
-    h, max_width, max_height = x[1] - x[0], np.max(rows[WIDE]) + reach, np.max(rows[HIGH]) + reach
+    h, max_width, max_height = x[1] - x[0], np.max(rows[HALF_WIDTH]) + reach, np.max(rows[HALF_HEIGHT]) + reach
     for n in prange(fields.shape[2]):
         j = signed(n)
         dy = y[j] - origin[1]

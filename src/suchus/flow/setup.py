@@ -9,26 +9,32 @@ import numpy as np
 
 from suchus.core.errors import Doubtful, InvalidDesign
 from suchus.core.kinds import show
-from suchus.flow.body import Body, cuts, thin_share, window_of
+from suchus.flow.body import Body, cuts, thin_fraction, window_of
 from suchus.flow.compiled import PAD
 from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
 from suchus.flow.integrator import HEUN, Integrator
 from suchus.flow.markers import Markers
-from suchus.flow.nest import sides_of
+from suchus.flow.nest import patch_sides
 from suchus.flow.pose import speeds
-from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
+from suchus.flow.resolution import (
+    MAX_FORCE_ERROR,
+    WARNING_FORCE_ERROR,
+    cells_across,
+    estimate_force_error,
+    required_cells,
+)
 from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.sides import Sides
 from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
 
-LAYER_CELLS = needed(REFUSED)
+MIN_LAYER_CELLS = required_cells(MAX_FORCE_ERROR)
 """Fewest cells across a boundary layer of thickness L / sqrt(Re), for bodies other than blunt ones in space [-]."""
 
 
-LOOSEST = 0.01
+MAX_TOLERANCE = 0.01
 """Greatest tolerance [-]. With it, the drag of a cylinder at Reynolds number 40 fluctuates from step to step by 4 %;
 with a tenth of it, by 0.2 %."""
 
@@ -100,9 +106,10 @@ class Setup:
             raise InvalidDesign(
                 f"tolerance {self.tolerance} is below what single precision resolves (5e-7); take precision='double'."
             )
-        if self.tolerance > LOOSEST:
+        if self.tolerance > MAX_TOLERANCE:
             raise InvalidDesign(
-                f"tolerance is {self.tolerance}; above {LOOSEST} water is lost in every cell and forces shake. Give at "
+                f"tolerance is {self.tolerance}; above {MAX_TOLERANCE} water is lost in every cell and forces shake. "
+                f"Give at "
                 f"most that, say 1e-5."
             )
         bodies: Any = self.bodies
@@ -125,7 +132,7 @@ class Setup:
             x, y, z = (*self.follow_axes, False)[:3]
             self.sides.check_travel(self.grid.axes, (x, y, z), self.follow)
         if self.around is not None:
-            sides_of(self.grid, self.around, self.sides)
+            patch_sides(self.grid, self.around, self.sides)
             check_memory(self.around, self.dtype)
         check_memory(self.grid, self.dtype)
 
@@ -213,14 +220,14 @@ class Setup:
             window = window_of(body, pose, self.grid, 0.0, self._mirrors)
             if isinstance(body, FreeBody):
                 self._check_weight(body, cuts(window, self.grid))
-            thin_fractions[body.name] = thin_share(body, self.grid, 0.0)
+            thin_fractions[body.name] = thin_fraction(body, self.grid, 0.0)
             self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
         return thin_fractions
 
     @property
     def _mirrors(self) -> tuple[bool, ...]:
         """Whether there is a mirror at the ends of the axes of ``grid``; see ``Sides.mirrors``."""
-        sides = self.sides if self.around is None else sides_of(self.grid, self.around, self.sides)
+        sides = self.sides if self.around is None else patch_sides(self.grid, self.around, self.sides)
         return sides.mirrors(self.grid.axes)
 
     def _check_weight(self, body: FreeBody, mirror_cuts: tuple[bool, ...]) -> None:
@@ -267,7 +274,10 @@ class Setup:
         extent = float(np.ptp(markers.points, axis=1).max())
         speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())
         cells, is_blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), _has_blunt_shape(body)
-        error, min_cells = estimate(cells, blunt=is_blunt), needed(REFUSED, blunt=is_blunt)
+        error, min_cells = (
+            estimate_force_error(cells, is_compact=is_blunt),
+            required_cells(MAX_FORCE_ERROR, is_compact=is_blunt),
+        )
         if not self.coarse and cells * slack**0.5 < min_cells:
             layer = cells * self.grid.cell
             million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.axes / 1e6
@@ -276,7 +286,8 @@ class Setup:
                 f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
                 f"{100 * error:.0f} %; take cells of at most {layer / min_cells:.3g} m{size}, better "
-                f"{layer / needed(DOUBTED, blunt=is_blunt):.3g} m, a lower Reynolds number, or, in a Setup of your "
+                f"{layer / required_cells(WARNING_FORCE_ERROR, is_compact=is_blunt):.3g} m, a lower Reynolds number, "
+                f"or, in a Setup of your "
                 f"own, coarse=True to go on anyway."
             )
         return error
@@ -288,13 +299,17 @@ class Setup:
             body: the body.
             error: relative error of its force; see ``layer_error`` [-].
         """
-        if self.coarse or error <= DOUBTED:
+        if self.coarse or error <= WARNING_FORCE_ERROR:
             return None
-        cells, better = (needed(target_error, blunt=_has_blunt_shape(body)) for target_error in (error, DOUBTED))
+        cells, better = (
+            required_cells(target_error, is_compact=_has_blunt_shape(body))
+            for target_error in (error, WARNING_FORCE_ERROR)
+        )
         times = ceil(100 * better / cells) / 100
         return Doubtful(
             f"the boundary layer of {body.name} is {cells:.2g} cells thin: its force may be off by some "
-            f"{100 * error:.0f} %. For {100 * DOUBTED:.0f} % take {times:g} times as many cells along each axis, of "
+            f"{100 * error:.0f} %. For {100 * WARNING_FORCE_ERROR:.0f} % take {times:g} times as many cells along "
+            f"each axis, of "
             f"{self.grid.cell / times:.3g} m.",
             kind="cells",
             size=error,

@@ -98,7 +98,7 @@ _COARSE_POINTS, _MIN_POINTS = 256, 32
 """Points with which the length of an outline is measured, and fewest points of the markers [-]."""
 
 
-def positive(name: str, value: float) -> None:
+def check_positive(name: str, value: float) -> None:
     """Refuse a length that is not a positive number.
 
     Args:
@@ -192,7 +192,7 @@ class Cylinder(Solid):
     """Diameter [m]."""
 
     def __post_init__(self) -> None:
-        positive("diameter", self.diameter)
+        check_positive("diameter", self.diameter)
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return signed distance and outward normal."""
@@ -219,8 +219,8 @@ class Ellipse(Solid):
     """Full axis along the body's y [m]."""
 
     def __post_init__(self) -> None:
-        positive("length", self.length)
-        positive("width", self.width)
+        check_positive("length", self.length)
+        check_positive("width", self.width)
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return signed distance [m] and outward normal [-], by Newton's method for the nearest point."""
@@ -263,8 +263,8 @@ class Plate(Solid):
     """Thickness [m]."""
 
     def __post_init__(self) -> None:
-        positive("length", self.length)
-        positive("thick", self.thick)
+        check_positive("length", self.length)
+        check_positive("thick", self.thick)
         if self.thick > self.length:
             raise InvalidDesign(f"a plate {self.thick} m thick is longer than thick; give a length of at least that.")
 

@@ -15,10 +15,10 @@ from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import AddedMass, added_mass, generalised_added_mass, symmetric
-from suchus.flow.ahead import compile_ahead
+from suchus.flow.ahead import precompile
 from suchus.flow.body import AnyBody, Body
 from suchus.flow.compiled import PAD
-from suchus.flow.consistency import Consistency, GivenLinks, GivenMidline, GivenMotion
+from suchus.flow.consistency import Consistency, LinkSource, MidlineSource, MotionSource
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
@@ -26,8 +26,8 @@ from suchus.flow.immerse import wall_offset
 from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
 from suchus.flow.markers import Markers
-from suchus.flow.memory import Snapshot, give, take
-from suchus.flow.midline import Midline, Remembered
+from suchus.flow.memory import Snapshot, restore_snapshot, take_snapshot
+from suchus.flow.midline import CachedMidline, Midline
 from suchus.flow.nest import Nested
 from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
@@ -38,20 +38,20 @@ from suchus.flow.shape import Cylinder
 from suchus.flow.solid import Sphere
 from suchus.flow.swimmer import Swimmer
 from suchus.flow.trunk import Trunk
-from suchus.flow.twist import Twists, accelerate, joined, moved_on, none
-from suchus.flow.watch import EVERY, Watch
+from suchus.flow.twist import Twists, accelerate, add_twists, join_twists, resting_twists
+from suchus.flow.watch import SIDE_CHECK_INTERVAL, Watch
 from suchus.flow.water import Fluid
 
-ADDED_EVERY = 8
+ADDED_MASS_INTERVAL = 8
 """Steps between two computations of a free body's added mass [-]."""
 
-RATES_EVERY = 8
+RATE_CHECK_INTERVAL = 8
 """Steps between two comparisons of a bending body's rates with its positions [-]."""
 
-SLACK = 1.5
+LAYER_SPEED_FACTOR = 1.5
 """Factor by which a moving body may exceed the speed that the grid resolves before the run stops [-]."""
 
-OFFSET_CHANGE = 1e-3
+OFFSET_TOLERANCE = 1e-3
 """Change of the wall offset above which bodies at rest are placed again [cells]; it changes a force by 0.04 %."""
 
 
@@ -60,7 +60,7 @@ def _remembering(body: AnyBody) -> AnyBody:
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
-    object.__setattr__(shape, "spine", Remembered(shape.spine))
+    object.__setattr__(shape, "spine", CachedMidline(shape.spine))
     return replace(body, shape=shape)
 
 
@@ -74,7 +74,7 @@ Watcher = Callable[["Simulation"], None]
 
 _CHANGING = ("time", "_last", "_speed", "_reference")
 
-LANDING = 16
+MAX_EVENED_STEPS = 16
 """Steps before the end of a run over which the time step is evened out, so that the last step is not much shorter
 [-]."""
 
@@ -102,7 +102,7 @@ class Simulation(Fields):
         """
         self.setup = setup
         self.thin = setup.check()
-        compile_ahead(setup.grid.axes, setup.dtype)
+        precompile(setup.grid.axes, setup.dtype)
         self.time = 0.0
         options = setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
         self.water = Fluid(setup.grid, *options) if setup.around is None else Nested(setup.grid, setup.around, *options)
@@ -157,16 +157,18 @@ class Simulation(Fields):
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
             consistencies.append(
                 Consistency(
-                    GivenMotion(body.name, lambda t: pose if fixed else body.pose(t).along(self.axes), reach), cell
+                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).along(self.axes), reach), cell
                 )
             )
             changing.append(not fixed)
         if isinstance(body.shape, Midline | Trunk):
-            consistencies.append(Consistency(GivenMidline(body.name, body.shape.spine), cell, every=RATES_EVERY))
+            consistencies.append(
+                Consistency(MidlineSource(body.name, body.shape.spine), cell, every=RATE_CHECK_INTERVAL)
+            )
             changing.append(not body.shape.rigid)
         if isinstance(body.shape, Linked):
-            links = GivenLinks(body.name, body.shape.motion, body.shape.reach)
-            consistencies.append(Consistency(links, cell, every=RATES_EVERY))
+            links = LinkSource(body.name, body.shape.motion, body.shape.reach)
+            consistencies.append(Consistency(links, cell, every=RATE_CHECK_INTERVAL))
             changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
         for consistency in consistencies:
@@ -266,7 +268,7 @@ class Simulation(Fields):
         poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
         moving = self.setup.follow is not None or not all(b.still for b in self._bodies)
         offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
-        if moving or not self._placed or abs(offset - self.water.offset) > OFFSET_CHANGE:
+        if moving or not self._placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE:
             self.water.offset = offset
             self.water.place(self._bodies, poses, time)
             self._placed = True
@@ -277,7 +279,7 @@ class Simulation(Fields):
         markers = self._outlines
         self._watch.layers(
             [
-                self.setup.layer_error(b, m, self._stream(time), time, slack=SLACK)
+                self.setup.layer_error(b, m, self._stream(time), time, slack=LAYER_SPEED_FACTOR)
                 for b, m in zip(self._bodies, markers, strict=True)
             ]
         )
@@ -340,7 +342,7 @@ class Simulation(Fields):
             if swimmer is not None:
                 body_pose = swimmer.place_and_rate
                 swimmer.load = np.array([*act.force, *act.moment])
-                if swimmer.steps % ADDED_EVERY == 1 and swimmer.go.any():
+                if swimmer.steps % ADDED_MASS_INTERVAL == 1 and swimmer.go.any():
                     free_degrees = swimmer.go if self.axes == 3 else None
                     swimmer.take_added(added_mass(water, markers, point, setup.density, k, free_degrees), self.time)
             values += columns(load, act, step.drift, body_pose, self._watch.errors[k])
@@ -358,7 +360,7 @@ class Simulation(Fields):
         good = dict(zip("uvw", water.before, strict=False))
         self._log.refuse_nonsense(fastest, self._reference, row, good)
         self._log.rows.append(row)
-        if len(self._log.rows) % EVERY == 0:
+        if len(self._log.rows) % SIDE_CHECK_INTERVAL == 0:
             self._watch.sides(water, self.time)
 
     def last(self, name: str) -> FlowLoads:
@@ -397,7 +399,7 @@ class Simulation(Fields):
         """
         if self._latest_step is None:
             raise OutsideLimits("bodies are to be accelerated before any step was taken; call advance first.")
-        body_twists = [none(len(rows), self.axes) for rows in self.water.rows]
+        body_twists = [resting_twists(len(rows), self.axes) for rows in self.water.rows]
         for name, motion in twists.items():
             number = self._number(name)
             if motion.about.shape != body_twists[number].about.shape:
@@ -406,9 +408,9 @@ class Simulation(Fields):
                     f"{len(body_twists[number].about)}; give one for each part, from the first to the last."
                 )
             body_twists[number] = motion
-        accelerate(self.water, joined(body_twists), self._latest_step.dt)
+        accelerate(self.water, join_twists(body_twists), self._latest_step.dt)
         self._outlines = [
-            moved_on(outline, motion) for outline, motion in zip(self._outlines, body_twists, strict=True)
+            add_twists(outline, motion) for outline, motion in zip(self._outlines, body_twists, strict=True)
         ]
         self.forget()
         self._log.rows.pop()
@@ -426,8 +428,8 @@ class Simulation(Fields):
             NotConverged: the pressure solver did not converge.
         """
         number = self._number(name)
-        resting = [none(len(rows), self.axes) for rows in self.water.rows]
-        joined_modes = [joined([*resting[:number], mode, *resting[number + 1 :]]) for mode in modes]
+        resting = [resting_twists(len(rows), self.axes) for rows in self.water.rows]
+        joined_modes = [join_twists([*resting[:number], mode, *resting[number + 1 :]]) for mode in modes]
         return generalised_added_mass(self.water, self._outlines, joined_modes, self.setup.density)
 
     def _number(self, name: str) -> int:
@@ -445,12 +447,12 @@ class Simulation(Fields):
         """Clear the cached midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
             spine = getattr(body.shape, "spine", None)
-            if isinstance(spine, Remembered):
+            if isinstance(spine, CachedMidline):
                 spine.forget()
 
     def snapshot(self) -> Snapshot:
         """Return a copy of the whole state, for ``restore``."""
-        return take(self)
+        return take_snapshot(self)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Return to a snapshot of this simulation; the next steps repeat those after the snapshot byte by byte.
@@ -458,7 +460,7 @@ class Simulation(Fields):
         Args:
             snapshot: see ``snapshot``.
         """
-        give(self, snapshot)
+        restore_snapshot(self, snapshot)
         self.forget()
         self._latest_step = None
         if snapshot.arrays["b"].size:
@@ -501,10 +503,10 @@ class Simulation(Fields):
 
     def run(
         self,
-        until: float,
+        end_time: float,
         *,
         watch: Watcher | Sequence[Watcher] | None = None,
-        every: float | None = None,
+        watch_interval: float | None = None,
         checkpoint: Path | str | None = None,
         checkpoint_every: float = 60.0,
         progress: bool = True,
@@ -512,10 +514,10 @@ class Simulation(Fields):
         """Advance until a time and return the record from the beginning.
 
         Args:
-            until: time to reach, exactly [s].
+            end_time: time to reach, exactly [s].
             watch: called with the simulation whenever ``every`` seconds of flow time have passed, and at the end;
                 one or several, such as a ``Rake`` or a ``FieldSeries``.
-            every: interval of ``watch`` [s]; None calls it after every step.
+            watch_interval: interval of ``watch`` [s]; None calls it after every step.
             checkpoint: file that the state is saved to; if it exists, the run goes on from there.
             checkpoint_every: wall-clock seconds between two savings [s].
             progress: whether a run longer than two seconds shows a progress bar.
@@ -526,31 +528,31 @@ class Simulation(Fields):
             Unwritable: the checkpoint cannot be written.
             OutsideLimits: ``until`` is not a time, or one that has passed.
         """
-        if not isfinite(until):
-            raise OutsideLimits(f"the run is to last until {until} s; give a finite time.")
-        self._refuse_past(until, "the run", "a new Simulation")
+        if not isfinite(end_time):
+            raise OutsideLimits(f"the run is to last until {end_time} s; give a finite time.")
+        self._refuse_past(end_time, "the run", "a new Simulation")
         path = None if checkpoint is None else Path(checkpoint)
         if path is not None and path.exists():
             store.load(self, path)
-            self._refuse_past(until, f"the run of the checkpoint {path}", "another file")
+            self._refuse_past(end_time, f"the run of the checkpoint {path}", "another file")
         cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
         watchers = () if watch is None else (watch,) if callable(watch) else tuple(watch)
-        due = due_after(self.time, every)
+        due = due_after(self.time, watch_interval)
         saver = store.Saver(path, checkpoint_every)
-        with Bar(self.time, until, cells, show=progress) as bar:
+        with Bar(self.time, end_time, cells, show=progress) as bar:
             try:
-                while self.time < until * (1 - 1e-12):
-                    self.advance(_even_step(self.next_step(), until - self.time))
-                    if until - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
-                        self.time = until
+                while self.time < end_time * (1 - 1e-12):
+                    self.advance(_even_step(self.next_step(), end_time - self.time))
+                    if end_time - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
+                        self.time = end_time
                     bar.move(self.time)
-                    if watchers and (self.time >= due or self.time == until):
+                    if watchers and (self.time >= due or self.time == end_time):
                         for watcher in watchers:
                             watcher(self)
-                        due = due_after(self.time, every)
+                        due = due_after(self.time, watch_interval)
                     saver.save(self)
             finally:
-                saver.save(self, now=True)
+                saver.save(self, is_forced=True)
         self._watch.sides(self.water, self.time)
         return self.record
 
@@ -638,7 +640,7 @@ class _LatestStep(NamedTuple):
     drift: np.ndarray
     """Mean velocity of the grid [m/s]."""
     contents_before: np.ndarray
-    """Momentum in the bodies' regions at the start of the step; see ``momentum.contents``."""
+    """Momentum in the bodies' regions at the start of the step; see ``momentum.add_contents``."""
 
 
 def _even_step(dt: float, remaining: float) -> float:
@@ -649,4 +651,4 @@ def _even_step(dt: float, remaining: float) -> float:
         remaining: time to the end of the run [s].
     """
     count = np.ceil(remaining / dt * (1 - 1e-9))
-    return float(remaining / count) if count <= LANDING else dt
+    return float(remaining / count) if count <= MAX_EVENED_STEPS else dt

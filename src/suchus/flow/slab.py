@@ -18,15 +18,15 @@ It has the form of a ``level_layout``, but its window may reach beyond mirrors, 
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from suchus.flow.compiled import BLOCK, PAD, UNIT, part, unsigned
+from suchus.flow.compiled import BLOCK, PAD, UNIT, kernel_part, unsigned
 
 EDGE = unsigned(PAD)
 """``PAD`` as an unsigned integer, for the kernels [-]."""
 
-NONE = unsigned(0)
+ZERO = unsigned(0)
 """Zero as an unsigned integer, for the kernels [-]."""
 
-PLANES, LEAST = 16, 8
+MAX_PLANES, MIN_PLANES = 16, 8
 """Planes that one thread takes at a time: the most, and the fewest in a thin domain [-]."""
 
 Strides = tuple[np.uint64, ...]
@@ -38,13 +38,13 @@ def inner_strides(cells: tuple[int, ...]) -> Strides:
     return (UNIT,) if len(cells) == 2 else (UNIT, unsigned(cells[0] + 2 * PAD))
 
 
-@part
+@kernel_part
 def strides_like(inner, row_cells):
     """Return the strides within a slab whose rows have ``row_cells`` cells, with as many axes as ``inner``."""
     return tuple_setitem(inner, len(inner) - 1, row_cells if len(inner) > 1 else UNIT)
 
 
-@part
+@kernel_part
 def block_of(inner, count, min_planes):
     """Return how many slabs a thread takes at a time; in space the number of blocks is even where possible.
 
@@ -55,23 +55,23 @@ def block_of(inner, count, min_planes):
     """
     if len(inner) == 1:
         return BLOCK
-    blocks = 2 * ((count + 2 * PLANES - 1) // (2 * PLANES))
+    blocks = 2 * ((count + 2 * MAX_PLANES - 1) // (2 * MAX_PLANES))
     return max((count + blocks - 1) // blocks, min_planes)
 
 
-@part
+@kernel_part
 def row_length(inner, length):
     """Return how many cells a row has, those around the domain with it."""
     return inner[-1] if len(inner) > 1 else unsigned(length)
 
 
-@part
+@kernel_part
 def row_count(inner, length):
     """Return how many rows of a slab lie in the domain."""
     return unsigned(length) // inner[-1] - EDGE - EDGE if len(inner) > 1 else UNIT
 
 
-@part
+@kernel_part
 def run_of(inner, length):
     """Return first and end of the shortest run of cells that holds all cells of a slab inside the domain.
 
@@ -79,41 +79,41 @@ def run_of(inner, length):
         inner: strides within a slab.
         length: cells of a slab.
     """
-    margin = NONE
+    margin = ZERO
     for d in range(len(inner)):
         margin += EDGE * inner[d]
     return margin, unsigned(length) - margin
 
 
-@part
+@kernel_part
 def meets(level_layout, inner, slab):
     """Return whether a slab meets the window."""
     w = len(inner) + 2
     return level_layout[w] <= slab < level_layout[w + 1]
 
 
-@part
+@kernel_part
 def window_rows(level_layout, inner):
     """Return first and end of the rows of a slab that meet the window."""
     w = len(inner) + 4
-    return (unsigned(level_layout[w]), unsigned(level_layout[w + 1])) if len(inner) > 1 else (NONE, UNIT)
+    return (unsigned(level_layout[w]), unsigned(level_layout[w + 1])) if len(inner) > 1 else (ZERO, UNIT)
 
 
-@part
+@kernel_part
 def window_columns(level_layout, inner):
     """Return first and end of the cells of a row that meet the window."""
     w = 3 * len(inner) + 2
     return unsigned(level_layout[w]), unsigned(level_layout[w + 1])
 
 
-@part
+@kernel_part
 def near_strides(near_layout, inner):
     """Return the strides within a slab of the arrays of a window."""
     w = 3 * len(inner) + 2
     return strides_like(inner, unsigned(near_layout[w + 1] - near_layout[w] + 1))
 
 
-@part
+@kernel_part
 def near_shift(near_layout, inner, row, row_cells):
     """Return the index of a cell in a slab minus its index in the slab of a near array, for the cells of a row.
 
@@ -123,6 +123,6 @@ def near_shift(near_layout, inner, row, row_cells):
         row: the row.
         row_cells: cells of a row of the slab.
     """
-    w, first_row = 3 * len(inner) + 2, unsigned(near_layout[len(inner) + 4]) if len(inner) > 1 else NONE
+    w, first_row = 3 * len(inner) + 2, unsigned(near_layout[len(inner) + 4]) if len(inner) > 1 else ZERO
     columns = unsigned(near_layout[w + 1] - near_layout[w] + 1)
     return row * row_cells + unsigned(near_layout[w]) - (row - first_row) * columns

@@ -13,8 +13,8 @@ import numpy as np
 from suchus.flow.ellipsoid import paint_ellipsoid
 from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
-from suchus.flow.pose import Pose, turned
-from suchus.flow.shape import positive
+from suchus.flow.pose import Pose, rotate_vectors
+from suchus.flow.shape import check_positive
 
 _MIN_RINGS = 16
 """Fewest rings of markers on a skin [-]."""
@@ -30,7 +30,7 @@ _ROUND = 1e-3
 [-]."""
 
 
-INSIDE = 1e-9
+MIN_INSIDE_DEPTH = 1e-9
 """Depth, over a shape's size, from which a point of its skin counts as inside another shape [-]."""
 
 
@@ -136,7 +136,7 @@ class Ellipsoid(SpaceShape):
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "height"):
-            positive(name, getattr(self, name))
+            check_positive(name, getattr(self, name))
 
     @property
     def half(self) -> np.ndarray:
@@ -146,7 +146,7 @@ class Ellipsoid(SpaceShape):
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Return which points of the body's frame lie inside, for points of shape (3, ...) [m]."""
         x, y, z = (coordinate / half for coordinate, half in zip(points, self.half, strict=True))
-        return np.asarray(x * x + y * y + z * z < 1 - INSIDE)
+        return np.asarray(x * x + y * y + z * z < 1 - MIN_INSIDE_DEPTH)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return distance, normal and velocity on the points of a window; see ``SpaceShape``."""
@@ -172,7 +172,7 @@ class Ellipsoid(SpaceShape):
         a = self.half[:, None]
         areas = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
         points = np.stack(pose_3d.place(a * unit))
-        normals = np.stack(turned(pose_3d.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
+        normals = np.stack(rotate_vectors(pose_3d.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
         spins = np.broadcast_to(pose_3d.spins[:, None], points.shape)
         return Markers(
             points=points, share=areas, velocities=np.stack(pose_3d.rates(points)), normals=normals, spins=spins
@@ -227,5 +227,5 @@ class Sphere(Ellipsoid):
     __slots__ = ()
 
     def __init__(self, *, diameter: float) -> None:
-        positive("diameter", diameter)
+        check_positive("diameter", diameter)
         super().__init__(length=diameter, width=diameter, height=diameter)

@@ -8,7 +8,7 @@ below, of the slab itself, and of the slab above. ``faces[d]`` are the coefficie
 axis d. See ``slab``.
 """
 
-from suchus.flow.compiled import PAD, UNIT, ordered_part, part, unsigned
+from suchus.flow.compiled import PAD, UNIT, kernel_part, ordered_part, unsigned
 from suchus.flow.slab import EDGE, meets, row_count, row_length, run_of, window_columns, window_rows
 
 WEIGHTS = (0.5617, 1.3896), (0.5695, 1.7319)
@@ -20,7 +20,7 @@ LANES = 16
 hide a NaN [-]."""
 
 
-@part
+@kernel_part
 def weights(inner, real):
     """Return the two Jacobi weights in the precision ``real``."""
     return (
@@ -29,7 +29,7 @@ def weights(inner, real):
     )
 
 
-@part
+@kernel_part
 def seal_slab(a, slab, inner, repeats):
     """Fill the cells beside the domain, along the axes of a slab, with mirrored or periodic values.
 
@@ -56,7 +56,7 @@ def seal_slab(a, slab, inner, repeats):
             a[j, last_cell + row_cells + k] = a[j, first_cell + k] if repeats[1] else a[j, last_cell + k]
 
 
-@part
+@kernel_part
 def copy_slab(target, o, x, slab):
     """Copy slab ``slab`` of ``x`` to slab ``o`` of ``target``.
 
@@ -68,7 +68,7 @@ def copy_slab(target, o, x, slab):
         target[o, k] = x[j, k]
 
 
-@part
+@kernel_part
 def seal_ends(x, periodic):
     """Fill the slab below the first and the slab above the last."""
     n = x.shape[0]
@@ -76,7 +76,7 @@ def seal_ends(x, periodic):
     copy_slab(x, n - PAD, x, PAD if periodic else n - PAD - 1)
 
 
-@part
+@kernel_part
 def largest_size(a, slab, inner, top):
     """Return the largest absolute value of a slab inside the domain.
 
@@ -106,7 +106,7 @@ def largest_size(a, slab, inner, top):
     return maximum
 
 
-@part
+@kernel_part
 def summed_size(a, slab, inner):
     """Return the sum of the absolute values of a slab inside the domain."""
     j, row_cells, slab_sum = unsigned(slab), row_length(inner, a.shape[1]), 0.0
@@ -119,7 +119,7 @@ def summed_size(a, slab, inner):
     return slab_sum
 
 
-@part
+@kernel_part
 def _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner):
     """Return the operator at cell ``k`` with the coefficients ``faces``; see ``apply_slabs``."""
     m, slab_axis, total = x[mid, k], unsigned(len(inner)), x.dtype.type(0)
@@ -130,7 +130,7 @@ def _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner):
     return total + (lower_face * (m - x[lower_slab, k]) + upper_face * (m - x[upper_slab, k]))
 
 
-@part
+@kernel_part
 def apply_slabs(output, o, x, lower_slab, mid, upper_slab, faces, level_layout, slab, inner):
     """Write the pressure operator applied to one slab of a level.
 
@@ -205,7 +205,7 @@ def _relax_plain(output, o, x, lower_slab, mid, upper_slab, b, j, weight, inner)
         output[o, k] = neighbour_weight * (neighbour_sum + b[j, k]) + centre_weight * x[mid, k]
 
 
-@part
+@kernel_part
 def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, level_layout, slab, weight, inner, repeats):
     """Write one Jacobi step of one slab of a level.
 
@@ -238,14 +238,14 @@ def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, level
     seal_slab(output, o, inner, repeats)
 
 
-@part
+@kernel_part
 def smooth(output, x, b, faces, dinv, level_layout, weight, inner, repeats):
     """Write one Jacobi step of a whole level from ``x`` to ``output``; see ``relax_slabs``."""
     for j in range(PAD, x.shape[0] - PAD):
         relax_slabs(output, j, x, j - 1, j, j + 1, b, faces, dinv, level_layout, j, weight, inner, repeats)
 
 
-@part
+@kernel_part
 def relax_patch(output, x, b, faces, offset, dinv, strides, weight):
     """Write one Jacobi step on a small array whose cells are contiguous.
 

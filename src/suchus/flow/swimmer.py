@@ -22,10 +22,10 @@ from suchus.core.errors import Diverged, InvalidDesign
 from suchus.core.kinds import show
 from suchus.flow.free import FreeBody
 from suchus.flow.mass import Mass, SpaceMass
-from suchus.flow.pose import Pose, turned
+from suchus.flow.pose import Pose, rotate_vectors
 
 
-def spread(values: Sequence[float], axes: int) -> np.ndarray:
+def to_degrees_of_freedom(values: Sequence[float], axes: int) -> np.ndarray:
     """Return values for all degrees of freedom; of three values in space, those along z and about x and y are 0.
 
     Args:
@@ -69,10 +69,10 @@ def _unwinding(vector: np.ndarray, slope: np.ndarray) -> np.ndarray:
 
 _CHANGING = ("place", "rate", "push", "load", "added", "momentum", "owed", "applied", "span", "steps")
 
-REPAID = 0.5
+RESIDUAL_RELAXATION = 0.5
 """Fraction of the momentum still owed that a step repays [-]; all at once excites oscillations."""
 
-MOST_ROUNDS = 40
+MAX_ITERATIONS = 40
 """Most iterations in which attitude and angular velocity at the end of a step converge [-]. Each reduces the error by
 about the angle that the body turns in a step."""
 
@@ -125,7 +125,7 @@ class Swimmer:
             place = np.array([*_lengthened(body.start, 3), *turn])
             rate = np.array([*_lengthened(body.velocity, 3), body.spin_x, body.spin_y, body.spin])
         free = (True,) * place.size if body.free is None else body.free
-        return cls(body, place, rate, spread(free, axes).astype(bool))
+        return cls(body, place, rate, to_degrees_of_freedom(free, axes).astype(bool))
 
     @property
     def _axes(self) -> int:
@@ -171,7 +171,10 @@ class Swimmer:
         if isinstance(mass, SpaceMass):
             matrix = self._matrix(self.place)
             spins = np.where(self.go[3:], self.rate[3:] - mass.recoil(matrix)[3:], self.rate[3:])
-            offset, drift = np.array(turned(matrix, mass.centre)), np.array(turned(matrix, mass.centre_rate))
+            offset, drift = (
+                np.array(rotate_vectors(matrix, mass.centre)),
+                np.array(rotate_vectors(matrix, mass.centre_rate)),
+            )
             place = np.concatenate([self.place[:3] - offset, self.place[3:]])
             return self._pose(place, self.rate[:3] - drift - np.cross(spins, offset), spins)
         angle = self.place[2]
@@ -252,7 +255,7 @@ class Swimmer:
         if contact is not None:
             outer = outer + contact
         rate = self.rate
-        for count in range(MOST_ROUNDS):  # one is exact in the plane; in space the first assumes a fixed attitude
+        for count in range(MAX_ITERATIONS):  # one is exact in the plane; in space the first assumes a fixed attitude
             end_inertia = end_mass.inertia(matrix)
             inertia_change = end_inertia - start_inertia
             inertia_change[: self._axes] = 0
@@ -284,7 +287,7 @@ class Swimmer:
             # The force of the last step is one step late. The missing momentum is repaid gradually. Otherwise an eel,
             # whose lateral added mass is ten times its own mass, sways several times too much. An extrapolation of the
             # force would instead amplify its fluctuations.
-            guess = guess + REPAID * self.owed / dt
+            guess = guess + RESIDUAL_RELAXATION * self.owed / dt
         return guess
 
     def _accelerated(self, total_inertia: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -334,7 +337,7 @@ class Swimmer:
         """
         body, axes = self.body, self._axes
         mid_place = self._moved(0.5 * dt * (self.rate - 0.5 * recoil))
-        stiff, viscous = spread(body.springs, axes), spread(body.dampers, axes)
+        stiff, viscous = to_degrees_of_freedom(body.springs, axes), to_degrees_of_freedom(body.dampers, axes)
         pull = _lengthened(body.gravity, axes)
         outer = weight * np.array([*pull, *np.zeros(mid_place.size - axes)]) - self._held(mid_place, stiff)
         outer = outer - viscous * self.rate
@@ -347,7 +350,7 @@ class Swimmer:
                     f"force along x and y in N/m and the torque in N (in space N and N m, or six numbers: forces along "
                     f"and torques about x, y and z)."
                 )
-            outer = outer + spread(np.asarray(force, float).tolist(), axes)
+            outer = outer + to_degrees_of_freedom(np.asarray(force, float).tolist(), axes)
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff
 
     def _held(self, mid_place: np.ndarray, stiff: np.ndarray) -> np.ndarray:

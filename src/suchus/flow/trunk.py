@@ -11,8 +11,8 @@ from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, of_trunk
 from suchus.flow.midline import MidlineState, check_cuts
 from suchus.flow.paint import ring
-from suchus.flow.pose import Pose, turned
-from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
+from suchus.flow.pose import Pose, rotate_vectors
+from suchus.flow.sections import PAINTED_FIELDS, paint_sections, paint_turned_sections
 from suchus.flow.solid import SpaceField, SpaceShape
 
 _MIN_POINTS = 12
@@ -97,7 +97,7 @@ class Trunk(SpaceShape):
         """Return distance, normal, velocity and part on the points of a window; see ``SpaceShape``."""
         spine, frame = self.placed(time, pose)
         h = float(x[-1] - x[0]) / (x.size - 1)
-        fields = np.zeros((PAINTED, z.size, y.size, x.size))
+        fields = np.zeros((PAINTED_FIELDS, z.size, y.size, x.size))
         fields[0], fields[6] = reach, np.inf
         rows = np.stack([*spine.rows, self.half_height, spine.swell, spine.arc])
         arguments = fields, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts)
@@ -111,8 +111,10 @@ class Trunk(SpaceShape):
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_turned_sections(*arguments, px, py, pz, matrix, np.array(frame.position), float(reach))
         rigid = frame.rates((x, y[:, None], z[:, None, None]))
-        u, v, w = (a + b for a, b in zip(rigid, turned(matrix, (fields[4], fields[5], 0 * fields[5])), strict=True))
-        return SpaceField(fields[0], turned(matrix, fields[1:4]), (u, v, w), fields[6], part_index)
+        u, v, w = (
+            a + b for a, b in zip(rigid, rotate_vectors(matrix, (fields[4], fields[5], 0 * fields[5])), strict=True)
+        )
+        return SpaceField(fields[0], rotate_vectors(matrix, fields[1:4]), (u, v, w), fields[6], part_index)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return markers at the centres of patches between the stations.
@@ -236,11 +238,11 @@ def in_world(skin: Markers, frame: Pose) -> Markers:
         frame: pose of that frame.
     """
     points = np.array(frame.place(skin.points))
-    velocities = np.array(turned(frame.matrix, skin.velocities)) + frame.rates(points)
+    velocities = np.array(rotate_vectors(frame.matrix, skin.velocities)) + frame.rates(points)
     return Markers(
         points=points, share=skin.share, velocities=velocities,
-        normals=np.array(turned(frame.matrix, skin.normals)),
-        spins=np.array(turned(frame.matrix, skin.spins)) + frame.spins[:, None], part=skin.part,
+        normals=np.array(rotate_vectors(frame.matrix, skin.normals)),
+        spins=np.array(rotate_vectors(frame.matrix, skin.spins)) + frame.spins[:, None], part=skin.part,
     )  # fmt: skip
 
 

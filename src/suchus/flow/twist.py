@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from suchus.flow.markers import Markers
-from suchus.flow.pose import TURNS
+from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.water import Fluid
 
-SOLVED = 1e-4
+DIVERGENCE_TOLERANCE = 1e-4
 """Limit of the mean divergence in ``accelerate``, over the largest change of a body's velocity [-]."""
 
 
@@ -43,7 +43,7 @@ class Twists:
         """
         velocities = self.linear.T[:, part_index].astype(float)
         lever = points - self.about.T[:, part_index]
-        for turn, (a, b) in zip(self.angular.T, TURNS[len(points)], strict=True):
+        for turn, (a, b) in zip(self.angular.T, ROTATION_PLANES[len(points)], strict=True):
             velocities[a] -= lever[b] * turn[part_index]
             velocities[b] += lever[a] * turn[part_index]
         return velocities
@@ -57,20 +57,20 @@ class Twists:
         return replace(self, linear=factor * self.linear, angular=factor * self.angular)
 
 
-def none(rows: int, axes: int) -> Twists:
+def resting_twists(rows: int, axes: int) -> Twists:
     """Return zero twists of parts at rest.
 
     Args:
         rows: number of parts.
         axes: of the domain, 2 or 3.
     """
-    turns = len(TURNS[axes])
+    turns = len(ROTATION_PLANES[axes])
     return Twists(
         about=np.zeros((rows, axes)), linear=np.zeros((rows, axes)), angular=np.zeros((rows, turns))
     )  # fmt: skip
 
 
-def joined(twists: Sequence[Twists]) -> Twists:
+def join_twists(twists: Sequence[Twists]) -> Twists:
     """Return the twists of several bodies in one object, body after body."""
     return Twists(
         about=np.concatenate([twist.about for twist in twists]),
@@ -102,7 +102,7 @@ def held_faces(water: Fluid) -> list[HeldFaces]:
     window, axes, grid, faces = water.here, water.axes, water.grid, []
     is_inside = np.ones([s.stop - s.start for s in window], bool)
     for mirror_cuts in water.cut:
-        leave_images(is_inside, mirror_cuts)
+        clear_images(is_inside, mirror_cuts)
     ends = [(s.start, s.stop) for s in reversed(window)]
     for c in range(axes):
         body_fraction, closed = (1 - fraction[c][window].astype(np.float64) for fraction in (water.mu0, water.passage))
@@ -115,7 +115,7 @@ def held_faces(water: Fluid) -> list[HeldFaces]:
     return faces
 
 
-def leave_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
+def clear_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
     """Set values beyond the mirrors that cut a body to 0.
 
     Args:
@@ -130,7 +130,7 @@ def leave_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
             lines[-2:] = 0
 
 
-def rise(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -> np.ndarray:
+def face_differences(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -> np.ndarray:
     """Return the difference of a field between the cells behind and before faces, shape (face,).
 
     Args:
@@ -174,8 +174,8 @@ def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
     velocity_change = np.zeros((axes, *shape))
     for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
         velocity_change[c].ravel()[axis_faces.place] = axis_faces.held * change
-    x = water.press(velocity_change, dt, SOLVED * max_change)
-    energy, turns = axes + len(TURNS[axes]), TURNS[axes]
+    x = water.press(velocity_change, dt, DIVERGENCE_TOLERANCE * max_change)
+    energy, turns = axes + len(ROTATION_PLANES[axes]), ROTATION_PLANES[axes]
     sums = np.zeros_like(water.given)
     corner = np.array(water.grid.origin)
     lever = replace(twists, about=twists.about - corner)
@@ -184,7 +184,7 @@ def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
     sums[:, energy] += 0.5 * (lever.at_origin() * previous_sums[:, :axes]).sum(axis=1)
     sums[:, energy] += 0.5 * (spin * previous_sums[:, axes:energy]).sum(axis=1)
     for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
-        gained = axis_faces.held * change + axis_faces.closed * rise(water, x, axis_faces, c)
+        gained = axis_faces.held * change + axis_faces.closed * face_differences(water, x, axis_faces, c)
         sums[:, c] += np.bincount(axis_faces.row, gained, count)
         for n, (a, b) in enumerate(turns):
             if c in (a, b):
@@ -201,21 +201,21 @@ def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
     water.given += sums + water.across(x, 1.0)
 
 
-def part_of(outline: Markers) -> np.ndarray:
+def part_indices(outline: Markers) -> np.ndarray:
     """Return which of its body's parts each point of a skin belongs to, shape (point,) [-]."""
     if outline.part is None:
         return np.zeros(outline.points.shape[1], np.intp)
     return outline.part.astype(np.intp)
 
 
-def moved_on(outline: Markers, twists: Twists) -> Markers:
+def add_twists(outline: Markers, twists: Twists) -> Markers:
     """Return the markers of one body with the velocity change of its parts added.
 
     Args:
         outline: the markers.
         twists: change of the velocity of each part of this body.
     """
-    row = part_of(outline)
+    row = part_indices(outline)
     velocities = outline.velocities + twists.at(row, outline.points)
     spins = outline.spins + twists.angular[row].T
     return replace(outline, velocities=velocities, spins=spins)

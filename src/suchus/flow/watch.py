@@ -11,16 +11,16 @@ from suchus.flow.setup import Setup
 from suchus.flow.sides import Stream
 from suchus.flow.water import Fluid
 
-EVERY = 256
+SIDE_CHECK_INTERVAL = 256
 """Steps between two checks of the sides; they are also checked at the end of a run [-]."""
 
-STRONG = 0.05
+MAX_SIDE_VORTICITY = 0.05
 """Vorticity at a fixed side, over the largest in the domain, above which a warning is issued [-]."""
 
-SHARED = 0.5
+MAX_OVERLAP = 0.5
 """Depth above which two bodies overlap [cells]; the grid hardly distinguishes less from contact."""
 
-FELT = 0.02
+MIN_INDUCED_SPEED = 0.02
 """Speed that the vortex induces in a cell at the side, over the fastest water, below which no warning is issued [-]."""
 
 
@@ -77,7 +77,7 @@ class Watch:
             time: time, for the message [s].
         """
         depth, pair = water.overlap
-        if depth <= SHARED * water.grid.cell:
+        if depth <= MAX_OVERLAP * water.grid.cell:
             return None
         first_name, second_name = (self.setup.bodies[k].name for k in pair)
         return (
@@ -115,7 +115,7 @@ class Watch:
             lines = edge.across(spin)
             outer_lines = lines[:2] if edge.low else lines[-2:]
             side_vorticity = float(outer_lines.max())
-            if side_vorticity > STRONG * max_vorticity and side_vorticity > FELT * fastest:
+            if side_vorticity > MAX_SIDE_VORTICITY * max_vorticity and side_vorticity > MIN_INDUCED_SPEED * fastest:
                 percent = 100 * side_vorticity / max_vorticity
                 self._say(
                     f"side {edge.name}",

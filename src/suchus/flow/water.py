@@ -18,9 +18,17 @@ from suchus.flow.body import AnyBody, Overlap, cuts, measure_all, rows_of, unite
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import close, close_surface, fill, fill_source, immerse
+from suchus.flow.immerse import close_faces, close_surface, fill, fill_source, immerse
 from suchus.flow.integrator import HEUN, Integrator
-from suchus.flow.momentum import collect, contents, contents_of, dilatation_work, parted, pressed, sums_of
+from suchus.flow.momentum import (
+    add_contents,
+    add_immersion_impulse,
+    add_internal_pressure,
+    contents_of,
+    dilatation_work,
+    subtract_joint_pressure,
+    sums_of,
+)
 from suchus.flow.pose import Pose
 from suchus.flow.project import correct, fastest, mean_residual, residual
 from suchus.flow.scheme import QUICK, Scheme
@@ -29,17 +37,17 @@ from suchus.flow.sides import Sides
 from suchus.flow.slab import inner_strides
 from suchus.flow.solid import SpaceShape
 
-MOST_CYCLES = 60
+MAX_PRESSURE_CYCLES = 60
 """Most iterations of the pressure solver [-]."""
 
-MOST_ROUNDS = 12
+MAX_FIRST_STEP_ROUNDS = 12
 """Most rounds in which the first step and the water around the domain converge [-]."""
 
-SKIPPED = 0.01
+MIN_SOLVED_RESIDUAL = 0.01
 """Residual over its limit below which the pressure is not solved [-]. With 1, whole steps would skip the solve, and
 their residual would appear in the force of the next step."""
 
-STUCK = 1000.0
+MAX_FINAL_RESIDUAL = 1000.0
 """Residual over its limit above which a solve has failed; below it, rounding has stopped the solve [-]."""
 
 
@@ -97,7 +105,7 @@ class Fluid:
         rows: for each body the rows of its parts in arrays of sums; one for a body that is not divided.
         owners: for each component, the row of the part that is nearest to the points of the window.
         given: momentum and energy given to the water by the immersion in the last step, per row; see
-            ``momentum.collect``.
+            ``momentum.add_immersion_impulse``.
         pressed: integral of the pressure inside divided bodies in the last step, per row; see ``pressures``.
         solves: statistics of the pressure solves of the last step, one a stage.
         overlap: the two bodies that overlap most.
@@ -142,7 +150,7 @@ class Fluid:
         parts = (multigrid.level(self._store, self._layout, self.inner, kind, 0) for kind in range(multigrid.FACES))
         faces = multigrid.faces_of(self._store, self._layout, self.inner, 0)
         self._views = (*parts, faces.reshape(vector))  # of its finest level
-        self._patches = patch.rects(self._layout, self.repeats)
+        self._patches = patch.patch_layouts(self._layout, self.repeats)
         self._room: np.ndarray = np.zeros((patch.FACES + self.axes, 0), dtype)
         self._sums = np.zeros((shape[0], 4))
         self._near = self._layout[0].copy()
@@ -317,9 +325,9 @@ class Fluid:
         if has_moved:
             poisson.place_window(self._layout, new)
             self._level_window = new
-            self._patches = patch.rects(self._layout, self.repeats)
-            self._room = patch.room_for(self._room, self._patches)
-        multigrid.spread(self._store, self._layout, self._room, self._patches, self.inner)
+            self._patches = patch.patch_layouts(self._layout, self.repeats)
+            self._room = patch.allocate_buffer(self._room, self._patches)
+        multigrid.copy_coefficients(self._store, self._layout, self._room, self._patches, self.inner)
 
     def _widening(self, bodies: list[AnyBody]) -> None:
         """Compute the source of the mean of the step's start and end; it is 0 for bodies that do not bend."""
@@ -382,8 +390,8 @@ class Fluid:
         centreline = shape.centreline(time, pose)
         if centreline is not None:
             x, y = first_centre
-            close(self.passage[0][slices], centreline[0], centreline[1], x - h, y, h)
-            close(self.passage[1][slices].T, centreline[1], centreline[0], y - h, x, h)
+            close_faces(self.passage[0][slices], centreline[0], centreline[1], x - h, y, h)
+            close_faces(self.passage[1][slices].T, centreline[1], centreline[0], y - h, x, h)
 
     def fastest(self) -> float:
         """Return the largest sum of the sizes of the components in a cell [m/s]."""
@@ -410,7 +418,7 @@ class Fluid:
         start = self.p.copy() if is_first else self.p
         self._stages(plan, force, limits)
         if is_first:  # an impulsively started body moves the far water at once
-            for _ in range(MOST_ROUNDS):
+            for _ in range(MAX_FIRST_STEP_ROUNDS):
                 if self._is_first_step_converged(plan[-1], limits):
                     break
                 self._reset_first_step(start)
@@ -560,7 +568,7 @@ class Fluid:
         )
         owners = [self._flat(owner) for owner in self.owners]
         for c, mean in enumerate(self.mean):
-            collect(
+            add_immersion_impulse(
                 sums, result[c], blend[c], raw[c], self._flat(mean), passage[c], mu1[c], p, owners[c], c, near_layout,
                 inner, dt, keep,
             )  # fmt: skip
@@ -585,7 +593,7 @@ class Fluid:
     def across(self, p: np.ndarray, weight: float) -> np.ndarray:
         """Return the correction for the force with which a pressure pushes linked parts apart inside the bodies.
 
-        Its shape is that of ``given``; it is 0 for bodies without joints. See ``momentum.parted``.
+        Its shape is that of ``given``; it is 0 for bodies without joints. See ``momentum.subtract_joint_pressure``.
 
         Args:
             p: pressure over density at the cells.
@@ -595,7 +603,7 @@ class Fluid:
         if self._jointed and self.window[1] > self.window[0]:
             owners = np.array([self._flat(owner) for owner in self.owners])
             flat = self._flat(p), self._flat(self.mu0), owners
-            parted(sums, *flat, self._layout[0], self._near, self.inner, weight)
+            subtract_joint_pressure(sums, *flat, self._layout[0], self._near, self.inner, weight)
         return sums
 
     def pressures(self, p: np.ndarray, weight: float) -> np.ndarray:
@@ -611,7 +619,7 @@ class Fluid:
         sums = np.zeros_like(self.pressed)
         if self.window[1] > self.window[0]:
             flat = self._flat(p), self._flat(self.mu0), self._flat(np.stack(self.owners))
-            pressed(sums, *flat, self._layout[0], self._near, self.inner, weight)
+            add_internal_pressure(sums, *flat, self._layout[0], self._near, self.inner, weight)
         return sums
 
     def contents(self) -> np.ndarray:
@@ -623,7 +631,7 @@ class Fluid:
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
             for c, owner in enumerate(self.owners):
-                contents(sums, b[c], mu0[c], self._flat(owner), c, self._layout[0], self._near, self.inner)
+                add_contents(sums, b[c], mu0[c], self._flat(owner), c, self._layout[0], self._near, self.inner)
         return sums
 
     def _project(self, velocity: np.ndarray, dt: float, limits: tuple[float, float]) -> None:
@@ -644,7 +652,7 @@ class Fluid:
         sums = self._sums[PAD:-PAD]
         cells = prod(self.grid.cells)
         solve = poisson.Solve(0, float(sums[:, 0].sum()) / cells, float(sums[:, 1].max()))
-        if solve.mean > SKIPPED * limits[0] or solve.largest > SKIPPED * limits[1]:
+        if solve.mean > MIN_SOLVED_RESIDUAL * limits[0] or solve.largest > MIN_SOLVED_RESIDUAL * limits[1]:
             solve, parts = self._solve(limits)
             x, gain = (self._d, self._level_view(multigrid.X)), self.dtype(1 / dt)
             correct(u, self._flat(self.p), *x, *parts, self._flat(self.passage), level_layout, self.inner, gain)
@@ -788,10 +796,10 @@ class Fluid:
         """
         *result, a, b = poisson.solve(
             self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.inner,
-            self.repeats, self._sums, *limits, self.least, MOST_CYCLES,
+            self.repeats, self._sums, *limits, self.least, MAX_PRESSURE_CYCLES,
         )  # fmt: skip
         solve = poisson.Solve(*result)
-        if not (solve.mean <= STUCK * limits[0] and solve.largest <= STUCK * limits[1]):
+        if not (solve.mean <= MAX_FINAL_RESIDUAL * limits[0] and solve.largest <= MAX_FINAL_RESIDUAL * limits[1]):
             raise NotConverged(
                 f"the pressure solver stopped after {solve.cycles} cycles with a divergence of {solve.mean:.2g} m/s "
                 f"per cell on the average and {solve.largest:.2g} at most, where {limits[0]:.2g} and {limits[1]:.2g} "

@@ -8,14 +8,14 @@ Start reading with ``hardware.commands``, then ``hardware.drive``.
 
 from suchus.hardware.blind import BlindRig
 from suchus.hardware.commands import Commands, commands, csv_text, trajectory_text
-from suchus.hardware.drive import BusClock, DriveSettings, TickClock, WallClock, about, check_drive, drive
+from suchus.hardware.drive import BusClock, DriveSettings, TickClock, WallClock, check_drive, drive, wire_statistics
 from suchus.hardware.guard import DriveLimits
 from suchus.hardware.limits import check_commands, check_loads, overloaded
-from suchus.hardware.loads import LoadCase, ServoLoad, cases, loads, loads_of_each, share_at_limit
-from suchus.hardware.log import DriveLog, held, hinge_angles
+from suchus.hardware.loads import LoadCase, ServoLoad, cases, loads, loads_of_cases, share_at_limit
+from suchus.hardware.log import DriveLog, fix_in_place, hinge_angles
 from suchus.hardware.rig import Rig, RigReading, senses
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
-from suchus.hardware.sizing import ServoFamily, Sizing, fitted, size, with_better
+from suchus.hardware.sizing import ServoFamily, Sizing, size, with_better, with_motors
 from suchus.hardware.wiring import read_wiring, wiring_text, write_wiring
 
 __all__ = [
@@ -35,7 +35,6 @@ __all__ = [
     "Sizing",
     "TickClock",
     "WallClock",
-    "about",
     "cases",
     "check_commands",
     "check_drive",
@@ -43,11 +42,10 @@ __all__ = [
     "commands",
     "csv_text",
     "drive",
-    "fitted",
-    "held",
+    "fix_in_place",
     "hinge_angles",
     "loads",
-    "loads_of_each",
+    "loads_of_cases",
     "overloaded",
     "read_map",
     "read_wiring",
@@ -56,8 +54,10 @@ __all__ = [
     "size",
     "straight",
     "trajectory_text",
+    "wire_statistics",
     "wiring_text",
     "with_better",
+    "with_motors",
     "write_map",
     "write_wiring",
 ]

@@ -121,7 +121,7 @@ def find_zeros(rig: Rig, posture: np.ndarray, *, times: int = 10) -> tuple[Wirin
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Fitted:
+class FitEstimate:
     """A parameter of a servo with the half width of its 95 % interval."""
 
     value: float
@@ -137,15 +137,15 @@ class Fitted:
 class ServoFit:
     """Parameters of one servo from a log."""
 
-    stiffness: Fitted
+    stiffness: FitEstimate
     """Torque for each radian that it is off its goal [N m/rad]."""
-    damping: Fitted
+    damping: FitEstimate
     """Torque against each radian per second [N m s/rad]."""
-    play: Fitted
+    play: FitEstimate
     """Way that it goes without a torque, whole width [rad]."""
-    friction: Fitted
+    friction: FitEstimate
     """Torque that turns with the sense of its motion, against gravity, inertia and viscous friction [N m]."""
-    offset: Fitted
+    offset: FitEstimate
     """Angle by which its zero is off [rad]."""
 
 
@@ -190,11 +190,11 @@ def fit_log(record: xr.Dataset) -> Mapping[str, ServoFit]:
         friction_fit, friction_halves = _least_squares(np.column_stack([constant, a, faster, w, np.tanh(w / 0.02)]), t)
         stiffness = 1.0 / compliance[0]
         fits[str(name)] = ServoFit(
-            stiffness=Fitted(value=stiffness, half=halves[0] * stiffness**2),
-            damping=Fitted(value=compliance[1] * stiffness, half=halves[1] * stiffness),
-            play=Fitted(value=2.0 * compliance[2], half=2.0 * halves[2]),
-            friction=Fitted(value=friction_fit[4], half=friction_halves[4]),
-            offset=Fitted(value=compliance[3], half=halves[3]),
+            stiffness=FitEstimate(value=stiffness, half=halves[0] * stiffness**2),
+            damping=FitEstimate(value=compliance[1] * stiffness, half=halves[1] * stiffness),
+            play=FitEstimate(value=2.0 * compliance[2], half=2.0 * halves[2]),
+            friction=FitEstimate(value=friction_fit[4], half=friction_halves[4]),
+            offset=FitEstimate(value=compliance[3], half=halves[3]),
         )
     if not fits:
         raise IncompatibleRecord("no servo of the log moved and gave a torque: drive a gait, and fit that log.")

@@ -166,7 +166,7 @@ def drive(
     settings: DriveSettings | None = None,
     *,
     clock: TickClock | None = None,
-    asked: Callable[[], str] = lambda: "",
+    stop_request: Callable[[], str] = lambda: "",
     say: Callable[[str], None] = lambda _: None,
     progress: Progress = silent,
 ) -> xr.Dataset:
@@ -181,7 +181,7 @@ def drive(
         control: what decides; open loop if None.
         settings: how; as by default if None.
         clock: that of this computer if None.
-        asked: returns why to stop, where somebody asked for it.
+        stop_request: returns why to stop, where somebody asked for it.
         say: is given sentences that people should read while it moves.
         progress: told the share that is done.
 
@@ -200,7 +200,7 @@ def drive(
     controller = start([run], ticks + 1, rig.period)
     for sentence in rig.check():
         say(sentence)
-    session = _Drive(rig, gait, controller, settings, clock or WallClock(rig.period), asked, say, progress)
+    session = _Drive(rig, gait, controller, settings, clock or WallClock(rig.period), stop_request, say, progress)
     return session.run(ticks)
 
 
@@ -244,14 +244,14 @@ class _Drive:
         except KeyboardInterrupt as stop:
             with suppress(KeyboardInterrupt):  # asked twice: its torque is off by then
                 self._end(self._settings.stop)
-            stop.record = self._record(f"{ASKED}a signal.")  # type: ignore[attr-defined]
+            stop.record = self._record(f"{STOP_PREFIX}a signal.")  # type: ignore[attr-defined]
             raise
         except BaseException:
             self._end("off")
             raise
         self._end(self._settings.stop)
         record = self._record(cause)
-        if failed is not None or (cause and not is_complete and not cause.startswith(ASKED)):
+        if failed is not None or (cause and not is_complete and not cause.startswith(STOP_PREFIX)):
             raise BusFailure(f"{cause.rstrip('.')}; the robot was stopped.", record=record) from failed
         return record
 
@@ -345,7 +345,7 @@ class _Drive:
         if stop_reason:
             raise _Halted(stop_reason)
         if request := self._stop_request():
-            raise _Halted(f"{ASKED}{request}")
+            raise _Halted(f"{STOP_PREFIX}{request}")
 
     def _wake(self, time: float) -> None:
         """Reset the watchdogs of the servos if they heard nothing for too long.
@@ -419,11 +419,11 @@ class _Drive:
         )
 
 
-ASKED = "asked to stop: "
+STOP_PREFIX = "asked to stop: "
 """How the cause of a drive begins that somebody ended: that is no failure."""
 
 
-def about(record: xr.Dataset) -> dict[str, Any]:
+def wire_statistics(record: xr.Dataset) -> dict[str, Any]:
     """Return statistics of the bus from a log: delays, missing replies, missed ticks, temperature.
 
     Returns:

@@ -16,7 +16,7 @@ from suchus.robot.design.ground import Ground
 from suchus.robot.motion import START, Gait
 from suchus.sim.fault import Fault
 from suchus.sim.land import Lake, Run, simulate
-from suchus.sim.metrics import between, whole
+from suchus.sim.metrics import require_complete, time_window
 from suchus.swimming.water import swim_of
 
 AT_LIMIT = 0.02
@@ -27,7 +27,7 @@ FULL, FULL_WOUND = 0.999, 0.95
 With a winding that depends on its speed, and torque and speed of a sample are a physics step apart, which blurs it by
 up to 5 %; in walks at the limit hardly a sample lies between 0.5 and 0.9.
 """
-STRONG = 4.0
+STRENGTH_FACTOR = 4.0
 """How many times as strong the servos are whose torques show what a movement asks for [-]."""
 _CYCLES, _HOLD = 2, 1.0  # of a gait, and of standing [s]
 
@@ -166,11 +166,11 @@ def loads(robot: Robot, gait: Gait, *, progress: Progress = silent) -> Mapping[s
         Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow the gait.
     """
-    (load_by_servo,) = loads_of_each(robot, cases(robot, (gait,)), progress=progress)
+    (load_by_servo,) = loads_of_cases(robot, cases(robot, (gait,)), progress=progress)
     return load_by_servo
 
 
-def loads_of_each(
+def loads_of_cases(
     robot: Robot, load_cases: Sequence[LoadCase], *, timestep: float | None = None, progress: Progress = silent
 ) -> list[Mapping[str, ServoLoad]]:
     """Return the loads of each servo in several cases, with the torque that four times as strong servos would give.
@@ -185,10 +185,11 @@ def loads_of_each(
         Diverged: the simulation diverged.
         OutsideLimits: the joints cannot follow a gait.
     """
-    pairs = [(body, case) for case in load_cases for body in (cold(robot), strong(robot))]
+    pairs = [(body, case) for case in load_cases for body in (cold(robot), with_strong_servos(robot))]
     records = records_of_each(pairs, timestep=timestep, progress=progress)
     return [
-        borne(robot, record, strong_record) for record, strong_record in zip(records[::2], records[1::2], strict=True)
+        measure_loads(robot, record, strong_record)
+        for record, strong_record in zip(records[::2], records[1::2], strict=True)
     ]
 
 
@@ -207,15 +208,15 @@ def records_of_each(
         members = [i for i, (_, case) in enumerate(pairs) if case.end == end]
         runs = [pairs[i][1].run(pairs[i][0]) for i in members]
         share = portion(progress, number, len(ends))
-        record = whole(simulate(runs, duration=end, timestep=timestep, progress=share))
+        record = require_complete(simulate(runs, duration=end, timestep=timestep, progress=share))
         for i, member in enumerate(members):
-            record_by_case[member] = between(record.isel(run=i)).assign_attrs(step=record.timestep)
+            record_by_case[member] = time_window(record.isel(run=i)).assign_attrs(step=record.timestep)
     return [record_by_case[i] for i in range(len(pairs))]
 
 
-def strong(robot: Robot) -> Robot:
+def with_strong_servos(robot: Robot) -> Robot:
     """Return a robot with servos four times as strong at any speed; they show the torque that a movement requires."""
-    return with_servos(robot, lambda servo: replace(servo, torque=STRONG * servo.torque, winding=None))
+    return with_servos(robot, lambda servo: replace(servo, torque=STRENGTH_FACTOR * servo.torque, winding=None))
 
 
 def cold(robot: Robot) -> Robot:
@@ -227,7 +228,7 @@ def cold(robot: Robot) -> Robot:
     return with_servos(robot, cooled)
 
 
-def borne(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None = None) -> Mapping[str, ServoLoad]:
+def measure_loads(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None = None) -> Mapping[str, ServoLoad]:
     """Return the loads of each servo in a record.
 
     Args:
@@ -318,7 +319,7 @@ def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
     return (use_of_each(robot, record) >= full).mean("time")
 
 
-def given_in(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np.ndarray, " time"]) -> float:
+def torque_use(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np.ndarray, " time"]) -> float:
     """Return torque over the torque that a servo gives at its speed, exceeded in 2 % of the time [-].
 
     Args:

@@ -9,7 +9,7 @@ import xarray as xr
 from suchus.robot.design import Robot, layout
 from suchus.robot.kinematics.tail import bend_of_servo
 from suchus.robot.motion import Gait
-from suchus.sim.record import DRIVEN, VARIABLES, dataset
+from suchus.sim.record import BUS_VARIABLES, VARIABLES, dataset
 from suchus.visual.skin import poses
 
 
@@ -53,7 +53,7 @@ class DriveLog:
         }  # fmt: skip
         arrays = {
             name: self._column(name, tuple(sizes[dim] for dim in dims))
-            for name, (dims, _, _) in {**VARIABLES, **DRIVEN}.items()
+            for name, (dims, _, _) in {**VARIABLES, **BUS_VARIABLES}.items()
         }
         arrays["joint_angle"] = hinge_angles(robot, arrays["servo_angle"])
         per_run = {
@@ -72,7 +72,7 @@ class DriveLog:
         record = dataset({name: value[None] for name, value in arrays.items()}, per_run, coordinates)
         driven_variables = {
             name: (("run", *dims), arrays[name][None], {"units": unit, "long_name": meaning})
-            for name, (dims, unit, meaning) in DRIVEN.items()
+            for name, (dims, unit, meaning) in BUS_VARIABLES.items()
         }
         drive_record = record.assign(driven_variables).isel(run=0)
         drive_record.attrs.update(attributes)
@@ -110,7 +110,7 @@ def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
     return angles
 
 
-def held(record: xr.Dataset, robot: Robot) -> xr.Dataset:
+def fix_in_place(record: xr.Dataset, robot: Robot) -> xr.Dataset:
     """Return a log that can be shown: a robot without a measured position is fixed above the ground, without loads.
 
     Args:

@@ -32,7 +32,7 @@ BITS = 10
 """Bits that a byte takes on the wire, start and stop bit included [-]."""
 FULLEST = 0.9
 """Share of a tick that the bytes of a bus may take [-]; what is left is for the adapter and the computer."""
-TRIED = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
+BAUD_RATES = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
 """Bit rates at which servos are looked for that do not answer at the one that the file names [1/s]."""
 PATIENT = 0.1
 """How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
@@ -109,21 +109,21 @@ class Rig:
         wiring: Wiring,
         ports: Sequence[Port] = (),
         *,
-        clocked: bool = False,
+        has_clock: bool = False,
         rate: float | None = None,
-        without: Sequence[str] = (),
-        needed: Collection[str] | None = None,
+        limp_servos: Sequence[str] = (),
+        required_senses: Collection[str] | None = None,
     ) -> None:
         """Open the buses of a robot; nothing moves."""
-        self.robot, self.wiring, self.clocked = robot, wiring, clocked
+        self.robot, self.wiring, self.clocked = robot, wiring, has_clock
         self.servos = wiring.ordered(robot)
         self.names = layout(robot).servos
-        unknown = [name for name in without if name not in self.names]
+        unknown = [name for name in limp_servos if name not in self.names]
         if unknown:
             raise InvalidDesign(
                 f"{', '.join(unknown)} is no servo of {robot.name!r}; there is {', '.join(self.names)}."
             )
-        self.without = tuple(without)
+        self.without = tuple(limp_servos)
         self.period = control_period(robot) if rate is None else 1.0 / rate
         self.asked = np.array([name not in self.without for name in self.names])
         self.steps = Steps(self.servos)
@@ -138,7 +138,9 @@ class Rig:
         self._turns: list[list[int | BoardPlace]] = []
         for number in range(len(wiring.bus)):
             boards = [board for board in wiring.board if board.bus == number]
-            prompt_boards = [b for b in boards if needed is None or not set(_SENSES[b.kind]).isdisjoint(needed)]
+            prompt_boards = [
+                b for b in boards if required_senses is None or not set(_SENSES[b.kind]).isdisjoint(required_senses)
+            ]
             self._always.append(prompt_boards)
             seldom: list[int | BoardPlace] = [b for b in boards if b not in prompt_boards]
             members = self._members[number]
@@ -151,7 +153,7 @@ class Rig:
         try:
             for number, place in enumerate(wiring.bus):
                 port = ports[number] if ports else open_port(place.port, place.baud)
-                self.buses.append(Bus(port, FRAMINGS[place.protocol], wait=self._wait, clocked=clocked))
+                self.buses.append(Bus(port, FRAMINGS[place.protocol], wait=self._wait, has_clock=has_clock))
         except BaseException:
             self.close()
             raise
@@ -306,7 +308,7 @@ class Rig:
         place = self.wiring.bus[number]
         if not place.port.startswith("socket://") and not self.clocked:
             bus.close()
-            for baud in TRIED:
+            for baud in BAUD_RATES:
                 if baud == place.baud:
                     continue
                 with suppress(SuchusError):

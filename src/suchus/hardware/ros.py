@@ -21,7 +21,7 @@ NOTE = (
 )
 
 
-def unfit(robot: Robot) -> str:
+def unfit_reason(robot: Robot) -> str:
     """Return a sentence why a robot cannot be described for ROS 2; empty if it can."""
     linear_cables = [cable.name for cable in robot.cables if cable.linear is not None]
     if not linear_cables:
@@ -34,7 +34,7 @@ def unfit(robot: Robot) -> str:
     )
 
 
-def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_000, port: str = "/dev/ttyUSB0") -> str:
+def ros_urdf(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_000, port: str = "/dev/ttyUSB0") -> str:
     """Return a robot as URDF with a joint for each cable's pulley, and a ``ros2_control`` block for its servos.
 
     Args:
@@ -46,7 +46,7 @@ def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_00
     Raises:
         UnsuitedRobot: a linear actuator moves a cable.
     """
-    if reason := unfit(robot):
+    if reason := unfit_reason(robot):
         raise UnsuitedRobot(reason)
     place = layout(robot)
     root = ElementTree.fromstring(urdf(robot))

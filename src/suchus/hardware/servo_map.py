@@ -145,7 +145,7 @@ def read_map(path: str | Path, robot: Robot) -> ServoMap:
         InvalidDesign: it is not for the servos of this robot.
     """
     start = straight(robot)
-    servo_map = blueprint.read(path, ServoMap, {start.name: start})
+    servo_map = blueprint.read_design(path, ServoMap, {start.name: start})
     servo_map.ordered(robot)
     return servo_map
 

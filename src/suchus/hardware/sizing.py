@@ -15,12 +15,12 @@ from suchus.hardware.loads import (
     FULL_WOUND,
     LoadCase,
     ServoLoad,
-    borne,
     cold,
-    given_in,
-    loads_of_each,
+    loads_of_cases,
+    measure_loads,
     records_of_each,
-    strong,
+    torque_use,
+    with_strong_servos,
 )
 from suchus.robot.design import Motor, Robot, Servo, layout, with_named_servos
 from suchus.robot.design.scale import coarse_step
@@ -120,7 +120,7 @@ def use(motor: Motor, load: ServoLoad) -> float:
     return max(load.line / FULL_WOUND, load.rms / motor.continuous_torque)
 
 
-def why(motor: Motor, load: ServoLoad) -> str:
+def binding_limit(motor: Motor, load: ServoLoad) -> str:
     """Return the limit that is nearest for a servo: heat, torque or torque at speed."""
     if load.rms / motor.continuous_torque >= load.line / FULL_WOUND:
         return "heat"
@@ -168,9 +168,9 @@ def places(robot: Robot) -> list[tuple[str, ...]]:
     )
 
 
-def fitted(robot: Robot, motors: Mapping[str, Motor], volts: float) -> Robot:
+def with_motors(robot: Robot, motors: Mapping[str, Motor], volts: float) -> Robot:
     """Return a robot with servos that are sold, with the gains and gears of its own servos."""
-    servos = {name: Servo.of(motor, volts, like=robot.servo(name)) for name, motor in motors.items()}
+    servos = {name: Servo.of(motor, volts, template=robot.servo(name)) for name, motor in motors.items()}
     return with_named_servos(robot, servos)
 
 
@@ -204,7 +204,7 @@ def size(
     families = families_of(shipped() if motors is None else motors)
     if family is not None and family not in families:
         raise UnknownName("family of servos", family, list(families))
-    own_loads = loads_of_each(robot, load_cases, progress=staged(progress, "its own servos", 0.0, 0.3))
+    own_loads = loads_of_cases(robot, load_cases, progress=staged(progress, "its own servos", 0.0, 0.3))
     search = _Search(robot, load_cases)
     family_names = [family] if family is not None else list(families)
     candidates = []
@@ -267,7 +267,7 @@ class _Search:
         keys = [(case.name, factors[case.gait.name]) for case in cases]
         new = [i for i, key in enumerate(keys) if key not in self._demands]
         if new:
-            body = strong(self._robot)
+            body = with_strong_servos(self._robot)
             records = records_of_each([(body, cases[i]) for i in new], timestep=coarse_step(body))
             self._demands |= {keys[i]: record for i, record in zip(new, records, strict=True)}
         return [self._demands[key] for key in keys]
@@ -284,9 +284,9 @@ class _Search:
 
     def fits(self, motor: Motor, volts: float, names: Sequence[str], demands: Sequence[xr.Dataset]) -> bool:
         """Return whether a servo also supplies the torque at its speed, at some places."""
-        servo = Servo.of(motor, volts, like=self._robot.servo(names[0]))
+        servo = Servo.of(motor, volts, template=self._robot.servo(names[0]))
         return self.bears(motor, names, demands) and all(
-            given_in(servo, demand.servo_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values)
+            torque_use(servo, demand.servo_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values)
             < FULL_WOUND
             for demand in demands
             for name in names
@@ -324,10 +324,10 @@ class _Search:
         candidates = {names: self._candidates(names, volts, motors, demands) for names in self._places}
         while True:
             chosen_motors = {servo: candidates[names][0] for names in self._places for servo in names}
-            body = fitted(self._robot, chosen_motors, volts)
+            body = with_motors(self._robot, chosen_motors, volts)
             records = records_of_each([(cold(body), case) for case in cases])
             loads = {
-                case.name: {name: load for name, load in borne(body, record).items() if name in chosen_motors}
+                case.name: {name: load for name, load in measure_loads(body, record).items() if name in chosen_motors}
                 for case, record in zip(cases, records, strict=True)
             }
             family = ServoFamily(name=name, volts=volts, chosen=chosen_motors, factors=dict(factors), loads=loads)
@@ -396,10 +396,10 @@ def with_better(
     while any(candidates.values()):
         trial_motors = {name: options[0] for name, options in candidates.items() if options}
         body = with_named_servos(
-            robot, {name: Servo.of(motor, like=robot.servo(name)) for name, motor in trial_motors.items()}
+            robot, {name: Servo.of(motor, template=robot.servo(name)) for name, motor in trial_motors.items()}
         )
         (record,) = records_of_each([(cold(body), case)])
-        then = borne(body, record)
+        then = measure_loads(body, record)
         failing_servos = [name for name, motor in trial_motors.items() if not does(motor, then[name])]
         if not failing_servos:
             replacements = {

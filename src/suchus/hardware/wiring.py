@@ -6,7 +6,7 @@ from typing import Any
 
 from suchus.core.files import read_toml, write
 from suchus.hardware.bus import BoardPlace, BusPlace, ServoPlace, Wiring
-from suchus.robot.blueprint import described
+from suchus.robot.blueprint import parse_table
 from suchus.robot.design import Robot
 from suchus.robot.design.meaning import meanings
 
@@ -20,7 +20,7 @@ def read_wiring(path: str | Path, robot: Robot) -> Wiring:
         InvalidDesign: it is for another robot, or not for all of its servos.
     """
     path = Path(path)
-    wiring: Wiring = described(read_toml(path), Wiring, path.name)
+    wiring: Wiring = parse_table(read_toml(path), Wiring, path.name)
     wiring.ordered(robot)
     return replace(
         wiring, bus=tuple(replace(bus_place, port=_resolve_port(bus_place.port, path)) for bus_place in wiring.bus)

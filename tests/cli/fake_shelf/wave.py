@@ -10,7 +10,7 @@ import xarray as xr
 
 from suchus.article.verdict import Clause, Rule
 from suchus.core.errors import InvalidDesign
-from suchus.experiments.experiment import Experiment, Measure, Simulated, silent
+from suchus.experiments.experiment import Experiment, Measure, SimulationResult, silent
 from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
@@ -70,7 +70,7 @@ class Wave(Experiment):
         wave = xr.Dataset(
             {"height": ("time", self.amplitude * np.sin(t), {"units": "m"})}, coords={"time": t}, attrs={"n": {"a": 1}}
         )
-        return Simulated(record=wave, tables={"samples.txt": "time height\n0 0\n"})
+        return SimulationResult(record=wave, tables={"samples.txt": "time height\n0 0\n"})
 
     def measure(self, record):
         return {"height": Measure(self.amplitude, "m"), "nothing": Measure(float("nan"), "-")}

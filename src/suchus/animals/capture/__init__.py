@@ -2,31 +2,31 @@
 
 from suchus.animals.capture.angles import standing_index
 from suchus.animals.capture.animal import SyntheticAnimal, film_animal
-from suchus.animals.capture.beside import beside, beside_lines
+from suchus.animals.capture.beside import compare_joints, comparison_lines
 from suchus.animals.capture.film import Camera, film, keypoints
 from suchus.animals.capture.reading import ReadingOptions, read_tracks, summary, write_gait
-from suchus.animals.capture.retarget import NEEDED, Captured, driven_share, to_curves, to_gait
+from suchus.animals.capture.retarget import ROBOT_NEEDS, Captured, driven_fraction, to_curves, to_gait
 from suchus.animals.capture.table import AngleCycle, is_angle_table, read_angles, write_table
 from suchus.animals.capture.tables import angle_tables, tables
 from suchus.animals.capture.tracks import Tracks, UnusableTracks, View
-from suchus.animals.capture.walk import Seen, Walk, observe
+from suchus.animals.capture.walk import Measurement, Walk, observe
 
 __all__ = [
-    "NEEDED",
+    "ROBOT_NEEDS",
     "AngleCycle",
     "Camera",
     "Captured",
+    "Measurement",
     "ReadingOptions",
-    "Seen",
     "SyntheticAnimal",
     "Tracks",
     "UnusableTracks",
     "View",
     "Walk",
     "angle_tables",
-    "beside",
-    "beside_lines",
-    "driven_share",
+    "compare_joints",
+    "comparison_lines",
+    "driven_fraction",
     "film",
     "film_animal",
     "is_angle_table",

@@ -18,7 +18,7 @@ _PHASE_STEP = 4  # phases of the table per phase at which limbs are compared
 _RANGE_END = 0.98  # fraction of its range from which on a joint is at its end
 
 
-def beside(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:
+def compare_joints(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:
     """Return for every joint of a robot the animal's angle, the residual of the gait, and the reason for the residual.
 
     The midline of the animal is divided among the hinges of trunk and tail by their positions. The feet have the
@@ -49,7 +49,7 @@ def beside(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:
     return data
 
 
-def beside_lines(data: xr.Dataset, robot: str) -> list[str]:
+def comparison_lines(data: xr.Dataset, robot: str) -> list[str]:
     """Return the comparison as text, a line for each joint: amplitude, residual and reason.
 
     Args:

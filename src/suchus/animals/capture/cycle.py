@@ -8,9 +8,9 @@ from scipy.optimize import minimize_scalar
 
 from suchus.animals.capture.tracks import UnusableTracks
 
-LEAST_CYCLES = 1.2
+MIN_CYCLES = 1.2
 """Least duration of tracks: the beginning of a cycle must appear twice [cycle]."""
-LEAST_FRAMES = 12
+MIN_FRAMES = 12
 """Least frames in one cycle: with fewer, steps cannot be separated [-]."""
 _FASTEST = 12.0  # [1/s]; the stride frequency of the fastest small lizards
 _REPEATS = 0.15  # least fraction of variance that one harmonic explains; in noise it explains less
@@ -118,9 +118,9 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
     )
 
 
-def harmonics_for(frames: int, frames_per_cycle: float, *, most: int) -> int:
+def harmonics_for(frames: int, frames_per_cycle: float, *, max_harmonics: int) -> int:
     """Return how many harmonics a fit can have: at most one for six frames, and one for four frames a cycle."""
-    return int(np.clip(min(frames // 6, frames_per_cycle // 4), 2, most))
+    return int(np.clip(min(frames // 6, frames_per_cycle // 4), 2, max_harmonics))
 
 
 def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], source: str) -> float:
@@ -179,14 +179,14 @@ def _check_period(period: float, duration: float, rate: float, source: str) -> N
         rate: frames per second [1/s].
         source: name of the tracks, for messages.
     """
-    if duration < LEAST_CYCLES * period:
+    if duration < MIN_CYCLES * period:
         raise UnusableTracks(
             f"{source} lasts {duration:.2f} s, {duration / period:.1f} cycles of about {period:.2f} s; at least "
-            f"{LEAST_CYCLES} cycles are needed, {LEAST_CYCLES - duration / period:.1f} more, two or more for a spread."
+            f"{MIN_CYCLES} cycles are needed, {MIN_CYCLES - duration / period:.1f} more, two or more for a spread."
         )
-    if rate * period < LEAST_FRAMES:
+    if rate * period < MIN_FRAMES:
         raise UnusableTracks(
-            f"{source} shows {rate * period:.0f} frames in a cycle of {period:.2f} s; at least {LEAST_FRAMES} are "
+            f"{source} shows {rate * period:.0f} frames in a cycle of {period:.2f} s; at least {MIN_FRAMES} are "
             "needed: film faster."
         )
 

@@ -9,7 +9,7 @@ from scipy.stats import t as student
 
 from suchus.animals.capture.angles import azimuth
 from suchus.animals.capture.cycle import fit, harmonics_for
-from suchus.animals.capture.swings import Middles, Swing, middles, swing
+from suchus.animals.capture.swings import Swing, SwingMidpoints, swing, swing_midpoints
 from suchus.animals.capture.tracks import Tracks
 
 GRID = 400
@@ -78,9 +78,9 @@ def forward_path(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
     return np.asarray(((tracks.at(leg) - tracks.at(rear))[:, :2] * forward_axis).sum(axis=1))
 
 
-def steps(tracks: Tracks, leg: str, period: float) -> Middles:
+def steps(tracks: Tracks, leg: str, period: float) -> SwingMidpoints:
     """Return the middles of a foot's swings; an approximate period is enough [s]."""
-    return middles(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
+    return swing_midpoints(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
 
 
 def contact(tracks: Tracks, leg: str, period: float) -> FootContact | None:
@@ -216,4 +216,6 @@ def _harmonics(tracks: Tracks, point: str, period: float, max_harmonics: int) ->
     """Return the number of harmonics for a point, few enough that gaps in its track leave none undetermined."""
     frame_count = int(np.isfinite(tracks.at(point)[:, 0]).sum())
     gap = _hidden_fraction(tracks, point, period)
-    return min(harmonics_for(frame_count, tracks.rate * period, most=max_harmonics), max(2, int(1.0 / max(gap, 1e-3))))
+    return min(
+        harmonics_for(frame_count, tracks.rate * period, max_harmonics=max_harmonics), max(2, int(1.0 / max(gap, 1e-3)))
+    )

@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 from suchus.animals.capture.angles import joint_bends
 from suchus.animals.capture.cycle import fit, harmonics_for
-from suchus.animals.capture.screen import beside
+from suchus.animals.capture.screen import midline_neighbours
 from suchus.animals.capture.swings import Clock
 from suchus.animals.capture.tracks import Tracks
 
@@ -35,7 +35,7 @@ _EXACT = 1e-4  # [link]; least error of a keypoint's position
 _SMOOTHING_WINDOW = 0.3  # [cycle]; for the velocity of a keypoint
 
 
-def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dict[str, str]:
+def find_late_keypoints(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dict[str, str]:
     """Return the midline points that are later or earlier than the others; none in a view from the side.
 
     The lag between two neighbours is the one at which their distance varies least.
@@ -75,7 +75,7 @@ def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dic
         if not lag_by_point:
             break
         for name, lag in lag_by_point.items():
-            neighbours = " and ".join(beside(chain, name))
+            neighbours = " and ".join(midline_neighbours(chain, name))
             reasons[name] = (
                 f"runs {abs(lag):.3f} s {'behind' if lag > 0 else 'ahead of'} {neighbours}: its frames are not theirs"
             )
@@ -124,7 +124,7 @@ class _Lags:
         self._courses = {}
         for name in tracks.midline:
             frame_count = int(np.isfinite(tracks.at(name)[:, 0]).sum())
-            count = harmonics_for(frame_count, tracks.rate * period, most=_HARMONICS)
+            count = harmonics_for(frame_count, tracks.rate * period, max_harmonics=_HARMONICS)
             rows = tracks.at(name)[:, :2].T
             self._courses[name] = [fit(tracks.time, row, period, harmonics=count, drift=turns) for row in rows]
         step = max(1.0 / tracks.rate, 0.01 * period)
@@ -238,7 +238,9 @@ class _Lags:
         bent body do not resemble a lag.
         """
         half = max(2, round(_SMOOTHING_WINDOW * self._clock.period * self._tracks.rate / 2))
-        lags, errors = np.transpose([self._by_pace(name, neighbour, half) for neighbour in beside(chain, name)])
+        lags, errors = np.transpose(
+            [self._by_pace(name, neighbour, half) for neighbour in midline_neighbours(chain, name)]
+        )
         error = float(np.sum(errors**-2.0) ** -0.5)
         lag = float(np.average(lags, weights=errors**-2.0))
         return _Paced(lag, error, abs(lag) / error, float(np.min(np.sign(lag) * lags / errors)))

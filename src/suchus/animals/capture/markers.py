@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, renamed
+from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, map_keypoint_names
 from suchus.core.errors import UnreadableFile
 from suchus.core.reading import read_text
 from suchus.robot.design import LEGS
@@ -41,7 +41,7 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
         raise UnusableTracks(f"{path.name} holds no frame; at least one cycle is needed.")
     if not 0.0 < rate < np.inf:
         raise UnreadableFile(f"{path.name} says that it has {rate:g} frames a second; more than 0 are needed.")
-    point_names = renamed(points, names, path.name)
+    point_names = map_keypoint_names(points, names, path.name)
     return Tracks(
         time=np.arange(len(place)) / rate,
         points=point_names,

@@ -15,7 +15,7 @@ import numpy as np
 from suchus.animals.capture.markers import SUFFIXES, read_markers, upright
 from suchus.animals.capture.retarget import Captured
 from suchus.animals.capture.table import is_table, read_table
-from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, View, renamed
+from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, View, map_keypoint_names
 from suchus.animals.capture.walk import Walk
 from suchus.core.errors import UnknownName, UnreadableFile
 from suchus.core.files import check_file, write
@@ -70,7 +70,7 @@ def read_poses(
     position[np.isnan(position).any(axis=-1)] = np.nan
     if position.shape[-1] == 2 if y_down is None else y_down:
         position[..., 1] *= -1
-    points = renamed(tuple(str(name) for name in data[dims[0]].values), names, path.name)
+    points = map_keypoint_names(tuple(str(name) for name in data[dims[0]].values), names, path.name)
     return Tracks(
         time=data.time.values.astype(float),
         points=points,

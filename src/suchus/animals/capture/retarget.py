@@ -22,9 +22,9 @@ from suchus.robot.motion import (
     Gait,
     check_limits,
     cycle_targets,
+    min_gait_period,
     servo_parts,
     servo_range,
-    shortest_period,
     suits,
 )
 from suchus.robot.motion.axis import yaw_hinges
@@ -42,7 +42,7 @@ On a film of our own crawl, which commands 27 mm for all, slipping lets front fe
 """
 Time = Literal["froude", "own"]
 """Whether time goes with the square root of length, as at equal Froude number, or stays the animal's."""
-NEEDED = ("four_limbs", "foot_paths")
+ROBOT_NEEDS = ("four_limbs", "foot_paths")
 """What the walk of a four-limbed animal requires of a robot: names of ``design.NEEDS``."""
 _PAIRS = (LEGS[:2], LEGS[2:])
 _MIN_BEND = np.radians(1.0)  # a bend below this has no phase
@@ -107,7 +107,7 @@ def to_gait(
         OutsideLimits: the base has no foot paths, or the robot cannot follow even with the base's posture and a small
             stroke.
     """
-    check_needs(robot, NEEDED, "a captured walk")
+    check_needs(robot, ROBOT_NEEDS, "a captured walk")
     if walk.lacks:
         lacking_notes = [note for note in walk.notes if note.partition(" ")[0] in (*walk.lacks, "neck", "snout")]
         raise UnusableTracks(
@@ -135,7 +135,7 @@ def to_gait(
     return Captured(gait=gait, timing=timing, notes=(*walk.notes, *notes, *_unrepresented_notes(walk)))
 
 
-def driven_share(robot: Robot) -> float:
+def driven_fraction(robot: Robot) -> float:
     """Return the position of the middle of the last driven tail segment, as a fraction of the tail's length [-].
 
     The segments behind it are passive: no command holds them. The fraction is 1 if all segments are driven.
@@ -357,7 +357,7 @@ def _with_feet(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
 
 def _with_feasible_period(robot: Robot, gait: Gait, notes: list[str]) -> Gait:
     """Return the gait with a period in which no servo exceeds its speed."""
-    min_period, slowest_joint = shortest_period(robot, gait)
+    min_period, slowest_joint = min_gait_period(robot, gait)
     if min_period <= gait.period:
         return gait
     notes.append(

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.animals.capture.tracks import LOST, Tracks, UnusableTracks
+from suchus.animals.capture.tracks import MAX_LOST_FRACTION, Tracks, UnusableTracks
 
 _SWAY = 0.1  # fraction of its length by which a link between neighbours may vary: skin slides over bones
 _NOISES = 4.0  # standard deviations of noise by which it may vary in addition
@@ -45,7 +45,7 @@ class Screened(NamedTuple):
     """What else was found, a sentence each, which names the keypoints."""
 
 
-def screened(tracks: Tracks) -> Screened:
+def screen_tracks(tracks: Tracks) -> Screened:
     """Return the plausible part of tracks.
 
     Raises:
@@ -98,10 +98,11 @@ def _lost_keypoints(tracks: Tracks, phrase: str = "is lost") -> dict[str, str]:
     """Return the keypoints that are hardly ever seen."""
     lost_fractions = {name: float(np.mean(np.isnan(tracks.at(name)).any(axis=-1))) for name in tracks.points}
     return {
-        name: f"{phrase} in {100 * lost_fraction:.0f} % of the frames; at most {100 * LOST:.0f} % may be: track it "
+        name: f"{phrase} in {100 * lost_fraction:.0f} % of the frames; at most {100 * MAX_LOST_FRACTION:.0f} % may "
+        f"be: track it "
         "again, or lower the confidence that is asked for"
         for name, lost_fraction in lost_fractions.items()
-        if lost_fraction > LOST
+        if lost_fraction > MAX_LOST_FRACTION
     }
 
 
@@ -223,12 +224,12 @@ def _unsteady(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[
             )
         faults[worst_point] = (
             "does not move with its neighbours: its distance from "
-            f"{' and '.join(beside(chain, worst_point))} does not stay; track it again"
+            f"{' and '.join(midline_neighbours(chain, worst_point))} does not stay; track it again"
         )
         chain.remove(worst_point)
 
 
-def beside(chain: Sequence[str], name: str) -> list[str]:
+def midline_neighbours(chain: Sequence[str], name: str) -> list[str]:
     """Return the neighbours of a keypoint on the midline, the front one first."""
     index = chain.index(name)
     return [chain[i] for i in (index - 1, index + 1) if 0 <= i < len(chain)]

@@ -96,7 +96,7 @@ def _body(stride_tracks: Tracks, period: float) -> dict[str, tuple[float, float]
         place = stride_tracks.at(name)[:, :2]
         n = int(np.isfinite(place[:, 0]).sum())
         if n >= _MIN_FRAMES:
-            count = harmonics_for(n, stride_tracks.rate * period, most=3)
+            count = harmonics_for(n, stride_tracks.rate * period, max_harmonics=3)
             courses = [fit(stride_tracks.time, row, period, harmonics=count, drift=1) for row in place.T]
             advances.append([course.drift[0] * period for course in courses])
             noise.append(float(np.linalg.norm([course.noise for course in courses]) / np.sqrt(2 * n)))
@@ -122,7 +122,11 @@ def _amplitude_row(
     if n < _MIN_FRAMES:
         return {}
     course = fit(
-        stride_tracks.time, series, period, harmonics=harmonics_for(n, stride_tracks.rate * period, most=3), drift=drift
+        stride_tracks.time,
+        series,
+        period,
+        harmonics=harmonics_for(n, stride_tracks.rate * period, max_harmonics=3),
+        drift=drift,
     )
     if drift:
         return {name: (course.drift[0] * period, _Z_95 * _SLOPE_INFLATION * _SLOPE * course.noise / np.sqrt(n))}
@@ -261,14 +265,19 @@ def _put_curvature(data: xr.Dataset, tracks: Tracks, period: float, zero: float,
         n = int(np.isfinite(series).sum())
         if n < _MIN_FRAMES:
             continue
-        mean_fit = fit(tracks.time, series, period, harmonics=harmonics_for(n, tracks.rate * period, most=4))
+        mean_fit = fit(tracks.time, series, period, harmonics=harmonics_for(n, tracks.rate * period, max_harmonics=4))
         cycle_fits = []
         for k in range(count):
             use = (tracks.time >= tracks.time[0] + k * period) & (tracks.time < tracks.time[0] + (k + 1) * period)
             m = int(np.isfinite(series[use]).sum())
             if m >= _MIN_FRAMES:
                 cycle_fits.append(
-                    fit(tracks.time[use], series[use], period, harmonics=harmonics_for(m, tracks.rate * period, most=4))
+                    fit(
+                        tracks.time[use],
+                        series[use],
+                        period,
+                        harmonics=harmonics_for(m, tracks.rate * period, max_harmonics=4),
+                    )
                 )
         value[i] = mean_fit.mean + mean_fit.swing(time)
         error[i] = half_width(

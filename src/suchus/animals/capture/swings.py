@@ -35,7 +35,7 @@ _EXACT = 1e-9  # relative tolerance of a fit
 _GRID = np.linspace(0.0, 1.0, 161)
 
 
-class Middles(NamedTuple):
+class SwingMidpoints(NamedTuple):
     """Times of the middle of each swing of a foot, in ascending order."""
 
     time: Float[np.ndarray, " swing"]
@@ -80,7 +80,7 @@ class _Frames(NamedTuple):
     stride: Float[np.ndarray, " swing"]  # [m or px]
 
 
-def middles(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: float) -> Middles:
+def swing_midpoints(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: float) -> SwingMidpoints:
     """Return the middles of all complete swings; there may be none.
 
     Args:
@@ -91,9 +91,9 @@ def middles(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: fl
     """
     frames, parameters = _swing_frames(time / period, place, _turns(time / period, forward))
     if not len(parameters):
-        return Middles(np.zeros(0), np.zeros(0))
+        return SwingMidpoints(np.zeros(0), np.zeros(0))
     parameters, error, _, _, _ = _fit_each_swing(frames, parameters)
-    return Middles(parameters[:, :2].mean(axis=1) * period, error * period)
+    return SwingMidpoints(parameters[:, :2].mean(axis=1) * period, error * period)
 
 
 def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: float) -> Swing | None:
@@ -363,7 +363,7 @@ class Clock(NamedTuple):
         return np.asarray(interpolation + self.period * extrapolation)
 
 
-def paced(feet: Mapping[str, Middles], period: float) -> Clock:
+def walk_clock(feet: Mapping[str, SwingMidpoints], period: float) -> Clock:
     """Return the clock of a walk; a uniform one if too few swings were seen.
 
     Each foot has a constant phase lag behind the first foot on this clock.

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Complex, Float
 
-from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, renamed
+from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, map_keypoint_names
 from suchus.core.checks import require
 from suchus.core.errors import UnreadableFile
 from suchus.core.files import write
@@ -82,7 +82,7 @@ def read_table(
     scale = 1.0 if unit == "px" else UNITS[unit]
     return Tracks(
         time=values[:, 0],
-        points=renamed(points, names, path.name),
+        points=map_keypoint_names(points, names, path.name),
         position=scale * position,
         unit="px" if unit == "px" else "m",
         source=path.name,
@@ -187,7 +187,7 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-LEAST_HARMONICS, MOST_HARMONICS = 4, 6
+MIN_HARMONICS, MAX_HARMONICS = 4, 6
 """How many close the seam of a mean cycle: fewer lose the joints' movement, more follow the jump."""
 
 
@@ -220,7 +220,7 @@ def is_angle_table(path: str | Path) -> bool:
         return file.read(16).removeprefix(b"\xef\xbb\xbf").partition(b",")[0].strip() == b"time"
 
 
-def read_angles(path: str | Path, *, harmonics: int = MOST_HARMONICS) -> AngleCycle:
+def read_angles(path: str | Path, *, harmonics: int = MAX_HARMONICS) -> AngleCycle:
     """Read a table of one cycle: ``time`` as a share of it, then an angle in degrees for every joint.
 
     Args:
@@ -232,7 +232,7 @@ def read_angles(path: str | Path, *, harmonics: int = MOST_HARMONICS) -> AngleCy
         UnreadableFile: there is no such table, or it does not hold one whole cycle.
     """
     path = Path(path)
-    require("angles", "harmonics", harmonics, LEAST_HARMONICS, MOST_HARMONICS, "")
+    require("angles", "harmonics", harmonics, MIN_HARMONICS, MAX_HARMONICS, "")
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             rows = [row for row in csv.reader(file) if row]

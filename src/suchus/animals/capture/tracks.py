@@ -12,7 +12,7 @@ from jaxtyping import Float
 from suchus.core.errors import SuchusError
 from suchus.robot.design import LEGS
 
-NEEDED = ("shoulder", "hip", "tail_base", "tail_tip", *LEGS)
+GAIT_KEYPOINTS = ("shoulder", "hip", "tail_base", "tail_tip", *LEGS)
 """Keypoints that a gait is read from, besides ``neck`` or ``snout``; measurements do with fewer."""
 
 UNITS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": float("nan")}
@@ -22,7 +22,7 @@ _MIN_FRAMES = 4  # frames; where their steps are even, none is longer than all t
 _RATE = (5.0, 5000.0)  # [1/s]; slower cannot show a step, faster is no camera
 _TRUNK = (0.01, 5.0)  # [m]; from a hatchling lizard to a crocodile longer than any measured
 _JUMPED = 3.0  # times the usual length of a link; longer, and one of its points is somewhere else
-LOST = 0.5
+MAX_LOST_FRACTION = 0.5
 """Share of lost frames beyond which a point is useless [-]."""
 View = Literal["top", "side"]
 """Where a camera stands: above, so that bends to the sides are seen, or beside, so that those up and down are."""
@@ -196,7 +196,7 @@ def known_name(name: str) -> str:
     return re.sub(r"[\s\-_]+", "_", spaced).lower()
 
 
-def renamed(points: tuple[str, ...], names: Mapping[str, str], source: str) -> tuple[str, ...]:
+def map_keypoint_names(points: tuple[str, ...], names: Mapping[str, str], source: str) -> tuple[str, ...]:
     """Return our names of a file's keypoints.
 
     Args:
@@ -250,7 +250,7 @@ def check_size(tracks: Tracks) -> None:
 def lacking(points: Collection[str]) -> tuple[str, ...]:
     """Return the keypoints that a gait is read from and that are not among these."""
     head = () if {"neck", "snout"} & set(points) else ("neck (or snout)",)
-    return (*head, *(name for name in NEEDED if name not in points))
+    return (*head, *(name for name in GAIT_KEYPOINTS if name not in points))
 
 
 def _check_time(tracks: Tracks) -> None:

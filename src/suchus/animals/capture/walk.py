@@ -10,10 +10,10 @@ import xarray as xr
 from suchus.animals.capture.angles import azimuth, bend_angles, joint_bends, standing_index, wrapped
 from suchus.animals.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
 from suchus.animals.capture.feet import GRID, FootContact, FootSweep, contact, continuous, forward_path, steps, sweep
-from suchus.animals.capture.late import late
-from suchus.animals.capture.screen import screened
+from suchus.animals.capture.late import find_late_keypoints
+from suchus.animals.capture.screen import screen_tracks
 from suchus.animals.capture.strides import half_width, over_phase, per_stride, times
-from suchus.animals.capture.swings import Clock, paced
+from suchus.animals.capture.swings import Clock, walk_clock
 from suchus.animals.capture.tracks import Tracks, UnusableTracks, check_size, check_tracks, lacking
 from suchus.core.checks import require
 from suchus.robot.design import LEGS
@@ -32,7 +32,7 @@ _PLACES = 0.7  # least fraction of frames with a point, for its advance in a cyc
 _ADVANCE = 0.3  # least advance of the body over the distance that feet sweep
 
 
-class Seen(NamedTuple):
+class Measurement(NamedTuple):
     """A number that was seen."""
 
     value: float
@@ -62,7 +62,7 @@ class Walk:
     """Whether heights were seen."""
     tail_share: float
     """Where along the tail its lateral angle was taken, 1 at the tip [-]."""
-    numbers: Mapping[str, Seen]
+    numbers: Mapping[str, Measurement]
     """Every number by name; see ``docs/capture.md``."""
     bends: Mapping[str, complex]
     """First harmonic of each of the four angles: the angle is its steady part and the real part of this times
@@ -112,7 +112,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     """
     require("observe", "tail_share", tail_share, 0.05, 1.0, "")
     check_tracks(tracks)
-    screening = screened(tracks)
+    screening = screen_tracks(tracks)
     faults = dict(screening.wrong)
     tail_end = tracks.tail_chain[-2:]
     while True:
@@ -120,7 +120,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             faults["tail_tip"] = f"does not show how the tail bends without {tail_end[0]}"
         trusted_tracks = screening.tracks.without(faults)
         tracks, clock, period = _timed(trusted_tracks)
-        runs_late = late(tracks, clock, trusted_tracks.time)
+        runs_late = find_late_keypoints(tracks, clock, trusted_tracks.time)
         if not runs_late:
             break
         faults |= runs_late
@@ -154,7 +154,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             [cycle_reading.trunk for cycle_reading in cycle_readings if np.isfinite(cycle_reading.trunk)]
         )
         spread = float(np.std(lengths, ddof=1)) if len(lengths) > 1 else float("nan")
-        numbers["trunk_length"] = Seen(
+        numbers["trunk_length"] = Measurement(
             mean_reading.trunk, spread, float(half_width(mean_reading.trunk, lengths, 0.0)), tracks.unit
         )
     numbers |= _paced(strides, numbers["period"], mean_reading, tracks.unit)
@@ -165,7 +165,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         unsure = float(np.hypot(lead.middle_error, duties))
     unlike = _widen_late_phases(numbers)
     for name, chain in _chains(tracks).items():
-        numbers[f"standing_{name}"] = Seen(_index(tracks, chain, period), float("nan"), float("nan"), "-")
+        numbers[f"standing_{name}"] = Measurement(_index(tracks, chain, period), float("nan"), float("nan"), "-")
     return Walk(
         source=tracks.source,
         cycles=float((tracks.time[-1] - tracks.time[0]) / period),
@@ -202,7 +202,7 @@ def _timed(tracks: Tracks) -> tuple[Tracks, Clock, float]:
     tracks = tracks.ahead()
     signals = _swinging(tracks)
     rough_period = find_period(tracks.time, np.array(list(signals.values())), tracks.source)
-    clock = paced({leg: steps(tracks, leg, rough_period) for leg in tracks.legs}, rough_period)
+    clock = walk_clock({leg: steps(tracks, leg, rough_period) for leg in tracks.legs}, rough_period)
     return replace(tracks, time=clock.read(tracks.time)), clock, clock.period
 
 
@@ -242,7 +242,7 @@ def _measurements(
     zero: float,
     clock: Clock,
     start: float,
-) -> dict[str, Seen]:
+) -> dict[str, Measurement]:
     """Return every number with its spread and its interval."""
     count, cycle_numbers, numbers = (
         len(cycle_readings),
@@ -258,22 +258,22 @@ def _measurements(
                 continue
             duties = np.mean([foot.duty_error for foot in feet.values()]) / 2
             error = float(np.linalg.norm(np.array([error, feet["LF"].middle_error, duties], dtype=float)))
-        numbers[name] = Seen(value, spread, error, _unit(name))
+        numbers[name] = Measurement(value, spread, error, _unit(name))
     for leg, foot in feet.items():
-        numbers[f"duty_{leg}"] = Seen(foot.duty, foot.scatter, foot.duty_error, "-")
+        numbers[f"duty_{leg}"] = Measurement(foot.duty, foot.scatter, foot.duty_error, "-")
         if "LF" not in feet:
             continue
         lead_foot = feet["LF"]
         error = float(np.hypot(lead_foot.middle_error, foot.middle_error)) if leg != "LF" else 0.0
-        numbers[f"phase_{leg}"] = Seen((lead_foot.middle - foot.middle) % 1.0, float("nan"), error, "cycle")
+        numbers[f"phase_{leg}"] = Measurement((lead_foot.middle - foot.middle) % 1.0, float("nan"), error, "cycle")
     durations = np.diff(clock.seconds(start / mean_reading.period + np.arange(count + 1)))
     spread = float(np.std(durations, ddof=1)) if count >= 2 else float("nan")
     error = times(count) * spread / np.sqrt(count) if count >= 2 else float("nan")
-    numbers["period"] = Seen(mean_reading.period, spread, error, "s")
+    numbers["period"] = Measurement(mean_reading.period, spread, error, "s")
     return numbers
 
 
-def _widen_late_phases(numbers: dict[str, Seen]) -> list[str]:
+def _widen_late_phases(numbers: dict[str, Measurement]) -> list[str]:
     """Widen the intervals of the phases of feet that may be late in the film, and return notes.
 
     A foot with late frames has a late phase, and lies behind its partner by the distance that the body advances in that
@@ -314,7 +314,7 @@ def _widen_late_phases(numbers: dict[str, Seen]) -> list[str]:
     return notes
 
 
-def _paced(strides: xr.Dataset, period: Seen, mean_reading: _Reading, unit: str) -> dict[str, Seen]:
+def _paced(strides: xr.Dataset, period: Measurement, mean_reading: _Reading, unit: str) -> dict[str, Measurement]:
     """Return how far and how fast the body goes, and how it turns: means over all cycles, intervals over strides."""
     numbers = {}
     for name, size in (("stride_length", unit), ("speed", f"{unit}/s"), ("turning", "rad")):
@@ -329,7 +329,7 @@ def _paced(strides: xr.Dataset, period: Seen, mean_reading: _Reading, unit: str)
             error = float(half_width(value, stride_values, 0.0))
             if name == "speed":  # the mean of the speeds of strides is not the mean speed
                 error = float(np.hypot(error, value * period.error / period.value))
-            numbers[name] = Seen(value, spread, error, size)
+            numbers[name] = Measurement(value, spread, error, size)
     for leg in strides.leg.values if "step_length" in strides else ():
         stride_values = strides.step_length.sel(leg=leg).values
         stride_values = stride_values[np.isfinite(stride_values)]
@@ -340,7 +340,7 @@ def _paced(strides: xr.Dataset, period: Seen, mean_reading: _Reading, unit: str)
                 )
             )
             spread = float(np.std(stride_values, ddof=1)) if len(stride_values) > 1 else float("nan")
-            numbers[f"step_length_{leg}"] = Seen(float(np.mean(stride_values)), spread, error, unit)
+            numbers[f"step_length_{leg}"] = Measurement(float(np.mean(stride_values)), spread, error, unit)
     return numbers
 
 
@@ -422,7 +422,7 @@ def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
         frame_count = int(np.isfinite(series).sum())
         if frame_count:
             fits[name] = fit(
-                tracks.time, series, period, harmonics=harmonics_for(frame_count, tracks.rate * period, most=6)
+                tracks.time, series, period, harmonics=harmonics_for(frame_count, tracks.rate * period, max_harmonics=6)
             )
     place, advance = tracks.at(tracks.line[1]), float("nan")
     if np.isfinite(place[:, 0]).mean() >= _PLACES:

@@ -3,8 +3,8 @@
 ``swum_forces`` is asked for in ``forces.water``, since it loads the flow solver.
 """
 
-from suchus.animals.forces.body import DRAWS, RUNGS, Rung, Unknown, sized
+from suchus.animals.forces.body import DRAWS, RUNGS, Rung, Unknown, resize_body
 from suchus.animals.forces.ground import played_forces, walked_forces
-from suchus.animals.forces.words import said
+from suchus.animals.forces.words import summary_lines
 
-__all__ = ["DRAWS", "RUNGS", "Rung", "Unknown", "played_forces", "said", "sized", "walked_forces"]
+__all__ = ["DRAWS", "RUNGS", "Rung", "Unknown", "played_forces", "resize_body", "summary_lines", "walked_forces"]

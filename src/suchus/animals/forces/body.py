@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 from scipy.stats import norm, qmc
 
-from suchus.animals.capture import Seen, UnusableTracks, Walk
+from suchus.animals.capture import Measurement, UnusableTracks, Walk
 from suchus.core.checks import Checks
 from suchus.robot.design import Robot, Rod, Segment, Shell
 from suchus.robot.design.pieces import volumes
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 
 Rung = Literal["sections", "slice", "space"]
 """Models of the water: forces section by section, a plane flow as deep as the body, the flow around the body."""
@@ -81,7 +81,7 @@ def middle(ends: tuple[float, float]) -> float:
     return 0.5 * (ends[0] + ends[1])
 
 
-def even(ends: tuple[float, float], fraction: float) -> float:
+def interpolate_bounds(ends: tuple[float, float], fraction: float) -> float:
     """Return the value at a fraction of a range, 0 to 1."""
     return float(ends[0] + fraction * (ends[1] - ends[0]))
 
@@ -121,7 +121,7 @@ def unsure(walk: Walk) -> tuple[str, ...]:
     return names
 
 
-def drawn(walk: Walk, shares: Mapping[str, float]) -> Walk:
+def sample_walk(walk: Walk, shares: Mapping[str, float]) -> Walk:
     """Return a possible walk: each number is at a quantile of its distribution.
 
     Args:
@@ -143,11 +143,11 @@ def drawn(walk: Walk, shares: Mapping[str, float]) -> Walk:
     return replace(walk, numbers=numbers, bends=bends)
 
 
-def _change(walk: Walk, numbers: Mapping[str, Seen], name: str) -> float:
+def _change(walk: Walk, numbers: Mapping[str, Measurement], name: str) -> float:
     return numbers[name].value - walk.numbers[name].value if name in numbers else 0.0
 
 
-def _deviate(name: str, measurement: Seen, deviation: float) -> float:
+def _deviate(name: str, measurement: Measurement, deviation: float) -> float:
     """Return a number at some standard errors from its mean, within the range that is possible for it.
 
     Args:
@@ -163,7 +163,7 @@ def _deviate(name: str, measurement: Seen, deviation: float) -> float:
     return float(value)
 
 
-def sized(robot: Robot, length: float, mass: float | None = None) -> Robot:
+def resize_body(robot: Robot, length: float, mass: float | None = None) -> Robot:
     """Return a body scaled in length, and in mass.
 
     Args:
@@ -172,10 +172,10 @@ def sized(robot: Robot, length: float, mass: float | None = None) -> Robot:
         mass: of the whole body [kg]; in proportion to the cube of the length if None.
     """
     is_unchanged = abs(length - 1.0) < 1e-12 and mass is None
-    return robot if is_unchanged else scaled(robot, length_factor=length, mass_factor=mass and mass / robot.mass)
+    return robot if is_unchanged else rescale(robot, length_factor=length, mass_factor=mass and mass / robot.mass)
 
 
-def widened(robot: Robot, volume: float) -> Robot:
+def widen_body(robot: Robot, volume: float) -> Robot:
     """Return a body with a given volume and the same length; width and height of its axis are scaled.
 
     Args:
@@ -211,7 +211,7 @@ def _wider(segment: Segment, factor: float) -> Segment:
     return replace(segment, shapes=tuple(shapes))
 
 
-def put(
+def add_with_interval(
     data: xr.Dataset,
     name: str,
     dims: tuple[str, ...],

@@ -13,20 +13,31 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus.animals.capture import AngleCycle, UnusableTracks, Walk, to_curves, to_gait
-from suchus.animals.capture.retarget import NEEDED, Duty, mean_of
+from suchus.animals.capture.retarget import ROBOT_NEEDS, Duty, mean_of
 from suchus.animals.capture.strides import PHASES
-from suchus.animals.forces.body import Quantities, Unknown, choices, drawn, errors, even, middle, put, sized, unsure
+from suchus.animals.forces.body import (
+    Quantities,
+    Unknown,
+    add_with_interval,
+    choices,
+    errors,
+    interpolate_bounds,
+    middle,
+    resize_body,
+    sample_walk,
+    unsure,
+)
 from suchus.article.paper.walking_salamanders import ANIMAL
 from suchus.core.errors import OutsideLimits
 from suchus.core.progress import Progress, silent
 from suchus.robot.design import GRAVITY, LEGS, Girdle, Robot, Servo, check_needs, hips_ahead, layout
 from suchus.robot.design.ground import Ground
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.design.servos import with_full_torque, with_servos
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import START, Curve, Gait, suits
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import mean_cycle, whole
+from suchus.sim.metrics import mean_cycle, require_complete
 from suchus.sim.metrics.foot_forces import PARTS, FootStep, Window, advance, stance_forces, step, weight
 
 SETTLE, CYCLES = 1, 3
@@ -99,12 +110,12 @@ def walked_forces(
             be walked.
         OutsideLimits: the body cannot follow.
     """
-    check_needs(robot, NEEDED, "forces of a filmed walk")
+    check_needs(robot, ROBOT_NEEDS, "forces of a filmed walk")
     names, unknown = unsure(walk), unknown or Unknown()
     trunk_length = trunk if trunk is not None else _trunk(walk)
-    body = sized(robot, trunk_length / hips_ahead(robot, 0))
-    base_gait = base or own_gait(robot)
-    body, notes = _fit_body(sized(body, 1.0, middle(unknown.masses(body))), walk, base_gait, trunk_length)
+    body = resize_body(robot, trunk_length / hips_ahead(robot, 0))
+    base_gait = base or default_gait(robot)
+    body, notes = _fit_body(resize_body(body, 1.0, middle(unknown.masses(body))), walk, base_gait, trunk_length)
     rest_fraction = 0.0 if duty == "retraction" else 1.0
     likely = dict.fromkeys((*names, "friction", "mass", "lift", "height"), 0.5) | {"rests": rest_fraction}
     trials: list[_Try] = []
@@ -174,7 +185,7 @@ def _stronger(servo: Servo) -> Servo:
 
 
 def _lengthen_limb(girdle: Girdle, factor: float) -> Girdle:
-    return replace(girdle, limb=scaled(girdle.limb, length_factor=factor, mass_factor=1.0))
+    return replace(girdle, limb=rescale(girdle.limb, length_factor=factor, mass_factor=1.0))
 
 
 def _reaches(body: Robot, walk: Walk, gait: Gait, trunk: float) -> bool:
@@ -193,19 +204,21 @@ def _reaches(body: Robot, walk: Walk, gait: Gait, trunk: float) -> bool:
 
 def _try(walk: Walk, body: Robot, base: Gait, unknown: Unknown, shares: Mapping[str, float], trunk: float) -> _Try:
     """Return the choice at shares of the distributions of all that is not known."""
-    sample = drawn(walk, shares)
+    sample = sample_walk(walk, shares)
     numbers = dict(sample.numbers)
     for leg in (str(leg) for leg in walk.cycle.leg.values):
         retraction, duty = numbers[f"retraction_{leg}"], numbers[f"duty_{leg}"].value
-        numbers[f"retraction_{leg}"] = retraction._replace(value=even((retraction.value, duty), shares["rests"]))
+        numbers[f"retraction_{leg}"] = retraction._replace(
+            value=interpolate_bounds((retraction.value, duty), shares["rests"])
+        )
     sample = replace(sample, numbers=numbers)
     gait = to_gait(sample, body, base, name="filmed", girdles="apart", time="own", trunk=trunk).gait
     if not walk.upright:
-        gait = _scale_parameter(body, gait, "lift", even(unknown.lift, shares["lift"]))
-    gait = _scale_parameter(body, gait, "height", even(unknown.height, shares["height"]))
+        gait = _scale_parameter(body, gait, "lift", interpolate_bounds(unknown.lift, shares["lift"]))
+    gait = _scale_parameter(body, gait, "height", interpolate_bounds(unknown.height, shares["height"]))
     phase_lag = (gait.duty_factor - mean_of(walk, "duty")) / 2  # both have LF's mid-stance in common
-    mass = even(unknown.masses(body), shares["mass"])
-    return _Try(gait, even(unknown.friction, shares["friction"]), mass, phase_lag)
+    mass = interpolate_bounds(unknown.masses(body), shares["mass"])
+    return _Try(gait, interpolate_bounds(unknown.friction, shares["friction"]), mass, phase_lag)
 
 
 def _scale_parameter(body: Robot, gait: Gait, name: str, factor: float) -> Gait:
@@ -246,15 +259,17 @@ def played_forces(
     check_needs(robot, ("four_limbs",), "forces of a filmed walk")
     unknown = unknown or Unknown()
     gait = to_curves(cycle, robot, name="filmed", period=period)
-    body = sized(robot, 1.0, middle(unknown.masses(robot)))
+    body = resize_body(robot, 1.0, middle(unknown.masses(robot)))
     waves = [f"{component} {curve.servo}" for curve in gait.curves for component in ("cosine", "sine")]
     likely = dict.fromkeys((*waves, "friction", "mass"), 0.5)
     residuals = {curve.servo: float(size) for curve, size in zip(gait.curves, cycle.residual, strict=True)}
     trials = []
     for shares in [likely, *choices(list(likely), unknown.draws)]:
         curves = tuple(_waved(curve, residuals[curve.servo], shares) for curve in gait.curves)
-        mass = even(unknown.masses(robot), shares["mass"])
-        trials.append(_Try(replace(gait, curves=curves), even(unknown.friction, shares["friction"]), mass, 0.0))
+        mass = interpolate_bounds(unknown.masses(robot), shares["mass"])
+        trials.append(
+            _Try(replace(gait, curves=curves), interpolate_bounds(unknown.friction, shares["friction"]), mass, 0.0)
+        )
     responses = _simulate_trials(body, trials, progress)
     notes = [
         f"the table shows no size: the body is {robot.name}'s, {body.length:.3g} m long",
@@ -284,7 +299,7 @@ def _simulate_trials(body: Robot, trials: Sequence[_Try], progress: Progress) ->
         for trial in trials
     ]
     longest_period = max(trial.gait.period for trial in trials)
-    record = whole(
+    record = require_complete(
         simulate(runs, duration=START + (SETTLE + CYCLES) * longest_period + 0.1 * longest_period, progress=progress)
     )
     return [_ground_response(record.isel(run=i), trial) for i, trial in enumerate(trials)]
@@ -332,11 +347,13 @@ def _forces_dataset(
     newtons = GRAVITY * np.array(masses)[:, None, None]
     for i, direction in enumerate(PARTS):
         meaning = f"force of the ground on the foot, {_DIRECTIONS[direction]}"
-        put(data, direction, ("leg", "phase"), newtons * feet[:, :, i], ("N", meaning))
-        put(data, f"{direction}_bw", ("leg", "phase"), feet[:, :, i], ("body weight", meaning))
+        add_with_interval(data, direction, ("leg", "phase"), newtons * feet[:, :, i], ("N", meaning))
+        add_with_interval(data, f"{direction}_bw", ("leg", "phase"), feet[:, :, i], ("body weight", meaning))
     for name in ("belly", "tail"):
         loads = np.array([getattr(response, name) for response in responses])
-        put(data, f"{name}_bw", ("phase",), loads, ("body weight", f"force of the ground on the {name}, up"))
+        add_with_interval(
+            data, f"{name}_bw", ("phase",), loads, ("body weight", f"force of the ground on the {name}, up")
+        )
     table = Quantities()
     table.add("mass", masses, "kg", "of the animal")
     table.add("length", [body.length], "m", "of the whole body")

@@ -21,19 +21,19 @@ from suchus.animals.forces.body import (
     Quantities,
     Rung,
     Unknown,
+    add_with_interval,
     choices,
     errors,
-    even,
+    interpolate_bounds,
     middle,
-    put,
-    sized,
+    resize_body,
     unsure,
-    widened,
+    widen_body,
 )
 from suchus.core.errors import UnknownName
 from suchus.core.progress import Progress, portion, silent
-from suchus.flow.immerse import THINNEST
-from suchus.flow.setup import LAYER_CELLS
+from suchus.flow.immerse import MIN_THICKNESS
+from suchus.flow.setup import MIN_LAYER_CELLS
 from suchus.robot.design import Robot, check_needs, layout
 from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import volumes
@@ -44,11 +44,11 @@ from suchus.robot.motion.swim import lateral_servos
 from suchus.sim.land.lake import Lake
 from suchus.sim.land.prescribed import free_sections
 from suchus.sim.metrics import SIMILARITY, swim_numbers
-from suchus.swimming.water import Outline, cycle, displaced, recoil, undulation
+from suchus.swimming.water import Outline, cycle, displaced_mass, recoil, undulation
 from suchus.swimming.water.setting import SwimSetting
 from suchus.swimming.water.swim_setup import ResolvedSwim
 
-THICK = "sections, thick water"
+THICK_WATER = "sections, thick water"
 """Name of the sections in water as thick as that of the flows, beside which these stand."""
 CELLS = {"slice": 80, "space": 64}
 """Cells per body length of the flows [-], more where a body is so thin that these do not show it."""
@@ -59,7 +59,7 @@ _KINDS = (("thrust", "N", "force of the water, forward"), ("aside", "N", "force 
 _LEAST_BEND = 0.5  # share of the midline over which bends must be seen
 
 
-class _Swum(NamedTuple):
+class _SwimCycle(NamedTuple):
     """One swim: its last cycle."""
 
     force: Float[np.ndarray, "kind phase"]  # thrust, aside [N], power [W]
@@ -109,8 +109,8 @@ def swum_forces(
     unsure(walk)
     unknown = unknown or Unknown()
     _check_bends(walk)
-    body = sized(robot, _body_length(walk, length) / robot.length)
-    body = body if unknown.mass is None else widened(body, middle(unknown.mass) / WATER_DENSITY)
+    body = resize_body(robot, _body_length(walk, length) / robot.length)
+    body = body if unknown.mass is None else widen_body(body, middle(unknown.mass) / WATER_DENSITY)
     bends = _Bends(walk, body)
     names = (*bends.unsure, "cross_drag", "thickening", "added_mass", "shedding", "viscosity")
     likely = dict.fromkeys(names, 0.5)
@@ -120,18 +120,18 @@ def swum_forces(
     cells_by_rung = {rung: _cells(body, rung) for rung in flow_rungs} | dict(cells or {})
     viscosities = {rung: _viscosity(body, gaits[0], cells_by_rung[rung]) for rung in flow_rungs}
     work = 1 + len(flow_rungs) * 4
-    swims: dict[str, list[_Swum]] = {"sections": []}
+    swims: dict[str, list[_SwimCycle]] = {"sections": []}
     for i, (gait, shares) in enumerate(zip(gaits, all_shares, strict=True)):
         portion(progress, 0, work)("sections", i / len(gaits))
         swims["sections"].append(_by_sections(body, gait, _lake(body, unknown, shares)))
     if flow_rungs:
         water = Water(viscosity=max(viscosities.values()), cross_drag=middle(unknown.cross_drag), thickening=1.0)
         lake = replace(_lake(body, unknown, likely), water=water)
-        swims[THICK] = [_by_sections(body, gaits[0], lake)]
+        swims[THICK_WATER] = [_by_sections(body, gaits[0], lake)]
     for number, rung in enumerate(flow_rungs):
         rung_progress = portion(progress, 1 + 4 * number, work)
         swims[rung] = [_by_flow(body, gaits[0], rung, cells_by_rung[rung], max(viscosities.values()), rung_progress)]
-    order = [name for name in ("sections", THICK, "slice", "space") if name in swims]
+    order = [name for name in ("sections", THICK_WATER, "slice", "space") if name in swims]
     if "sections" not in rungs:
         order.remove("sections")
     data = _forces_dataset(walk, body, gaits[0], {name: _spread(swims[name], swims["sections"]) for name in order})
@@ -232,7 +232,7 @@ class _Bends:
         ])  # fmt: skip
         first_harmonic = self._first_harmonic + self._error * deviation
         hinges, servos = yaw_hinges(self._body), layout(self._body).servos
-        hinge_harmonics = _shared(first_harmonic, self._places, hinges.places)
+        hinge_harmonics = _hinge_harmonics(first_harmonic, self._places, hinges.places)
         lateral = lateral_servos(self._body)
         servo_harmonics = [
             sum(hinge_harmonics[k] for k in range(len(hinge_harmonics)) if servos[hinges.servos[k]] == name)
@@ -247,7 +247,7 @@ class _Bends:
         )
 
 
-def _shared(
+def _hinge_harmonics(
     harmonics: Complex[np.ndarray, " place"], places: Float[np.ndarray, " place"], hinges: Sequence[float]
 ) -> list[complex]:
     """Return the bend of each hinge: that of the midline between the middles to its neighbours.
@@ -271,7 +271,7 @@ def _shared(
 
 def _lake(body: Robot, unknown: Unknown, shares: Mapping[str, float]) -> Lake:
     """Return the lake with the coefficients of the water at fractions of their ranges."""
-    coefficients = {name: even(getattr(unknown, name), shares[name])
+    coefficients = {name: interpolate_bounds(getattr(unknown, name), shares[name])
               for name in ("cross_drag", "thickening", "added_mass", "shedding", "viscosity")}  # fmt: skip
     water = Water(
         viscosity=coefficients["viscosity"],
@@ -282,10 +282,10 @@ def _lake(body: Robot, unknown: Unknown, shares: Mapping[str, float]) -> Lake:
     )  # fmt: skip
 
 
-def _by_sections(body: Robot, gait: Gait, lake: Lake) -> _Swum:
+def _by_sections(body: Robot, gait: Gait, lake: Lake) -> _SwimCycle:
     swim = free_sections(body, gait, lake, CYCLES)
     rows = [_resample(swim.phase.values, swim[f"last_{name}"].values) for name, _, _ in _KINDS]
-    return _Swum(np.array(rows), float(swim.speed[-1]))
+    return _SwimCycle(np.array(rows), float(swim.speed[-1]))
 
 
 def _resample(phase: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -298,17 +298,17 @@ def _viscosity(body: Robot, gait: Gait, cells: int) -> float:
     motion = undulation(outline, gait)
     curve = cycle(outline, motion, *recoil(outline, motion, 0.0, Water()))
     speed = float(np.hypot(curve.x_rate, curve.y_rate).max())
-    return 1.01 * speed * (LAYER_CELLS * body.length / cells) ** 2 / body.length
+    return 1.01 * speed * (MIN_LAYER_CELLS * body.length / cells) ** 2 / body.length
 
 
 def _cells(body: Robot, rung: str) -> int:
     """Return the cells per body length of a flow, enough to resolve the thickness of the body."""
     half_widths, _ = Outline(body, 65).silhouette
-    min_cells = 1.02 * THINNEST * body.length / (2.0 * float(np.max(half_widths)))
+    min_cells = 1.02 * MIN_THICKNESS * body.length / (2.0 * float(np.max(half_widths)))
     return CELLS[rung] if rung == "slice" else max(CELLS[rung], int(np.ceil(min_cells)))
 
 
-def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, progress: Progress) -> _Swum:
+def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, progress: Progress) -> _SwimCycle:
     """Return a swim in a flow; a slice has the depth at which it displaces as much water as the body."""
     outline = Outline(body, cells + 1)
     bluntness = 1.75 if rung == "slice" else 0.0
@@ -325,17 +325,17 @@ def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, p
     series = sim.record.after(swim.end - 1.05 * swim.period)
     phase = (series.time - 0.5 * series.step - swim.end + swim.period) / swim.period
     half_widths, _ = outline.silhouette
-    depth = displaced(outline, 1.0) / float(np.trapezoid(2 * half_widths, outline.s)) if rung == "slice" else 1.0
+    depth = displaced_mass(outline, 1.0) / float(np.trapezoid(2 * half_widths, outline.s)) if rung == "slice" else 1.0
     force = series.force()
     columns = (-force[:, 0], force[:, 1], series.column("power"))
     clock = (np.arange(PHASES) + 0.5) / PHASES
     rows = [depth * _resample(clock, np.interp(clock, phase, values)) for values in columns]
     is_last_cycle = series.time > swim.end - swim.period
     speed = -float(np.average(series.column("velocity_x")[is_last_cycle], weights=series.step[is_last_cycle]))
-    return _Swum(np.array(rows), speed)
+    return _SwimCycle(np.array(rows), speed)
 
 
-def _spread(swims: Sequence[_Swum], sections: Sequence[_Swum]) -> list[_Swum]:
+def _spread(swims: Sequence[_SwimCycle], sections: Sequence[_SwimCycle]) -> list[_SwimCycle]:
     """Return swims that span the interval of a model of the water.
 
     A model that was run once gets the relative interval of the section model, scaled by the size of its forces.
@@ -352,7 +352,7 @@ def _spread(swims: Sequence[_Swum], sections: Sequence[_Swum]) -> list[_Swum]:
     likely_sections = sections[0]
     pace = swim.speed / likely_sections.speed if likely_sections.speed else 1.0
     return [
-        _Swum(
+        _SwimCycle(
             swim.force + scale * (section_swim.force - likely_sections.force),
             swim.speed + pace * (section_swim.speed - likely_sections.speed),
         )
@@ -360,7 +360,7 @@ def _spread(swims: Sequence[_Swum], sections: Sequence[_Swum]) -> list[_Swum]:
     ]
 
 
-def _forces_dataset(walk: Walk, body: Robot, gait: Gait, swims: Mapping[str, Sequence[_Swum]]) -> xr.Dataset:
+def _forces_dataset(walk: Walk, body: Robot, gait: Gait, swims: Mapping[str, Sequence[_SwimCycle]]) -> xr.Dataset:
     """Return forces and quantities of all rungs as one dataset."""
     data = xr.Dataset(
         coords={"phase": ("phase", np.arange(PHASES) / PHASES, {"units": "1"}), "rung": ("rung", list(swims))}
@@ -368,11 +368,13 @@ def _forces_dataset(walk: Walk, body: Robot, gait: Gait, swims: Mapping[str, Seq
     forces = np.array([[swim.force for swim in row] for row in swims.values()])  # rung answer kind phase
     speeds = np.array([[swim.speed for swim in row] for row in swims.values()])
     for i, (name, unit, meaning) in enumerate(_KINDS):
-        put(data, name, ("rung", "phase"), np.swapaxes(forces[:, :, i], 0, 1), (unit, meaning))
-    put(data, "speed", ("rung",), speeds.T, ("m/s", "speed of the body that swims as was filmed"))
-    put(data, "mean_power", ("rung",), forces[:, :, 2].mean(axis=-1).T, ("W", "mean power of the body on the water"))
+        add_with_interval(data, name, ("rung", "phase"), np.swapaxes(forces[:, :, i], 0, 1), (unit, meaning))
+    add_with_interval(data, "speed", ("rung",), speeds.T, ("m/s", "speed of the body that swims as was filmed"))
+    add_with_interval(
+        data, "mean_power", ("rung",), forces[:, :, 2].mean(axis=-1).T, ("W", "mean power of the body on the water")
+    )
     for name, i in (("peak_thrust", 0), ("peak_aside", 1)):
-        put(
+        add_with_interval(
             data, name, ("rung",), np.abs(forces[:, :, i]).max(axis=-1).T, ("N", f"greatest {name[5:]}, to either side")
         )
     table = Quantities()
@@ -417,7 +419,7 @@ def _left_open(body: Robot, viscosity: float, unknown: Unknown) -> list[str]:
     if viscosity:
         notes.append(
             f"the flows are of water with {viscosity / Water().viscosity:.3g} times the viscosity, the least that "
-            f"their grids carry; the sections stand beside them in the same water ({THICK})"
+            f"their grids carry; the sections stand beside them in the same water ({THICK_WATER})"
         )
         notes.append("a flow is computed once: its intervals are the sections', in proportion to its forces")
     return notes

@@ -11,7 +11,7 @@ _STANDS_OUT = (
 )
 
 
-def said(data: xr.Dataset) -> list[str]:
+def summary_lines(data: xr.Dataset) -> list[str]:
     """Return the main results of forces from a film, a line for each.
 
     Args:

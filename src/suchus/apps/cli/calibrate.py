@@ -70,7 +70,7 @@ def calibrate(words: Sequence[str]) -> int:
     check_replaceable(output)
     if options.what == "log":
         return _fit_log(options, output)
-    rig = Rig(options.robot, _initial_wiring(options), clocked=options.clock == "bus")
+    rig = Rig(options.robot, _initial_wiring(options), has_clock=options.clock == "bus")
     try:
         if options.what == "wiring":
             clock = BusClock(rig) if options.clock == "bus" else WallClock(rig.period)

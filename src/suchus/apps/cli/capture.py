@@ -10,15 +10,15 @@ import tyro
 import xarray as xr
 
 from suchus.animals.capture import (
-    NEEDED,
+    ROBOT_NEEDS,
     ReadingOptions,
     Tracks,
     View,
     Walk,
     angle_tables,
-    beside,
-    beside_lines,
-    driven_share,
+    compare_joints,
+    comparison_lines,
+    driven_fraction,
     is_angle_table,
     observe,
     read_angles,
@@ -29,11 +29,11 @@ from suchus.animals.capture import (
     to_gait,
     write_gait,
 )
-from suchus.animals.forces import DRAWS, RUNGS, Rung, Unknown, played_forces, said, walked_forces
+from suchus.animals.forces import DRAWS, RUNGS, Rung, Unknown, played_forces, summary_lines, walked_forces
 from suchus.animals.overlay import overlay
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
-from suchus.apps.cli.run import run_it
+from suchus.apps.cli.run import run_command_lines
 from suchus.apps.cli.terminal import working
 from suchus.apps.cli.word_checks import check_toml
 from suchus.core.files import check_replaceable, check_writable, write
@@ -42,7 +42,7 @@ from suchus.core.files.tables import COLUMNS, write_tables
 from suchus.core.progress import Progress
 from suchus.robot import blueprint
 from suchus.robot.design import Robot, check_needs
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait, check_limits
 from suchus.robot.robots import ROBOTS
 from suchus.visual.figures import captioned, places, save
@@ -146,17 +146,17 @@ def capture(words: Sequence[str]) -> int:
     if output:
         for path in places(output.parent, output.stem):
             check_replaceable(path)
-        check_needs(robot, NEEDED, "a gait from tracked keypoints")
+        check_needs(robot, ROBOT_NEEDS, "a gait from tracked keypoints")
     with working() as bars:
         move = bars.task(options.tracks.name)
         move("reading", 0.1)
         tracks = read_tracks(options.tracks, _reading_options(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        driven_fraction = driven_share(robot) if output else 1.0
-        walk = observe(tracks, tail_share=driven_fraction if options.tail_share is None else options.tail_share)
+        fraction = driven_fraction(robot) if output else 1.0
+        walk = observe(tracks, tail_share=fraction if options.tail_share is None else options.tail_share)
         lines, notes, messages = summary(walk), walk.notes, list[str]()
         if output:
-            base = options.base or own_gait(robot)
+            base = options.base or default_gait(robot)
             captured = to_gait(
                 walk,
                 robot,
@@ -167,7 +167,7 @@ def capture(words: Sequence[str]) -> int:
                 time=options.time,
                 trunk=options.trunk,
             )
-            comparison = beside(walk, robot, captured.gait)
+            comparison = compare_joints(walk, robot, captured.gait)
             lines, notes = [captured.timing, *lines], captured.notes
         if options.tables:
             move("measuring", 0.6)
@@ -181,8 +181,12 @@ def capture(words: Sequence[str]) -> int:
                 write_tables(comparison, options.tables / "beside_the_robot")
             write_gait(captured, walk, output)
             picture = _draw(walk, output.parent, output.stem)
-            messages += beside_lines(comparison, robot.name)
-            messages += [f"gait: {output}", f"diagram: {picture}", *run_it(robot, _robot_word(words), output)]
+            messages += comparison_lines(comparison, robot.name)
+            messages += [
+                f"gait: {output}",
+                f"diagram: {picture}",
+                *run_command_lines(robot, _robot_word(words), output),
+            ]
     print(*lines, *(f"note: {note}" for note in notes), *messages, sep="\n")
     return 0
 
@@ -232,7 +236,7 @@ def _write_forces(data: xr.Dataset, folder: Path) -> list[str]:
     write(folder / "forces.nc", packed(data))
     save(ground_forces_figure(data) if data.attrs["medium"] == "land" else water_forces_figure(data), folder, "forces")
     open_ends = [f"note: {note}" for note in data.attrs["notes"].splitlines()]
-    return [*said(data), *open_ends, f"forces: {folder}; what each column is stands in {folder / COLUMNS}"]
+    return [*summary_lines(data), *open_ends, f"forces: {folder}; what each column is stands in {folder / COLUMNS}"]
 
 
 def _write_measurements(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> list[str]:
@@ -299,7 +303,7 @@ def _write_played_gait(options: CaptureOptions, output: Path | None, robot_word:
     largest_residual = max(zip(cycle.residual, cycle.joints, strict=True))
     print(f"{len(gait.curves)} servos of {options.robot.name} play {options.tracks.name}; closing the cycle changed")
     print(f"{largest_residual[1]} most, by {np.degrees(largest_residual[0]):.1f} degrees in the root mean square.")
-    lines = run_it(options.robot, robot_word, output, "salamander")
+    lines = run_command_lines(options.robot, robot_word, output, "salamander")
     print(f"gait: {output}", *lines, sep="\n")
     return 0
 

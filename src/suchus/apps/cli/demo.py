@@ -79,7 +79,7 @@ def _write_page(output: Path, opener: BaseBrowser | None, live: bool) -> int:
         move = bars.reporter("demo")
         walks = _walks(staged(move, "walking", 0.0, 0.8))
         move("drawing", 0.9)
-        path = save(_drawn(walks), output).absolute()
+        path = save(_replay_html(walks), output).absolute()
     robot = ROBOTS[ROBOT]
     print(f"{robot.name}: a robot of {robot.length:.2f} m and {robot.mass:.1f} kg; two cycles of its crawl")
     for name in GAITS_SHOWN:
@@ -100,7 +100,7 @@ def _walks(progress: Progress) -> xr.Dataset:
     return simulate(runs, progress=progress)
 
 
-def _drawn(walks: xr.Dataset) -> str:
+def _replay_html(walks: xr.Dataset) -> str:
     """Return the walks as a page."""
     labels = [name.replace("_", " ") for name in GAITS_SHOWN]
     return replay(

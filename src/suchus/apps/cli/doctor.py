@@ -40,7 +40,7 @@ _EXTRAS = {
     "cluster": "studies on many machines",
 }
 """Purpose of each extra; extras for developers only are left out."""
-_PATIENCE = 300.0  # [s]; a cold disk and a slow machine
+_TRIAL_TIMEOUT = 300.0  # [s]; a cold disk and a slow machine
 _LINE_WIDTH = 110  # columns
 
 
@@ -82,7 +82,7 @@ def doctor(words: Sequence[str]) -> int:
         return 0
     if words:
         raise BadCommand(f"suchus doctor takes no {words[0]!r}.")
-    walk, swim, draw = tried("walk", "swim", "draw")
+    walk, swim, draw = run_trials("walk", "swim", "draw")
     findings = [
         packages(),
         cores(),
@@ -154,10 +154,10 @@ def cores() -> Finding:
 
 def bits() -> Finding:
     """Return what decides the last bits of results on this machine: processor and libraries."""
-    machine_text = machine.described()
+    machine_text = machine.describe()
     names = ("processor", "vector instructions", "linear algebra", "C library")
     digests = ", ".join(f"{component} {digest}" for component, digest in machine.arithmetic().items())
-    portable = f"portable ({machine.WANTED}): {machine_text['portable']}"
+    portable = f"portable ({machine.PORTABLE_VARIABLE}): {machine_text['portable']}"
     return Finding(
         heading="last bits", lines=("; ".join(machine_text[name] for name in names), f"{digests}; {portable}")
     )
@@ -207,7 +207,7 @@ def opengl(trial: Trial) -> Finding:
 def browsing() -> Finding:
     """Return which browser opens pages."""
     opener = browser()
-    line = "none with a window: suchus demo writes a page" if opener is None else called(opener)
+    line = "none with a window: suchus demo writes a page" if opener is None else browser_name(opener)
     return Finding(heading="browser", lines=(line,))
 
 
@@ -219,7 +219,7 @@ def installed(name: str) -> str | None:
         return None
 
 
-def tried(*names: str) -> list[Trial]:
+def run_trials(*names: str) -> list[Trial]:
     """Run trials side by side, each in its own process, and return their results."""
     command = [sys.executable, "-P", "-m", "suchus.apps.cli.doctor"]
     with ExitStack() as stack:
@@ -236,9 +236,9 @@ def tried(*names: str) -> list[Trial]:
 def _outcome(process: "subprocess.Popen[str]") -> Trial:
     """Wait for a trial's process and return its result, or why it failed."""
     try:
-        stdout, stderr = process.communicate(timeout=_PATIENCE)
+        stdout, stderr = process.communicate(timeout=_TRIAL_TIMEOUT)
     except subprocess.TimeoutExpired:
-        return Trial(found=None, failure=f"no answer within {_PATIENCE:g} s")
+        return Trial(found=None, failure=f"no answer within {_TRIAL_TIMEOUT:g} s")
     if process.returncode < 0:
         return Trial(found=None, failure=f"the process died of signal {-process.returncode}")
     if process.returncode > 0:
@@ -283,10 +283,10 @@ def browser() -> webbrowser.BaseBrowser | None:
         system = webbrowser.get()
     except webbrowser.Error:
         return None
-    return None if called(system) in _TEXT else system
+    return None if browser_name(system) in _TEXT else system
 
 
-def called(opener: webbrowser.BaseBrowser) -> str:
+def browser_name(opener: webbrowser.BaseBrowser) -> str:
     """Return the name of a browser, as it is called on the command line."""
     return Path(str(getattr(opener, "name", ""))).name or type(opener).__name__
 

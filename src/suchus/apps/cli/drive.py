@@ -23,8 +23,8 @@ from suchus.apps.cli.terminal import working
 from suchus.apps.report import PAGE, check_place, save_outcome
 from suchus.apps.report.result import RECORD
 from suchus.core.errors import BusFailure, UnknownName
-from suchus.core.files import check_writable, save, there
-from suchus.core.stopping import Stopped, finishing
+from suchus.core.files import check_writable, path_exists, save
+from suchus.core.stopping import StopSignal, finishing
 from suchus.experiments.catalog._driven import Driven
 from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
 from suchus.hardware.bus import FRAMINGS, Instruction, Packet, Port, Wiring
@@ -42,7 +42,7 @@ from suchus.robot.control import (
     needs,
 )
 from suchus.robot.design import Robot
-from suchus.robot.gaits import gait_of, own_gait, suits
+from suchus.robot.gaits import default_gait, gait_of, suits
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water import swim_of
@@ -147,12 +147,12 @@ def _drive(
                     control,
                     settings,
                     clock=clock,
-                    asked=stop_reason,
+                    stop_request=stop_reason,
                     say=bars.say,
                     progress=bars.task(gait.name),
                 )
-        except Stopped as stop:
-            _hurry(getattr(stop, "record", None), folder)
+        except StopSignal as stop:
+            _save_record_only(getattr(stop, "record", None), folder)
             raise
         except (BusFailure, KeyboardInterrupt) as error:
             _save_log(experiment, getattr(error, "record", None), folder, words, time.perf_counter() - start)
@@ -168,7 +168,7 @@ def _open_blind_rig(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
     if options.clock == "bus":
         raise BadCommand("hobby servos have no bus whose emulator could be told the time: leave out --clock bus.")
     servo_map = read_map(options.map, options.robot)
-    wires = Shown() if options.dry_run else open_wires(options.port or "/dev/i2c-1")
+    wires = PrintingBus() if options.dry_run else open_wires(options.port or "/dev/i2c-1")
     pulses = Pulses(wires, sorted({line.board for line in servo_map.servos}), servo_map.rate)
     rig = BlindRig(options.robot, servo_map, pulses)
     try:
@@ -177,7 +177,7 @@ def _open_blind_rig(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
         rig.close()
 
 
-class Shown:
+class PrintingBus:
     """A stand-in for an I2C bus; it prints the first writes."""
 
     def __init__(self) -> None:
@@ -205,7 +205,7 @@ def _movement(options: DriveOptions) -> tuple[Gait, Control]:
             raise BadCommand(f"{error} {SWIM} and a path to a TOML file will do as well.") from error
         kind = options.control
         if not options.gait and not suits(robot, gait):
-            gait = own_gait(robot)
+            gait = default_gait(robot)
     closed = Coordinated().suited(robot, gait)
     controls: dict[str, Callable[[], Control]] = {
         "open": OpenLoop,
@@ -231,14 +231,14 @@ def _open_rig(options: DriveOptions, wiring: Wiring, gait: Gait, control: Contro
     ports: list[Port] = []
     is_clocked = options.clock == "bus" or options.dry_run
     if options.dry_run:
-        emulator = Emulator(wiring, EmulatedBody(options.robot, gait), clocked=True)
+        emulator = Emulator(wiring, EmulatedBody(options.robot, gait), has_clock=True)
         ports = [
-            Telling(MemoryPort(emulator, number), FRAMINGS[bus.protocol], wiring)
+            PrintingPort(MemoryPort(emulator, number), FRAMINGS[bus.protocol], wiring)
             for number, bus in enumerate(wiring.bus)
         ]
     rig = Rig(
-        options.robot, wiring, ports, clocked=is_clocked, without=options.without,
-        rate=None if options.dry_run else options.rate, needed=needs(control),
+        options.robot, wiring, ports, has_clock=is_clocked, limp_servos=options.without,
+        rate=None if options.dry_run else options.rate, required_senses=needs(control),
     )  # fmt: skip
     try:
         yield rig, BusClock(rig) if is_clocked else WallClock(rig.period)
@@ -272,12 +272,12 @@ def _save_log(
     print(f"the log, its figures and its replay: {folder / PAGE}")
 
 
-def _hurry(record: xr.Dataset | None, folder: Path) -> None:
+def _save_record_only(record: xr.Dataset | None, folder: Path) -> None:
     """Save the log without figures, since a stopped process has little time left."""
     if record is not None and record.sizes["time"] > 0:
         alternatives = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
         folder = next(
-            candidate for candidate in chain([folder], alternatives) if not there(candidate)
+            candidate for candidate in chain([folder], alternatives) if not path_exists(candidate)
         )  # an earlier log is not overwritten
         folder.mkdir(parents=True)
         log_path = save(record, folder / RECORD)
@@ -312,7 +312,7 @@ def _watch_keys() -> Iterator[Callable[[], str]]:
                 termios.tcsetattr(sys.stdin, termios.TCSADRAIN, terminal_settings)
 
 
-class Telling:
+class PrintingPort:
     """A port that prints the packets sent over it during the first ticks.
 
     Args:

@@ -16,9 +16,9 @@ from suchus.core.files import check_replaceable, check_writable, write
 from suchus.core.files.store import packed
 from suchus.hardware import read_wiring, write_wiring
 from suchus.hardware.bus import BusPlace, BusProtocol, Wiring, straight
-from suchus.hardware.emulator import USUAL, EmulatedBody, Emulator, Server, Trouble
+from suchus.hardware.emulator import DEFAULT_MODELS, EmulatedBody, Emulator, Server, Trouble
 from suchus.robot.design import Robot
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.faults import FAULTS, from_table
@@ -83,14 +83,14 @@ def emulate(words: Sequence[str]) -> int:
     is_clocked = options.clock == "bus"
     body = EmulatedBody(
         options.robot,
-        options.gait or own_gait(options.robot),
+        options.gait or default_gait(options.robot),
         ground=Ground(uphill=radians(options.slope)),
         lake=None if options.lake is None else Lake(level=options.lake),
         faults=[_fault(text, trouble.at) for text in options.fault],
         latency=trouble.latency if is_clocked else 0.0,
     )
     wiring, links = _wiring_and_links(options)
-    server = Server(Emulator(wiring, body, trouble, clocked=is_clocked), links, sockets=options.socket)
+    server = Server(Emulator(wiring, body, trouble, has_clock=is_clocked), links, sockets=options.socket)
     viewer: Any = None
     after_step: Callable[[], None] = _do_nothing
     try:
@@ -110,7 +110,7 @@ def emulate(words: Sequence[str]) -> int:
             print(f"open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
         end = body.tick + round(options.seconds / body.period) if options.seconds is not None else None
         with suppress(KeyboardInterrupt):
-            server.serve(until=lambda: end is not None and body.tick >= end, each=after_step)
+            server.serve(should_stop=lambda: end is not None and body.tick >= end, after_period=after_step)
     finally:
         server.close()
         if viewer is not None:
@@ -134,7 +134,9 @@ def _wiring_and_links(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
     check_writable(options.hardware.parent)
     link = options.hardware.parent / f"{options.hardware.stem}.port"
     bus_place = BusPlace(port=link.name, protocol=options.protocol, baud=_BAUD[options.protocol])
-    return straight(options.robot, [bus_place], USUAL[options.protocol], boards=True), [] if options.socket else [link]
+    return straight(
+        options.robot, [bus_place], DEFAULT_MODELS[options.protocol], boards=True
+    ), [] if options.socket else [link]
 
 
 def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:

@@ -22,8 +22,8 @@ from suchus.core.errors import (
     out_of_memory,
     plain_warnings,
 )
-from suchus.core.sources import within
-from suchus.core.stopping import Stopped, stopping
+from suchus.core.sources import project_context
+from suchus.core.stopping import StopSignal, stopping
 from suchus.core.writing import is_text, replacing
 
 PROJECT = "--project"
@@ -32,7 +32,7 @@ REPLACE = "--replace"
 """Option of every command: what a user wrote or changed may be replaced, see ``suchus.core.writing``."""
 MIXED = "--mixed"
 """Option of every command: what another arithmetic began may be continued, see ``suchus.core.machine``."""
-LEAST = 2**30
+MIN_ADDRESS_SPACE = 2**30
 """Address space that suchus and its libraries need to begin with, 0.5 GB were too little [byte]."""
 PORTABLE = "SUCHUS_PORTABLE"
 """Environment variable that asks for portable arithmetic, see ``suchus.core.machine``."""
@@ -245,7 +245,7 @@ def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] = CO
             stopping(),
             out_of_memory(),
             plain_warnings(),
-            within(folder),
+            project_context(folder),
             replacing(replace),
             _mixing(mixed),
             large.allowing(any_size),
@@ -262,7 +262,7 @@ def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] = CO
     except MemoryError:
         return _complain(str(NoMemory()), 2)
     except KeyboardInterrupt as stop:
-        number = stop.number if isinstance(stop, Stopped) else signal.SIGINT
+        number = stop.number if isinstance(stop, StopSignal) else signal.SIGINT
         return _complain("stopped; what was finished is kept, nothing half-written is left.", 128 + number)
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         _drop_output()
@@ -287,9 +287,10 @@ def _check_memory() -> None:
         BadCommand: this process may take too little memory.
     """
     memory_limit = large.memory()
-    if memory_limit is not None and memory_limit < LEAST:
+    if memory_limit is not None and memory_limit < MIN_ADDRESS_SPACE:
         raise BadCommand(
-            f"this process may take {memory_limit / 1e9:.2g} GB of memory, and suchus needs {LEAST / 1e9:.2g} GB: "
+            f"this process may take {memory_limit / 1e9:.2g} GB of memory, and suchus needs "
+            f"{MIN_ADDRESS_SPACE / 1e9:.2g} GB: "
             "raise the limit, as with ulimit -v unlimited."
         )
 
@@ -300,9 +301,9 @@ def _begin_portable() -> None:
     Raises:
         OutsideLimits: this machine has no such arithmetic.
     """
-    from suchus.core.machine import begun_portable  # noqa: PLC0415  NumPy takes a tenth of a second, needed here only
+    from suchus.core.machine import portable_environment  # noqa: PLC0415  NumPy takes a tenth of a second, needed here only
 
-    environment = begun_portable(os.environ)
+    environment = portable_environment(os.environ)
     if environment is not None:
         os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
 

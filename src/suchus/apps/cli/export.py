@@ -8,11 +8,11 @@ from typing import Annotated, get_args
 import tyro
 
 from suchus.apps.cli.options import parse
-from suchus.apps.cli.word_checks import given
+from suchus.apps.cli.word_checks import option_values
 from suchus.core.errors import UnknownName
 from suchus.core.files import check_name, check_writable
 from suchus.robot.design import Robot
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model.export import Format, export
@@ -49,13 +49,15 @@ def export_robot(words: Sequence[str]) -> int:
         check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"
     check_writable(folder.parent)
-    export(options.robot, options.home or own_gait(options.robot), folder, options.format, timestep=options.timestep)
+    export(
+        options.robot, options.home or default_gait(options.robot), folder, options.format, timestep=options.timestep
+    )
     print(f"{options.robot.name} as {options.format.upper()}: {folder}")
     return 0
 
 
 def _check_format(words: Sequence[str]) -> None:
     """Refuse an unknown format with a suggestion of similar ones; the parser only lists all formats."""
-    for word in given(words, "--format"):
+    for word in option_values(words, "--format"):
         if word not in get_args(Format):
             raise UnknownName("format", word, get_args(Format))

@@ -21,7 +21,7 @@ from suchus.hardware import (
     check_loads,
     commands,
     csv_text,
-    loads_of_each,
+    loads_of_cases,
     overloaded,
     read_map,
     straight,
@@ -33,7 +33,7 @@ from suchus.hardware.limits import TRACKING
 from suchus.hardware.loads import AT_LIMIT
 from suchus.robot import blueprint
 from suchus.robot.design import Robot
-from suchus.robot.gaits import GAITS, own_gait, suits
+from suchus.robot.gaits import GAITS, default_gait, suits
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 
@@ -75,7 +75,7 @@ def export_commands(words: Sequence[str]) -> int:
         and options.gait.name not in words
         and not suits(options.robot, options.gait)
     ):
-        options = replace(options, gait=own_gait(options.robot))
+        options = replace(options, gait=default_gait(options.robot))
     if options.write_map is not None:
         print(f"servo map: {write_map(straight(options.robot), options.write_map)}")
         return 0
@@ -91,7 +91,7 @@ def export_commands(words: Sequence[str]) -> int:
     with working() as bars:
         move = bars.task(options.gait.name)
         load_cases = cases(options.robot, (options.gait,))
-        (loads,) = loads_of_each(options.robot, load_cases, progress=staged(move, "walking", 0.0, 0.7))
+        (loads,) = loads_of_cases(options.robot, load_cases, progress=staged(move, "walking", 0.0, 0.7))
         loads = with_better(options.robot, load_cases[0], loads)
         move("walking", 1.0)
     try:

@@ -8,7 +8,7 @@ from typing import Annotated
 import tyro
 
 from suchus.apps.cli.options import parse
-from suchus.apps.cli.run import run_it
+from suchus.apps.cli.run import run_command_lines
 from suchus.apps.cli.word_checks import check_toml
 from suchus.core.errors import OutsideLimits
 from suchus.core.files import check_replaceable, check_writable
@@ -81,7 +81,7 @@ def import_file(words: Sequence[str]) -> int:
     print(f"robot: {output}")
     if gait is not None:
         file = blueprint.write(gait, gait_file, head=("A first gait, not the best.",))
-        print(f"gait: {file}", *run_it(draft.robot, str(output), file), sep="\n")
+        print(f"gait: {file}", *run_command_lines(draft.robot, str(output), file), sep="\n")
     return 0
 
 

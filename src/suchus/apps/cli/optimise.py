@@ -11,7 +11,7 @@ import tyro
 from suchus.apps.cli.options import SCHEDULER, parse
 from suchus.apps.cli.terminal import working
 from suchus.core.errors import UnknownName
-from suchus.core.files import check_name, check_replaceable, check_writable, there
+from suchus.core.files import check_name, check_replaceable, check_writable, path_exists
 from suchus.core.jobs import at_scheduler
 from suchus.experiments.optimise import AIMS, READY, Optimisation, read_optimisation, write_results
 from suchus.experiments.optimise import optimise as conduct
@@ -69,7 +69,7 @@ def _read_search(options: OptimiseOptions) -> Optimisation:
     """Return the search that is asked for."""
     if options.what in READY:
         spec = READY[options.what]()
-    elif options.what.endswith(".toml") or there(Path(options.what)):
+    elif options.what.endswith(".toml") or path_exists(Path(options.what)):
         spec = read_optimisation(Path(options.what))
     else:
         raise UnknownName("search", options.what, READY)

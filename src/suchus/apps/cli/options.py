@@ -13,7 +13,7 @@ import tyro
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
 from suchus.apps.cli.entry import BadCommand
-from suchus.apps.cli.word_checks import given
+from suchus.apps.cli.word_checks import option_values
 from suchus.core.errors import SuchusError, UnknownName
 from suchus.experiments.experiment import Experiment
 from suchus.robot.design import Robot
@@ -24,12 +24,14 @@ from suchus.robot.robots import ROBOTS
 _DEFAULT_ROBOT = "caiman"
 _LINE_WIDTH = 110  # characters of a line of the description in the help
 
-QUICK = Annotated[
+QUICK_FLAG = Annotated[
     bool,
     tyro.conf.FlagCreatePairsOff,
     tyro.conf.arg(help="Start from the quick form, small enough for a test."),
 ]
-OUT = Annotated[Path, tyro.conf.arg(help="Folder for results; each experiment gets a folder of its own in it.")]
+RESULTS_FOLDER_OPTION = Annotated[
+    Path, tyro.conf.arg(help="Folder for results; each experiment gets a folder of its own in it.")
+]
 TABLES = "csv"
 """Folder of a record as CSV files, beside the record."""
 CSV = Annotated[
@@ -81,8 +83,8 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
     options: type[Any] = make_dataclass(
         "Options",
         [
-            ("quick", QUICK, field(default=False)),
-            ("out", OUT, field(default=Path("out"))),
+            ("quick", QUICK_FLAG, field(default=False)),
+            ("out", RESULTS_FOLDER_OPTION, field(default=Path("out"))),
             ("csv", CSV, field(default=False)),
             ("json", JSON, field(default=False)),
             ("experiment", Annotated[type(start), tyro.conf.arg(name="")], field(default=start)),
@@ -101,7 +103,7 @@ def _robot(words: Sequence[str]) -> Robot | None:
 
     None where they name none, or none that there is: what is wrong is said when all words are read.
     """
-    robot_words = given(words, "--robot")
+    robot_words = option_values(words, "--robot")
     if not robot_words or robot_words[-1].startswith("-"):
         return None
     try:

@@ -11,15 +11,15 @@ import tyro
 
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
-from suchus.apps.report.building_sheet import PAGE, floats_said, mass_said, write_parts
+from suchus.apps.report.building_sheet import PAGE, floating_sentence, mass_sentences, write_parts
 from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.hardware import commands, straight
 from suchus.hardware.outlines import libraries
 from suchus.hardware.parts import PLASTIC, WALL, sheet
-from suchus.hardware.ros import unfit
+from suchus.hardware.ros import unfit_reason
 from suchus.robot import blueprint
 from suchus.robot.design import Robot
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 
@@ -59,7 +59,7 @@ def list_parts(words: Sequence[str]) -> int:
     robot_words = ["--robot", positional[0]] if positional else []
     options = parse(PartsOptions, "suchus parts", [*robot_words, *words[len(positional) :]], description)
     robot = options.robot
-    gait = options.gait or own_gait(robot)
+    gait = options.gait or default_gait(robot)
     motors = None if options.motors is None else blueprint.read_motors(options.motors)
     if not options.no_outlines:
         libraries()
@@ -75,7 +75,7 @@ def list_parts(words: Sequence[str]) -> int:
         bars.task(f"building sheet of {robot.name}")
         write_parts(parts_sheet, draft, gait=gait, samples=samples, outlines=not options.no_outlines)
         (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    for sentence in (*mass_said(parts_sheet), floats_said(parts_sheet), unfit(robot)):
+    for sentence in (*mass_sentences(parts_sheet), floating_sentence(parts_sheet), unfit_reason(robot)):
         if sentence:
             print(sentence)
     print(f"the page with all of it: {folder / PAGE}")

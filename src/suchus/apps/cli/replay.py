@@ -13,7 +13,7 @@ from suchus.apps.cli.options import parse
 from suchus.apps.cli.word_checks import check_page
 from suchus.core import files as record
 from suchus.core.files import check_file, check_replaceable
-from suchus.hardware import held
+from suchus.hardware import fix_in_place
 from suchus.robot.design import Robot
 from suchus.robot.robots import ROBOTS
 from suchus.visual.replay import replay, save
@@ -54,7 +54,7 @@ def make_replay(words: Sequence[str]) -> int:
     ghost = None if options.ghost is None else _select_run(stored, options.ghost, "--ghost")
     robot_name = str(main_run.robot.item()) if "robot" in main_run.coords else "caiman"
     robot = ROBOTS[robot_name] if options.robot is None else options.robot
-    main_run = held(main_run, robot)
+    main_run = fix_in_place(main_run, robot)
     labels = [_label(run).replace("_", " ") for run in (main_run, ghost) if run is not None]
     save(replay(main_run, robot, ghost=ghost, labels=labels, title=options.title), output)
     print(f"{robot.name}, {' and '.join(labels)}: {output}, {output.stat().st_size / 1e6:.1f} MB")

@@ -13,13 +13,13 @@ import tyro
 import suchus
 import suchus.experiments.catalog
 from suchus.apps.cli.entry import BadCommand
-from suchus.apps.cli.options import OUT, QUICK, parse
+from suchus.apps.cli.options import QUICK_FLAG, RESULTS_FOLDER_OPTION, parse
 from suchus.apps.cli.run import perform
 from suchus.apps.cli.terminal import Bars, working
-from suchus.apps.report import Failure, Result, check_place, load_result, whole, write_page
+from suchus.apps.report import Failure, Result, check_place, has_all_files, load_result, write_page
 from suchus.core import threads
 from suchus.core.errors import SuchusError
-from suchus.core.files import check_replaceable, check_writable, made_alike, sweep
+from suchus.core.files import check_replaceable, check_writable, has_same_provenance, sweep
 from suchus.core.jobs import Job, finish, place_for
 from suchus.core.progress import Progress
 from suchus.core.writing import asked_to_replace, replacing
@@ -28,7 +28,7 @@ from suchus.experiments.experiment import Experiment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reproduction:
+class ExperimentTask:
     """An experiment that is to be run again."""
 
     name: str
@@ -53,7 +53,7 @@ class Reproduction:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reproduced:
+class TaskResult:
     """Result of an experiment, or the reason why it failed."""
 
     result: Result | Failure
@@ -62,7 +62,7 @@ class Reproduced:
     """Summary of the result in one line."""
 
 
-def attempt(task: Reproduction, progress: Progress) -> Reproduced:
+def attempt(task: ExperimentTask, progress: Progress) -> TaskResult:
     """Run an experiment into its folder and read the result back.
 
     Args:
@@ -77,10 +77,10 @@ def attempt(task: Reproduction, progress: Progress) -> Reproduced:
         return failed(task.name, str(error))
     except Exception as error:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
-    return Reproduced(result=result, summary=f"{_summary(result)} ({saved_run.seconds:.1f} s)")
+    return TaskResult(result=result, summary=f"{_summary(result)} ({saved_run.seconds:.1f} s)")
 
 
-def kept(task: Reproduction) -> Reproduced | None:
+def reusable_result(task: ExperimentTask) -> TaskResult | None:
     """Return the stored result of an earlier run, if it is complete and a new run would give the same.
 
     That is so if the settings, the files of suchus and the versions of libraries are the same. An experiment that is no
@@ -89,12 +89,14 @@ def kept(task: Reproduction) -> Reproduced | None:
     try:
         experiment = task.experiment
         result = load_result(task.out / task.name)
-        is_same = made_alike(result.outcome["provenance"], experiment.settings())
+        is_same = has_same_provenance(result.outcome["provenance"], experiment.settings())
     except SuchusError:
         return None
-    if not (is_same and whole(result) and result.outcome["command"] == task.command and _is_shipped(experiment)):
+    if not (
+        is_same and has_all_files(result) and result.outcome["command"] == task.command and _is_shipped(experiment)
+    ):
         return None
-    return Reproduced(result=result, summary=f"{_summary(result)} (kept from an earlier run)")
+    return TaskResult(result=result, summary=f"{_summary(result)} (kept from an earlier run)")
 
 
 def _is_shipped(experiment: Experiment) -> bool:
@@ -108,7 +110,7 @@ def _summary(result: Result) -> str:
     return f"{result.name}: {', '.join(counts) or 'no verdict'}"
 
 
-def failed(name: str, sentence: str, trace: str = "") -> Reproduced:
+def failed(name: str, sentence: str, trace: str = "") -> TaskResult:
     """Return the result of an experiment that failed.
 
     Args:
@@ -116,7 +118,7 @@ def failed(name: str, sentence: str, trace: str = "") -> Reproduced:
         sentence: what went wrong.
         trace: where in the code, if it was none of our own errors.
     """
-    return Reproduced(result=Failure(name=name, sentence=sentence, trace=trace), summary=f"{name}: failed: {sentence}")
+    return TaskResult(result=Failure(name=name, sentence=sentence, trace=trace), summary=f"{name}: failed: {sentence}")
 
 
 REPORT = "report.html"
@@ -144,8 +146,8 @@ _SLOW_EXPERIMENTS = (
 class ReproduceOptions:
     """Options of ``suchus reproduce``."""
 
-    out: OUT = Path("out")
-    quick: QUICK = False
+    out: RESULTS_FOLDER_OPTION = Path("out")
+    quick: QUICK_FLAG = False
     jobs: Annotated[
         int | None,
         tyro.conf.arg(help=f"Experiments at a time; by default one for each core, {_MAX_DEFAULT_JOBS} at most."),
@@ -153,7 +155,9 @@ class ReproduceOptions:
     anew: Annotated[
         bool,
         tyro.conf.FlagCreatePairsOff,
-        tyro.conf.arg(help="Run every experiment again. Otherwise results of the same code and settings are kept."),
+        tyro.conf.arg(
+            help="Run every experiment again. Otherwise results of the same code and settings are reusable_result."
+        ),
     ] = False
 
 
@@ -169,7 +173,7 @@ def reproduce(words: Sequence[str]) -> int:
     options = parse(ReproduceOptions, "suchus reproduce", words, description)
     sound = dict(EXPERIMENTS.items())  # broken experiments are attempted too, and their errors are reported
     tasks = [
-        Reproduction(name=name, out=options.out, quick=options.quick, replace=asked_to_replace())
+        ExperimentTask(name=name, out=options.out, quick=options.quick, replace=asked_to_replace())
         for name in EXPERIMENTS
         if name not in sound or sound[name].reproduces
     ]
@@ -191,7 +195,7 @@ def reproduce(words: Sequence[str]) -> int:
     return 1 if failures else 0
 
 
-def _run_tasks(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: bool) -> list[Reproduced]:
+def _run_tasks(tasks: Sequence[ExperimentTask], bars: Bars, *, jobs: int, anew: bool) -> list[TaskResult]:
     """Return the result of each task; the longest are begun first.
 
     A process that dies takes its experiment with it and nothing else. When this one is stopped, by Ctrl-C or an error,
@@ -217,8 +221,8 @@ def _run_tasks(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: bo
         finish(
             job,
             results,
-            place=place_for("reproduce", jobs=side_by_side, each=_THREADS_PER_EXPERIMENT),
-            each=lambda number: bars.task(order[number].name),
+            place=place_for("reproduce", jobs=side_by_side, threads_per_process=_THREADS_PER_EXPERIMENT),
+            progress_of=lambda number: bars.task(order[number].name),
             finished=lambda _, reproduced: bars.say(reproduced.summary),
         )
     finally:
@@ -231,35 +235,35 @@ def _run_tasks(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: bo
 class _Results:
     """Results of experiments, each a folder that the run itself writes; those of a run that would repeat them stay."""
 
-    def __init__(self, tasks: Sequence[Reproduction], anew: bool) -> None:
-        stored = {} if anew else {number: kept(task) for number, task in enumerate(tasks)}
+    def __init__(self, tasks: Sequence[ExperimentTask], anew: bool) -> None:
+        stored = {} if anew else {number: reusable_result(task) for number, task in enumerate(tasks)}
         self._results = {number: result for number, result in stored.items() if result is not None}
 
     def has(self, number: int) -> bool:
         """Return whether a result is there."""
         return number in self._results
 
-    def get(self, number: int) -> Reproduced:
+    def get(self, number: int) -> TaskResult:
         """Return a result that is there."""
         return self._results[number]
 
-    def put(self, number: int, result: Reproduced) -> None:
+    def put(self, number: int, result: TaskResult) -> None:
         """Store a result whose folder is written."""
         self._results[number] = result
 
 
-def _attempt_with_shelf(task: Reproduction, progress: Progress, shelf: list[str]) -> Reproduced:
+def _attempt_with_shelf(task: ExperimentTask, progress: Progress, shelf: list[str]) -> TaskResult:
     """Attempt an experiment, also in a process of its own, which knows the same shelf."""
     suchus.experiments.catalog.__path__[:] = shelf
     return attempt(task, progress)
 
 
-def _report_crash(task: Reproduction, exit_code: int | None) -> Reproduced:
+def _report_crash(task: ExperimentTask, exit_code: int | None) -> TaskResult:
     sweep(task.out / task.name)
     return failed(
         task.name, f"its process ended with exit code {exit_code}; where memory was short, --jobs 1 takes less of it."
     )
 
 
-def _rank(task: Reproduction) -> int:
+def _rank(task: ExperimentTask) -> int:
     return _SLOW_EXPERIMENTS.index(task.name) if task.name in _SLOW_EXPERIMENTS else len(_SLOW_EXPERIMENTS)

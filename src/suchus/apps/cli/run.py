@@ -16,7 +16,7 @@ from suchus.apps.cli.entry import PROJECT
 from suchus.apps.cli.options import TABLES, choose
 from suchus.apps.cli.shelves import entry, title
 from suchus.apps.cli.terminal import working
-from suchus.apps.report import OUTCOME, PAGE, answer, carried, check_place, quantity, save_outcome
+from suchus.apps.report import OUTCOME, PAGE, answer, answer_rows, check_place, quantity, save_outcome
 from suchus.article.verdict import Verdict, listed
 from suchus.core.errors import plain_warnings
 from suchus.core.files import check_writable, write_tables
@@ -41,7 +41,7 @@ _COLOURS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Performed:
+class SavedRun:
     """An experiment that was run and saved."""
 
     outcome: Outcome
@@ -52,7 +52,7 @@ class Performed:
     """Duration of running and drawing [s]."""
 
 
-def perform(experiment: Experiment, name: str, results_folder: Path, progress: Progress, command: str) -> Performed:
+def perform(experiment: Experiment, name: str, results_folder: Path, progress: Progress, command: str) -> SavedRun:
     """Run an experiment, draw its figures and save all of it in ``out / name``.
 
     Args:
@@ -78,7 +78,7 @@ def perform(experiment: Experiment, name: str, results_folder: Path, progress: P
     for path in outcome.kept:
         with suppress(OSError):  # a file that cannot be removed does not spoil the result
             path.unlink()
-    return Performed(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
+    return SavedRun(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
 
 
 def _plain_sums() -> AbstractContextManager[object]:
@@ -90,14 +90,14 @@ def _plain_sums() -> AbstractContextManager[object]:
     return xr.set_options(use_numbagg=False, use_bottleneck=False)  # type: ignore[no-untyped-call]
 
 
-def show_outcome(question: Experiment, saved_run: Performed) -> None:
+def show_outcome(question: Experiment, saved_run: SavedRun) -> None:
     """Print the answer, the numbers that carry it, the verdicts, and where everything else is."""
     console = Console(highlight=False)
     console.print(f"[bold]{escape(question.title)}[/]")
-    for line in moves(question):
+    for line in gait_sentence(question):
         console.print(escape(line))
     console.print(escape(answer(saved_run.outcome.decides)))
-    rows = carried(question.answers, saved_run.outcome.measures)
+    rows = answer_rows(question.answers, saved_run.outcome.measures)
     numbers = Table("measure", "value", *["interval"] * any(row[2] for row in rows), box=None, padding=(0, 2, 0, 0))
     for row in rows:
         numbers.add_row(*(escape(cell) for cell in row if cell or len(numbers.columns) > 2))
@@ -133,7 +133,7 @@ def _unit(verdict: Verdict, outcome: Outcome) -> str:
     return verdict.claim.unit if verdict.claim.value is not None or measure is None else measure.unit
 
 
-def moves(question: Experiment) -> list[str]:
+def gait_sentence(question: Experiment) -> list[str]:
     """Return a sentence that names the gaits, if the robot is not the experiment's own robot."""
     robot = getattr(question, "robot", None)
     single_gait = getattr(question, "gait", None)
@@ -177,7 +177,7 @@ def run(words: Sequence[str]) -> int:
     return 0
 
 
-def run_it(robot: Robot, robot_word: str, gait: Path, experiment_name: str = "displacement") -> list[str]:
+def run_command_lines(robot: Robot, robot_word: str, gait: Path, experiment_name: str = "displacement") -> list[str]:
     """Return the command that runs a gait on a robot; empty where no experiment suits the robot.
 
     Args:

@@ -19,7 +19,7 @@ from suchus.core.files import check_name, check_replaceable, check_writable, dig
 from suchus.hardware import cases, size
 from suchus.robot import blueprint
 from suchus.robot.design import Motor, Robot
-from suchus.robot.gaits import gait_of, own_gait
+from suchus.robot.gaits import default_gait, gait_of
 from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault
 from suchus.sim.faults import FAULTS, from_table
@@ -71,7 +71,7 @@ def size_servos(words: Sequence[str]) -> int:
     require("size", "hours", options.hours, 0.01, 1000.0, "h")
     for slope in options.slope:
         require("size", "slope", slope, -45.0, 45.0, "degrees")
-    gaits = [gait_of(robot, word) for word in options.gaits] or [own_gait(robot)]
+    gaits = [gait_of(robot, word) for word in options.gaits] or [default_gait(robot)]
     motors = None if options.motors is None else blueprint.read_motors(options.motors)
     if options.out is None:
         check_name(robot.name, "robot")

@@ -13,7 +13,7 @@ from suchus.apps.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.apps.cli.terminal import working
 from suchus.article.verdict import listed
 from suchus.core.errors import UnreadableFile
-from suchus.core.files import check_name, check_replaceable, there, write_tables
+from suchus.core.files import check_name, check_replaceable, path_exists, write_tables
 from suchus.core.jobs import at_scheduler
 from suchus.core.jobs.store import RESULTS, TABLE
 from suchus.experiments.catalog import EXPERIMENTS
@@ -59,7 +59,7 @@ def study(words: Sequence[str]) -> int:
         raise BadCommand(f"--jobs is {options.jobs}; at least 1 process is needed.")
     if options.jobs > 1 and options.scheduler is not None:
         raise BadCommand("--jobs and --scheduler exclude each other: the workers of a cluster are started with it.")
-    if str(options.file) == CLAIMS and not there(options.file):
+    if str(options.file) == CLAIMS and not path_exists(options.file):
         return _study_claims(options)
     spec = read_study(options.file)
     if options.only:

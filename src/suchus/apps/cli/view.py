@@ -12,12 +12,12 @@ from suchus.animals.capture import ReadingOptions, read_tracks
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.viewer import Session
-from suchus.apps.viewer.replay import FilmedAnimal, Take, beside, takes
+from suchus.apps.viewer.replay import FilmedAnimal, Take, place_animal, takes
 from suchus.apps.viewer.swim import films, vortex_film
 from suchus.core.checks import require
-from suchus.core.files import there
+from suchus.core.files import path_exists
 from suchus.robot.design import Robot, check_needs
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water import swim_of
@@ -26,7 +26,7 @@ _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Where:
+class ServerOptions:
     """Address and port of the server."""
 
     host: str = "127.0.0.1"
@@ -42,7 +42,7 @@ class Where:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ViewWalkOptions(Where):
+class ViewWalkOptions(ServerOptions):
     """Options of ``suchus view`` for a live walk."""
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -56,7 +56,7 @@ class ViewWalkOptions(Where):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Replaying(Where):
+class ViewRecordOptions(ServerOptions):
     """Options of ``suchus view`` for a record."""
 
     record: Annotated[Path, tyro.conf.Positional]
@@ -72,7 +72,7 @@ class Replaying(Where):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ViewSwimOptions(Where):
+class ViewSwimOptions(ServerOptions):
     """Options of ``suchus view swim``."""
 
     record: Annotated[Path, tyro.conf.Positional]
@@ -96,7 +96,7 @@ def view(words: Sequence[str]) -> int:
 
 
 def _is_record(word: str) -> bool:
-    return word.endswith(".nc") or (there(Path(word)) and not word.endswith(".toml") and word not in ROBOTS)
+    return word.endswith(".nc") or (path_exists(Path(word)) and not word.endswith(".toml") and word not in ROBOTS)
 
 
 def _walk(words: Sequence[str]) -> int:
@@ -123,7 +123,7 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
     Raises:
         SuchusError: the walk cannot be walked, the viewer is not installed, or the port is taken.
     """
-    robot, gait = options.robot, options.gait or own_gait(options.robot)
+    robot, gait = options.robot, options.gait or default_gait(options.robot)
     swim = swim_of(check_needs(robot, ["axis"], "suchus view --lake")) if options.lake else None
 
     def session() -> Session:
@@ -141,7 +141,7 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
 def _replay(words: Sequence[str]) -> int:
     """Read the options of a replay, serve the record until interrupted, and return 0."""
     description = "A record played back in the browser."
-    options = parse(Replaying, "suchus view", words, description)
+    options = parse(ViewRecordOptions, "suchus view", words, description)
     runs = takes(options.record, options.robot)
     ghosts = takes(options.ghost, options.robot) if options.ghost else ()
     animals = _animals(options, runs)
@@ -149,12 +149,12 @@ def _replay(words: Sequence[str]) -> int:
     return _serve(lambda client: pages.ReplayPage(client, runs, ghosts, animals), options, options.record.name)
 
 
-def _animals(options: Replaying, runs: Sequence[Take]) -> tuple[FilmedAnimal, ...]:
+def _animals(options: ViewRecordOptions, runs: Sequence[Take]) -> tuple[FilmedAnimal, ...]:
     """Return the animal beside each run; nothing if none is asked for."""
     if options.animal is None:
         return ()
     tracks = read_tracks(options.animal, ReadingOptions(rate=options.fps))
-    return tuple(beside(tracks, run) for run in runs)
+    return tuple(place_animal(tracks, run) for run in runs)
 
 
 def _swim(words: Sequence[str]) -> int:
@@ -189,7 +189,7 @@ def pages_of_viewer() -> Any:
 
 def _serve(
     page: Callable[[Any], Any],
-    address: Where,
+    address: ServerOptions,
     title: str,
     opened: Callable[[str], object] | None = None,
     **settings: Any,

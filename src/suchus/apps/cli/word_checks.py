@@ -10,7 +10,7 @@ from pathlib import Path
 
 from suchus.apps.cli.entry import BadCommand, Subcommand
 from suchus.core.errors import UnknownName
-from suchus.core.reading import check_file, there
+from suchus.core.reading import check_file, path_exists
 from suchus.core.sources import AS_TOML, SHELVES, Source, gather
 from suchus.core.writing import check_replaceable, check_writable
 
@@ -35,14 +35,14 @@ def check_words(command: Subcommand, words: Sequence[str]) -> None:
     if command.first_word:
         _check_first(command, words)
     for kind in command.shelf_options:
-        for name in given(words, f"--{kind}"):
+        for name in option_values(words, f"--{kind}"):
             _check_name(kind, name)
-    for output in given(words, "--out"):
+    for output in option_values(words, "--out"):
         if command.output and output and not output.startswith("-"):
             _check_out(command.output, Path(output))
 
 
-def given(words: Sequence[str], option: str) -> list[str]:
+def option_values(words: Sequence[str], option: str) -> list[str]:
     """Return the values of an option among the words, before the parser reads them."""
     joined = [word.partition("=")[2] for word in words if word.startswith(f"{option}=")]
     return joined + [following for word, following in pairwise(words) if word == option]
@@ -93,7 +93,7 @@ def _check_name(kind: str, name: str) -> None:
         return
     if f"{kind}s" not in AS_TOML:
         raise UnknownName(kind, name, shelf)
-    if Path(name).suffix not in (".toml", ".nc") and not there(Path(name)):
+    if Path(name).suffix not in (".toml", ".nc") and not path_exists(Path(name)):
         raise BadCommand(f"{UnknownName(kind, name, shelf)} A path to a TOML file will do as well.")
 
 

@@ -1,8 +1,17 @@
 """Robots as Gymnasium environments; importing this room registers them. The extra ``gym`` installs gymnasium."""
 
-from suchus.apps.envs.shelf import IDS, LONGER, STEPS, TASKS, register  # isort: skip  # says what is missing, if it is
-from suchus.apps.envs.policies import Anything, Controlled, Follow, Played, Policy, Still, SwimToGoal, play
-from suchus.apps.envs.senses import SENSES, part, senses
+from suchus.apps.envs.shelf import IDS, MAX_STEPS_BY_TASK, MAX_STEPS, TASKS, register  # isort: skip  # says what is missing, if it is
+from suchus.apps.envs.policies import (
+    ControllerPolicy,
+    EpisodeResults,
+    GaitFollower,
+    HoldStill,
+    Policy,
+    RandomActions,
+    SwimToGoal,
+    play,
+)
+from suchus.apps.envs.senses import SENSES, reading_columns, senses
 from suchus.apps.envs.single import CrocodileEnv, action_space, observation_space
 from suchus.apps.envs.task import AnyGoal, Breaks, Goal, Landing, Pushes, Rewards, Task, remaining
 from suchus.apps.envs.vector import CrocodileVectorEnv
@@ -11,30 +20,30 @@ register()
 
 __all__ = [
     "IDS",
-    "LONGER",
+    "MAX_STEPS",
+    "MAX_STEPS_BY_TASK",
     "SENSES",
-    "STEPS",
     "TASKS",
     "AnyGoal",
-    "Anything",
     "Breaks",
-    "Controlled",
+    "ControllerPolicy",
     "CrocodileEnv",
     "CrocodileVectorEnv",
-    "Follow",
+    "EpisodeResults",
+    "GaitFollower",
     "Goal",
+    "HoldStill",
     "Landing",
-    "Played",
     "Policy",
     "Pushes",
+    "RandomActions",
     "Rewards",
-    "Still",
     "SwimToGoal",
     "Task",
     "action_space",
     "observation_space",
-    "part",
     "play",
+    "reading_columns",
     "register",
     "remaining",
     "senses",

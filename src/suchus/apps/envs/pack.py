@@ -14,7 +14,7 @@ import xarray as xr
 from jaxtyping import Bool, Float
 
 from suchus.apps.envs.actor import Actor
-from suchus.apps.envs.senses import Observer, turning
+from suchus.apps.envs.senses import Observer, is_crank
 from suchus.apps.envs.tanks import Tanks
 from suchus.apps.envs.task import AnyGoal, Task, Terms, remaining
 from suchus.core import rotation
@@ -22,21 +22,21 @@ from suchus.core.errors import Diverged, InvalidDesign
 from suchus.robot.control import Standing
 from suchus.robot.control.standing import BALANCE
 from suchus.robot.design import Robot, layout, servo_ranges
-from suchus.robot.design.scale import control_period, scaled
-from suchus.robot.gaits import GAITS, own_gait, suits
+from suchus.robot.design.scale import control_period, rescale
+from suchus.robot.gaits import GAITS, default_gait, suits
 from suchus.robot.motion import check_limits, check_speeds, cycle_targets, hip_height
-from suchus.robot.motion.rising import size_of, stretched
+from suchus.robot.motion.rising import size_of, stretched_length
 from suchus.sim.fault import Fault, check_faults
 from suchus.sim.land import Ground, Push, Run
 from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.batch import Beginning
-from suchus.sim.land.lake import up
+from suchus.sim.land.lake import up_direction
 from suchus.sim.land.loop import Loop
 from suchus.sim.land.run import check_pushes
 from suchus.sim.model import activations, compile_model, standing
 from suchus.sim.model.export import home
 
-STILL = 3.0
+STANDING_DURATION = 3.0
 """Time that a robot stands before an episode of standing begins [s]; it settles within 2 s."""
 _START_DELAY = 0.2  # [s]; when standing up begins, where no crawl is needed
 _MIN_STANDING_FRACTION = 0.6
@@ -65,7 +65,7 @@ def begin(task: Task) -> Beginning:
     return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
 
 
-def off_by(task: Task, beginning: Beginning, jitter: np.ndarray) -> Beginning:
+def displace_joints(task: Task, beginning: Beginning, jitter: np.ndarray) -> Beginning:
     """Return a beginning with its joints displaced; the commanded angles stay.
 
     A lying robot is put on the ground again. One that stands keeps what cables bend, which is
@@ -97,7 +97,7 @@ def _floating_beginning(task: Task, model: Any) -> Beginning:
     if task.solved is not None:
         return Beginning(stands, np.zeros(model.nv), activations(model, servos), servos)
     assert task.lake is not None  # see ``Task``
-    qpos = surfaced(task.body, task.lake, up(task.ground), stands, task.timestep)
+    qpos = surfaced(task.body, task.lake, up_direction(task.ground), stands, task.timestep)
     if np.array_equal(qpos, stands):
         raise InvalidDesign(
             f"robot {task.robot.name!r} touches the ground where its episode begins, at the world's origin with the "
@@ -111,11 +111,11 @@ def _floating_beginning(task: Task, model: Any) -> Beginning:
 def _standing_beginning(robot: Robot, ground: Ground, timestep: float) -> Beginning:
     """Simulate how a robot stands up, and return the state in which it stands still."""
     straight, period = GAITS[_STRAIGHT_GAIT], control_period(robot)
-    gait = straight if suits(robot, straight) else own_gait(robot).without("axis")
-    balance = scaled(BALANCE, length_factor=size_of(robot))
-    control = Standing(at=_START_DELAY, hold=STILL, balance=balance)
+    gait = straight if suits(robot, straight) else default_gait(robot).without("axis")
+    balance = rescale(BALANCE, length_factor=size_of(robot))
+    control = Standing(at=_START_DELAY, hold=STANDING_DURATION, balance=balance)
     run = Run(robot=robot, gait=gait, ground=ground, control=control)
-    ticks = ceil((control.upright_from(robot) + STILL) / period)
+    ticks = ceil((control.upright_from(robot) + STANDING_DURATION) / period)
     loop = Loop([run], timestep, ticks=ticks)
     for _ in range(ticks):
         loop.decide()
@@ -126,7 +126,7 @@ def _standing_beginning(robot: Robot, ground: Ground, timestep: float) -> Beginn
             f"robot {robot.name!r} does not stand up: {batch.cause[0]}; an upright start needs one that does.",
             time=float(batch.ended[0]),
         )
-    height, min_height = float(loop.sensors["snout_position"][0, 2]), _MIN_STANDING_FRACTION * stretched(robot)
+    height, min_height = float(loop.sensors["snout_position"][0, 2]), _MIN_STANDING_FRACTION * stretched_length(robot)
     if height < min_height:
         raise InvalidDesign(
             f"robot {robot.name!r} falls over as it stands up: its snout is {height:.3g} m high, and "
@@ -175,7 +175,7 @@ class Pack:
             check_pushes([Push(force=(0.0, 0.0, 0.0), at=0.0, body=body)], task.body, np.inf)
         self._begin = begin(task)
         self._low, self._high = servo_ranges(task.robot).T
-        self._cranks = turning(task.robot)
+        self._cranks = is_crank(task.robot)
         self._max_crank_turn = task.decision * np.array(
             [task.robot.servo(name).speed for name in layout(task.robot).servos]
         )
@@ -226,7 +226,7 @@ class Pack:
             chance = draw(self.task, random)
             faults = () if chance.broken is None else (chance.broken,)
             pushes = () if chance.push is None else (chance.push,)
-            beginning = off_by(self.task, self._begin, jitter)
+            beginning = displace_joints(self.task, self._begin, jitter)
             self.loop.restart(i, beginning, faults, pushes)
             if self._tanks is not None:
                 self._tanks.restart(i, beginning, faults, pushes)
@@ -273,7 +273,7 @@ class Pack:
             for period in range(1, self._actor.periods + 1):
                 self.loop.decide()
                 self.loop.advance(
-                    felt=period == self._actor.periods
+                    need_forces=period == self._actor.periods
                 )  # contact loads are read at the end of the action only
                 work += self._servo_power() * self.loop.period
         self._command_change = np.where(active_mask[:, None], command_change, self._command_change)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.apps.envs.senses import felt, part, turning
-from suchus.apps.envs.shelf import STEPS
+from suchus.apps.envs.senses import decode_observations, is_crank, reading_columns
+from suchus.apps.envs.shelf import MAX_STEPS
 from suchus.apps.envs.task import Task
 from suchus.apps.envs.vector import CrocodileVectorEnv
 from suchus.robot.control import Control, Controller, HeadingHold, Runs
@@ -20,7 +20,7 @@ Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
 
 
 @dataclass(frozen=True, slots=True)
-class Still:
+class HoldStill:
     """All actions are zero: the posture in which the episode begins is held."""
 
     task: Task
@@ -32,7 +32,7 @@ class Still:
 
 
 @dataclass(slots=True)
-class Anything:
+class RandomActions:
     """Actions drawn uniformly from -1 to 1."""
 
     task: Task
@@ -46,7 +46,7 @@ class Anything:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Follow:
+class GaitFollower:
     """A gait that follows the clock of the observation and, where limbs are cranks, the angles of the cranks."""
 
     task: Task
@@ -59,13 +59,13 @@ class Follow:
     def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the gait's angles at the end of the step."""
         task, gait, robot = self.task, self.gait, self.task.robot
-        sine, cosine = part(observations, "clock", robot).astype(float).T
+        sine, cosine = reading_columns(observations, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.gait.period
         targets = cycle_targets(robot, gait, clock)
         actions = (targets - np.array(self.centre)) / task.span
-        cranks = turning(robot)
+        cranks = is_crank(robot)
         if cranks.any():
-            crank_error = targets - np.pi * part(observations, "servo_position", robot)
+            crank_error = targets - np.pi * reading_columns(observations, "servo_position", robot)
             speed = np.array([robot.servo(name).speed for name in layout(robot).servos])
             crank_actions = (np.mod(crank_error + np.pi, 2 * np.pi) - np.pi) / (task.decision * speed)
             actions = np.where(cranks, crank_actions, actions)
@@ -87,9 +87,9 @@ class SwimToGoal:
         """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
         task, robot = self.task, self.task.robot
         swim = movement(robot, task.swum)
-        sine, cosine = part(observations, "clock", robot).astype(float).T
+        sine, cosine = reading_columns(observations, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
-        direction = part(observations, "goal_direction", robot).astype(float)
+        direction = reading_columns(observations, "goal_direction", robot).astype(float)
         bend_fraction = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
         steer = Steer(bend=self.hold.trunk_turn * bend_fraction, tail=self.hold.turn * bend_fraction)
         phases = clock[:, None] + np.array(swim.gaits[0].limb_phases)
@@ -97,7 +97,7 @@ class SwimToGoal:
         return np.clip((targets - np.array(self.centre)) / task.span, -1.0, 1.0)
 
 
-class Controlled:
+class ControllerPolicy:
     """A controller of the shelf that reads the observations; it has state, so use one for each ``play``.
 
     It is called in every control period with the observation of the present step; its commands for air are ignored.
@@ -129,7 +129,7 @@ class Controlled:
         if self._controller is None:
             runs = Runs.alike(self._control, task.robot, self._gait, count=count, ticks=self._ticks)
             self._controller = self._control.start(runs, self._period)
-        sensed = felt(observations, task.robot, self._tick * self._period)
+        sensed = decode_observations(observations, task.robot, self._tick * self._period)
         for _ in range(self._per_step):
             targets = self._controller.command(self._tick, sensed).targets
             self._tick += 1
@@ -137,7 +137,7 @@ class Controlled:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Played:
+class EpisodeResults:
     """Results of episodes, one entry for each."""
 
     returns: Float[np.ndarray, " episode"]
@@ -152,7 +152,7 @@ class Played:
     """Whether the goal was reached [-]."""
 
 
-def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps: int = STEPS) -> Played:
+def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps: int = MAX_STEPS) -> EpisodeResults:
     """Play episodes side by side and return their results.
 
     Args:
@@ -175,4 +175,4 @@ def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps
         approach += np.where(is_running, infos["approach"], 0.0)
         goal |= is_running & infos["goal"]
         is_running &= ~(terminated | truncated)
-    return Played(returns=returns, lasted=durations, forward=forward, approach=approach, goal=goal)
+    return EpisodeResults(returns=returns, lasted=durations, forward=forward, approach=approach, goal=goal)

@@ -14,7 +14,7 @@ from suchus.core import rotation
 from suchus.core.errors import UnknownName
 from suchus.robot.control import Sensed
 from suchus.robot.design import GRAVITY, Robot, layout, servo_ranges
-from suchus.robot.robots import ROBOTS, beside_article
+from suchus.robot.robots import ROBOTS, size_relative_to_article
 
 _CAIMAN = ROBOTS["caiman"]
 ANGLE = float(np.pi)
@@ -25,7 +25,7 @@ RATE = 10.0
 """Scale of the gyroscope [rad/s] for a body as long as the article's; twice what a death roll reaches."""
 ACCELERATION = 4 * GRAVITY
 """Scale of the accelerometer [m/s2]; the range that a cheap one is set to."""
-FAR = 4.0
+GOAL_DISTANCE_SCALE = 4.0
 """Scale of the distance to a goal, over the robot's length [-]."""
 
 
@@ -50,8 +50,8 @@ def senses(robot: Robot, *, goal: bool = False) -> tuple[Sense, ...]:
         robot: the robot.
         goal: whether its task has a goal, which adds the last two readings.
     """
-    robot_layout, pace = layout(robot), 1.0 / sqrt(beside_article(robot).length)
-    servos, cranks = len(robot_layout.servos), bool(turning(robot).any())
+    robot_layout, pace = layout(robot), 1.0 / sqrt(size_relative_to_article(robot).length)
+    servos, cranks = len(robot_layout.servos), bool(is_crank(robot).any())
     angle = "angle of each servo" + (", of a crank within half a turn to either side" if cranks else "")
     last_action_text = "last commanded angle of each servo, relative to its centre: the last action"
     rows: tuple[tuple[str, int, str, str], ...] = (
@@ -86,7 +86,14 @@ def senses(robot: Robot, *, goal: bool = False) -> tuple[Sense, ...]:
     if goal:
         towards = f"level direction to the goal in the {robot_layout.robot.root}, as a beacon and the IMU give it"
         rows += (("goal_direction", 3, "1", towards),)
-        rows += (("goal_distance", 1, f"{FAR:g} L, m", "distance that remains to the goal, L the robot's length"),)
+        rows += (
+            (
+                "goal_distance",
+                1,
+                f"{GOAL_DISTANCE_SCALE:g} L, m",
+                "distance that remains to the goal, L the robot's length",
+            ),
+        )
     ends = np.cumsum([count for _, count, _, _ in rows]).tolist()
     return tuple(
         Sense(name, slice(end - count, end), scale, description)
@@ -94,7 +101,7 @@ def senses(robot: Robot, *, goal: bool = False) -> tuple[Sense, ...]:
     )
 
 
-def turning(robot: Robot) -> Bool[np.ndarray, " servo"]:
+def is_crank(robot: Robot) -> Bool[np.ndarray, " servo"]:
     """Return which servos are cranks, which turn round and round [-]."""
     return np.asarray(~np.isfinite(servo_ranges(robot)).all(axis=1))
 
@@ -103,7 +110,9 @@ SENSES = senses(_CAIMAN)
 """The columns of an observation of the article's robot."""
 
 
-def part(observations: Float[np.ndarray, "*b n"], name: str, robot: Robot | str = _CAIMAN) -> Float[np.ndarray, "*b m"]:
+def reading_columns(
+    observations: Float[np.ndarray, "*b n"], name: str, robot: Robot | str = _CAIMAN
+) -> Float[np.ndarray, "*b m"]:
     """Return the columns of one reading of ``senses``.
 
     Args:
@@ -126,7 +135,7 @@ def part(observations: Float[np.ndarray, "*b n"], name: str, robot: Robot | str 
 @lru_cache(maxsize=64)
 def scales(robot: Robot) -> Mapping[str, float | Float[np.ndarray, " servo"]]:
     """Return the scale of every reading of a robot by its name, in SI units; numbers or one for each servo."""
-    weight, time_factor = robot.mass * GRAVITY, sqrt(beside_article(robot).length)
+    weight, time_factor = robot.mass * GRAVITY, sqrt(size_relative_to_article(robot).length)
     limits = np.array([robot.servo(name).torque for name in layout(robot).servos])
     limits.flags.writeable = False
     return MappingProxyType(
@@ -139,7 +148,7 @@ def scales(robot: Robot) -> Mapping[str, float | Float[np.ndarray, " servo"]]:
             "tail_pressure": weight,
             "angular_velocity": RATE / time_factor,
             "acceleration": ACCELERATION,
-            "goal_distance": FAR * robot.length,
+            "goal_distance": GOAL_DISTANCE_SCALE * robot.length,
         }
     )
 
@@ -160,7 +169,7 @@ class Observer:
         self._scale = np.ones(self._rows.shape[1])
         for sense in readings:
             self._scale[sense.columns] = scales(robot).get(sense.name, 1.0)
-        self._cranks = turning(robot)
+        self._cranks = is_crank(robot)
 
     def observe(
         self,
@@ -182,7 +191,7 @@ class Observer:
         position = sensed.servo_position
         if self._cranks.any():
             position = np.where(self._cranks, np.mod(position + np.pi, 2 * np.pi) - np.pi, position)
-        upward, forward = rotation.upward(sensed.orientation), rotation.ahead(sensed.orientation)
+        upward, forward = rotation.upward(sensed.orientation), rotation.world_x(sensed.orientation)
         columns["servo_position"][:] = position
         columns["servo_velocity"][:] = sensed.servo_velocity
         columns["servo_torque"][:] = sensed.servo_torque
@@ -206,7 +215,7 @@ class Observer:
         return np.clip(rows, -1.0, 1.0).astype(np.float32)
 
 
-def felt(observations: Float[np.ndarray, "run n"], robot: Robot, time: float) -> Sensed:
+def decode_observations(observations: Float[np.ndarray, "run n"], robot: Robot, time: float) -> Sensed:
     """Return the sensor readings from which observations were made; clipped readings stay clipped.
 
     Args:
@@ -214,7 +223,7 @@ def felt(observations: Float[np.ndarray, "run n"], robot: Robot, time: float) ->
         robot: the robot that they belong to.
         time: time of the readings [s].
     """
-    readings = {sense.name: part(observations, sense.name, robot).astype(float) for sense in senses(robot)}
+    readings = {sense.name: reading_columns(observations, sense.name, robot).astype(float) for sense in senses(robot)}
     scale = scales(robot)
     rows = np.stack([readings["ahead"], np.cross(readings["upward"], readings["ahead"]), readings["upward"]], axis=1)
     return Sensed(

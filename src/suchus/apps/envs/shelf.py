@@ -73,7 +73,7 @@ TASKS: Mapping[str, Task] = MappingProxyType(
 """The tasks by name; vary one with ``dataclasses.replace``, or by naming its fields to ``gymnasium.make``."""
 
 
-def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
+def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
     """Return a task, given itself or by its name, with some fields changed.
 
     A robot or a gait may be given by its name on the shelf or the path of its file; a robot brings its gait and its
@@ -121,9 +121,9 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
     return replace(task, **values)
 
 
-STEPS = 200
+MAX_STEPS = 200
 """Greatest number of steps of an episode [-]: 10 s, two and a half cycles of the article's crawl."""
-LONGER: Mapping[str, int] = MappingProxyType({"Swim": 400, "Shore": 1000})
+MAX_STEPS_BY_TASK: Mapping[str, int] = MappingProxyType({"Swim": 400, "Shore": 1000})
 """Steps of an episode of the tasks that take longer [-]: 20 s, three times what the steered swim to the goal
 takes; 50 s, as in the experiment ``shore``."""
 IDS = tuple(f"suchus/{name}-v0" for name in TASKS)
@@ -138,6 +138,6 @@ def register() -> None:
                 identity,
                 entry_point="suchus.apps.envs.single:CrocodileEnv",
                 vector_entry_point="suchus.apps.envs.vector:CrocodileVectorEnv",
-                max_episode_steps=LONGER.get(name, STEPS),
+                max_episode_steps=MAX_STEPS_BY_TASK.get(name, MAX_STEPS),
                 kwargs={"task": name},
             )

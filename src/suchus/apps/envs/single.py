@@ -14,12 +14,12 @@ from matplotlib.patches import Circle
 
 from suchus.apps.envs.pack import Pack
 from suchus.apps.envs.senses import senses
-from suchus.apps.envs.shelf import chosen
+from suchus.apps.envs.shelf import resolve_task
 from suchus.apps.envs.task import TERMS, AnyGoal, Landing, Task, Terms
 from suchus.core.errors import OutsideLimits, UnknownName
 from suchus.robot.design import Robot, layout
-from suchus.robot.robots import beside_article
-from suchus.sim.land.lake import up
+from suchus.robot.robots import size_relative_to_article
+from suchus.sim.land.lake import up_direction
 from suchus.visual.figures import COLOURS, new, styled
 from suchus.visual.figures.posture import draw_posture
 
@@ -79,7 +79,7 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
 
     def __init__(self, task: Task | str = "Crawl", render_mode: str | None = None, **changes: Any) -> None:
         check_render_mode(render_mode)
-        self.task = chosen(task, changes)
+        self.task = resolve_task(task, changes)
         self.pack = Pack(self.task, 1)
         self.action_space = action_space(self.task.robot)
         self.observation_space = observation_space(self.task.robot, goal=self.task.goal is not None)
@@ -134,7 +134,7 @@ def step_info(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
 def portrait(pack: Pack, robot: int) -> np.ndarray:
     """Return a picture of one robot of a pack."""
     text = f"{pack.time[robot]:.2f} s  {pack.chances[robot].fault}"
-    surroundings = Surroundings(up=up(pack.task.ground), goal=pack.task.goal, place=pack.goals[robot])
+    surroundings = Surroundings(up=up_direction(pack.task.ground), goal=pack.task.goal, place=pack.goals[robot])
     return picture(pack.task.robot, pack.record(robot), text, surroundings)
 
 
@@ -199,7 +199,8 @@ def picture(
         draw_posture(side_axes, robot, record, 0.0, view="side")
         x, y, z = record.centre_of_mass.values[0].tolist()
         view_length, view_width, view_depth, view_height = (
-            beside_article(robot).length * length for length in (_VIEW_LENGTH, _VIEW_WIDTH, _VIEW_DEPTH, _VIEW_HEIGHT)
+            size_relative_to_article(robot).length * length
+            for length in (_VIEW_LENGTH, _VIEW_WIDTH, _VIEW_DEPTH, _VIEW_HEIGHT)
         )
         lower_bound = max(-view_depth, z - (1 - _SKY_FRACTION) * (view_height + view_depth))
         top_axes.set(

@@ -21,8 +21,8 @@ from suchus.robot.design import (
     with_servos,
     with_speed_lines,
 )
-from suchus.robot.design.scale import control_period, scaled, scaled_fields
-from suchus.robot.gaits import GAITS, own_gait, suits
+from suchus.robot.design.scale import control_period, rescale, rescale_fields
+from suchus.robot.gaits import GAITS, default_gait, suits
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault
@@ -224,7 +224,7 @@ TERMS = tuple(f.name for f in fields(Terms))
 
 
 Start = Literal["lying", "upright", "swimming"]
-NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
+START_NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "lying": (),
         "upright": STANDING,
@@ -440,18 +440,18 @@ class Task:
         Raises:
             UnsuitedRobot: the robot lacks what the beginning needs, or no gait on the shelf suits it.
         """
-        check_needs(robot, NEEDED[self.start], f"a task that begins {self.start}")
+        check_needs(robot, START_NEEDS[self.start], f"a task that begins {self.start}")
         length_factor, mass_factor = robot.length / self.robot.length, robot.mass / self.robot.mass
         time_factor = control_period(robot) / control_period(self.robot)
         changes: dict[str, Any] = {}
         if time_factor != 1.0:
             changes = {name: round(time_factor * getattr(self, name), 12) for name in ("decision", "timestep")}
         if time_factor != 1.0 or not suits(robot, self.gait):
-            changes |= scaled_fields(self, ["least_height"], length_factor=length_factor, mass_factor=mass_factor)
-            changes |= {"gait": gait or own_gait(robot)}
+            changes |= rescale_fields(self, ["least_height"], length_factor=length_factor, mass_factor=mass_factor)
+            changes |= {"gait": gait or default_gait(robot)}
             for name in ("rewards", "breaks", "pushes", "goal"):
                 if getattr(self, name) is not None:
-                    changes[name] = scaled(getattr(self, name), length_factor=length_factor, mass_factor=mass_factor)
+                    changes[name] = rescale(getattr(self, name), length_factor=length_factor, mass_factor=mass_factor)
             if self.lake is not None:
                 changes["lake"] = replace(
                     self.lake, level=length_factor * self.lake.at(0.0)[0]
@@ -463,8 +463,8 @@ class Task:
             if self.water not in FORMS:
                 raise UnknownName("water", self.water, ("sections", *FORMS))
             object.__setattr__(self, "water", FORMS[self.water]())
-        if self.start in NEEDED:
-            check_needs(self.robot, NEEDED[self.start], f"a task that begins {self.start}")
+        if self.start in START_NEEDS:
+            check_needs(self.robot, START_NEEDS[self.start], f"a task that begins {self.start}")
         if isinstance(self.goal, Landing):
             check_needs(self.robot, ["limbs"], "a task that ends on land")
         period = control_period(self.robot)

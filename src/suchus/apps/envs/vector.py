@@ -10,7 +10,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from suchus.apps.envs.pack import Pack
-from suchus.apps.envs.shelf import chosen
+from suchus.apps.envs.shelf import resolve_task
 from suchus.apps.envs.single import (
     action_space,
     check_render_mode,
@@ -54,7 +54,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
     ) -> None:
         check_render_mode(render_mode)
         require("make_vec", "num_envs", num_envs, 1, 100_000, "")
-        self.task = chosen(task, changes)
+        self.task = resolve_task(task, changes)
         self.pack = Pack(self.task, num_envs)
         self.num_envs, self.max_episode_steps, self.render_mode = num_envs, max_episode_steps, render_mode
         self.autoreset_mode = _mode(autoreset_mode)

@@ -1,10 +1,10 @@
 """Outcomes become files, and files become one page."""
 
 from suchus.apps.report.comparison import Comparison, compare, render_comparison, write_comparison
-from suchus.apps.report.outcome_page import PAGE, answer, carried, render_outcome_page, write_outcome_page
+from suchus.apps.report.outcome_page import PAGE, answer, answer_rows, render_outcome_page, write_outcome_page
 from suchus.apps.report.page import render_page, write_page
 from suchus.apps.report.rendering import number, quantity
-from suchus.apps.report.result import OUTCOME, Failure, Picture, Result, load_result, whole
+from suchus.apps.report.result import OUTCOME, Failure, Picture, Result, has_all_files, load_result
 from suchus.apps.report.saving import check_place, save_outcome
 
 __all__ = [
@@ -15,9 +15,10 @@ __all__ = [
     "Picture",
     "Result",
     "answer",
-    "carried",
+    "answer_rows",
     "check_place",
     "compare",
+    "has_all_files",
     "load_result",
     "number",
     "quantity",
@@ -25,7 +26,6 @@ __all__ = [
     "render_outcome_page",
     "render_page",
     "save_outcome",
-    "whole",
     "write_comparison",
     "write_outcome_page",
     "write_page",

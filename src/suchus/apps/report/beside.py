@@ -33,7 +33,7 @@ _DURATION = CRAWL_END - CRAWL_START
 _COORDINATED, _LIMBS_ONLY = CLAIMS["displacement_coordinated"].value, CLAIMS["displacement_limbs_only"].value
 
 
-def beside(robot: Robot, results: Results) -> tuple[ComparisonRow, ...]:
+def compare_with_animals(robot: Robot, results: Results) -> tuple[ComparisonRow, ...]:
     """Return the rows whose experiment was run.
 
     Args:

@@ -11,7 +11,7 @@ from suchus.core.files import write
 from suchus.hardware.commands import Commands, trajectory_text
 from suchus.hardware.outlines import plates_dxf, stl, top_dxf
 from suchus.hardware.parts import BodyPart, Sheet
-from suchus.hardware.ros import controllers, described, note, unfit
+from suchus.hardware.ros import controllers, note, ros_urdf, unfit_reason
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait
 from suchus.visual import figures
@@ -36,12 +36,12 @@ def write_parts(sheet: Sheet, folder: Path, *, gait: Gait, samples: Commands, ou
         write(folder / name, text)
     if outlines:
         (folder / "outlines").mkdir()
-        for body_part in printed(sheet):
+        for body_part in printed_parts(sheet):
             write(folder / "outlines" / f"{body_part.name}.stl", stl(body_part))
         write(folder / "outlines" / "top.dxf", top_dxf(sheet))
         if sheet.plates:
             write(folder / "outlines" / "plates.dxf", plates_dxf(sheet.plates))
-    if not unfit(sheet.robot):
+    if not unfit_reason(sheet.robot):
         _write_ros(sheet.robot, samples, folder / "ros2")
     svg, png = figures.save(figures.dimension_drawing(sheet.robot), folder, "dimensions")
     picture = {"source": embedded(svg, png), "caption": f"{sheet.robot.name}, its lengths in millimetres."}
@@ -51,14 +51,14 @@ def write_parts(sheet: Sheet, folder: Path, *, gait: Gait, samples: Commands, ou
 def _write_ros(robot: Robot, samples: Commands, folder: Path) -> None:
     """Write a robot, its controllers and a trajectory for ROS 2."""
     folder.mkdir()
-    write(folder / f"{robot.name}.urdf", described(robot))
+    write(folder / f"{robot.name}.urdf", ros_urdf(robot))
     write(folder / "controllers.yaml", controllers(robot))
     write(folder / "trajectory.yaml", trajectory_text(robot, samples, virtual=True))
     if note_text := note(robot):
         write(folder / "README.txt", note_text + "\n")
 
 
-def printed(sheet: Sheet) -> list[BodyPart]:
+def printed_parts(sheet: Sheet) -> list[BodyPart]:
     """Return the parts that are printed: of those that mirror each other the left one."""
     rights = {f"R{girdle.name}_" for girdle in sheet.robot.girdles}
     return [
@@ -137,7 +137,7 @@ def tables(sheet: Sheet) -> dict[str, str]:
     return texts
 
 
-def mass_said(sheet: Sheet) -> list[str]:
+def mass_sentences(sheet: Sheet) -> list[str]:
     """Return sentences on total mass, its parts, and the shift of the centre of mass."""
     total = sum(body.simulated for body in sheet.bodies)
     servos, walls = sum(body.servos for body in sheet.bodies), sum(body.printed for body in sheet.bodies)
@@ -164,7 +164,7 @@ def mass_said(sheet: Sheet) -> list[str]:
     return sentences
 
 
-def floats_said(sheet: Sheet) -> str:
+def floating_sentence(sheet: Sheet) -> str:
     """Return a sentence that says whether the robot floats, with the volumes of foam and air."""
     floating = sheet.floating
     foam = sum(volume for _, volume, _ in floating.foam)
@@ -187,11 +187,11 @@ def _content(sheet: Sheet, gait: Gait, picture: dict[str, str], outlines: bool) 
         "gait": gait,
         "picture": picture,
         "counts": counts,
-        "printed": printed(sheet),
-        "masses": mass_said(sheet),
-        "floats": floats_said(sheet),
-        "note": "" if unfit(sheet.robot) else note(sheet.robot),
-        "unfit": unfit(sheet.robot),
+        "printed": printed_parts(sheet),
+        "masses": mass_sentences(sheet),
+        "floats": floating_sentence(sheet),
+        "note": "" if unfit_reason(sheet.robot) else note(sheet.robot),
+        "unfit": unfit_reason(sheet.robot),
         "wire": sum(wire.length for wire in sheet.wires),
         "files": sorted(tables(sheet)),
         "outlines": outlines,

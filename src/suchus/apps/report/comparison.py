@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from suchus.apps.report.rendering import render
-from suchus.apps.report.result import Moving, Picture, Result
+from suchus.apps.report.result import MediaFile, Picture, Result
 from suchus.core.errors import IncompatibleRecord
 from suchus.core.files import write
 
@@ -16,7 +16,7 @@ _MAX_SETTING_LENGTH = 80
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Compared:
+class MeasureComparison:
     """One measure of both outcomes."""
 
     name: str
@@ -34,7 +34,7 @@ class Compared:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Judged:
+class VerdictComparison:
     """One claim, and what both outcomes say of it."""
 
     quantity: str
@@ -67,25 +67,25 @@ class Comparison:
     """Names of the two outcomes."""
     results: tuple[Result, Result]
     """The two outcomes."""
-    measures: tuple[Compared, ...]
+    measures: tuple[MeasureComparison, ...]
     """Every measure of either, the largest relative difference first."""
-    verdicts: tuple[Judged, ...]
+    verdicts: tuple[VerdictComparison, ...]
     """Every claim that either judges, those with another verdict first."""
     settings: tuple[Setting, ...]
     """Every setting in which they differ."""
 
     @property
-    def of_both(self) -> tuple[Compared, ...]:
+    def of_both(self) -> tuple[MeasureComparison, ...]:
         """Measures of which both outcomes have a number."""
         return tuple(measure for measure in self.measures if measure.first is not None and measure.second is not None)
 
     @property
-    def of_one(self) -> tuple[Compared, ...]:
+    def of_one(self) -> tuple[MeasureComparison, ...]:
         """Measures of which only one outcome has a number, or none."""
         return tuple(measure for measure in self.measures if measure.first is None or measure.second is None)
 
     @property
-    def changed(self) -> tuple[Judged, ...]:
+    def changed(self) -> tuple[VerdictComparison, ...]:
         """Claims that both judge, and differently."""
         common_verdicts = (verdict for verdict in self.verdicts if verdict.first and verdict.second)
         return tuple(verdict for verdict in common_verdicts if verdict.first != verdict.second)
@@ -157,7 +157,7 @@ def render_comparison(comparison: Comparison, page_folder: str | Path) -> str:
 
 
 def _pairs(
-    a: Mapping[str, Picture] | Mapping[str, Moving], b: Mapping[str, Picture] | Mapping[str, Moving]
+    a: Mapping[str, Picture] | Mapping[str, MediaFile], b: Mapping[str, Picture] | Mapping[str, MediaFile]
 ) -> list[tuple[str, tuple[Any, Any]]]:
     return [(name, (a.get(name), b.get(name))) for name in dict.fromkeys([*a, *b])]
 
@@ -166,7 +166,9 @@ def _union(a: Result, b: Result) -> list[str]:
     return list(dict.fromkeys([*a.outcome["measures"], *b.outcome["measures"]]))
 
 
-def _compare_measure(name: str, first_measures: Mapping[str, Any], second_measures: Mapping[str, Any]) -> Compared:
+def _compare_measure(
+    name: str, first_measures: Mapping[str, Any], second_measures: Mapping[str, Any]
+) -> MeasureComparison:
     """Return one measure of two outcomes with its difference, absolute and relative."""
     a, b = first_measures.get(name), second_measures.get(name)
     units = list(dict.fromkeys(entry["unit"] for entry in (a, b) if entry))
@@ -175,7 +177,7 @@ def _compare_measure(name: str, first_measures: Mapping[str, Any], second_measur
     if len(units) == 1 and values[0] is not None and values[1] is not None:
         difference = values[1] - values[0]
         relative_difference = difference / abs(values[0]) if values[0] else None
-    return Compared(
+    return MeasureComparison(
         name=name,
         unit=" / ".join(units),
         first=values[0],
@@ -185,14 +187,16 @@ def _compare_measure(name: str, first_measures: Mapping[str, Any], second_measur
     )
 
 
-def _size(measure: Compared) -> float:
+def _size(measure: MeasureComparison) -> float:
     """Return the relative difference of a measure, by which measures of all units are sorted."""
     if measure.share is None:
         return inf if measure.difference else 0.0
     return abs(measure.share)
 
 
-def _pair_verdicts(rows_a: Sequence[Mapping[str, Any]], rows_b: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
+def _pair_verdicts(
+    rows_a: Sequence[Mapping[str, Any]], rows_b: Sequence[Mapping[str, Any]]
+) -> Iterator[VerdictComparison]:
     """Yield each claim with its verdict in two outcomes, in the order of the first outcome."""
     first_verdicts, second_verdicts = ({row["claim"]: row for row in rows} for rows in (rows_a, rows_b))
     for claim in dict.fromkeys([*first_verdicts, *second_verdicts]):
@@ -201,7 +205,7 @@ def _pair_verdicts(rows_a: Sequence[Mapping[str, Any]], rows_b: Sequence[Mapping
             str(by_claim[claim]["verdict"]) if claim in by_claim else ""
             for by_claim in (first_verdicts, second_verdicts)
         ]
-        yield Judged(
+        yield VerdictComparison(
             quantity=verdict_pair["quantity"],
             where=verdict_pair["where"],
             first=verdict_words[0],

@@ -17,7 +17,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
-from suchus.visual.replay.page import environment, rendered
+from suchus.visual.replay.page import environment, render_template
 
 _TIMESTEP, _SAMPLE_INTERVAL = (
     0.005,
@@ -87,14 +87,17 @@ def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = s
     """Return a lesson as an HTML page; ``following`` is the lesson that it leads to."""
     first_run = lesson.runs[0]
     duration = START + lesson.cycles * max(run.gait.period for run in lesson.runs)
-    record = simulate(lesson.runs, duration=duration, timestep=_TIMESTEP, every=_SAMPLE_INTERVAL, progress=progress)
+    record = simulate(
+        lesson.runs, duration=duration, timestep=_TIMESTEP, sample_stride=_SAMPLE_INTERVAL, progress=progress
+    )
     run_records = [record.isel(run=i) for i in range(len(lesson.runs))]
     distances = [
         float(run_record.centre_of_mass[-1, 0] - run_record.centre_of_mass[0, 0]) for run_record in run_records
     ]
     labels = [run.label for run in lesson.runs]
-    return rendered(
-        "lesson.html", run_records[0], first_run.robot, others=run_records[1:], choice=lesson.choice, labels=labels,
+    return render_template(
+        "lesson.html", run_records[0], first_run.robot, other_records=run_records[1:], choice=lesson.choice,
+        labels=labels,
         title=lesson.title, caption=lesson.caption, question=lesson.question, options=labels,
         right=lesson.right(distances), because=lesson.because,
         numbers=[f"{value:.2f} m".replace("-", "−") for value in distances],
@@ -102,18 +105,18 @@ def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = s
     )  # fmt: skip
 
 
-def _farthest(distances: Sequence[float]) -> int:
+def _index_of_farthest(distances: Sequence[float]) -> int:
     return int(np.argmax(distances))
 
 
-def _least(distances: Sequence[float]) -> int:
+def _index_of_nearest(distances: Sequence[float]) -> int:
     return int(np.argmin(distances))
 
 
-def _backwards(distances: Sequence[float]) -> int:
+def _index_of_backward(distances: Sequence[float]) -> int:
     """Return the first run that goes backwards; the one that gets least far where none does."""
     backward_runs = np.flatnonzero(np.asarray(distances) < 0.0)
-    return int(backward_runs[0]) if backward_runs.size else _least(distances)
+    return int(backward_runs[0]) if backward_runs.size else _index_of_nearest(distances)
 
 
 def _bending() -> Lesson:
@@ -130,7 +133,7 @@ def _bending() -> Lesson:
         ),
         cycles=2,
         question="With which bend does it get farthest?",
-        right=_farthest,
+        right=_index_of_farthest,
         because="A foot that stands holds on to the ground. When the trunk bends it turns hips and shoulders, "
         "which carries the body past the standing foot, and reaches out with the foot in the air: the "
         "step gets longer, though the leg moves no more than before. Look at the tracks: how long is a "
@@ -152,7 +155,7 @@ def _timing() -> Lesson:
         runs=tuple(Run(robot=robot, gait=gait.lagged(lag), label=label) for label, lag in lags.items()),
         cycles=2,
         question="How late must the spine be at least for the robot to crawl backwards?",
-        right=_backwards,
+        right=_index_of_backward,
         because="In time, the trunk turns each leg backwards while its foot stands: leg and spine push the same "
         "way. Half a cycle late the spine turns the leg forwards while its foot stands, and takes away "
         "what the leg gives. Where it takes more than the leg gives, the robot goes backwards.",
@@ -175,7 +178,7 @@ def _joints() -> Lesson:
         ),
         cycles=2,
         question="Which joint costs the most distance?",
-        right=_least,
+        right=_index_of_nearest,
         because="Yaw swings a leg forward and back, pitch and knee carry the body and lift the foot. Watch the "
         "arrows, which are the forces on the feet: a leg can lose its push, or its load, which other feet "
         "and the belly then take. Does the robot still go straight?",
@@ -204,7 +207,7 @@ def _friction() -> Lesson:
         ),
         cycles=2,
         question="On which ground does it get least far?",
-        right=_least,
+        right=_index_of_nearest,
         because="Friction does two things: feet push with it, and whatever drags over the ground is braked by it. "
         "If both were scaled alike and nothing else counted, the distance would not change at all. Look "
         "which feet slide, in which direction, and what the tail does.",
@@ -234,7 +237,7 @@ def _waves() -> Lesson:
         ),
         cycles=6,
         question="Which swims fastest?",
-        right=_farthest,
+        right=_index_of_farthest,
         because="A wave that runs along the body presses on the water behind it, and the water presses back: the "
         "body goes the other way. So a wave towards the tail swims forwards, and one towards the head "
         "swims backwards. How many waves there are decides how much of the pressing is along the body and "

@@ -32,7 +32,7 @@ MARKS = {
     "by construction": "□",
 }
 """Sign of each verdict, for those who do not see its colour."""
-MOST = 6
+MAX_ANSWER_MEASURES = 6
 """Numbers that stand below an answer [-]."""
 _LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "of": "", "rule": (), "models": ()}
 """Defaults of entries that older outcomes lack."""
@@ -74,8 +74,8 @@ def render_outcome_page(result: Result) -> str:
         "more": outcome["decides"][len(lead) :].strip(),
         "robot": _setting_name(outcome, "robot"),
         "gait": _setting_name(outcome, "gait"),
-        "verdicts": list(told(result)),
-        "carried": carried(outcome.get("answers", ()), measures),
+        "verdicts": list(verdict_rows(result)),
+        "carried": answer_rows(outcome.get("answers", ()), measures),
         "differs": outcome.get("differs"),
         "replay": read_text(first_replay, 2 * _HEAVY) if first_replay is not None and is_embedded else "",
         "beside": [*result.replays[1 if is_embedded else 0 :], *result.films],
@@ -85,7 +85,7 @@ def render_outcome_page(result: Result) -> str:
     return render("outcome.html", result.folder, content, tied=tied)
 
 
-def told(result: Result) -> Iterator[dict[str, Any]]:
+def verdict_rows(result: Result) -> Iterator[dict[str, Any]]:
     """Yield the verdicts of a result as pages show them: with their spread, and how many designs agree."""
     for verdict in result.outcome["verdicts"]:
         full_verdict = {**_LACKING, **verdict}
@@ -102,7 +102,7 @@ def answer(decides: str) -> str:
     return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
 
 
-def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
+def answer_rows(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
     """Return name, value and interval of the measures that carry an answer, in words.
 
     A measure that a run has not, as one of another gait, or that is no finite number is left out; ``MOST`` are taken.
@@ -117,7 +117,7 @@ def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tup
     names = [measure_name for measure_name in answers if measure_name in finite] or [
         measure_name for measure_name in finite if not measure_name.endswith(ends)
     ]
-    for name in names[:MOST]:
+    for name in names[:MAX_ANSWER_MEASURES]:
         lower_bound, upper_bound = (measures.get(name + end) for end in ends)
         unit = measures[name].unit
         spread = ""

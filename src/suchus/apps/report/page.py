@@ -10,16 +10,16 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from suchus.apps.report.beside import beside
-from suchus.apps.report.outcome_page import MARKS, PAGE, told, write_outcome_page
+from suchus.apps.report.beside import compare_with_animals
+from suchus.apps.report.outcome_page import MARKS, PAGE, verdict_rows, write_outcome_page
 from suchus.apps.report.rendering import embedded, number, quantity, render, tied
 from suchus.apps.report.result import Failure, Result
 from suchus.article.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.core.errors import SuchusError
 from suchus.core.files import versions, write
-from suchus.experiments.claims import counted, standings
-from suchus.robot.blueprint import described_robot
-from suchus.robot.design import Chosen, Robot, tables_of, unit_at, value_at
+from suchus.experiments.claims import count_evidence, standings
+from suchus.robot.blueprint import parse_robot
+from suchus.robot.design import Assumption, Robot, tables_of, unit_at, value_at
 from suchus.robot.design.meaning import meanings, unit
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
@@ -88,7 +88,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     results = sorted(results, key=lambda result: _place(result, order))
     robot, robot_counts = robot_of(results)
     is_article_robot = robot.name == ARTICLES  # the article's claims hold for the article's robot only
-    verdicts = [verdict for result in results for verdict in told(result) if is_article_robot]
+    verdicts = [verdict for result in results for verdict in verdict_rows(result) if is_article_robot]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     verdict_by_claim = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
     worth = standings(verdict_by_claim)
@@ -106,11 +106,13 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
         "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
         "marks": MARKS,
-        "count": counted(verdict_by_claim, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
+        "count": count_evidence(
+            verdict_by_claim, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]
+        ),
         "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _INPUT_STANDINGS},
         "tally": {result.name: _counts(result.outcome["verdicts"] if is_article_robot else ()) for result in results},
         "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in verdict_by_claim],
-        "beside": beside(robot, {result.name: result for result in results}),
+        "beside": compare_with_animals(robot, {result.name: result for result in results}),
         "metres": metres({result.name: result for result in results}),
         "shown": next((result for result in results if result.replays), None),
         "robot": robot,
@@ -200,7 +202,7 @@ def _robot(settings: Any) -> Robot | None:
     """Return the robot that the settings of an outcome describe; None if this version cannot build it."""
     values = settings.get("robot") if isinstance(settings, Mapping) else None
     try:
-        return described_robot(values) if isinstance(values, Mapping) else None
+        return parse_robot(values) if isinstance(values, Mapping) else None
     except (ValidationError, SuchusError):
         return None
 
@@ -258,12 +260,12 @@ def rows(design: Any, path: str = "") -> Iterator[Row]:
             yield Row(field=field_path, value=_format_value(value, unit(meaning)), meaning=_plain(meaning))
 
 
-def choices(design: Any, chosen_numbers: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
+def choices(design: Any, chosen_numbers: Sequence[Assumption]) -> tuple[ChosenNumber, ...]:
     """Return a row for every number that the article does not give."""
     return tuple(_choice(design, free) for free in chosen_numbers)
 
 
-def _choice(design: Any, free_number: Chosen) -> ChosenNumber:
+def _choice(design: Any, free_number: Assumption) -> ChosenNumber:
     """Return the row of one number that the article does not give."""
     value, unit = value_at(design, free_number.field), unit_at(design, free_number.field)
     return ChosenNumber(

@@ -132,7 +132,7 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Moving:
+class MediaFile:
     """A film or a replay in a file of its own, which the page links."""
 
     file: Path
@@ -153,9 +153,9 @@ class Result:
     """The figures."""
     tables: Mapping[str, str]
     """Further texts by file name."""
-    films: tuple[Moving, ...] = field(default=())
+    films: tuple[MediaFile, ...] = field(default=())
     """Moving pictures, those whose files are there."""
-    replays: tuple[Moving, ...] = field(default=())
+    replays: tuple[MediaFile, ...] = field(default=())
     """Runs to look at, those whose files are there."""
 
     @property
@@ -207,7 +207,7 @@ def load_result(folder: str | Path) -> Result:
     return Result(folder=folder, outcome=outcome, pictures=pictures, tables=tables, films=films, replays=replays)
 
 
-def whole(result: Result) -> bool:
+def has_all_files(result: Result) -> bool:
     """Return whether every file that an outcome names is in its folder: record, films and replays too."""
     names = [
         RECORD,
@@ -222,8 +222,8 @@ def _is_wide(svg: Path) -> bool:
     return width is not None and float(width[1]) > _COLUMN
 
 
-def _moving(folder: Path, outcome: Iterable[Mapping[str, str]]) -> tuple[Moving, ...]:
-    files = (Moving(file=_path_inside(folder, entry["name"]), caption=entry["caption"]) for entry in outcome)
+def _moving(folder: Path, outcome: Iterable[Mapping[str, str]]) -> tuple[MediaFile, ...]:
+    files = (MediaFile(file=_path_inside(folder, entry["name"]), caption=entry["caption"]) for entry in outcome)
     return tuple(entry for entry in files if entry.file.is_file())
 
 

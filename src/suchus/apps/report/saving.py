@@ -72,7 +72,7 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "unjudged": outcome.unjudged,
         "command": command,
         "settings": record.plain(outcome.settings),
-        "differs": differing(experiment),
+        "differs": changed_settings(experiment),
         "answers": list(experiment.answers),
         "measures": {name: _measure(measure) for name, measure in outcome.measures.items()},
         "verdicts": [_verdict(verdict) for verdict in outcome.verdicts],
@@ -84,7 +84,7 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
     }
 
 
-def differing(experiment: Experiment) -> list[dict[str, str]]:
+def changed_settings(experiment: Experiment) -> list[dict[str, str]]:
     """Return the fields in which a question differs from the one on the shelf, with both values in words."""
     shelf, rows = type(experiment)(), []
     for name in experiment.settings():

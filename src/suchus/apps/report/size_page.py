@@ -10,11 +10,11 @@ from typing import Any
 from suchus.apps.report.rendering import embedded, number, render
 from suchus.core.files import write
 from suchus.hardware.loads import AT_LIMIT, FULL_WOUND, ServoLoad
-from suchus.hardware.sizing import ServoFamily, Sizing, fitted, use, why
+from suchus.hardware.sizing import ServoFamily, Sizing, binding_limit, use, with_motors
 from suchus.robot import blueprint
 from suchus.robot.design import Motor, layout
 from suchus.visual import figures
-from suchus.visual.figures.servos import Used, draw_use
+from suchus.visual.figures.servos import ServoUse, draw_use
 
 PAGE, SERVOS, FAMILIES, ROBOT = "size.html", "servos.csv", "families.csv", "robot.toml"
 _COLUMNS = (
@@ -57,7 +57,7 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
     pictures = []
     if best is not None:
         head = [f"{sizing.robot.name} with servos that are bought: {best.name} at {best.volts:g} V."]
-        blueprint.write(fitted(sizing.robot, best.chosen, best.volts), folder / ROBOT, head=head)
+        blueprint.write(with_motors(sizing.robot, best.chosen, best.volts), folder / ROBOT, head=head)
         figure = draw_use(uses(best), f"{sizing.robot.name}: {best.name}")
         svg, png = figures.save(figure, folder, "servos")
         pictures.append({"source": embedded(svg, png), "caption": figures.caption(figure)})
@@ -65,12 +65,12 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
     write(folder / PAGE, text)
 
 
-def uses(family: ServoFamily) -> list[Used]:
+def uses(family: ServoFamily) -> list[ServoUse]:
     """Return the use of torque and heat of each servo of a family, in its hardest case."""
     servo_uses = []
     for name, case, _ in family.binding():
         load, motor = family.loads[case][name], family.chosen[name]
-        servo_uses.append(Used(name, motor.name, load.line / FULL_WOUND, load.rms / motor.continuous_torque))
+        servo_uses.append(ServoUse(name, motor.name, load.line / FULL_WOUND, load.rms / motor.continuous_torque))
     return servo_uses
 
 
@@ -121,7 +121,7 @@ def families_text(sizing: Sizing, hours: float) -> str:
         row: list[object] = [family.name, family.volts, family.passes, family.as_asked]
         row += list(_periods(sizing, family).values())
         if family.passes:
-            counts = "; ".join(f"{count} {name}" for name, count in counted(family).items())
+            counts = "; ".join(f"{count} {name}" for name, count in motor_counts(family).items())
             row += [*family.price, family.mass, family.battery(hours), counts, ""]
         else:
             row += [None, None, None, None, "", family.lacking]
@@ -129,7 +129,7 @@ def families_text(sizing: Sizing, hours: float) -> str:
     return _csv(head, rows)
 
 
-def counted(family: ServoFamily) -> dict[str, int]:
+def motor_counts(family: ServoFamily) -> dict[str, int]:
     """Return how many of each servo are bought, the cheapest first."""
     motors = sorted(family.chosen.values(), key=lambda motor: sum(motor.price))
     return {motor.name: motors.count(motor) for motor in dict.fromkeys(motors)}
@@ -141,14 +141,14 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
     if best is None:
         reasons = "; ".join(f"{family.name}: {family.lacking}" for family in sizing.families)
         return [f"No family of servos does for {sizing.robot.name}. {reasons}.", *_overheating(sizing)]
-    counts = " and ".join(f"{count} {name}" for name, count in counted(best).items())
+    counts = " and ".join(f"{count} {name}" for name, count in motor_counts(best).items())
     min_price, max_price = best.price
     name, case, use_fraction = best.binding()[0]
     sentences = [
         f"{best.name} does for {sizing.robot.name}{_slower(sizing, best)}: {counts}, {min_price:.0f} to "
         f"{max_price:.0f} EUR, {1000 * best.mass:.0f} g.",
         f"The binding servo is {name} in {case}, which uses {100 * use_fraction:.0f} % of what "
-        f"{best.chosen[name].name} has, by {why(best.chosen[name], best.loads[case][name])}.",
+        f"{best.chosen[name].name} has, by {binding_limit(best.chosen[name], best.loads[case][name])}.",
         f"A battery for {hours:g} h needs at most {best.battery(hours):.1f} Ah at {best.volts:g} V, by the hungriest "
         f"movement.",
     ]
@@ -158,7 +158,7 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
     slower = sizing.slower
     if slower is not None:
         min_price, max_price = slower.price
-        counts = " and ".join(f"{count} {name}" for name, count in counted(slower).items())
+        counts = " and ".join(f"{count} {name}" for name, count in motor_counts(slower).items())
         sentences.append(
             f"{slower.name} would do{_slower(sizing, slower)}: {counts}, {min_price:.0f} to {max_price:.0f} EUR.",
         )
@@ -226,7 +226,7 @@ def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float
             "case": case,
             "load": best.loads[case][name],
             "use": use_fraction,
-            "why": why(best.chosen[name], best.loads[case][name]),
+            "why": binding_limit(best.chosen[name], best.loads[case][name]),
             "rated": best.chosen[name].continuous_torque,
             "tension": _tension(best.loads[case][name]),
             "warm": _temperature_text(best.loads[case][name]),
@@ -242,7 +242,7 @@ def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float
         "families": [
             {
                 "one": family,
-                "servos": " and ".join(f"{count} {name}" for name, count in counted(family).items()),
+                "servos": " and ".join(f"{count} {name}" for name, count in motor_counts(family).items()),
                 "slower": _slower(sizing, family).removeprefix(" with "),
                 "battery": family.battery(hours) if family.passes else None,
             }

@@ -11,7 +11,7 @@ from suchus.apps.viewer.server import CannotServe, Viewer
 from suchus.apps.viewer.stage import camera
 from suchus.apps.viewer.watch_page import WatchedRobot, WatchPage
 from suchus.core.errors import SuchusError
-from suchus.core.jobs.processes import deaf
+from suchus.core.jobs.processes import without_interrupts
 from suchus.core.stopping import end_with_parent
 from suchus.robot.design import Robot
 
@@ -21,7 +21,7 @@ _STOP_TIMEOUT = 5.0  # [s]; for a process that was told to stop
 _NICE_INCREMENT = 5  # lowers the priority below that of the bus
 
 
-class WatchedApart:
+class WatchProcess:
     """A page that watches a robot, served by a process of its own, which ends with this one.
 
     Args:
@@ -39,7 +39,7 @@ class WatchedApart:
         spawning = get_context("spawn")
         self._pipe, child_pipe = spawning.Pipe()
         self._process = spawning.Process(target=_serve_pictures, args=(child_pipe, robot, port, title), daemon=True)
-        with deaf():
+        with without_interrupts():
             self._process.start()
         child_pipe.close()
         try:

@@ -12,7 +12,7 @@ from scipy.cluster.vq import kmeans2
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.ground import Relief
 from suchus.sim.model import compile_model, joint_addresses
-from suchus.visual.skin import Poses, ankles, bone_names, footed
+from suchus.visual.skin import Poses, ankles, bone_names, skin_with_ankles
 
 COLOURS = 7
 """Number of colours into which the skin is cut; more look smoother and move slower [-]."""
@@ -49,7 +49,7 @@ class BodyPoses:
         positions, quaternions = zip(*map(self.body, bone_names(self.robot)), strict=True)
         feet_flat = ankles(self.robot, Poses(np.array([positions]), np.array([quaternions])), self._feet[None], relief)
         poses = zip(feet_flat.positions[0], feet_flat.quaternions[0], strict=True)
-        return dict(zip(footed(self.robot).bones, poses, strict=True))
+        return dict(zip(skin_with_ankles(self.robot).bones, poses, strict=True))
 
     def geoms(self) -> list[int]:
         """Return the numbers of the geoms that belong to the robot."""
@@ -102,7 +102,7 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
         robot: whose skin.
         count: of colours.
     """
-    surface = footed(robot)
+    surface = skin_with_ankles(robot)
     face_colours = surface.colours[surface.faces].astype(float).mean(axis=1)
     centres, group = kmeans2(face_colours, count, minit="++", seed=0)
     dense = np.zeros((len(surface.vertices), len(surface.bones)))

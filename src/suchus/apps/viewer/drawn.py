@@ -10,10 +10,10 @@ from suchus.apps.viewer.bodies import BodyPoses, pieces
 from suchus.apps.viewer.replay import FilmedAnimal
 from suchus.robot.design import Robot
 from suchus.robot.design.ground import Relief
-from suchus.robot.robots import beside_article
+from suchus.robot.robots import size_relative_to_article
 from suchus.sim.fault import Fault
 
-Look = Literal["skin", "collision geoms"]
+BodyGeometry = Literal["skin", "collision geoms"]
 _MARK_RADIUS, _LABEL_HEIGHT = (
     0.026,
     0.035,
@@ -39,9 +39,9 @@ class DrawnRobot:
         self.posture = BodyPoses(robot)
         self.relief: Relief | None = None
         self._marks: dict[str, Any] = {}
-        self._size = beside_article(robot).length
+        self._size = size_relative_to_article(robot).length
         self._failed: tuple[Fault, ...] = ()
-        self._geometry: Look = "skin"
+        self._geometry: BodyGeometry = "skin"
         self._geoms: dict[int, Any] = {}
         skin_pieces = pieces(robot, 1) if ghost else pieces(robot)
         self._skin = [(piece, self._piece(i, piece)) for i, piece in enumerate(skin_pieces)]
@@ -74,7 +74,7 @@ class DrawnRobot:
             receive_shadow=False,  # of itself: the scutes would drown in it
         )
 
-    def look(self, geometry: Look) -> None:
+    def look(self, geometry: BodyGeometry) -> None:
         """Show the skin or the collision geoms."""
         if geometry != "skin" and not self._geoms:
             self._geoms = {number: self._geom(number) for number in self.posture.geoms()}

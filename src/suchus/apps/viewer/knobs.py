@@ -8,7 +8,7 @@ from types import MappingProxyType
 from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.motion import Gait, check_limits
-from suchus.robot.robots import beside_article
+from suchus.robot.robots import size_relative_to_article
 
 _MAX_HALVINGS = 14  # of the distance to a value that the robot cannot reach; 14 leave a ten-thousandth
 
@@ -158,18 +158,18 @@ def force_on(robot: Robot) -> Knob:
     unit, scale = ("N", 1.0) if weight >= _MIN_NEWTON_WEIGHT else ("mN", 1e-3)
     weight_text = f"{weight / scale:.0f}" if weight / scale >= 10.0 else f"{weight / scale:.2g}"
     hint = f"{robot.name} weighs {weight_text} {unit}."
-    upper_bound = _rounded(FORCE.high * beside_article(robot).weight / scale)
+    upper_bound = _rounded(FORCE.high * size_relative_to_article(robot).weight / scale)
     return replace(FORCE, unit=unit, scale=scale, high=upper_bound, step=_rounded(upper_bound / 60.0), hint=hint)
 
 
 def push_on(robot: Robot) -> float:
     """Return the force of a push as it is set at first [N]: 0.43 of the weight of a body of another size."""
-    return _rounded(_DEFAULT_PUSH * beside_article(robot).weight)
+    return _rounded(_DEFAULT_PUSH * size_relative_to_article(robot).weight)
 
 
 def bumps_under(robot: Robot) -> Knob:
     """Return the knob of the bumps' height, scaled by the robot's length."""
-    return _resized(BUMPS, beside_article(robot).length)
+    return _resized(BUMPS, size_relative_to_article(robot).length)
 
 
 def knobs_of(robot: Robot, gait: Gait) -> Mapping[str, Knob]:
@@ -195,12 +195,12 @@ def _rounded(value: float) -> float:
     return float(f"{value:.2g}")
 
 
-def shown(gait: Gait, name: str) -> float:
+def displayed_value(gait: Gait, name: str) -> float:
     """Return a number of a gait in the unit of its knob, to four digits."""
     return float(f"{gait.number(name) / GAIT_KNOBS[name].scale:.4g}")
 
 
-def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
+def tune_gait(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
     """Return a gait with one parameter changed as far as the joints allow, and a sentence if that is not as asked for.
 
     Args:
@@ -209,7 +209,7 @@ def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str
         name: of the knob.
         value: asked for, in the knob's unit; anything.
     """
-    knob, current = knobs_of(robot, gait)[name], shown(gait, name)
+    knob, current = knobs_of(robot, gait)[name], displayed_value(gait, name)
     target, notice = knob.within(value, current)
     if notice and target == current:
         return gait, notice

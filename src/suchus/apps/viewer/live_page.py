@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from viser import uplot
 
-from suchus.apps.viewer.knobs import Knob, knobs_of, shown
+from suchus.apps.viewer.knobs import Knob, displayed_value, knobs_of
 from suchus.apps.viewer.plots import Plots
 from suchus.apps.viewer.server import BrowserPage
 from suchus.apps.viewer.session import Instant, Session, Settings, Switch, plain_knobs
@@ -185,7 +185,7 @@ class Controls:
         return set(knobs_of(robot, gait)) == set(knobs_of(robot, current_gait)) and suits(robot, gait)
 
     def _gait_value(self, name: str) -> float:
-        return shown(self._session.settings.gait, name)
+        return displayed_value(self._session.settings.gait, name)
 
     def _add_slider(
         self, name: str, knob: Knob, value: Callable[[str], float], turn: Callable[[str, object], str]
@@ -253,11 +253,11 @@ class Controls:
         self._connect(gui.add_button("repair this part", color="green"), lambda _: session.mend(joint.value))
 
 
-DRAWN = 3
+FRAMES_PER_RENEWAL = 3
 """Frames for one renewal of numbers and track, which cost more to a browser than what merely moves."""
-PLOT = 0.3
+PLOT_INTERVAL = 0.3
 """Time between two redraws of the plots [s]."""
-IDLE = 900.0
+IDLE_TIMEOUT = 900.0
 """Time without a touch after which the walk pauses, so that a forgotten window costs nothing [s]."""
 _MAX_STEP = 0.25  # [s]; a slow machine simulates at most so much at once, and so goes slower than real time
 
@@ -271,7 +271,7 @@ class LivePage(BrowserPage):
         idle: after how long without a touch it pauses [s].
     """
 
-    def __init__(self, client: Any, session: Session, *, idle: float = IDLE) -> None:
+    def __init__(self, client: Any, session: Session, *, idle: float = IDLE_TIMEOUT) -> None:
         super().__init__(client)
         self._session, self._idle = session, idle
         gui = client.gui
@@ -308,8 +308,8 @@ class LivePage(BrowserPage):
                 self._bumps = settings.bumps
                 self._stage.lay(settings.ground.relief)
         self._pictures += 1
-        self._show(self._session.look(), everything=self._pictures % DRAWN == 1)
-        if clock - self._plotted > PLOT:
+        self._show(self._session.look(), everything=self._pictures % FRAMES_PER_RENEWAL == 1)
+        if clock - self._plotted > PLOT_INTERVAL:
             self._plotted = clock
             self._plots.draw(self._session.table())
         self._pause_if_idle(clock)

@@ -1,6 +1,6 @@
 """What needs viser: the server and its pages. Importing this fails where the extra ``viewer`` is not installed."""
 
-from suchus.apps.viewer.apart import WatchedApart
+from suchus.apps.viewer.apart import WatchProcess
 from suchus.apps.viewer.live_page import LivePage
 from suchus.apps.viewer.replay_page import ReplayPage
 from suchus.apps.viewer.server import CannotServe, Viewer
@@ -18,7 +18,7 @@ __all__ = [
     "Viewer",
     "VortexPage",
     "WatchPage",
-    "WatchedApart",
+    "WatchProcess",
     "WatchedRobot",
     "camera",
 ]

@@ -83,10 +83,10 @@ class Chart:
         compared: whether there is a second run, drawn pale.
     """
 
-    def __init__(self, gui: Any, plan: PlotLayout, uplot: Any, *, compared: bool = False) -> None:
-        self._plan, self._has_ghost = plan, compared
+    def __init__(self, gui: Any, plan: PlotLayout, uplot: Any, *, has_ghost: bool = False) -> None:
+        self._plan, self._has_ghost = plan, has_ghost
         chart_series: list[Any] = [uplot.Series(label="t [s]")]
-        if compared:
+        if has_ghost:
             chart_series += [
                 uplot.Series(label=f"{line.label}, ghost", stroke=line.colour + "70", width=1.2) for line in plan.lines
             ]
@@ -206,11 +206,11 @@ class Plots:
         compared: whether there is a second run, drawn pale.
     """
 
-    def __init__(self, gui: Any, uplot: Any, robot: Robot, *, compared: bool = False) -> None:
+    def __init__(self, gui: Any, uplot: Any, robot: Robot, *, has_ghost: bool = False) -> None:
         self._robot = robot
         panel = gui.add_panel()
         with panel.add_tab("Measured"):
-            self._charts = [Chart(gui, plan, uplot, compared=compared) for plan in plans(robot)]
+            self._charts = [Chart(gui, plan, uplot, has_ghost=has_ghost) for plan in plans(robot)]
             self._bars = gui.add_html("")
         panel.dock_left()
         panel.set_width(PLOTS)
@@ -219,17 +219,17 @@ class Plots:
         self,
         table: Mapping[str, np.ndarray],
         ghost: Mapping[str, np.ndarray] | None = None,
-        now: float | None = None,
+        cursor: float | None = None,
     ) -> None:
         """Draw the columns of ``history.columns``.
 
         Args:
             table: columns of the run, each (row,).
             ghost: columns of a second run; None: none.
-            now: time at which the gait diagram has a cursor [s]; None: no cursor.
+            cursor: time at which the gait diagram has a cursor [s]; None: no cursor.
         """
         if len(table["time"]) < 2:
             return
         for chart in self._charts:
             chart.draw(table, ghost)
-        self._bars.content = gait_bars(self._robot, table, cursor=now)
+        self._bars.content = gait_bars(self._robot, table, cursor=cursor)

@@ -12,14 +12,14 @@ from suchus.animals.capture import Tracks, UnusableTracks, observe
 from suchus.apps.viewer.history import table_of
 from suchus.core.errors import IncompatibleRecord, UnknownName
 from suchus.core.files import load
-from suchus.hardware import held
+from suchus.hardware import fix_in_place
 from suchus.robot.design import LEGS, Robot, joint_names
 from suchus.robot.design.ground import Ground
 from suchus.robot.motion import START
 from suchus.robot.robots import ROBOTS
 from suchus.sim.record import VARIABLES, check_land, ground_of
 
-_NEEDED = ("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force", "belly_force",
+_VARIABLES = ("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force", "belly_force",
            "tail_force")  # fmt: skip
 
 
@@ -51,7 +51,7 @@ class Take:
     def at(self, time: float) -> dict[str, np.ndarray]:
         """Return the sample nearest to a time, by the names of ``record.VARIABLES``."""
         sample = self._sample(time)
-        return {name: self.record[name].values[sample] for name in _NEEDED}
+        return {name: self.record[name].values[sample] for name in _VARIABLES}
 
     def level(self, time: float) -> float | None:
         """Return the level of the water above the world's origin at a time [m]; None on dry land."""
@@ -84,7 +84,7 @@ def takes(path: Path, robot: Robot | None = None) -> tuple[Take, ...]:
     record = load(path)
     if "position" not in record and any("midline_x" in str(name) for name in record):
         raise IncompatibleRecord(f"{path} is no record of a run on land; view it with suchus view swim.")
-    check_land(record, _NEEDED, str(path))
+    check_land(record, _VARIABLES, str(path))
     names = (*VARIABLES, "cause", "ended", "mass", "period", "stands_on")
     run_variables = record[
         [name for name in names if name in record] + (["water_level"] if _tells_level(record) else [])
@@ -120,7 +120,7 @@ def _take(path: Path, run: xr.Dataset, number: int, robot: Robot | None) -> Take
             f"{path} holds {run.sizes['joint']} joints and robot {walker.name!r} has {len(joint_names(walker))}: "
             "name the robot that walked with --robot."
         )
-    run = held(run, walker)
+    run = fix_in_place(run, walker)
     valid = np.isfinite(run.position.values).all(axis=-1)
     if valid.sum() < 2:
         raise IncompatibleRecord(f"run {number} of {path} has fewer than two valid samples.")
@@ -212,7 +212,7 @@ class FilmedAnimal:
         return float(np.linalg.norm(self.position[0, self.bones[0][0]] - self.position[0, self.bones[-5][1]]))
 
 
-def beside(tracks: Tracks, take: Take) -> FilmedAnimal:
+def place_animal(tracks: Tracks, take: Take) -> FilmedAnimal:
     """Return an animal to the left of a robot, scaled to the robot's length and period.
 
     Its film begins when the robot's first cycle does. Between frames in which a point was lost, it moves straight on.

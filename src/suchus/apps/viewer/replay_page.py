@@ -8,7 +8,7 @@ from viser import uplot
 
 from suchus.apps.viewer.drawn import DrawnAnimal
 from suchus.apps.viewer.knobs import SPEED
-from suchus.apps.viewer.live_page import DRAWN, PLOT
+from suchus.apps.viewer.live_page import FRAMES_PER_RENEWAL, PLOT_INTERVAL
 from suchus.apps.viewer.plots import Plots
 from suchus.apps.viewer.replay import FilmedAnimal, Player, Take
 from suchus.apps.viewer.server import BrowserPage
@@ -49,7 +49,7 @@ class ReplayPage(BrowserPage):
             skin = gui.add_checkbox("skin", initial_value=True, hint="Off: the shapes that touch the ground.")
             self._follow = gui.add_checkbox("camera follows", initial_value=True)
         self._dock()
-        self._plots = Plots(gui, uplot, takes[0].robot, compared=bool(ghosts))
+        self._plots = Plots(gui, uplot, takes[0].robot, has_ghost=bool(ghosts))
         self._stage = WalkScene(client.scene, takes[0].robot)
         if ghosts:
             self._stage.compare(ghosts[0].robot)
@@ -92,10 +92,10 @@ class ReplayPage(BrowserPage):
             self._draw_animal(take)
             self._stage.draw_track(take.record.centre_of_mass.values[::5])
         self._pictures += 1
-        self._show(take, ghost, everything=self._pictures % DRAWN == 1)
-        if clock - self._plotted > PLOT:
+        self._show(take, ghost, everything=self._pictures % FRAMES_PER_RENEWAL == 1)
+        if clock - self._plotted > PLOT_INTERVAL:
             self._plotted = clock
-            self._plots.draw(*self._tables, now=self._player.time)
+            self._plots.draw(*self._tables, cursor=self._player.time)
 
     def _draw_animal(self, take: Take) -> None:
         """Draw the animal that walks beside a run."""

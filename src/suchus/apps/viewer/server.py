@@ -136,13 +136,13 @@ def _is_address(name: str) -> bool:
 
 FRAME = 1 / 20
 """Time between two pictures [s]."""
-MOST = 4
+MAX_BROWSERS = 4
 """Browsers that are served at once; each walk takes a tenth to a fifth of a processor core at real time [-]."""
 
 
 PANEL = 330
 """Width of the controls to the right of the scene [pixel]."""
-WHOLE = 8192
+MAX_MESSAGES = 8192
 """Messages that go to a browser at once [-]; by viser's 128 a picture of a robot arrived in parts, and its skin, in
 as many meshes as it has colours, was torn in a browser that drew in between."""
 _MAX_PHONE_WIDTH = 576
@@ -241,7 +241,7 @@ class Viewer:
         *,
         host: str = "127.0.0.1",
         port: int = 8080,
-        most: int = MOST,
+        max_browsers: int = MAX_BROWSERS,
         title: str = "suchus",
         camera: tuple[tuple[float, float, float], tuple[float, float, float]] = (CAMERA, LOOKS_AT),
     ) -> None:
@@ -250,7 +250,7 @@ class Viewer:
             "ignore", message="Queued a .* on a closed connection"
         )  # a browser that left during a frame
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # a browser that leaves early is no error
-        self._open, self._max_browsers = open_page, most
+        self._open, self._max_browsers = open_page, max_browsers
         self._pages: dict[int, BrowserPage | None] = {}
         self._lock = Lock()
         self._stop_event = Event()
@@ -305,7 +305,7 @@ class Viewer:
                 "Close one of them and reload this page, or start the server with a greater `--most`."
             )
             return
-        client._websock_connection.get_message_buffer().max_window_size = WHOLE
+        client._websock_connection.get_message_buffer().max_window_size = MAX_MESSAGES
         _stand_back(client.camera, *self._camera)
         try:
             page = self._open(client)

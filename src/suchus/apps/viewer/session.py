@@ -20,15 +20,15 @@ from suchus.apps.viewer.knobs import (
     bumps_under,
     force_on,
     push_on,
-    tuned,
+    tune_gait,
 )
 from suchus.core.errors import Diverged, SuchusError
 from suchus.robot.control import LAWS, Coordinated, HeadingRule, Swimming
 from suchus.robot.design import Robot, front_segment, layout
-from suchus.robot.design.ground import BEFORE, Bumps
+from suchus.robot.design.ground import BUMPS_START, Bumps
 from suchus.robot.design.scale import coarse_step, control_period
-from suchus.robot.motion import START, Gait, check_limits, divided
-from suchus.robot.robots import beside_article
+from suchus.robot.motion import START, Gait, check_limits, divide_axis
+from suchus.robot.robots import size_relative_to_article
 from suchus.sim.fault import Fault
 from suchus.sim.faults import from_table
 from suchus.sim.land import Ground, Lake, Live, Push, Run
@@ -85,7 +85,7 @@ class Settings:
         if self.spine and self.tail:
             return self.gait
         straight_chains = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
-        return divided(robot, self.gait).straightened(*straight_chains)
+        return divide_axis(robot, self.gait).straightened(*straight_chains)
 
     def moved(self, robot: Robot) -> Gait:
         """Return the gait in which a robot moves now: that of its swim, or that of its walk."""
@@ -107,7 +107,7 @@ class Settings:
     @property
     def ground(self) -> Ground:
         """The ground that it walks on."""
-        correlation, start = (round(self.size * distance, 9) for distance in (_CORRELATION, BEFORE))
+        correlation, start = (round(self.size * distance, 9) for distance in (_CORRELATION, BUMPS_START))
         bumps = Bumps(height=self.bumps, correlation=correlation, start=start, seed=0) if self.bumps else None
         return Ground(uphill=self.uphill, sideways=self.sideways, relief=bumps)
 
@@ -160,7 +160,7 @@ class Session:
     def __init__(self, robot: Robot, gait: Gait, *, timestep: float | None = None, swim: Gait | None = None) -> None:
         check_limits(robot, gait)
         self.robot = robot
-        length_ratio = beside_article(robot).length
+        length_ratio = size_relative_to_article(robot).length
         self.settings = Settings(gait=gait, force=push_on(robot), size=length_ratio, swim=swim)
         self.begun = 0
         self._timestep = coarse_step(robot) if timestep is None else timestep
@@ -187,7 +187,7 @@ class Session:
     def tune(self, name: str, value: object) -> str:
         """Turn a knob of the gait as far as the robot follows; return a sentence if that is not as asked."""
         with self._lock:
-            gait, notice = tuned(self.robot, self.settings.gait, name, value)
+            gait, notice = tune_gait(self.robot, self.settings.gait, name, value)
             return notice if gait == self.settings.gait else self._change(replace(self.settings, gait=gait)) or notice
 
     def adopt(self, gait: Gait) -> str:

@@ -13,11 +13,11 @@ import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
 from suchus.apps.viewer.bodies import support
-from suchus.apps.viewer.drawn import DrawnRobot, Look
+from suchus.apps.viewer.drawn import BodyGeometry, DrawnRobot
 from suchus.core.rotation import rotate
 from suchus.robot.design import GRAVITY, Robot, front_segment, layout
 from suchus.robot.design.ground import Relief, heights, slope
-from suchus.robot.robots import beside_article
+from suchus.robot.robots import size_relative_to_article
 from suchus.sim.fault import Fault
 from suchus.sim.metrics.gait import LOADED_SHARE
 from suchus.sim.model import compile_model
@@ -147,7 +147,7 @@ def rgb(colour: str) -> tuple[int, int, int]:
 
 def camera(robot: Robot) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Return where the camera is at first and where it looks, to have a robot in view [m]."""
-    (a, b, c), (x, y, z), scale = CAMERA, LOOKS_AT, beside_article(robot).length
+    (a, b, c), (x, y, z), scale = CAMERA, LOOKS_AT, size_relative_to_article(robot).length
     return (scale * a, scale * b, scale * c), (scale * x, scale * y, scale * z)
 
 
@@ -170,7 +170,7 @@ class WalkScene:
     """
 
     def __init__(self, scene: Any, robot: Robot) -> None:
-        self._scene, self._size = scene, beside_article(robot).length
+        self._scene, self._size = scene, size_relative_to_article(robot).length
         weight = robot.mass * GRAVITY
         self._per_newton, self._load_threshold = self._size * _WEIGHT_LENGTH / weight, LOADED_SHARE * weight
         robot_layout = layout(robot)
@@ -240,7 +240,7 @@ class WalkScene:
         self.ghost = DrawnRobot(self._scene, f"{WORLD}/ghost", robot, ghost=True)
         self.ghost.relief = self.robot.relief
 
-    def look(self, geometry: Look) -> None:
+    def look(self, geometry: BodyGeometry) -> None:
         """Show skins or collision geoms."""
         for drawn_robot in (self.robot, self.ghost):
             if drawn_robot is not None:

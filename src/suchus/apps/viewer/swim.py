@@ -189,7 +189,7 @@ def _joint_curves(record: xr.Dataset) -> Iterator[PlottedCurve]:
         )
 
 
-LARGEST = 60_000
+MAX_POINTS = 60_000
 """Points of the upper half of the surfaces from which they are taken of blocks of cells [-]."""
 _MAX_BLOCK = 4
 _MIN_LEVEL, _MAX_LEVEL = 0.3, 4.0
@@ -212,7 +212,7 @@ class VortexFilm:
     whose: str = "the record"
 
     def __post_init__(self) -> None:
-        vortices.check_filmed(self.record, self.whose)
+        vortices.check_vortex_record(self.record, self.whose)
 
     @property
     def phase(self) -> np.ndarray:
@@ -248,20 +248,20 @@ class VortexFilm:
         last_frame = self.record.sizes["frame"] - 1
         for block in range(1, _MAX_BLOCK):
             surface, _ = vortices.surface(self.record, last_frame, coarse=block, level=level)
-            if len(surface.points) <= LARGEST:
+            if len(surface.points) <= MAX_POINTS:
                 return block
         return _MAX_BLOCK
 
-    def surfaces(self, frame: int, level: float, *, blocks: int = 1, lower: bool = False) -> Mesh:
+    def surfaces(self, frame: int, level: float, *, blocks: int = 1, lower_half_only: bool = False) -> Mesh:
         """Return the surfaces around the vortices, coloured by the vorticity about the vertical.
 
         Args:
             frame: which.
             level: second invariant on them [1/s2].
             blocks: see the method of that name [-].
-            lower: whether the half above the plane of symmetry, which hides the body, is left out.
+            lower_half_only: whether the half above the plane of symmetry, which hides the body, is left out.
         """
-        return vortices.around(self.record, frame, coarse=blocks, level=level, lower=lower)
+        return vortices.vortex_surfaces(self.record, frame, coarse=blocks, level=level, lower_half_only=lower_half_only)
 
     def camera(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Return where the camera is at first and where it looks, as in the experiment's pictures [m]."""

@@ -318,7 +318,7 @@ class VortexPage(CyclePage):
     def _draw_surface(self, frame: int) -> Any:
         """Add the surfaces of one frame to the scene and return their handle."""
         level, halves = self._surface_settings
-        mesh = self._film.surfaces(frame, level, blocks=self._blocks, lower=halves == _LOWER_HALF)
+        mesh = self._film.surfaces(frame, level, blocks=self._blocks, lower_half_only=halves == _LOWER_HALF)
         return self._client.scene.add_mesh_trimesh(
             f"/vortices/{level:.6g}_{halves[:4]}_{frame}", _coloured(mesh), cast_shadow=False, receive_shadow=False
         )

@@ -38,7 +38,7 @@ class Claim:
         return f"{self.of}, {self.where}" if self.of else self.where
 
 
-def said(key: str, location: str, quantity: str, sense: str, quote: str) -> Claim:
+def statement(key: str, location: str, quantity: str, sense: str, quote: str) -> Claim:
     """Return a claim without a number: a statement that holds or does not."""
     return Claim(
         key=key, where=location, quantity=quantity, value=None, unit="-", rounding=0.0, sense=sense, quote=quote

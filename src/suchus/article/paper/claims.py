@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from suchus.article.paper.claim import Claim, said
+from suchus.article.paper.claim import Claim, statement
 from suchus.article.paper.claims_animals import OSCILLATORS, SALAMANDERS
 from suchus.article.paper.claims_body import BODY
 from suchus.article.paper.claims_land import LAND
@@ -32,14 +32,14 @@ def _constant(key: str, name: str, value: float, digit: float) -> Claim:
 
 
 WATER = (
-    said(
+    statement(
         "swim_tail_sine",
         "II.A",
         "swing of the tail in water",
         "A crocodile's swimming tail swings like a sine wave.",
         "The tail's swinging motion resembles a sine wave",
     ),
-    said(
+    statement(
         "swim_body_wave",
         "IV.B, eq. (20)",
         "wave of the robot's midline in water",
@@ -49,49 +49,49 @@ WATER = (
     _constant("wave_c1", "linear envelope coefficient c1", C1, 0.001),
     _constant("wave_c2", "quadratic envelope coefficient c2", C2, 0.01),
     _constant("wave_k", "wave number k", K, 0.001),
-    said(
+    statement(
         "swim_pressure_convex",
         "IV.B, Fig. 17a",
         "pressure on both sides of the tail at T/4",
         "At a quarter of the cycle the pressure on the convex side of the tail is above that on the concave side.",
         "the pressure on the bending and convex side of the flexible tail is greater than that on the concave side",
     ),
-    said(
+    statement(
         "swim_diagonal_force",
         "IV.B, Fig. 17a",
         "force at T/4",
         "The pressure difference at a quarter of the cycle pushes the robot diagonally forward.",
         "results in a diagonal forward force, propelling the robot in a diagonal direction",
     ),
-    said(
+    statement(
         "swim_pressure_falls",
         "IV.B, Fig. 17a, c",
         "pressure difference at T/4 less that at 3T/4",
         "While body and tail move on towards the axis, from T/4 to 3T/4, the pressure difference falls.",
         "towards the head-to-tail axis, the pressure difference gradually decreases, as demonstrated in Figure 17(c)",
     ),
-    said(
+    statement(
         "swim_thrust_symmetric",
         "IV.B, Fig. 17c",
         "forces at T/4 and 3T/4, mirrored",
         "At three quarters of the cycle the thrust is forward again and mirrors that at one quarter.",
         "the pressure difference ... generates a symmetrical diagonal forward thrust",
     ),
-    said(
+    statement(
         "swim_s_shape",
         "IV.B, Fig. 17",
         "track of the swimming robot",
         "The robot swims along an S-shaped track.",
         'producing an "S"-shaped swimming trajectory',
     ),
-    said(
+    statement(
         "swim_tail_thrust",
         "IV.B",
         "speed that the swing of the tail adds in water",
         "The swing of the tail gives the main thrust in water.",
         "When moving through the water, the swing of the tail and spine provides the main thrust.",
     ),
-    said(
+    statement(
         "swim_spine_thrust",
         "IV.B",
         "speed that the swing of the spine adds in water",

@@ -5,7 +5,7 @@ All were read: they are numbers of public data, and abstracts.
 
 from dataclasses import replace
 
-from suchus.article.paper.claim import Claim, said
+from suchus.article.paper.claim import Claim, statement
 
 KAWANO = "Kawano and Blob 2013, Integr. Comp. Biol. 53, 283"
 KARAKASILIOTIS = "Karakasiliotis et al. 2013, Biol. Cybern. 107, 529"
@@ -42,7 +42,7 @@ SALAMANDERS = (
     _force("fore", 0.457, FORE_SPREAD, 50),
     _force("hind", 0.479, HIND_SPREAD, 48),
     replace(
-        said(
+        statement(
             "salamander_force_times",
             "public data, FinsAndLimbs/mudskipperKinematics",
             "when the force on fore and hind feet is greatest, as a share of stance",
@@ -53,7 +53,7 @@ SALAMANDERS = (
         of=KAWANO,
     ),
     replace(
-        said(
+        statement(
             "salamander_hind_push",
             "public data, FinsAndLimbs/mudskipperKinematics",
             "force along the course when it is greatest on a foot",
@@ -79,7 +79,7 @@ SALAMANDERS = (
 
 OSCILLATORS = (
     replace(
-        said(
+        statement(
             "oscillators_switch",
             "abstract",
             "standing index of the axis at the drive for walking",
@@ -91,7 +91,7 @@ OSCILLATORS = (
         of=IJSPEERT,
     ),
     replace(
-        said(
+        statement(
             "oscillators_direction",
             "abstract",
             "how far unequal drives of both sides turn the walk in a cycle",

@@ -1,6 +1,6 @@
 """What the article says about animals, structure and kinematics (sections II and III)."""
 
-from suchus.article.paper.claim import Claim, said
+from suchus.article.paper.claim import Claim, statement
 from suchus.article.paper.tables import TAIL_JOINTS
 
 KMH = 1 / 3.6
@@ -103,35 +103,35 @@ ANIMALS = (
         sense="A crocodile's high walk is at most 10 km/h fast.",
         quote="This mode typically ranges in speed from 5 to 10 km/h.",
     ),
-    said(
+    statement(
         "diagonal_gait",
         "II.A, IV.A, Fig. 12",
         "limb phases of the crawl",
         "Front and hind leg of opposite sides move together.",
         "the front and hind legs move in a diagonal gait",
     ),
-    said(
+    statement(
         "tail_swings_in_crawl",
         "II.A",
         "tail in the crawl",
         "In the belly crawl the tail swings alternately to both sides.",
         "the tail swings alternately from side to side",
     ),
-    said(
+    statement(
         "tail_on_ground_in_high_walk",
         "II.A",
         "tail in the high walk",
         "In the high walk about half of the tail swings along the ground.",
         "about half of their tail alternates in swinging along the ground",
     ),
-    said(
+    statement(
         "gallop_fastest",
         "II.A",
         "gallop",
         "Galloping is the fastest way to move on land.",
         "Galloping movements, which represent their fastest mode of locomotion",
     ),
-    said(
+    statement(
         "bending_lengthens_stride",
         "I",
         "stride with a bending body",
@@ -197,28 +197,28 @@ STRUCTURE = (
         "Four legs of three, five in the spine and two in the tail make 19 actuators.",
         "one yaw joint servo motor, two pitch ... three yaw ... two pitch ... one pitch ..., a linear actuator",
     ),
-    said(
+    statement(
         "tail_end_flexible",
         "II.B, Fig. 5",
         "end of the tail",
         "The end of the tail is passive and flexible.",
         "the under-drive section is made of flexible material",
     ),
-    said(
+    statement(
         "crawl_structure_flat",
         "II.B, Fig. 3a",
         "sprawled legs",
         "On flat ground the robot moves with sprawled legs.",
         "When moving on a flat surface, the robot adopts the crawling structure",
     ),
-    said(
+    statement(
         "erect_structure_rough",
         "II.B, Fig. 3b",
         "erect legs",
         "On rough ground the robot moves better with its legs erect, as a mammal does.",
         "when traversing rough terrain, it utilizes the lactation type structure",
     ),
-    said(
+    statement(
         "switches_structure",
         "II.B, Fig. 3",
         "switching the leg structure",
@@ -228,70 +228,70 @@ STRUCTURE = (
 )
 
 KINEMATICS = (
-    said(
+    statement(
         "leg_inverse",
         "III.A, eqs (9)-(14)",
         "inverse kinematics of the leg",
         "Equation (14) gives the joint angles that bring the foot to its positions.",
         "The inverse kinematics solution of the legs of the bionic crocodile robot is as follows",
     ),
-    said(
+    statement(
         "spine_forward",
         "III.B, eq. (15)",
         "forward kinematics of the spine",
         "Equation (15) is the end of the chain of Table II.",
         "After solving the matrix operations and organizing them, we obtain the following",
     ),
-    said(
+    statement(
         "tail_equal_bends",
         "III.C",
         "bend of each tail joint",
         "All tail joints turn by the same angle.",
         "The angle of rotation of each joint is the same",
     ),
-    said(
+    statement(
         "tail_quadratic_small",
         "III.C, eqs (16), (17)",
         "quadratic term of the cord lengths",
         "The quadratic term of (16) is small enough to be left out.",
         "the quadratic term in (16) can be ignored because the angle ... is very small",
     ),
-    said(
+    statement(
         "tail_cords_inextensible",
         "III.C",
         "pair of cords on one wheel",
         "The servo shortens one cord and lengthens the other, and so bends the tail.",
         "a pair of inextensible wire cords ... one cord is elongated, and the other is shortened",
     ),
-    said(
+    statement(
         "tail_joint_positions",
         "III.C, eq. (19)",
         "positions of the tail's joints",
         "Equation (19) gives the position of each tail joint.",
         "The position of each joint in the XOY coordinate system can be expressed as",
     ),
-    said(
+    statement(
         "feedback_rules",
         "III.D",
         "three feedback rules",
         "Limb, spine and tail feedback each make a stable closed loop.",
         "Through these three rules, we can achieve stable closed-loop control",
     ),
-    said(
+    statement(
         "shared_variables",
         "III.D, Fig. 10",
         "coordination by shared variables",
         "Independent controllers that share limb phase and bend angles keep the whole body coordinated.",
         "they share certain variables ... to ensure overall temporal and spatial coordination",
     ),
-    said(
+    statement(
         "joint_pid",
         "III.D, Fig. 10",
         "control of the joint angles",
         "PID controllers close the loop of each joint's angle.",
         "We employ PID controllers for closed-loop control of the joint angles",
     ),
-    said(
+    statement(
         "gait_diagram",
         "III.D, Fig. 12",
         "limb phase, spine and tail angle over two cycles",

@@ -1,6 +1,6 @@
 """What the article says about its robot on land (sections IV.A to IV.D)."""
 
-from suchus.article.paper.claim import Claim, said
+from suchus.article.paper.claim import Claim, statement
 from suchus.article.paper.tables import CYCLE_PERIOD, CYCLES, SNAPSHOT_TIMES
 
 DISPLACEMENT_COORDINATED = 0.73
@@ -60,35 +60,35 @@ STABILITY = (
         )
         for i, time in enumerate(SNAPSHOT_TIMES)
     ),
-    said(
+    statement(
         "spine_sinusoidal",
         "IV.A, Fig. 14",
         "swing of the spine",
         "The spine swings from side to side in a sine with the limbs.",
         "the spine swings from side to side in a sinusoidal pattern with the limbs",
     ),
-    said(
+    statement(
         "tail_supports",
         "IV.A, Fig. 14",
         "tail on the ground",
         "The dragged tail supports the body and makes it more stable.",
         "the tail stays on the ground ... to provide support for the body and improve the stability",
     ),
-    said(
+    statement(
         "com_on_support_line",
         "IV.A, Fig. 14",
         "centre of mass over the supporting feet at 1.2, 1.5 and 1.8 s",
         "Stability needs the centre of mass on the line of the two supporting feet.",
         "The center of gravity should always be on the line of the two supporting points",
     ),
-    said(
+    statement(
         "tilt_limbs_only",
         "IV.A, Fig. 14",
         "tilt without spine and tail",
         "With limbs only the body tilts at 1.2 s because its centre of mass is off the supporting line.",
         "at 1.2 seconds, the bionic crocodile robot tilts its body",
     ),
-    said(
+    statement(
         "com_fluctuation",
         "IV.A, Fig. 15",
         "fluctuation of the height of the centre of mass",
@@ -132,21 +132,21 @@ DISPLACEMENT = (
 )
 
 SWING = (
-    said(
+    statement(
         "tail_swing",
         "IV.B",
         "displacement gained by the swing of the tail",
         "The swing of the tail, not only its contact with the ground, adds to the displacement.",
         "the swing of the tail and spine can improve the motion displacement",
     ),
-    said(
+    statement(
         "spine_swing",
         "IV.B",
         "displacement gained by the swing of the spine",
         "The swing of the spine adds to the displacement.",
         "the swing of the tail and spine can improve the motion displacement",
     ),
-    said(
+    statement(
         "wagging_balances",
         "I, IV.A",
         "steadiness gained by wagging the tail",
@@ -228,7 +228,7 @@ FAULTS = (
         "With the trunk, losing a hind pitch joint costs almost nothing.",
         "with cooperating motion of trunk showed almost no reduction in locomotion",
     ),
-    said(
+    statement(
         "fault_support",
         "IV.C, Fig. 21",
         "support with a hind pitch joint lost",
@@ -237,7 +237,7 @@ FAULTS = (
         "raises the center of gravity of the robot through the support function of the tail, right front leg and left "
         "back leg, so that the hind legs can be lifted off the ground and swing",
     ),
-    said(
+    statement(
         "fault_tolerance",
         "IV.C, V",
         "fault tolerance with and without the trunk",
@@ -277,21 +277,21 @@ HEIGHTS = (
         sense="Standing, the robot reaches several times as high as crawling.",
         quote="The reachable height in the bipedal standing state is 4.25 times higher",
     ),
-    said(
+    statement(
         "height_from_legs",
         "IV.D, Fig. 23a",
         "what limits the crawling height",
         "The crawling height follows the length of the legs.",
         "depends on the length of its legs when crawling on land",
     ),
-    said(
+    statement(
         "height_from_spine_head_legs",
         "IV.D, Fig. 23b",
         "what limits the standing height",
         "The standing height follows the lengths of spine, head and hind legs together.",
         "determined by the length of the spine, the length of the head and the length of the hind legs",
     ),
-    said(
+    statement(
         "working_space",
         "IV.D",
         "working space",

@@ -1,6 +1,16 @@
 """Verdicts on the article's claims: rules as data, their application to measures, and the fraction of designs."""
 
-from suchus.article.verdict.judging import SHARES, TOO_FEW, Examples, Share, TooFew, Verdict, Word, judge, word_of
+from suchus.article.verdict.judging import (
+    SHARES,
+    SPARSE_SHARES,
+    Examples,
+    Share,
+    SparseShare,
+    Verdict,
+    Word,
+    judge,
+    word_of,
+)
 from suchus.article.verdict.rule import (
     Clause,
     ControlGroup,
@@ -8,16 +18,16 @@ from suchus.article.verdict.rule import (
     Reading,
     Rule,
     Rung,
-    Varied,
-    between,
-    compared,
+    Variation,
+    comparison_word,
     interval,
     listed,
+    measure_with_interval,
 )
 
 __all__ = [
     "SHARES",
-    "TOO_FEW",
+    "SPARSE_SHARES",
     "Clause",
     "ControlGroup",
     "Examples",
@@ -26,14 +36,14 @@ __all__ = [
     "Rule",
     "Rung",
     "Share",
-    "TooFew",
-    "Varied",
+    "SparseShare",
+    "Variation",
     "Verdict",
     "Word",
-    "between",
-    "compared",
+    "comparison_word",
     "interval",
     "judge",
     "listed",
+    "measure_with_interval",
     "word_of",
 ]

@@ -61,7 +61,7 @@ class Share:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TooFew:
+class SparseShare:
     """Answers of plausible designs to a claim that too few of them can judge to give a fraction."""
 
     claim: str
@@ -91,7 +91,7 @@ class TooFew:
         return f"Asked of {number} plausible designs, too few of which could judge it to know a share: {counts_text}."
 
 
-_Row = TypeVar("_Row", Share, TooFew)
+_Row = TypeVar("_Row", Share, SparseShare)
 
 
 def _shipped() -> Mapping[str, Mapping[str, Any]]:
@@ -112,8 +112,8 @@ SHARES: Mapping[str, Share] = MappingProxyType(
     {key: Share(claim=key, **row) for key, row in _shipped().items() if "share" in row}
 )
 """By claim."""
-TOO_FEW: Mapping[str, TooFew] = MappingProxyType(
-    {key: TooFew(claim=key, **row) for key, row in _shipped().items() if "share" not in row}
+SPARSE_SHARES: Mapping[str, SparseShare] = MappingProxyType(
+    {key: SparseShare(claim=key, **row) for key, row in _shipped().items() if "share" not in row}
 )
 """By claim, of those that too few designs could judge."""
 
@@ -159,7 +159,7 @@ class Verdict:
     """Fraction of plausible designs for which the statement holds; None where that is not known."""
     voices: tuple[ladder.Voice, ...] = ()
     """What each model says; none where one measure decides."""
-    too_few: TooFew | None = None
+    too_few: SparseShare | None = None
     """What designs say that are too few to know a share; None where a share is known, or no design was asked."""
 
     @property
@@ -171,7 +171,7 @@ class Verdict:
         return fragile(self.rule, self.verdict, self.share or self.too_few)
 
 
-def fragile(rule: Rule, word: str, designs: Share | TooFew | None) -> bool:
+def fragile(rule: Rule, word: str, designs: Share | SparseShare | None) -> bool:
     """Return whether too many other plausible designs give another answer than a verdict.
 
     Args:
@@ -189,7 +189,7 @@ def judge(
     rule: Rule,
     measures: Mapping[str, float],
     shares: Mapping[str, Share] = SHARES,
-    unable: Mapping[str, str] = ladder.NOTHING,
+    unable: Mapping[str, str] = ladder.NO_REASONS,
 ) -> Verdict:
     """Return the verdict of a rule on measures.
 
@@ -227,7 +227,7 @@ def judge(
         why=reason,
         share=_of_rule(rule, shares.get(rule.claim)),
         voices=model_voices,
-        too_few=_of_rule(rule, TOO_FEW.get(rule.claim)),
+        too_few=_of_rule(rule, SPARSE_SHARES.get(rule.claim)),
     )
 
 

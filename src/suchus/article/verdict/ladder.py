@@ -14,7 +14,7 @@ from typing import Literal
 
 from suchus.article.verdict.rule import Clause, Reading, Rule, Rung, listed
 
-NOTHING: Mapping[str, str] = MappingProxyType({})
+NO_REASONS: Mapping[str, str] = MappingProxyType({})
 
 
 Says = Literal["holds", "does not hold", "undecided", "no word"]
@@ -47,7 +47,7 @@ class Voice:
         return value if lower_text == upper_text else f"{value} ({lower_text} to {upper_text})"
 
 
-def voices(rule: Rule, measures: Mapping[str, float], unable: Mapping[str, str] = NOTHING) -> tuple[Voice, ...]:
+def voices(rule: Rule, measures: Mapping[str, float], unable: Mapping[str, str] = NO_REASONS) -> tuple[Voice, ...]:
     """Return what each rung of a rule says.
 
     Args:

@@ -30,22 +30,28 @@ class Reading(float):
         return format(float(self), form)
 
 
-def compared(
-    value: float, reference: float, *, less: str, more: str, same: str = "the same", within: float = 0.0
+def comparison_word(
+    value: float,
+    reference: float,
+    *,
+    smaller_word: str,
+    larger_word: str,
+    equal_word: str = "the same",
+    tolerance: float = 0.0,
 ) -> str:
     """Return the word for the relation of a value to a reference, for sentences.
 
     Args:
         value: the one that is spoken of.
         reference: what it is compared with.
-        less: the word where it is smaller.
-        more: the word where it is greater.
-        same: the word where both differ by at most ``within``.
-        within: greatest difference that counts as none, as a share of the larger size [-].
+        smaller_word: the word where it is smaller.
+        larger_word: the word where it is greater.
+        equal_word: the word where both differ by at most ``within``.
+        tolerance: greatest difference that counts as none, as a share of the larger size [-].
     """
-    if abs(value - reference) <= within * max(abs(value), abs(reference)):
-        return same
-    return less if value < reference else more
+    if abs(value - reference) <= tolerance * max(abs(value), abs(reference)):
+        return equal_word
+    return smaller_word if value < reference else larger_word
 
 
 def listed(items: Sequence[str]) -> str:
@@ -62,7 +68,7 @@ Kind = Literal["measured", "construction", "fitted", "animals"]
 count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was chosen so that
 it comes out. ``animals``: the article speaks of animals, which a robot can resemble but neither confirm nor contradict.
 """
-BUILT = "robots built of the design, with the errors of their servos, masses and friction"
+DEFAULT_SPREAD_OF = "robots built of the design, with the errors of their servos, masses and friction"
 """What the intervals of most rules are of, for people."""
 Relation = Literal["<", "<=", ">", ">="]
 _RELATIONS: Mapping[str, Callable[[float, float], bool]] = MappingProxyType(
@@ -111,7 +117,7 @@ def interval(name: str, measures: Mapping[str, float], spread: Collection[str]) 
     return measures[lower_name], measures[upper_name]
 
 
-def between(name: str, lower_bound: float, upper_bound: float) -> dict[str, float]:
+def measure_with_interval(name: str, lower_bound: float, upper_bound: float) -> dict[str, float]:
     """Return a measure with its interval, for the examples of a rule: middle, lower and upper end."""
     return {name: 0.5 * (lower_bound + upper_bound), f"{name}_low": lower_bound, f"{name}_high": upper_bound}
 
@@ -226,7 +232,7 @@ class Rule:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Varied:
+class Variation:
     """Variation of designs and settings of an experiment, which gives the fraction of designs in which a claim holds.
 
     It is declared as ``VARIED`` beside the rules of an experiment. It is for experiments that the walks of ``suchus

@@ -1,9 +1,17 @@
 """Files of results: records and tables on disk, and where a result comes from."""
 
-from suchus.core.files.provenance import code_digest, digest, made_alike, package_digest, plain, provenance, versions
+from suchus.core.files.provenance import (
+    code_digest,
+    digest,
+    has_same_provenance,
+    package_digest,
+    plain,
+    provenance,
+    versions,
+)
 from suchus.core.files.store import load, save
 from suchus.core.files.tables import write_tables
-from suchus.core.reading import check_file, read_json, read_text, read_toml, there
+from suchus.core.reading import check_file, path_exists, read_json, read_text, read_toml
 from suchus.core.writing import check_name, check_replaceable, check_writable, new_file, new_folder, sweep, write
 
 __all__ = [
@@ -13,11 +21,12 @@ __all__ = [
     "check_writable",
     "code_digest",
     "digest",
+    "has_same_provenance",
     "load",
-    "made_alike",
     "new_file",
     "new_folder",
     "package_digest",
+    "path_exists",
     "plain",
     "provenance",
     "read_json",
@@ -25,7 +34,6 @@ __all__ = [
     "read_toml",
     "save",
     "sweep",
-    "there",
     "versions",
     "write",
     "write_tables",

@@ -130,7 +130,7 @@ def package_digest() -> str:
     return text.hexdigest()[:12]
 
 
-def made_alike(stored: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
+def has_same_provenance(stored: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
     """Return whether a result has these settings, code, versions and arithmetic, so that a run would repeat it.
 
     Args:

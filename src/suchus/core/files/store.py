@@ -119,12 +119,12 @@ def packed(record: xr.Dataset) -> bytes:
     return sealed(memory.getvalue())
 
 
-def load(path: str | Path, *, whole: bool = False) -> xr.Dataset:
+def load(path: str | Path, *, require_seal: bool = False) -> xr.Dataset:
     """Read a record into memory.
 
     Args:
         path: of the file.
-        whole: whether a file without a seal is refused too, as one that something else has changed.
+        require_seal: whether a file without a seal is refused too, as one that something else has changed.
 
     Raises:
         UnreadableFile: there is no such file.
@@ -137,7 +137,7 @@ def load(path: str | Path, *, whole: bool = False) -> xr.Dataset:
     except OSError as error:
         raise unreadable(path, error) from error
     unbroken = holds(data)
-    if unbroken is False or (whole and unbroken is None):
+    if unbroken is False or (require_seal and unbroken is None):
         raise IncompatibleRecord(f"{path} is damaged: it is not as suchus wrote it; make it again.")
     record = open_foreign(data, path)
     version = record.attrs.get(_MARK)

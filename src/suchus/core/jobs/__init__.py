@@ -6,23 +6,23 @@ processes of this machine, the workers of a Dask cluster. A ``ResultStore`` keep
 """
 
 from suchus.core.jobs.cluster import NoCluster, at_scheduler, connected
-from suchus.core.jobs.engine import ProcessDied, Tally, finish
-from suchus.core.jobs.job import Died, InMemory, Job, ResultStore
-from suchus.core.jobs.made_by import MADE_BY, deciding
-from suchus.core.jobs.places import HERE, Cluster, Place, Processes, ThisProcess, place_for
+from suchus.core.jobs.engine import ProcessCrash, Tally, finish
+from suchus.core.jobs.job import InMemory, Job, PieceCrash, ResultStore
+from suchus.core.jobs.made_by import LAND_SOURCES, source_versions
+from suchus.core.jobs.places import IN_PROCESS, Cluster, Place, Processes, ThisProcess, place_for
 from suchus.core.jobs.store import Store
 from suchus.core.jobs.sweep import conduct_sweep
 
 __all__ = [
-    "HERE",
-    "MADE_BY",
+    "IN_PROCESS",
+    "LAND_SOURCES",
     "Cluster",
-    "Died",
     "InMemory",
     "Job",
     "NoCluster",
+    "PieceCrash",
     "Place",
-    "ProcessDied",
+    "ProcessCrash",
     "Processes",
     "ResultStore",
     "Store",
@@ -31,7 +31,7 @@ __all__ = [
     "at_scheduler",
     "conduct_sweep",
     "connected",
-    "deciding",
     "finish",
     "place_for",
+    "source_versions",
 ]

@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 
 from suchus.core import machine
 from suchus.core.errors import IncompatibleRecord, SuchusError
-from suchus.core.jobs.made_by import deciding
-from suchus.core.sources import Carried
+from suchus.core.jobs.made_by import source_versions
+from suchus.core.sources import ProjectPickle
 
 Item = TypeVar("Item")
 Versions = Callable[[], Mapping[str, str]]
@@ -82,7 +82,7 @@ def spread(
     client: Any,
     *,
     name: str,
-    versions: Versions = deciding,
+    versions: Versions = source_versions,
     retries: int = 3,
     patience: float = _WORKER_TIMEOUT,
 ) -> Generator[tuple[int, Any], None, None]:
@@ -114,8 +114,8 @@ def spread(
         futures = client.map(
             _piece,
             range(len(items)),
-            [Carried(item) for item in items],
-            work=Carried(work),
+            [ProjectPickle(item) for item in items],
+            work=ProjectPickle(work),
             versions=versions,
             expected_versions=dict(versions()) | ({} if machine.asked_to_mix() else machine.arithmetic()),
             pure=False,
@@ -263,6 +263,6 @@ def _piece(
     ]:
         raise IncompatibleRecord(
             f"on the worker {platform.node()} the {' and '.join(parts)} give other last bits than here; start all "
-            f"processes with {machine.WANTED}=1, take machines of one kind, or say --mixed."
+            f"processes with {machine.PORTABLE_VARIABLE}=1, take machines of one kind, or say --mixed."
         )
     return number, work(item)

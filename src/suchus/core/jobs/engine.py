@@ -5,12 +5,12 @@ from collections.abc import Callable
 from contextlib import closing
 
 from suchus.core.errors import SuchusError
-from suchus.core.jobs.job import Died, Item, Job, Result, ResultStore
-from suchus.core.jobs.places import HERE, Place
+from suchus.core.jobs.job import Item, Job, PieceCrash, Result, ResultStore
+from suchus.core.jobs.places import IN_PROCESS, Place
 from suchus.core.progress import Progress, silent
 
 
-class ProcessDied(SuchusError, ChildProcessError):
+class ProcessCrash(SuchusError, ChildProcessError):
     """A piece of a job whose processes died again and again."""
 
 
@@ -18,9 +18,9 @@ def finish(
     job: Job[Item, Result],
     store: ResultStore[Result],
     *,
-    place: Place = HERE,
+    place: Place = IN_PROCESS,
     progress: Progress = silent,
-    each: Callable[[int], Progress] | None = None,
+    progress_of: Callable[[int], Progress] | None = None,
     finished: Callable[[int, Result], None] | None = None,
 ) -> None:
     """Compute every piece of a job that is not in its store yet, and store each result as soon as it is finished.
@@ -33,7 +33,8 @@ def finish(
         store: where the results are stored.
         place: where the pieces are computed, and how many at once.
         progress: called with the finished fraction of the whole job.
-        each: called with the number of a piece when it starts; returns the callback for the progress of that piece.
+        progress_of: called with the number of a piece when it starts; returns the callback for the progress of that
+            piece.
         finished: called with the number of a piece and its result, when that is kept.
 
     Raises:
@@ -50,14 +51,14 @@ def finish(
         sum(job.size(number) for number in numbers),
         job.unit,
         progress,
-        done=sum(job.size(number) for number in stored_numbers),
+        done_units=sum(job.size(number) for number in stored_numbers),
         failed=0 if job.failures is None else sum(job.failed(store.get(number)) for number in stored_numbers),
     )
 
     def start_piece(i: int) -> Progress:
         """Return the callback that forwards the progress of the i-th missing piece to its observer and to the tally."""
         number = missing[i]
-        report = silent if each is None else each(number)
+        report = silent if progress_of is None else progress_of(number)
 
         def tell(stage: str, fraction: float) -> None:
             report(stage, fraction)
@@ -68,14 +69,14 @@ def finish(
     with closing(place.results(job, [job.items[number] for number in missing], start_piece)) as results:
         for i, outcome in results:
             number = missing[i]
-            result = _result_after_crash(job, number, outcome) if isinstance(outcome, Died) else outcome
+            result = _result_after_crash(job, number, outcome) if isinstance(outcome, PieceCrash) else outcome
             store.put(number, result)
             tally.finished(number, job.size(number), failed=job.failed(result))
             if finished is not None:
                 finished(number, result)
 
 
-def _result_after_crash(job: Job[Item, Result], number: int, crash: Died) -> Result:
+def _result_after_crash(job: Job[Item, Result], number: int, crash: PieceCrash) -> Result:
     """Return the substitute that the job defines for a piece whose processes crashed.
 
     Raises:
@@ -83,7 +84,7 @@ def _result_after_crash(job: Job[Item, Result], number: int, crash: Died) -> Res
     """
     if job.died is not None:
         return job.died(job.items[number], crash.exit_code)
-    raise ProcessDied(
+    raise ProcessCrash(
         f"the process at {job.piece} {number} of {job.kind} {job.name!r} ended with exit code {crash.exit_code}, "
         f"{job.tries} times; what was finished is kept: where memory was short, fewer processes (--jobs) or smaller "
         "pieces take less of it."
@@ -103,14 +104,14 @@ class Tally:
     """
 
     def __init__(
-        self, total: float, unit: str, progress: Progress = silent, *, done: float = 0.0, failed: int = 0
+        self, total: float, unit: str, progress: Progress = silent, *, done_units: float = 0.0, failed: int = 0
     ) -> None:
         """Start the clock; ``done`` units of earlier starts do not count in the rate."""
-        self.done, self.failed = done, failed
+        self.done, self.failed = done_units, failed
         self.note = ""
         """What else is told, behind the count."""
         self._total, self._unit, self._progress = total, unit, progress
-        self._earlier_units, self._start = done, time.perf_counter()
+        self._earlier_units, self._start = done_units, time.perf_counter()
         self._open_units: dict[int, float] = {}
 
     def under_way(self, number: int, units: float) -> None:

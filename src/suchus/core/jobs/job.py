@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
-from suchus.core.jobs.made_by import deciding
+from suchus.core.jobs.made_by import source_versions
 from suchus.core.progress import Progress
 
 Item = TypeVar("Item")
@@ -32,8 +32,8 @@ class Job(Generic[Item, Result]):
     """How many units each piece has [-]; one each if None."""
     failures: Callable[[Result], int] | None = None
     """Returns how many units of a result failed; None where none can."""
-    versions: Callable[[], Mapping[str, str]] = deciding
-    """Returns what decides the bytes; it must return the same on every machine. See ``made_by.deciding``."""
+    versions: Callable[[], Mapping[str, str]] = source_versions
+    """Returns what decides the bytes; it must return the same on every machine. See ``made_by.source_versions``."""
     tries: int = 3
     """How often a piece is begun at most whose process or worker dies [-]."""
     died: Callable[[Item, int | None], Result] | None = None
@@ -49,7 +49,7 @@ class Job(Generic[Item, Result]):
         return 0 if self.failures is None else self.failures(result)
 
 
-class Died(NamedTuple):
+class PieceCrash(NamedTuple):
     """The outcome of a piece whose processes ended before the piece was finished."""
 
     exit_code: int | None

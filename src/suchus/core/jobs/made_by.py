@@ -7,13 +7,13 @@ from suchus.core.files import code_digest, versions
 from suchus.core.sources import current
 
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
-MADE_BY = (
+LAND_SOURCES = (
     "article/paper", "core/catalog.py", "core/checks.py", "core/files", "core/kinds.py", "core/reading.py",
     "core/rotation.py", "core/sources.py", "robot", "sim",
     *(f"experiments/study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
 )  # fmt: skip
 """Whose code decides the numbers of a run on land."""
-FLOW = (
+FLOW_SOURCES = (
     "article/paper", "core/catalog.py", "core/checks.py", "core/files", "core/fingerprint.py", "core/isosurface.py",
     "core/kinds.py", "core/reading.py", "core/rotation.py", "core/sources.py", "flow", "robot/blueprint",
     "robot/design", "robot/kinematics", "robot/motion", "robot/motors", "robot/robots", "sim/hydro", "sim/metrics",
@@ -22,16 +22,16 @@ FLOW = (
 """Whose code decides the numbers of a swim by CFD."""
 
 
-def deciding(rooms: Sequence[str] = MADE_BY, libraries: Sequence[str] = ()) -> dict[str, str]:
+def source_versions(paths: Sequence[str] = LAND_SOURCES, libraries: Sequence[str] = ()) -> dict[str, str]:
     """Return the versions of what makes the bytes of a result, the files of the user's project among them.
 
     Args:
-        rooms: whose source decides, see ``record.code_digest``.
+        paths: whose source decides, see ``record.code_digest``.
         libraries: further packages whose versions decide.
     """
     package_versions = versions()
     makers = {name: package_versions.get(name, "not installed") for name in _DECIDING}
-    makers["source"] = code_digest(*rooms)[:12]
+    makers["source"] = code_digest(*paths)[:12]
     project = current()
     if project is not None:
         makers["project"] = project.digest()

@@ -13,10 +13,10 @@ from typing import Any, NamedTuple, Protocol
 from suchus.core import threads
 from suchus.core.errors import OutsideLimits
 from suchus.core.jobs import cluster, processes
-from suchus.core.jobs.job import AnyJob, Died
+from suchus.core.jobs.job import AnyJob, PieceCrash
 from suchus.core.progress import Progress, silent
 
-Begun = Callable[[int], Progress]
+StartPiece = Callable[[int], Progress]
 """Called with the number of a piece when it starts; returns the callback for its progress."""
 Results = Generator[tuple[int, Any], None, None]
 """Numbers of pieces and their results, ``Died`` where there is none, as they are finished, in any order."""
@@ -30,7 +30,7 @@ class Place(Protocol):
     def at_once(self) -> int:
         """Pieces that are done at once [-]."""
 
-    def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
+    def results(self, job: AnyJob, items: Sequence[Any], start_piece: StartPiece) -> Results:
         """Do the work of a job for each item, and yield each result when it is finished.
 
         If the iteration ends early, by an error, Ctrl-C or ``close``, pieces in progress are stopped.
@@ -56,7 +56,7 @@ class ThisProcess:
     at_once: int = 1
     """Pieces that are done at once [-]; with one all is done in the thread that asks."""
 
-    def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
+    def results(self, job: AnyJob, items: Sequence[Any], start_piece: StartPiece) -> Results:
         """Yield the results, with one piece at once in the order of the items; see ``Place``."""
         side_by_side = min(self.at_once, len(items), threads.count())
         if side_by_side > 1:
@@ -78,19 +78,19 @@ class Processes:
     each: int | None = None
     """Threads that each of them takes [-]; an equal share of all if None."""
 
-    def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
+    def results(self, job: AnyJob, items: Sequence[Any], start_piece: StartPiece) -> Results:
         """Yield the results; a process that dies takes its piece with it and nothing else, see ``Place``."""
         reports: dict[int, Progress] = {}
         with closing(
-            processes.side_by_side(job.work, items, self.at_once, tries=job.tries, each=self.each)
+            processes.side_by_side(job.work, items, self.at_once, tries=job.tries, threads_per_process=self.each)
         ) as messages:
             for number, message in messages:
-                if isinstance(message, processes.Begun):
+                if isinstance(message, processes.PieceStarted):
                     reports[number] = start_piece(number)
-                elif isinstance(message, processes.Far):
+                elif isinstance(message, processes.PieceProgress):
                     reports[number](*message)
                 else:
-                    yield number, message if isinstance(message, Died) else message.value
+                    yield number, message if isinstance(message, PieceCrash) else message.value
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,19 +105,24 @@ class Cluster:
         """Pieces that the workers do at once [-]."""
         return cluster.cores(self.client)
 
-    def results(self, job: AnyJob, items: Sequence[Any], start_piece: Begun) -> Results:
+    def results(self, job: AnyJob, items: Sequence[Any], start_piece: StartPiece) -> Results:
         """Yield the results; a worker that is lost loses its piece, which another one begins again, see ``Place``."""
         del start_piece
         work = partial(_silently, job.work)
         yield from cluster.spread(work, items, self.client, name=job.name, versions=job.versions, retries=job.tries)
 
 
-HERE = ThisProcess()
+IN_PROCESS = ThisProcess()
 """One piece after the other, in this process."""
 
 
 def place_for(
-    job_text: str, *, client: Any = None, jobs: int = 1, each: int | None = None, here: Place = HERE
+    job_text: str,
+    *,
+    client: Any = None,
+    jobs: int = 1,
+    threads_per_process: int | None = None,
+    local_place: Place = IN_PROCESS,
 ) -> Place:
     """Return the place that computes a job.
 
@@ -125,8 +130,8 @@ def place_for(
         job_text: name of the job in messages, as ``a study``.
         client: a ``distributed.Client``, whose workers then do it; None for this machine.
         jobs: number of processes of this machine; with 1 this process does it [-].
-        each: threads that each of several processes takes [-]; an equal share of all if None.
-        here: how this process does it.
+        threads_per_process: threads that each of several processes takes [-]; an equal share of all if None.
+        local_place: how this process does it.
 
     Raises:
         OutsideLimits: less than one process is asked for, or several beside a cluster.
@@ -137,7 +142,7 @@ def place_for(
         raise OutsideLimits(f"{job_text} takes a cluster or {jobs} processes of this machine, not both; choose one.")
     if client is not None:
         return Cluster(client)
-    return Processes(jobs, each) if jobs > 1 else here
+    return Processes(jobs, threads_per_process) if jobs > 1 else local_place
 
 
 def _silently(work: Callable[[Any, Progress], Any], item: Any) -> Any:
@@ -162,7 +167,7 @@ class _News(NamedTuple):
     """Nothing, the stage and the share, the result, or the error."""
 
 
-def _in_threads(job: AnyJob, items: Sequence[Any], start_piece: Begun, side_by_side: int) -> Results:
+def _in_threads(job: AnyJob, items: Sequence[Any], start_piece: StartPiece, side_by_side: int) -> Results:
     """Compute pieces in threads; the calling thread reports progress and yields the results."""
     news, stop, numbers = SimpleQueue[_News](), Event(), count()
     workers = [

@@ -15,20 +15,20 @@ from typing import Any, NamedTuple
 
 from suchus.core import threads
 from suchus.core.errors import Doubtful, NoMemory, SuchusError
-from suchus.core.jobs.job import Died
+from suchus.core.jobs.job import PieceCrash
 from suchus.core.progress import Progress
 from suchus.core.stopping import end_with_parent
 
 _REPORT_INTERVAL = 0.1  # [s]; between two reports of one stage
-_PATIENCE = 10.0  # [s]; for a process that was told to stop
+_STOP_TIMEOUT = 10.0  # [s]; for a process that was told to stop
 _PIPE_ERRORS = (EOFError, ConnectionError)  # what a pipe says when the other end has died
 
 
-class Begun(NamedTuple):
+class PieceStarted(NamedTuple):
     """A process has taken a piece."""
 
 
-class Far(NamedTuple):
+class PieceProgress(NamedTuple):
     """How far a piece is."""
 
     stage: str
@@ -37,7 +37,7 @@ class Far(NamedTuple):
     """Of the stage [-]."""
 
 
-class Done(NamedTuple):
+class PieceResult(NamedTuple):
     """A piece is finished."""
 
     value: Any
@@ -71,8 +71,13 @@ class Worker:
 
 
 def side_by_side(
-    work: Callable[[Any, Progress], Any], items: Sequence[Any], jobs: int, *, tries: int = 1, each: int | None = None
-) -> Generator[tuple[int, Begun | Far | Done | Died], None, None]:
+    work: Callable[[Any, Progress], Any],
+    items: Sequence[Any],
+    jobs: int,
+    *,
+    tries: int = 1,
+    threads_per_process: int | None = None,
+) -> Generator[tuple[int, PieceStarted | PieceProgress | PieceResult | PieceCrash], None, None]:
     """Do one piece of work for each item in a few processes, and yield each message about the pieces.
 
     Pieces are begun in the order given. A process that dies takes its piece with it and nothing else. When the
@@ -84,7 +89,7 @@ def side_by_side(
         items: what differs between the pieces.
         jobs: number of processes.
         tries: how often a piece is started at most if its process dies [-].
-        each: threads that each process takes [-]; an equal share of all if None.
+        threads_per_process: threads that each process takes [-]; an equal share of all if None.
 
     Yields:
         The number of a piece, and what is heard of it: each ends with ``Done`` or ``Died``.
@@ -94,7 +99,7 @@ def side_by_side(
     """
     pending, start_counts = list(range(len(items))), Counter[int]()
     jobs = min(jobs, len(pending))
-    thread_count = max(threads.count() // max(jobs, 1), 1) if each is None else each
+    thread_count = max(threads.count() // max(jobs, 1), 1) if threads_per_process is None else threads_per_process
     workers = [hire(work, thread_count) for _ in range(jobs)]
 
     def give(worker: Worker) -> int:
@@ -107,7 +112,7 @@ def side_by_side(
 
     try:
         for worker in workers:
-            yield give(worker), Begun()
+            yield give(worker), PieceStarted()
         while busy := {worker.pipe: worker for worker in workers if worker.piece is not None}:
             for pipe in wait(list(busy)):
                 worker = busy[pipe]  # type: ignore[index]  # only connections are waited for
@@ -118,18 +123,18 @@ def side_by_side(
                 if isinstance(message, _PieceWarning):
                     warnings.warn(message.warning, stacklevel=2)
                     continue
-                if isinstance(message, Died) and start_counts[piece] < tries:
+                if isinstance(message, PieceCrash) and start_counts[piece] < tries:
                     pending.insert(0, piece)
                 else:
                     yield piece, message
-                if isinstance(message, Far):
+                if isinstance(message, PieceProgress):
                     continue
                 worker.piece = None
-                if pending and isinstance(message, Died):
+                if pending and isinstance(message, PieceCrash):
                     workers.remove(worker)
                     workers.append(worker := hire(work, thread_count))
                 if pending:
-                    yield give(worker), Begun()
+                    yield give(worker), PieceStarted()
     finally:
         dismiss(workers)
 
@@ -139,7 +144,7 @@ def hire(work: Callable[[Any, Progress], Any], thread_count: int) -> Worker:
     spawning = get_context("spawn")
     parent_end, child_end = spawning.Pipe()
     process = spawning.Process(target=_work, args=(child_end, work, thread_count), daemon=True)
-    with deaf():
+    with without_interrupts():
         process.start()
     child_end.close()
     return Worker(process=process, pipe=parent_end)
@@ -152,21 +157,21 @@ def dismiss(workers: Sequence[Worker]) -> None:
         if worker.piece is not None:
             worker.process.kill()
     for worker in workers:
-        worker.process.join(_PATIENCE)
+        worker.process.join(_STOP_TIMEOUT)
 
 
-def _receive(worker: Worker) -> Far | Done | Died | _PieceError | _PieceWarning:
+def _receive(worker: Worker) -> PieceProgress | PieceResult | PieceCrash | _PieceError | _PieceWarning:
     """Return the next message of a busy worker; ``Died`` where its process has ended."""
     try:
-        message: Far | Done | _PieceError | _PieceWarning = worker.pipe.recv()
+        message: PieceProgress | PieceResult | _PieceError | _PieceWarning = worker.pipe.recv()
     except _PIPE_ERRORS:
-        worker.process.join(_PATIENCE)
-        return Died(worker.process.exitcode)
+        worker.process.join(_STOP_TIMEOUT)
+        return PieceCrash(worker.process.exitcode)
     return message
 
 
 @contextmanager
-def deaf() -> Iterator[None]:
+def without_interrupts() -> Iterator[None]:
     """Block Ctrl-C in processes that are started inside, since a terminal sends it to all processes."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -191,7 +196,7 @@ def _work(pipe: Connection, work: Callable[[Any, Progress], Any], thread_count: 
         while True:
             item = pipe.recv()
             try:
-                outcome: Done | _PieceError = Done(work(item, _sender(pipe)))
+                outcome: PieceResult | _PieceError = PieceResult(work(item, _sender(pipe)))
             except SuchusError as error:
                 outcome = _PieceError(error)
             except MemoryError:
@@ -214,6 +219,6 @@ def _sender(pipe: Connection) -> Progress:
         clock_time = time.monotonic()
         if stage != last_stage or clock_time - last_time > _REPORT_INTERVAL:
             last_stage, last_time = stage, clock_time
-            pipe.send(Far(stage, fraction))
+            pipe.send(PieceProgress(stage, fraction))
 
     return tell

@@ -18,9 +18,9 @@ import xarray as xr
 
 from suchus.core import machine
 from suchus.core.errors import IncompatibleRecord, UnreadableFile, Unwritable
-from suchus.core.files import check_writable, load, read_json, save, there
+from suchus.core.files import check_writable, load, path_exists, read_json, save
 from suchus.core.files.store import packed as packed_record
-from suchus.core.jobs.made_by import deciding
+from suchus.core.jobs.made_by import source_versions
 from suchus.core.writing import keep, write
 
 _NUMBERS, _COLUMN, _COLUMN_ATTRIBUTES, _ORDER = "numbers", "column", "about", "order"  # of a table that is packed
@@ -30,7 +30,7 @@ _FORMAT = 4
 _LOG = logging.getLogger(__name__)
 
 
-class Asked(Protocol):
+class StudySpec(Protocol):
     """A frozen value that says all that decides what the parts hold: a study, a search."""
 
     @property
@@ -51,10 +51,10 @@ class Store:
     def __init__(
         self,
         folder: str | Path,
-        study: Asked,
+        study: StudySpec,
         *,
         kind: str = "study",
-        versions: Callable[[], Mapping[str, str]] = deciding,
+        versions: Callable[[], Mapping[str, str]] = source_versions,
     ) -> None:
         """Store the settings; the folder is neither made nor read yet."""
         self.folder = Path(folder)
@@ -89,7 +89,7 @@ class Store:
     @contextmanager
     def _alone(self) -> Iterator[None]:
         """Make the folder and hold a lock on it; one that was made in vain is taken away."""
-        is_new = not there(self.folder)
+        is_new = not path_exists(self.folder)
         if not is_new and not self.folder.is_dir():
             raise self._foreign_folder_error()
         if is_new:
@@ -126,7 +126,7 @@ class Store:
         if not self.part(number).is_file():
             return False
         try:
-            sound = load(self.part(number), whole=True).attrs.get("part") == number
+            sound = load(self.part(number), require_seal=True).attrs.get("part") == number
         except (IncompatibleRecord, UnreadableFile):
             sound = False
         if not sound:
@@ -161,7 +161,7 @@ class Store:
                     f"{self.folder} lacks part {number} of {parts}; start the {self.kind} again to finish it."
                 )
             tables.append(self.get(number))
-        table = together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
+        table = concatenate_tables(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
         if len(machines := self.machines()) > 1:
             table.attrs["machines"] = json.dumps(machines)
         write(self.folder / RESULTS, packed_record(table))
@@ -227,7 +227,8 @@ class Store:
                 f"{self.folder} was begun on a machine whose {parts} give other last bits "
                 f"({_machine_names(description)}; here {_machine_names({'machines': [machine.provenance()]})}): "
                 "mixed results would not be the same to the byte. Finish it there, choose another place, or say "
-                f"--mixed, which the results then tell; begun with {machine.WANTED}=1 a {self.kind} gives the same "
+                f"--mixed, which the results then tell; begun with {machine.PORTABLE_VARIABLE}=1 a {self.kind} gives "
+                f"the same "
                 "bytes on both."
             )
         description["machines"] = [*description.get("machines", ()), machine.provenance()]
@@ -268,7 +269,7 @@ def _no_lock_of_dask() -> Iterator[None]:
         yield
 
 
-def together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
+def concatenate_tables(tables: Sequence[xr.Dataset]) -> xr.Dataset:
     """Concatenate tables along ``sample``; a column that a table lacks is NaN in its rows."""
     columns = {str(name): v.attrs for table in tables for name, v in table.data_vars.items() if name != "error"}
     rows = {
@@ -281,7 +282,7 @@ def together(tables: Sequence[xr.Dataset]) -> xr.Dataset:
     )
 
 
-def made_by(folder: Path, *, key: str = "versions") -> dict[str, str]:
+def read_description(folder: Path, *, key: str = "versions") -> dict[str, str]:
     """Return a part of a store's description: the versions that made it, or with the key ``fields`` its study's fields.
 
     Raises:

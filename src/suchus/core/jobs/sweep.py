@@ -12,7 +12,7 @@ from suchus.core.checks import Checks
 from suchus.core.fingerprint import fingerprint
 from suchus.core.jobs.engine import finish
 from suchus.core.jobs.job import Job
-from suchus.core.jobs.made_by import FLOW, deciding
+from suchus.core.jobs.made_by import FLOW_SOURCES, source_versions
 from suchus.core.jobs.places import place_for
 from suchus.core.jobs.store import Store
 from suchus.core.progress import Progress, silent
@@ -43,7 +43,7 @@ def conduct_sweep(
     items: Sequence[Item],
     folder: str | Path,
     *,
-    rooms: Sequence[str] = FLOW,
+    rooms: Sequence[str] = FLOW_SOURCES,
     progress: Progress = silent,
     client: Any = None,
     jobs: int = 1,
@@ -75,7 +75,7 @@ def conduct_sweep(
     """
     place = place_for("a sweep", client=client, jobs=jobs)
     identity = _Sweep(name=name, work=fingerprint(work), items=tuple(fingerprint(item) for item in items))
-    versions = partial(deciding, rooms, ("numba",))
+    versions = partial(source_versions, rooms, ("numba",))
     job = Job(
         name=name,
         kind=KIND,

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from suchus.experiments.experiment import Experiment
 
 EXPERIMENTS: "Catalog[Experiment]" = Catalog(
-    "experiment", "suchus.experiments.catalog", "suchus.experiments.experiment:Experiment", named=methodcaller("name")
+    "experiment", "suchus.experiments.catalog", "suchus.experiments.experiment:Experiment", name_of=methodcaller("name")
 )
 
 __all__ = ["EXPERIMENTS"]

@@ -9,10 +9,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
-from suchus.hardware import about, held
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, SimulationResult, silent
+from suchus.hardware import fix_in_place, wire_statistics
 from suchus.robot.design import Robot
-from suchus.robot.gaits import own_gait
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
@@ -30,7 +30,7 @@ class Driven(Experiment):
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that was driven."""
-    gait: Gait = field(default_factory=lambda: own_gait(ROBOTS["caiman"]))
+    gait: Gait = field(default_factory=lambda: default_gait(ROBOTS["caiman"]))
     """The gait in which it moved."""
     control: str = "open"
     """What decided."""
@@ -42,7 +42,7 @@ class Driven(Experiment):
         """Return what its folder says that it is."""
         return "drive"
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Say that a log is given and not made."""
         del progress
         raise NotImplementedError("a log is told by tell()")
@@ -59,7 +59,7 @@ class Driven(Experiment):
             decides=self.explain({name: one.value for name, one in measures.items()}),
             replays=replayed(
                 "drive_replay.html",
-                held(record, self.robot),
+                fix_in_place(record, self.robot),
                 self.robot,
                 caption="The angles that the servos told. Where nobody measured the robot's place, it is held above "
                 "one.",
@@ -71,7 +71,7 @@ class Driven(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return what the log says of servos and bus, and what metrics say of the walk where it was measured."""
-        told = about(record)
+        told = wire_statistics(record)
         off = np.sqrt(((record.servo_angle - record.servo_asked) ** 2).mean("time"))
         current = np.abs(record.servo_current)
         found = Measures(

@@ -12,7 +12,7 @@ from suchus.robot.design.flotation import float_hull
 from suchus.robot.motion import LIMBS_UP, Gait, with_limbs
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import capacity
-from suchus.swimming.water import Outline, Undulation, taken, undulation, unevenness
+from suchus.swimming.water import Outline, Undulation, motion_of_record, undulation, unevenness
 
 AS_TAKEN = " as taken"
 """How the names of motions end whose midlines are those that the joints take."""
@@ -68,6 +68,6 @@ def midlines(robot: Robot, motion: Gait, stations: int) -> list[TakenMidline]:
     record = swum_in_sections(robot, meant, _SETTLE + _AVERAGED)
     outline, found = Outline(bare(robot), stations), []
     for i, (name, one) in enumerate(zip(TAKEN, meant, strict=True)):
-        bends = taken(outline, record.isel(run=i), frequency=motion.frequency, cycles=_AVERAGED, name=name)
+        bends = motion_of_record(outline, record.isel(run=i), frequency=motion.frequency, cycles=_AVERAGED, name=name)
         found.append(TakenMidline(name, bends, unevenness(bends, undulation(outline, one))))
     return found

@@ -70,7 +70,9 @@ class TwoGroups(Experiment):
             progress: told the share that is done.
         """
         built = self.tolerances.repeats(runs, self.repeats, self.seed)
-        record = simulate(built, duration=duration, timestep=coarse_step(self.robot), every=2, progress=progress)
+        record = simulate(
+            built, duration=duration, timestep=coarse_step(self.robot), sample_stride=2, progress=progress
+        )
         shape = (len(runs), self.repeats)
         data = {
             f"repeated_{name}": (

@@ -65,7 +65,7 @@ class EvidenceCount:
         return f"{text} Of {number_text} of other publications on salamanders: {came}.".strip()
 
 
-def counted(
+def count_evidence(
     verdicts: Mapping[str, str], fragile: Iterable[str] = (), rules: Mapping[str, Rule] = RULES
 ) -> EvidenceCount:
     """Return the number of verdicts on the article by standing and word, and those on other publications by word.

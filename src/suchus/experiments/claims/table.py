@@ -5,7 +5,7 @@ from functools import cached_property
 from types import MappingProxyType
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Rule, Varied
+from suchus.article.verdict.rule import Rule, Variation
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog import EXPERIMENTS
 
@@ -32,9 +32,9 @@ def examples_of(experiment: str) -> Examples:
     return examples
 
 
-def varied_of(experiment: str) -> Varied | None:
+def design_sweep_of(experiment: str) -> Variation | None:
     """Return the designs and settings over which an experiment is repeated, from the ``VARIED`` beside its rules."""
-    sweep: Varied | None = EXPERIMENTS.beside(experiment, "VARIED", None, module="rules")
+    sweep: Variation | None = EXPERIMENTS.beside(experiment, "VARIED", None, module="rules")
     return sweep
 
 

@@ -72,7 +72,7 @@ def _slip(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 def _torque(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     """Return the root mean square of the torque of the highest-loaded servo, over its limit."""
-    torque = metrics.between(record).servo_torque.transpose("run", "time", "servo").values
+    torque = metrics.time_window(record).servo_torque.transpose("run", "time", "servo").values
     names = [str(name) for name in record.servo.values]
     limits = np.array([[run.robot.servo(name).torque for name in names] for run in runs])
     return np.asarray((np.sqrt((torque**2).mean(axis=1)) / limits).max(axis=1))
@@ -82,8 +82,10 @@ def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     """Return the least distance between parts of the body over each run [m]."""
     step = float(record.time[1] - record.time[0])
     sample_interval = max(1, round(_CLEARANCE_INTERVAL / step))
-    excerpt = metrics.between(record, START)
-    clearances = [float(clearance(run.robot, excerpt.isel(run=i), every=sample_interval)) for i, run in enumerate(runs)]
+    excerpt = metrics.time_window(record, START)
+    clearances = [
+        float(clearance(run.robot, excerpt.isel(run=i), sample_interval=sample_interval)) for i, run in enumerate(runs)
+    ]
     return np.array(clearances)
 
 

@@ -18,7 +18,7 @@ class _Capsule(NamedTuple):
     radius: float
 
 
-def clearance(robot: Robot, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
+def clearance(robot: Robot, record: xr.Dataset, *, sample_interval: int = 1) -> xr.DataArray:
     """Return the least distance between parts of the body that could touch each other, negative where they overlap [m].
 
     The parts are capsules: the links of each limb and the shapes of the axis. Distances are measured from each limb to
@@ -29,16 +29,16 @@ def clearance(robot: Robot, record: xr.Dataset, *, every: int = 1) -> xr.DataArr
     Args:
         robot: of the record.
         record: of one run or of several runs of robots with these lengths.
-        every: number of samples of which one is evaluated.
+        sample_interval: number of samples of which one is evaluated.
     """
-    angles = record.joint_angle.isel(time=slice(None, None, every)).transpose(..., "time", "joint")
-    min_distance = between_parts(robot, angles.values.astype(float)).min(axis=-1)
+    angles = record.joint_angle.isel(time=slice(None, None, sample_interval)).transpose(..., "time", "joint")
+    min_distance = part_distance(robot, angles.values.astype(float)).min(axis=-1)
     return xr.DataArray(
         min_distance, dims=angles.dims[:-2], attrs={"units": "m", "long_name": "clearance between parts"}
     )
 
 
-def between_parts(robot: Robot, angles: np.ndarray) -> np.ndarray:
+def part_distance(robot: Robot, angles: np.ndarray) -> np.ndarray:
     """Return the least distance between parts for postures [m].
 
     Args:
@@ -134,10 +134,10 @@ def _limb(limb: LimbPlace, body_frames: BodyFrames) -> list[_Capsule]:
 
 def _capsule_distance(a: _Capsule, b: _Capsule) -> np.ndarray:
     """Return the distance of two capsules' surfaces [m]."""
-    return segments_apart(a.start, a.end, b.start, b.end) - (a.radius + b.radius)
+    return segment_distance(a.start, a.end, b.start, b.end) - (a.radius + b.radius)
 
 
-def segments_apart(p: np.ndarray, p_end: np.ndarray, q: np.ndarray, q_end: np.ndarray) -> np.ndarray:
+def segment_distance(p: np.ndarray, p_end: np.ndarray, q: np.ndarray, q_end: np.ndarray) -> np.ndarray:
     """Return the distance of two segments, shape (...,) [m].
 
     The nearest points of the two lines are clamped to the first segment, then to the second, then the first follows.

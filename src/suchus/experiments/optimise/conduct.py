@@ -16,10 +16,10 @@ import xarray as xr
 
 from suchus.core import large
 from suchus.core.errors import IncompatibleRecord, NotConverged
-from suchus.core.jobs import MADE_BY, InMemory, Job, Place, Store, Tally, deciding, finish, place_for
+from suchus.core.jobs import LAND_SOURCES, InMemory, Job, Place, Store, Tally, finish, place_for, source_versions
 from suchus.core.progress import Progress, portion, silent
 from suchus.experiments.optimise.aims import AIMS
-from suchus.experiments.optimise.evaluate import allowed, columns, evaluate, losses, measure, score, units
+from suchus.experiments.optimise.evaluate import columns, evaluate, is_allowed, losses, measure, score, units
 from suchus.experiments.optimise.search import SearchResult, search, titled
 from suchus.experiments.optimise.spec import Optimisation
 from suchus.robot import blueprint
@@ -30,9 +30,12 @@ from suchus.sim.land.extent import processor_seconds
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
 """Packages whose versions affect which candidates are evaluated."""
-ROOMS = (*MADE_BY, *(f"experiments/optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
+SOURCE_FILES = (
+    *LAND_SOURCES,
+    *(f"experiments/optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")),
+)
 """Source files whose code affects the result of a candidate."""
-_DECIDING = partial(deciding, ROOMS, LIBRARIES)
+_DECIDING = partial(source_versions, SOURCE_FILES, LIBRARIES)
 _CHECK_NUMBER, _NEIGHBOURHOOD_NUMBER = (
     900_000,
     950_000,
@@ -92,9 +95,11 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> 
             )
         write_runs(result.spec, result.runs, folder)
         generations = int(result.history.generation.max())
-        check = _stored_part(store, _CHECK_NUMBER + generations, lambda: checked(spec, result.runs))
+        check = _stored_part(store, _CHECK_NUMBER + generations, lambda: run_checks(spec, result.runs))
         neighbourhood = _stored_part(
-            store, _NEIGHBOURHOOD_NUMBER + generations, lambda: around(spec, result.shares[0], partial(tried, place))
+            store,
+            _NEIGHBOURHOOD_NUMBER + generations,
+            lambda: vary_around_best(spec, result.shares[0], partial(try_candidates, place)),
         )
         return result.with_checks(check, neighbourhood)
 
@@ -106,7 +111,7 @@ def opened(spec: Optimisation, folder: Path) -> Iterator[Store]:
         yield store
 
 
-def tried(place: Place, spec: Optimisation, shares: np.ndarray, progress: Progress = silent) -> xr.Dataset:
+def try_candidates(place: Place, spec: Optimisation, shares: np.ndarray, progress: Progress = silent) -> xr.Dataset:
     """Evaluate candidates in equal parts; the result of a candidate does not depend on the other candidates.
 
     Args:
@@ -127,7 +132,7 @@ def tried(place: Place, spec: Optimisation, shares: np.ndarray, progress: Progre
         work=partial(evaluate, spec),
         items=pieces,
         sizes=[len(piece) for piece in pieces],
-        versions=partial(deciding, ROOMS),
+        versions=partial(source_versions, SOURCE_FILES),
     )
     tables = InMemory[xr.Dataset]()
     finish(job, tables, place=place, progress=progress)
@@ -144,7 +149,7 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
         progress: called with the stage and the fraction that is done.
         place: where candidates are evaluated.
     """
-    start = _generation(store, 0, np.array([spec.start]), lambda x: tried(place, spec, x))
+    start = _generation(store, 0, np.array([spec.start]), lambda x: try_candidates(place, spec, x))
     parts, driver = units(spec, start), search(spec)
     name, aim = spec.arms[0].name, spec.aims[0].name
     tally = Tally(spec.evaluations, "tried", lambda stage, share: progress(f"{name}: {stage}", share))
@@ -157,10 +162,10 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
             del stage
             tally.under_way(number, share * count)
 
-        table = _generation(store, number, shares, lambda x, tell=tell: tried(place, spec, x, tell))  # type: ignore[misc]
+        table = _generation(store, number, shares, lambda x, tell=tell: try_candidates(place, spec, x, tell))  # type: ignore[misc]
         driver.tell(losses(spec, table, parts) if spec.pareto else score(spec, table, parts))
         tables.append(_with_generation(table, number))
-        values = np.where(allowed(spec, table), score(spec, table, parts), np.inf)
+        values = np.where(is_allowed(spec, table), score(spec, table, parts), np.inf)
         if values.min() < best:
             i, best = int(values.argmin()), float(values.min())
             tally.note = f"best {float(table[f'aim_{aim}'][i]):.3g} {AIMS[aim].unit}"
@@ -251,7 +256,7 @@ CONDITIONS = (
 rubber foot on floors from 0.5 to 1."""
 
 
-def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
+def run_checks(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
     """Simulate the best candidates and the start under every condition, with the robot's own time step.
 
     Args:
@@ -263,8 +268,8 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
         diverged.
     """
     checked_runs = [*runs, replace(spec.run, label="start")]
-    batch = [_under(run, condition) for run in checked_runs for condition in CONDITIONS]
-    record = simulate(batch, duration=spec.duration, timestep=physics_step(spec.run.robot), every=2)
+    batch = [_run_under_condition(run, condition) for run in checked_runs for condition in CONDITIONS]
+    record = simulate(batch, duration=spec.duration, timestep=physics_step(spec.run.robot), sample_stride=2)
     shape = len(checked_runs), len(CONDITIONS)
     sound = record.cause.values == ""
     return xr.Dataset(
@@ -276,7 +281,7 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
     )
 
 
-def _under(run: Run, condition: Condition) -> Run:
+def _run_under_condition(run: Run, condition: Condition) -> Run:
     """Return a run under one condition of a check: other friction, later phase, or a robot built with errors."""
     phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
     gait = replace(run.gait, limb_phases=phases)
@@ -287,7 +292,7 @@ def _under(run: Run, condition: Condition) -> Run:
     return changed_run if condition.built is None else Tolerances().built(changed_run, condition.built)
 
 
-def around(spec: Optimisation, best: np.ndarray, evaluate_candidates: Evaluate = evaluate) -> xr.Dataset:
+def vary_around_best(spec: Optimisation, best: np.ndarray, evaluate_candidates: Evaluate = evaluate) -> xr.Dataset:
     """Move each field alone to both sides of the best, by a twentieth and a tenth of its range.
 
     Args:

@@ -16,7 +16,7 @@ from suchus.robot.design.scale import control_period
 from suchus.robot.motion import check_limits, excess
 from suchus.sim.land import Run, simulate
 
-WALKED, REFUSED, APART = "walked", "refused", "diverged"
+STATUS_WALKED, STATUS_REFUSED, STATUS_DIVERGED = "walked", "refused", "diverged"
 _SAMPLE_INTERVAL = 2  # control periods; 50 looks a second
 
 
@@ -36,7 +36,7 @@ def evaluate(
         ``status``; ``beyond``, see ``suchus.robot.motion.excess``, infinite for a candidate that cannot be at all.
     """
     count = len(shares)
-    status, limit_excess = np.full(count, REFUSED, dtype="U16"), np.zeros(count)
+    status, limit_excess = np.full(count, STATUS_REFUSED, dtype="U16"), np.zeros(count)
     runs: dict[int, Run] = {}
     for i, point in enumerate(shares):
         try:
@@ -53,7 +53,7 @@ def evaluate(
     results = _walk_candidates(spec, runs, progress, timestep or spec.timestep)
     limit_excess[[i for i in runs if i not in results]] = np.inf
     for i, numbers in results.items():
-        status[i] = APART if numbers is None else WALKED
+        status[i] = STATUS_DIVERGED if numbers is None else STATUS_WALKED
         for name, value in (numbers or {}).items():
             table[name][i] = value
     return xr.Dataset(
@@ -94,7 +94,7 @@ def _walk_candidates(
     ground_runs = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
     try:
         record = simulate(
-            ground_runs, duration=spec.duration, timestep=timestep, every=_SAMPLE_INTERVAL, progress=progress
+            ground_runs, duration=spec.duration, timestep=timestep, sample_stride=_SAMPLE_INTERVAL, progress=progress
         )
     except SuchusError:
         if len(runs) == 1:
@@ -152,11 +152,11 @@ def excesses(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
         spec: the search.
         table: of ``evaluate``.
     """
-    rows = [over(limit, table[f"limit_{limit.name}"].values) for limit in spec.limits]
+    rows = [relative_excess(limit, table[f"limit_{limit.name}"].values) for limit in spec.limits]
     return np.array(rows).T if rows else np.zeros((table.sizes["candidate"], 0))
 
 
-def over(limit: Limit, values: np.ndarray) -> np.ndarray:
+def relative_excess(limit: Limit, values: np.ndarray) -> np.ndarray:
     """Return by which fraction of itself a limit is exceeded; negative where it is kept [-].
 
     Args:
@@ -168,9 +168,9 @@ def over(limit: Limit, values: np.ndarray) -> np.ndarray:
     return np.asarray(sign * (values - limit.value) / max(abs(limit.value), 1e-9 if limit.value else kind.scale))
 
 
-def allowed(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
+def is_allowed(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
     """Return which candidates walked and kept every limit, shape (candidate,)."""
-    has_walked = table.status.values == WALKED
+    has_walked = table.status.values == STATUS_WALKED
     return np.asarray(has_walked & (excesses(spec, table) <= 0.0).all(axis=1))
 
 
@@ -196,11 +196,11 @@ def losses(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarr
     weighted = signs * values / parts + penalty[:, None]
     status, limit_excess = table.status.values, table.beyond.values
     failed_loss = np.where(
-        status == APART,
+        status == STATUS_DIVERGED,
         _DIVERGED_LOSS,
         np.where(np.isfinite(limit_excess), _REFUSED_LOSS + np.minimum(limit_excess, 1e3), _IMPOSSIBLE_LOSS),
     )
-    bad = (status != WALKED) | ~np.isfinite(weighted).all(axis=1)
+    bad = (status != STATUS_WALKED) | ~np.isfinite(weighted).all(axis=1)
     return np.where(bad[:, None], failed_loss[:, None], weighted)
 
 

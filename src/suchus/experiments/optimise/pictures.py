@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suchus.experiments.optimise.aims import AIMS, Kind
-from suchus.experiments.optimise.evaluate import allowed
+from suchus.experiments.optimise.evaluate import is_allowed
 from suchus.experiments.optimise.search import SearchResult
-from suchus.experiments.optimise.spec import at_share
+from suchus.experiments.optimise.spec import value_at_fraction
 from suchus.robot.control import Standing
 from suchus.robot.design import unit_at
 from suchus.robot.motion import START
@@ -45,8 +45,8 @@ def draw_convergence(searches: Sequence[SearchResult]) -> Figure:
         ax = axes[0, 0]
         for i, search in enumerate(searches):
             colour, values = COLOURS[role(i)], search.history[f"aim_{search.spec.aims[0].name}"].values
-            is_allowed = allowed(search.spec, search.history)
-            ax.plot(np.flatnonzero(is_allowed), values[is_allowed], ".", color=colour, markersize=3, alpha=0.35)
+            allowed = is_allowed(search.spec, search.history)
+            ax.plot(np.flatnonzero(allowed), values[allowed], ".", color=colour, markersize=3, alpha=0.35)
             ax.plot(search.best_so_far(), color=colour, drawstyle="steps-post", label=label(search.arm))
             ax.plot(
                 0, float(search.start[f"aim_{search.spec.aims[0].name}"][0]), "D", color=colour, markeredgecolor="black"
@@ -76,8 +76,8 @@ def draw_front(search: SearchResult) -> Figure:
     """Draw the two aims of every candidate that keeps all limits, and the front."""
     first_column, second_column = (f"aim_{aim.name}" for aim in search.spec.aims)
     kinds = [AIMS[aim.name] for aim in search.spec.aims]
-    is_allowed, table, front, chosen_indices = (
-        allowed(search.spec, search.history),
+    allowed, table, front, chosen_indices = (
+        is_allowed(search.spec, search.history),
         search.history,
         search.front,
         search.chosen,
@@ -87,8 +87,8 @@ def draw_front(search: SearchResult) -> Figure:
         ax = axes[0, 0]
         x, y = table[first_column].values, table[second_column].values
         ax.plot(
-            x[is_allowed],
-            y[is_allowed],
+            x[allowed],
+            y[allowed],
             ".",
             color=COLOURS["neutral"],
             markersize=4,
@@ -135,7 +135,7 @@ def draw_gaits(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) ->
         ax = axes[0, 0]
         for i, run in enumerate(runs):
             walk, hue = record.isel(run=i), _shade(run.label, i)
-            draw_strip(ax, run.robot, walk, times, role=hue, aside=offsets[i])
+            draw_strip(ax, run.robot, walk, times, role=hue, lateral_offset=offsets[i])
             text_y = float(walk.centre_of_mass.sel(xyz="y").sel(time=end, method="nearest")) + offsets[i]
             text_x = float(_extreme_points(walk, times)[:, 0].max())
             ax.text(
@@ -220,7 +220,9 @@ def draw_around(search: SearchResult) -> Figure:
         for i, vary in enumerate(search.spec.vary):
             ax = axes.flat[i]
             scale, unit = scaled(search.spec.run, vary.field)
-            positions = np.array([at_share(vary, float(share)) for share in neighbourhood["at"].values[i]]) * scale
+            positions = (
+                np.array([value_at_fraction(vary, float(share)) for share in neighbourhood["at"].values[i]]) * scale
+            )
             is_allowed = _allowed_steps(search, neighbourhood, i)
             ax.plot(positions, values[i], color=COLOURS["ours"], linewidth=1.2)
             ax.plot(positions[is_allowed], values[i][is_allowed], "o", color=COLOURS["ours"], markersize=5)
@@ -248,7 +250,7 @@ def draw_around(search: SearchResult) -> Figure:
 def _allowed_steps(search: SearchResult, neighbourhood: xr.Dataset, row: int) -> np.ndarray:
     """Tell which of the points beside the best keep all limits."""
     field_record = neighbourhood.isel(moved=row).rename(step="candidate")
-    return allowed(search.spec, field_record)
+    return is_allowed(search.spec, field_record)
 
 
 def scaled(run: Run, field: str) -> tuple[float, str]:

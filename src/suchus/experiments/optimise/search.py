@@ -12,7 +12,7 @@ import xarray as xr
 
 from suchus.core.errors import SuchusError
 from suchus.experiments.optimise.aims import AIMS
-from suchus.experiments.optimise.evaluate import ACTIVE, allowed, losses, over, units
+from suchus.experiments.optimise.evaluate import ACTIVE, is_allowed, losses, relative_excess, units
 from suchus.experiments.optimise.spec import Optimisation
 from suchus.robot.design import value_at, with_values
 from suchus.sim.land import Run
@@ -174,9 +174,9 @@ class SearchResult:
     history: xr.Dataset
     """All candidates in order, the start first, with ``generation`` and ``score``."""
     checks: xr.Dataset | None = None
-    """Aims and limits of the best under other conditions; see ``conduct.checked``."""
+    """Aims and limits of the best under other conditions; see ``conduct.run_checks``."""
     near: xr.Dataset | None = None
-    """Candidates around the best; see ``conduct.around``."""
+    """Candidates around the best; see ``conduct.vary_around_best``."""
 
     @property
     def arm(self) -> str:
@@ -197,7 +197,7 @@ class SearchResult:
                 [round(i * (len(front) - 1) / (_FRONT_SELECTION - 1)) for i in range(_FRONT_SELECTION)] if front else []
             )
             return [front[i] for i in dict.fromkeys(picked)]
-        allowed_indices = np.flatnonzero(allowed(self.spec, self.history))
+        allowed_indices = np.flatnonzero(is_allowed(self.spec, self.history))
         return (
             [int(allowed_indices[self.history.score.values[allowed_indices].argmin()])] if allowed_indices.size else []
         )
@@ -236,13 +236,13 @@ class SearchResult:
         limits = {}
         for limit in self.spec.limits:
             has = float(self.history[f"limit_{limit.name}"][self.chosen[index]])
-            limits[limit.name] = (limit.value, has, bool(over(limit, np.array([has]))[0] > -ACTIVE))
+            limits[limit.name] = (limit.value, has, bool(relative_excess(limit, np.array([has]))[0] > -ACTIVE))
         return limits
 
     def best_so_far(self) -> np.ndarray:
         """Return after each candidate the value of the first aim of the best so far, NaN before there is one."""
-        is_allowed = allowed(self.spec, self.history)
-        score = np.where(is_allowed, self.history.score.values, np.inf)
+        allowed = is_allowed(self.spec, self.history)
+        score = np.where(allowed, self.history.score.values, np.inf)
         best_index = np.array([int(score[: i + 1].argmin()) for i in range(len(score))])
         values = self.history[f"aim_{self.spec.aims[0].name}"].values[best_index]
         return np.where(np.isfinite(score[best_index]), values, np.nan)
@@ -250,10 +250,10 @@ class SearchResult:
     def covered(self) -> np.ndarray:
         """Return after each generation the area that the front covers, in parts of the start's aims."""
         table, parts = self.history, units(self.spec, self.start)
-        loss, is_allowed = losses(self.spec, table, parts), allowed(self.spec, table)
+        loss, allowed = losses(self.spec, table, parts), is_allowed(self.spec, table)
         archive, areas = library("moarchiving").get_mo_archive([], reference_point=reference_of(self.spec), n_obj=2), []
         for number in range(int(table.generation.max()) + 1):
-            for i in np.flatnonzero((table.generation.values == number) & is_allowed):
+            for i in np.flatnonzero((table.generation.values == number) & allowed):
                 archive.add(loss[i].tolist())
             areas.append(float(archive.hypervolume))
         return np.array(areas)
@@ -273,7 +273,7 @@ def titled(spec: Optimisation, run: Run, name: str) -> Run:
 
 def front_of(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> list[int]:
     """Return the allowed candidates that no other betters in both aims, by the first aim; all aims of a sum as one."""
-    allowed_indices = [int(i) for i in np.flatnonzero(allowed(spec, table))]
+    allowed_indices = [int(i) for i in np.flatnonzero(is_allowed(spec, table))]
     if not allowed_indices or len(spec.aims) != 2:
         return []
     points = losses(spec, table, parts)[allowed_indices]

@@ -19,7 +19,7 @@ from suchus.robot.gaits import gait_of
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run
 
-WHOLE = Arm(name="best")
+BEST_ARM = Arm(name="best")
 """The only condition of a search without a comparison."""
 
 
@@ -67,7 +67,7 @@ class Search:
     """Quantities that the search optimises; two or more give a front."""
     limits: tuple[Limit, ...] = ()
     """Limits of other quantities; joint limits, reach and servo speeds always hold."""
-    arms: tuple[Arm, ...] = (WHOLE,)
+    arms: tuple[Arm, ...] = (BEST_ARM,)
     """Searched one after the other with the same budget; what a condition sets does not vary in it."""
     pareto: bool = False
     """Whether two aims are weighed against each other as a front, rather than summed."""
@@ -179,16 +179,16 @@ class Optimisation(Search):
         Raises:
             InvalidDesign: the values cannot be together.
         """
-        values: dict[str, Any] = {v.field: at_share(v, shares[v.field]) for v in self.vary}
+        values: dict[str, Any] = {v.field: value_at_fraction(v, shares[v.field]) for v in self.vary}
         return with_values(self.run, values)
 
     @property
     def start(self) -> list[float]:
         """The shares of their ranges at which the fields start [-]."""
-        return [share_of(v, float(value_at(self.run, v.field))) for v in self.vary]
+        return [fraction_of_range(v, float(value_at(self.run, v.field))) for v in self.vary]
 
 
-def at_share(vary: Vary, share: float) -> float:
+def value_at_fraction(vary: Vary, share: float) -> float:
     """Return the value at a share of a range."""
     assert vary.low is not None
     assert vary.high is not None
@@ -197,7 +197,7 @@ def at_share(vary: Vary, share: float) -> float:
     return float(vary.low + (vary.high - vary.low) * share)
 
 
-def share_of(vary: Vary, value: float) -> float:
+def fraction_of_range(vary: Vary, value: float) -> float:
     """Return at which share of its range a value lies."""
     assert vary.low is not None
     assert vary.high is not None
@@ -250,7 +250,7 @@ def read_optimisation(path: str | Path) -> Optimisation:
         InvalidDesign: a range that cannot be, or that the start is not in.
     """
     path = Path(path)
-    page = blueprint.read(path, SearchFile, {EXAMPLE.name: EXAMPLE})
+    page = blueprint.read_design(path, SearchFile, {EXAMPLE.name: EXAMPLE})
     robot = ROBOTS.resolve(page.robot, path.parent)
     run = Run(
         robot=robot,

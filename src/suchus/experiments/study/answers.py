@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from suchus.experiments.study.claim_measures import asked_rules, held, measures_of
+from suchus.experiments.study.claim_measures import judge_samples, measures_of, swept_rules
 from suchus.sim.metrics.decisive import border, rank_correlation
 
 _BINS, _RESAMPLED, _CONFIDENCE = 8, 400, 0.95
@@ -35,10 +35,10 @@ def answers(record: xr.Dataset, min_displacement: float) -> xr.Dataset:
         IncompatibleRecord: a rule needs a measure that the record lacks.
     """
     measures = measures_of(record, min_displacement)
-    return answered({rule.claim: held(rule, measures) for rule in asked_rules()}, record.value.values)
+    return answer_claims({rule.claim: judge_samples(rule, measures) for rule in swept_rules()}, record.value.values)
 
 
-def answered(results: Mapping[str, tuple[np.ndarray, np.ndarray]], parameters: np.ndarray) -> xr.Dataset:
+def answer_claims(results: Mapping[str, tuple[np.ndarray, np.ndarray]], parameters: np.ndarray) -> xr.Dataset:
     """Return number and truth of each claim in every sample, and the parameters that decide them.
 
     Args:

@@ -68,7 +68,7 @@ def _walk(
             list(runs.values()),
             duration=study.duration,
             timestep=study.timestep,
-            every=study.every,
+            sample_stride=study.every,
             progress=progress,
         )
     except (SuchusError, MemoryError) as error:
@@ -150,13 +150,13 @@ def _column(values: Sequence[Any], possible: Sequence[Any]) -> np.ndarray:
     """Numbers where all possible values are numbers, else how they are called."""
     if all(isinstance(v, (int, float)) for v in possible):
         return np.array(values, dtype=float)
-    return np.array([called(v) for v in values])
+    return np.array([label_of(v) for v in values])
 
 
-def called(value: Any) -> str:
+def label_of(value: Any) -> str:
     """Return what a value is called in a table: its name; for faults, what breaks; ``none`` for nothing."""
     if isinstance(value, tuple):
-        return " + ".join(called(item) for item in value) or "none"
+        return " + ".join(label_of(item) for item in value) or "none"
     name = getattr(value, "name", None)
     if isinstance(name, str):
         return name

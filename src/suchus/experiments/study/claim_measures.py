@@ -7,7 +7,7 @@ import xarray as xr
 
 from suchus.article.verdict import Rule, Word, ladder, word_of
 from suchus.core.errors import IncompatibleRecord
-from suchus.experiments.claims import RULES, varied_of
+from suchus.experiments.claims import RULES, design_sweep_of
 from suchus.robot.design import LEGS
 from suchus.robot.gaits import CONDITIONS
 from suchus.sim.land import FAILED_JOINTS
@@ -62,7 +62,7 @@ _LEAST_RATIO = 0.02  # a displacement with limbs only below this part of that wi
 _STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep when a joint fails
 
 
-def asked_rules() -> tuple[Rule, ...]:
+def swept_rules() -> tuple[Rule, ...]:
     """Return the rules of the claims that the walks of a study of designs answer."""
     swept_claims = claims_varied()
     return tuple(rule for rule in RULES.values() if not rule.unswept and rule.claim not in swept_claims)
@@ -70,7 +70,7 @@ def asked_rules() -> tuple[Rule, ...]:
 
 def claims_varied() -> frozenset[str]:
     """Return the claims that are answered by asking their experiment again, see ``verdict.Varied``."""
-    sweeps = (varied_of(name) for name in {rule.experiment for rule in RULES.values()})
+    sweeps = (design_sweep_of(name) for name in {rule.experiment for rule in RULES.values()})
     return frozenset(claim for sweep in sweeps if sweep is not None for claim in sweep.claims)
 
 
@@ -121,7 +121,7 @@ def _faults(forward: Mapping[str, np.ndarray], baseline: np.ndarray) -> dict[str
     return measures
 
 
-def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def select_measures(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return the measures that a rule needs; a sample runs once, so that its value is also both ends of the interval.
 
     Args:
@@ -143,7 +143,7 @@ def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray
     return rule_measures
 
 
-def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def judge_samples(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Return the number of a claim in every sample, NaN where it is not judged, and whether its statement holds.
 
     A sample whose intervals leave the statement undecided is not judged, nor one whose control group does not do what
@@ -153,7 +153,7 @@ def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np
         rule: the claim's.
         measures: of all samples, see ``measures_of``.
     """
-    rule_measures, rows = once(rule, measures), _rows(rule, measures)
+    rule_measures, rows = select_measures(rule, measures), _rows(rule, measures)
     if rule.rungs:
         sample_voices = [ladder.voices(rule, row) for row in rows]
         number = np.array([ladder.spread(voices)[0] for voices in sample_voices], dtype=float)
@@ -177,7 +177,7 @@ def words(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[Word]:
 
 def _rows(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[dict[str, float]]:
     """Return the measures that a rule needs, for each sample."""
-    rule_measures = once(rule, measures)
+    rule_measures = select_measures(rule, measures)
     return [
         dict(zip(rule_measures, row, strict=True))
         for row in zip(*(column.tolist() for column in rule_measures.values()), strict=True)

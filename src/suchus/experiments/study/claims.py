@@ -12,12 +12,12 @@ import xarray as xr
 from suchus.article.paper import CYCLES
 from suchus.core.checks import Checks
 from suchus.core.errors import UnreadableFile
-from suchus.core.jobs import deciding
-from suchus.core.jobs.store import made_by
+from suchus.core.jobs import source_versions
+from suchus.core.jobs.store import read_description
 from suchus.core.progress import Progress, silent
 from suchus.experiments.study.answers import agreement, answers
 from suchus.experiments.study.arm import Arm
-from suchus.experiments.study.claim_measures import FAULTY, METRICS, RUNS, asked_rules, held, measures_of
+from suchus.experiments.study.claim_measures import FAULTY, METRICS, RUNS, judge_samples, measures_of, swept_rules
 from suchus.experiments.study.conduct import conduct, finished
 from suchus.experiments.study.plan import only_forbids
 from suchus.experiments.study.study import Study, Vary
@@ -151,7 +151,11 @@ class Claims:
             },
         )
         return record.merge(answers(record, self.least)).assign_attrs(
-            timestep=study.timestep, seed=self.seed, cycles=self.cycles, agreed="[]", made_by=json.dumps(deciding())
+            timestep=study.timestep,
+            seed=self.seed,
+            cycles=self.cycles,
+            agreed="[]",
+            made_by=json.dumps(source_versions()),
         )
 
 
@@ -178,8 +182,8 @@ def conduct_claims(
     """
     folder = Path(folder)
     empty_measures = measures_of(xr.Dataset(coords={"sample": []}), claims_study.least)
-    for rule in asked_rules():  # an hour before it would be found out
-        held(rule, empty_measures)
+    for rule in swept_rules():  # an hour before it would be found out
+        judge_samples(rule, empty_measures)
 
     def run(samples: int, timestep: float, place: str) -> xr.Dataset:
         """Return the record of the study with so many samples and this time step [s], stored in ``place``."""
@@ -199,7 +203,7 @@ def conduct_claims(
             agreed_timestep = timestep
             break
     record = run(claims_study.samples, agreed_timestep, "runs")
-    return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
+    return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(read_description(folder / "runs")))
 
 
 def answer_finished(claims_study: Claims, folder: str | Path) -> xr.Dataset:
@@ -219,7 +223,7 @@ def answer_finished(claims_study: Claims, folder: str | Path) -> xr.Dataset:
 
     def read_store(place: str) -> tuple[Study, xr.Dataset]:
         """Return a study and the results of its finished samples, as many as the largest power of two."""
-        makers = made_by(folder / place, key="fields")
+        makers = read_description(folder / place, key="fields")
         samples, timestep = int(makers["samples"]), float(makers["timestep"])
         study = claims_study.study(samples, timestep)
         results = finished(study, folder / place)
@@ -239,7 +243,7 @@ def answer_finished(claims_study: Claims, folder: str | Path) -> xr.Dataset:
         if (folder / _comparison_folder(timestep)).is_dir()
     ]
     record = claims_study.record(*read_store("runs"))
-    return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
+    return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(read_description(folder / "runs")))
 
 
 def _comparison_folder(timestep: float) -> str:

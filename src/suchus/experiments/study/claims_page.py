@@ -12,9 +12,17 @@ import xarray as xr
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict import listed
 from suchus.core import files as records
-from suchus.experiments.study.claims_table import became, claim_row, finite, renewed, shipped, table, turned
+from suchus.experiments.study.claims_table import (
+    border_texts,
+    claim_row,
+    count_statuses,
+    finite,
+    renewed_table,
+    shipped_table,
+    table,
+)
 from suchus.experiments.study.result_table import ResultTable, Section, write_tables
-from suchus.visual.figures.sensitivity import draw_claim, draw_shares, spoken
+from suchus.visual.figures.sensitivity import draw_claim, draw_shares, parameter_label
 
 OUTCOME, TABLE, RECORD, SHARES = "outcome.json", "claims.csv", "claims.nc", "claims.json"
 
@@ -40,12 +48,12 @@ def write_claims(
     rows = [claim_row(claim_record, claim) for claim, claim_record in of_claim.items()]
     with records.new_folder(folder, lasting=True) as draft:
         (draft / TABLE).write_text(table(rows), encoding="utf-8")
-        (draft / SHARES).write_text(shipped(record, rows, sweep_records), encoding="utf-8")
+        (draft / SHARES).write_text(shipped_table(record, rows, sweep_records), encoding="utf-8")
         records.save(record, draft / RECORD)
         for name, claim_record in sweep_records.items():
             records.save(claim_record, draft / f"claims_{name}.nc")
         pictures = {f"claim_{claim}": draw_claim(claim_record, claim) for claim, claim_record in of_claim.items()}
-        pictures["shares"] = draw_shares(rows, turned(rows))
+        pictures["shares"] = draw_shares(rows, border_texts(rows))
         sections = _sections(record, rows)
         write_tables(
             draft, "The article's claims over plausible designs", _lead(record, sweep_records), sections, pictures
@@ -73,7 +81,7 @@ def write_renewed(sweep_records: Mapping[str, xr.Dataset], folder: Path) -> Path
     shipped_text = (resources.files("suchus.article.verdict") / SHARES).read_text(encoding="utf-8")
     with records.new_folder(folder, lasting=True) as draft:
         (draft / TABLE).write_text(table(rows), encoding="utf-8")
-        (draft / SHARES).write_text(renewed(shipped_text, rows, sweep_records), encoding="utf-8")
+        (draft / SHARES).write_text(renewed_table(shipped_text, rows, sweep_records), encoding="utf-8")
         for name, claim_record in sweep_records.items():
             records.save(claim_record, draft / f"claims_{name}.nc")
     return folder
@@ -93,8 +101,8 @@ def outcome(
         "study": "claims",
         "timestep": float(record.attrs["timestep"]),
         "agreement": finite(agreements(record)),
-        "samples": became(record),
-        "varied": {name: became(claim_record) for name, claim_record in sweep_records.items()},
+        "samples": count_statuses(record),
+        "varied": {name: count_statuses(claim_record) for name, claim_record in sweep_records.items()},
         "claims": [finite(row) for row in rows],
         "versions": records.versions(),
     }
@@ -112,7 +120,9 @@ def _claim_label(claim: str) -> str:
 
 def _lead(record: xr.Dataset, sweep_records: Mapping[str, xr.Dataset]) -> str:
     """Return the first sentences of the page: number of designs, what became of them, number of parameters."""
-    parts = ", ".join(f"{number} {name}" for name, number in sorted(became(record).items(), key=lambda item: -item[1]))
+    parts = ", ".join(
+        f"{number} {name}" for name, number in sorted(count_statuses(record).items(), key=lambda item: -item[1])
+    )
     sweep_text = listed(
         [
             f"{name} of {claim_record.sizes['sample']} designs and settings"
@@ -181,7 +191,7 @@ def _row(row: dict[str, Any]) -> tuple[str, ...]:
     """Return one row of the table of claims as text."""
     lower_bound, upper_bound = row["interval"]
     deciders = [
-        f"{spoken(d['parameter'])} {d['decides']:.2f} ({d['low']:.2f} to {d['high']:.2f}), "
+        f"{parameter_label(d['parameter'])} {d['decides']:.2f} ({d['low']:.2f} to {d['high']:.2f}), "
         f"{'rises' if d['correlation'] > 0 else 'falls'}"
         for d in row["deciders"]
     ]
@@ -189,7 +199,7 @@ def _row(row: dict[str, Any]) -> tuple[str, ...]:
     told_border = ""
     if edge is not None:
         border_text = f"{edge['at']:.3g} {edge['unit']}"
-        told_border = f"{spoken(edge['parameter'])} {edge['true']} {border_text} ({edge['separation']:.2f})"
+        told_border = f"{parameter_label(edge['parameter'])} {edge['true']} {border_text} ({edge['separation']:.2f})"
     return (
         _claim_label(row["claim"]),
         str(row["samples"]),

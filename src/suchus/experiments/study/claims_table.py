@@ -14,8 +14,8 @@ from suchus.article.verdict.judging import ROBUST, digest
 from suchus.core.files import code_digest
 from suchus.experiments.claims import RULES
 from suchus.experiments.study.answers import Index, first_order, share_interval
-from suchus.experiments.study.varied import LEAST
-from suchus.visual.figures.sensitivity import spoken
+from suchus.experiments.study.varied import MIN_POINTS
+from suchus.visual.figures.sensitivity import parameter_label
 
 _MAX_DECIDERS = 3  # most parameters that a row names
 _MAX_SHARED_VARIANCE = 0.1  # largest fraction of a parameter's variance that a stronger one may explain [-]
@@ -116,13 +116,13 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
     return box.getvalue()
 
 
-def turned(rows: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+def border_texts(rows: Sequence[Mapping[str, Any]]) -> dict[str, str]:
     """Return by claim where it holds, in a few words, for those that too few designs agree on."""
     texts = {}
     for row in rows:
         edge = row["border"]
         if edge and max(row["true"], 1.0 - row["true"]) < ROBUST:
-            texts[row["claim"]] = f"{spoken(edge['parameter'])} {edge['true']} {edge['at']:.3g} {edge['unit']}"
+            texts[row["claim"]] = f"{parameter_label(edge['parameter'])} {edge['true']} {edge['at']:.3g} {edge['unit']}"
     return texts
 
 
@@ -138,7 +138,7 @@ def shares(rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dat
     }
     share_rows = {}
     for row in rows:
-        if row["samples"] < LEAST:
+        if row["samples"] < MIN_POINTS:
             if row.get("words"):
                 word_row = {
                     "words": row["words"],
@@ -162,12 +162,14 @@ def shares(rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dat
     return share_rows
 
 
-def became(record: xr.Dataset) -> dict[str, int]:
+def count_statuses(record: xr.Dataset) -> dict[str, int]:
     """Return how many samples of a record walked, were impossible, and so on."""
     return dict(sorted(Counter(record.status.values.tolist()).items()))
 
 
-def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]) -> str:
+def shipped_table(
+    record: xr.Dataset, rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]
+) -> str:
     """Return the table of shares that ``suchus.article.verdict`` ships: JSON, with its rows' digest and what made it.
 
     Args:
@@ -179,7 +181,7 @@ def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], sweep_records
     provenance = json.loads(record.attrs["made_by"])
     content = {
         "samples": record.sizes["sample"],
-        "became": became(record),
+        "became": count_statuses(record),
         "varied": _sweep_sources(sweep_records),
         "parameters": record.sizes["parameter"],
         "seed": int(record.attrs["seed"]),
@@ -192,7 +194,7 @@ def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], sweep_records
     return _table(content, claims)
 
 
-def renewed(shipped_text: str, rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]) -> str:
+def renewed_table(shipped_text: str, rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]) -> str:
     """Return a table of shares with the rows of some experiments anew; all other rows that today's rules ask stay.
 
     Args:
@@ -212,7 +214,7 @@ def _sweep_sources(sweep_records: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Return by experiment the number of designs by status, and the hashes of the source code."""
     return {
         name: {
-            "became": became(claim_record),
+            "became": count_statuses(claim_record),
             "samples": claim_record.sizes["sample"],
             "source": {
                 "runs": json.loads(claim_record.attrs["made_by"])["source"],

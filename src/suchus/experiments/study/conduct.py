@@ -9,14 +9,14 @@ import xarray as xr
 from suchus.core import large
 from suchus.core.errors import UnreadableFile
 from suchus.core.jobs import InMemory, Job, Store, ThisProcess, finish, place_for
-from suchus.core.jobs.store import together
+from suchus.core.jobs.store import concatenate_tables
 from suchus.core.progress import Progress, silent
 from suchus.experiments.study.chunk import run_chunk
 from suchus.experiments.study.plan import Plan
 from suchus.experiments.study.study import Study
 from suchus.sim.land.extent import processor_seconds
 
-HERE = ThisProcess(at_once=2)
+LOCAL_PLACE = ThisProcess(at_once=2)
 """How this process runs batches: while the physics steps one, the other is built, measured or packed."""
 
 
@@ -49,7 +49,7 @@ def conduct(
         OutsideLimits: less than one process is asked for, or several beside a cluster.
         InvalidDesign: it is larger than anybody asked for.
     """
-    place, job = place_for("a study", client=client, jobs=jobs, here=HERE), job_of(study)
+    place, job = place_for("a study", client=client, jobs=jobs, local_place=LOCAL_PLACE), job_of(study)
     check_study(study)
     with Store(folder, study).opened() as store:
         finish(job, store, place=place, progress=progress)
@@ -93,8 +93,8 @@ def conducted(study: Study, progress: Progress = silent) -> xr.Dataset:
         As of ``conduct``.
     """
     job, results = job_of(study), InMemory[xr.Dataset]()
-    finish(job, results, place=HERE, progress=progress)
-    return together([results.get(number) for number in job.items])
+    finish(job, results, place=LOCAL_PLACE, progress=progress)
+    return concatenate_tables([results.get(number) for number in job.items])
 
 
 def finished(study: Study, folder: Path) -> xr.Dataset:
@@ -114,7 +114,7 @@ def finished(study: Study, folder: Path) -> xr.Dataset:
         tables.append(store.get(number))
     if not tables:
         raise UnreadableFile(f"{folder} holds no finished batch; start the study, or let it go on.")
-    return together(tables)
+    return concatenate_tables(tables)
 
 
 def _failures(table: xr.Dataset) -> int:

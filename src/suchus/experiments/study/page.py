@@ -81,7 +81,7 @@ def read_study(path: str | Path) -> Study:
         InvalidDesign: a field cannot take one of its values.
     """
     path = Path(path)
-    page = blueprint.read(path, StudyFile, {EXAMPLE.name: EXAMPLE})
+    page = blueprint.read_design(path, StudyFile, {EXAMPLE.name: EXAMPLE})
     robot = ROBOTS.resolve(page.robot, path.parent)
     run = Run(
         robot=robot,
@@ -111,7 +111,7 @@ def _control(table: Mapping[str, Any]) -> Control:
     if not isinstance(kind, str):
         raise InvalidDesign(f"a control needs a kind ({', '.join(CONTROLLERS)}); {show(dict(table))} has none.")
     fields = {key: value for key, value in table.items() if key != "kind"}
-    control: Control = blueprint.described(fields, CONTROLLERS[kind[:60]], f"the controller {kind}")
+    control: Control = blueprint.parse_table(fields, CONTROLLERS[kind[:60]], f"the controller {kind}")
     return control
 
 

@@ -71,7 +71,7 @@ class Plan(Sequence[Point]):
             combination, level = divmod(combination, len(levels_))
             values[vary.field] = levels_[level]
         for vary, share in zip(self._sampled, self._shares[sample], strict=True):
-            values[vary.field] = value_of(vary, float(share), whole=self._takes_whole[vary.field])
+            values[vary.field] = value_of(vary, float(share), is_whole=self._takes_whole[vary.field])
         return Point({v.field: values[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
 
     def _place(self, index: int) -> tuple[int, int, int, int]:
@@ -131,17 +131,17 @@ def levels(vary: Vary, *, is_whole: bool = False) -> tuple[Any, ...]:
     return tuple(dict.fromkeys(round(value) for value in values)) if is_whole else tuple(values)
 
 
-def value_of(vary: Vary, share: float, *, whole: bool = False) -> Any:
+def value_of(vary: Vary, share: float, *, is_whole: bool = False) -> Any:
     """Return the quantile of a field's values.
 
     Args:
         vary: the field.
         share: fraction of the values below the quantile, 0 to 1.
-        whole: whether the field takes whole numbers only; those of an even range are then equally frequent.
+        is_whole: whether the field takes whole numbers only; those of an even range are then equally frequent.
     """
     if vary.values is not None:
         return vary.values[min(int(share * len(vary.values)), len(vary.values) - 1)]
-    if whole:
+    if is_whole:
         return _whole_value(vary, share)
     if vary.mean is not None and vary.spread is not None:
         lower_bound = -np.inf if vary.low is None else (vary.low - vary.mean) / vary.spread

@@ -15,7 +15,7 @@ from suchus.sim.land import Run
 
 Design = Literal["factorial", "sobol", "latin"]
 """How values are put together: every combination, a Sobol sequence, or a Latin hypercube."""
-SHORTEST = START + 0.1
+MIN_DURATION = START + 0.1
 """A run that is shorter leaves nothing to measure [s]."""
 
 
@@ -122,7 +122,7 @@ class Study:
             check.whole("seeds", 1, 100_000)
             check.whole("chunk", 1, 10_000)
             check.whole("every", 1, 10_000)
-            check.number("duration", SHORTEST, 86400.0, "s")
+            check.number("duration", MIN_DURATION, 86400.0, "s")
             check.number("timestep", 1e-5, control_period(self.run.robot), "s")
             check.that(len(self.vary) > 0, "study.vary is empty; name at least one field")
             check.that(len(self.measure) > 0, "study.measure is empty; name at least one measure")

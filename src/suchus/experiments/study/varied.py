@@ -14,18 +14,18 @@ from suchus.article.verdict import Rule, listed
 from suchus.core.checks import Checks
 from suchus.core.errors import IncompatibleRecord, SuchusError
 from suchus.core.jobs import Job, Store, finish, place_for
-from suchus.core.jobs.store import MARK, made_by, together
+from suchus.core.jobs.store import MARK, concatenate_tables, read_description
 from suchus.core.progress import Progress, silent
-from suchus.experiments.claims import RULES, varied_of
-from suchus.experiments.study.answers import answered
-from suchus.experiments.study.claim_measures import held, words
+from suchus.experiments.claims import RULES, design_sweep_of
+from suchus.experiments.study.answers import answer_claims
+from suchus.experiments.study.claim_measures import judge_samples, words
 from suchus.experiments.study.plan import evenly, only_forbids, value_of
 from suchus.experiments.study.study import Vary
 from suchus.robot.design import Robot, unit_at, value_at, with_values
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 
-LEAST = 8
+MIN_POINTS = 8
 """Fewest points for a fraction of designs [-]; with fewer its interval would span half of the range."""
 
 
@@ -35,7 +35,7 @@ class Question(Protocol):
     def name(self) -> str:
         """Return its name in the catalog."""
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Any]:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Mapping[str, Any]:
         """Return the numbers that are wanted at least, each with its ``value``."""
 
 
@@ -72,7 +72,7 @@ class VariedStudy:
         shares = evenly("sobol", self.samples, len(self.vary), self.seed)[sample]
         whole_flags = [isinstance(value_at(self.experiment, vary.field), int) for vary in self.vary]
         rows = zip(self.vary, shares, whole_flags, strict=True)
-        return {vary.field: value_of(vary, float(share), whole=is_whole) for vary, share, is_whole in rows}
+        return {vary.field: value_of(vary, float(share), is_whole=is_whole) for vary, share, is_whole in rows}
 
     def asked(self, sample: int) -> Question:
         """Return the question of a point.
@@ -90,7 +90,7 @@ def varied_study(question: Question, samples: int | None = None) -> VariedStudy 
         question: the experiment, as in the catalog.
         samples: number of points; as many as the experiment asks for if None [-].
     """
-    sweep = varied_of(question.name())
+    sweep = design_sweep_of(question.name())
     if sweep is None:
         return None
     experiment: Any = replace(question, **sweep.settings)  # type: ignore[type-var]
@@ -126,8 +126,8 @@ def conduct_varied(
         jobs: number of processes of this machine.
 
     Returns:
-        Number, truth and word of each claim at every point, see ``answers.answered``, ``value`` over ``sample`` and
-        ``parameter``, and ``status``.
+        Number, truth and word of each claim at every point, see ``answers.answer_claims``, ``value`` over ``sample``
+        and ``parameter``, and ``status``.
 
     Raises:
         Unwritable: the store cannot be written to.
@@ -158,7 +158,9 @@ def varied_finished(study: VariedStudy, folder: Path) -> xr.Dataset | None:
         IncompatibleRecord: they are points of another plan, so that nobody knows any more what varied.
     """
     store = Store(folder / study.name, study)
-    stored_fields = made_by(folder / study.name, key="fields") if (folder / study.name / MARK).is_file() else {}
+    stored_fields = (
+        read_description(folder / study.name, key="fields") if (folder / study.name / MARK).is_file() else {}
+    )
     changed_names = [
         name for name in ("vary", "seed") if stored_fields and stored_fields.get(name) != repr(getattr(study, name))
     ]
@@ -169,12 +171,14 @@ def varied_finished(study: VariedStudy, folder: Path) -> xr.Dataset | None:
         )
     tables = [store.get(sample) for sample in range(study.samples) if store.has(sample)]
     return (
-        _with_provenance(answer_varied(study, together(tables)), folder / study.name) if len(tables) >= LEAST else None
+        _with_provenance(answer_varied(study, concatenate_tables(tables)), folder / study.name)
+        if len(tables) >= MIN_POINTS
+        else None
     )
 
 
 def _with_provenance(record: xr.Dataset, folder: Path) -> xr.Dataset:
-    return record.assign_attrs(made_by=json.dumps(made_by(folder)))
+    return record.assign_attrs(made_by=json.dumps(read_description(folder)))
 
 
 def ask(study: VariedStudy, sample: int, progress: Progress = silent) -> xr.Dataset:
@@ -211,7 +215,7 @@ def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
             "parameter_unit": ("parameter", [unit_at(study.experiment, vary.field) for vary in study.vary]),
         },
     )
-    claim_results = {rule.claim: held(rule, measures) for rule in study.rules}
+    claim_results = {rule.claim: judge_samples(rule, measures) for rule in study.rules}
     claim_words = np.array([words(rule, measures) for rule in study.rules], dtype=object)
     claim_words[:, record.status.values != "asked"] = ""
     record["word"] = (
@@ -219,7 +223,7 @@ def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
         claim_words.astype(str),
         {"units": "1", "long_name": "what it says of the claim"},
     )
-    return record.merge(answered(claim_results, value))
+    return record.merge(answer_claims(claim_results, value))
 
 
 _STATUS: Mapping[str, str] = {"": "asked", "OutsideLimits": "outside limits", "Diverged": "diverged"}

@@ -14,9 +14,9 @@ from suchus.hardware.bus.wiring import (
     Wiring,
     board_table,
     check_names,
+    duplicates,
     fingerprint,
     straight,
-    twice,
 )
 
 __all__ = [
@@ -47,9 +47,9 @@ __all__ = [
     "bit_rate",
     "board_table",
     "check_names",
+    "duplicates",
     "fingerprint",
     "latency_timer",
     "open_port",
     "straight",
-    "twice",
 ]

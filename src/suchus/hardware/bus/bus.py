@@ -44,9 +44,9 @@ class Bus:
         clocked: whether an emulator's clock says when all have answered, so that nothing needs to be waited for.
     """
 
-    def __init__(self, port: Port, framing: Framing, *, wait: float = WAIT, clocked: bool = False) -> None:
+    def __init__(self, port: Port, framing: Framing, *, wait: float = WAIT, has_clock: bool = False) -> None:
         """Take an open port and the protocol that is spoken on it."""
-        self.port, self.framing, self.wait, self.clocked = port, framing, wait, clocked
+        self.port, self.framing, self.wait, self.clocked = port, framing, wait, has_clock
         self.counts = Counts()
         self._decoder = framing.replies()
         self._quiet_from = 0.0

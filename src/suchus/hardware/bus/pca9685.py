@@ -9,14 +9,14 @@ from typing import Any, Protocol
 
 from suchus.core.errors import BusFailure, InvalidDesign
 
-MODE, PRESCALE, FIRST, ALL_OFF = 0x00, 0xFE, 0x06, 0xFD
+MODE, PRESCALE, FIRST_CHANNEL, ALL_CHANNELS_OFF = 0x00, 0xFE, 0x06, 0xFD
 """Addresses: mode, prescaler, the first channel, and the byte that switches all channels off."""
 ADDRESS = 0x40
 """Of the first board; the next ones follow."""
 _SLEEP, _INCREMENT, _FULL_OFF = 0x10, 0x20, 0x10
 _CLOCK, _STEPS = 25e6, 4096  # [Hz] of its oscillator; steps of a period
 _BLOCK = 8  # channels of a write of 32 bytes, the most that SMBus carries
-LEAST, MOST = 24.0, 1526.0
+MIN_RATE, MAX_RATE = 24.0, 1526.0
 """Rates of pulses that its prescaler can give [Hz]."""
 
 
@@ -70,8 +70,10 @@ class Pulses:
 
     def __init__(self, wires: Wires, boards: Sequence[int], rate: float) -> None:
         """Set the rate of pulses on all boards."""
-        if not LEAST <= rate <= MOST:
-            raise InvalidDesign(f"the rate of pulses is {rate:g} Hz; {LEAST:g} to {MOST:g} Hz is what the boards give.")
+        if not MIN_RATE <= rate <= MAX_RATE:
+            raise InvalidDesign(
+                f"the rate of pulses is {rate:g} Hz; {MIN_RATE:g} to {MAX_RATE:g} Hz is what the boards give."
+            )
         self._wires, self.boards, self.rate = wires, tuple(boards), rate
         for board in self.boards:
             self._write(board, MODE, [_SLEEP | _INCREMENT])  # its prescaler is only taken asleep
@@ -102,12 +104,12 @@ class Pulses:
                 data += [0, 0, *round(widths[channel] * 1e-6 * self.rate * _STEPS).to_bytes(2, "little")]
             else:
                 data += [0, 0, 0, _FULL_OFF]
-        self._write(board, FIRST + 4 * first_channel, data)
+        self._write(board, FIRST_CHANNEL + 4 * first_channel, data)
 
     def off(self) -> None:
         """Switch all channels off: servos that get no pulses give no torque."""
         for board in self.boards:
-            self._write(board, ALL_OFF, [_FULL_OFF])
+            self._write(board, ALL_CHANNELS_OFF, [_FULL_OFF])
 
     def close(self) -> None:
         """Let go of the bus."""

@@ -129,7 +129,7 @@ class Wiring:
             check.that(len(self.bus) > 0, "bus is empty; one at least is needed")
             devices: list[ServoPlace | BoardPlace] = [*self.servo, *self.board]
             places = [(device.bus, device.id) for device in devices]
-            for place in sorted(twice(places)):
+            for place in sorted(duplicates(places)):
                 sharing = [_label(device) for device in devices if (device.bus, device.id) == place]
                 check.that(
                     False, f"{' and '.join(sharing)} are all number {place[1]} on bus {place[0]}; one is allowed"
@@ -139,7 +139,7 @@ class Wiring:
                     device.bus < len(self.bus),
                     f"{_label(device)} is on bus {device.bus}; there are {len(self.bus)}, from 0",
                 )
-            for kind in sorted(twice([board.kind for board in self.board])):
+            for kind in sorted(duplicates([board.kind for board in self.board])):
                 check.that(False, f"there are two boards {kind!r}; one is allowed")
             for servo in self.servo:
                 bus_protocol = self.bus[servo.bus].protocol if servo.bus < len(self.bus) else servo.table.protocol
@@ -267,15 +267,15 @@ def check_names(owner: str, names: Sequence[str], robot: Robot) -> None:
     servo_names = layout(robot).servos
     missing = [name for name in servo_names if name not in names]
     unknown = [name for name in names if name not in servo_names]
-    if missing or unknown or twice(names):
-        problems = (("lacks", missing), ("has unknown", unknown), ("has more than once", sorted(twice(names))))
+    if missing or unknown or duplicates(names):
+        problems = (("lacks", missing), ("has unknown", unknown), ("has more than once", sorted(duplicates(names))))
         text = "; it ".join(f"{verb} {', '.join(problem_names)}" for verb, problem_names in problems if problem_names)
         raise InvalidDesign(
             f"{owner} {text}; every servo of robot {robot.name!r} is needed once: {', '.join(servo_names)}."
         )
 
 
-def twice(values: Iterable[T]) -> list[T]:
+def duplicates(values: Iterable[T]) -> list[T]:
     """Return the values that occur more than once, each once."""
     return [value for value, count in Counter(values).items() if count > 1]
 

@@ -180,7 +180,7 @@ class EmulatedBody:
         if split:
             self._take(split[0])
             self._loop.decide()
-            self._loop.advance(before=(early_targets, split[0] - begin))
+            self._loop.advance(late_command=(early_targets, split[0] - begin))
         else:
             self._loop.advance()
         if not self._loop.batch.alive[0]:

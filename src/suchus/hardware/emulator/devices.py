@@ -11,7 +11,7 @@ from suchus.robot.control import Sensed
 OK, RANGE, LIMIT, ACCESS = 0, 4, 6, 7  # errors of Dynamixel 2.0
 AMBIENT = 25.0
 """Temperature of the air, at which servos begin [degrees Celsius]."""
-USUAL = {"dynamixel": "XM430-W350", "feetech": "STS3250", "line": "DS3225"}
+DEFAULT_MODELS = {"dynamixel": "XM430-W350", "feetech": "STS3250", "line": "DS3225"}
 """Servos of an emulated robot for which no hardware is written, by protocol."""
 SWITCHES_OFF = {"input voltage": False, "overheated": True, "encoder": False, "electrical shock": True,
                 "current": True, "overload": True}  # fmt: skip

@@ -40,10 +40,10 @@ class Emulator:
     """
 
     def __init__(
-        self, wiring: Wiring, body: EmulatedBody, trouble: Trouble | None = None, *, clocked: bool = False
+        self, wiring: Wiring, body: EmulatedBody, trouble: Trouble | None = None, *, has_clock: bool = False
     ) -> None:
         """Connect emulated servos and boards to the buses of a wiring."""
-        self.body, self.clocked, self.trouble = body, clocked, trouble or Trouble()
+        self.body, self.clocked, self.trouble = body, has_clock, trouble or Trouble()
         self.wiring = wiring
         self.diverged: Diverged | None = None
         """Why the robot cannot go on; None as long as it can."""
@@ -64,7 +64,7 @@ class Emulator:
             self._boards.append((board_place.kind, board))
             self.lines[board_place.bus].devices[board_place.id] = board
         self._delayed_readings: list[Sensed] = []
-        self._delay_ticks = int(np.ceil(self.trouble.latency / body.period - 1e-9)) if clocked else 0
+        self._delay_ticks = int(np.ceil(self.trouble.latency / body.period - 1e-9)) if has_clock else 0
         self._sagged = 0.0
         self._power()
         self._feel()

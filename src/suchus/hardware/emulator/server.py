@@ -55,25 +55,27 @@ class Server:
         self._due: list[tuple[float, int, int, bytes, bool]] = []
         self._order = count()
 
-    def serve(self, until: Callable[[], bool] = lambda: False, each: Callable[[], None] = lambda: None) -> None:
+    def serve(
+        self, should_stop: Callable[[], bool] = lambda: False, after_period: Callable[[], None] = lambda: None
+    ) -> None:
         """Serve until told to stop, or the robot can move no more.
 
         Args:
-            until: asked now and then whether to stop.
-            each: called after each control period.
+            should_stop: asked now and then whether to stop.
+            after_period: called after each control period.
 
         Raises:
             Diverged: the simulation diverged.
         """
         emulator, period = self._emulator, self._emulator.body.period
         due, last_tick = monotonic() + period, emulator.body.tick
-        while not until():
+        while not should_stop():
             clock_time = monotonic()
             wait = 0.1
             if not emulator.clocked:
                 if clock_time >= due:  # one at a time: who waits for an answer waits for no more than one
                     emulator.step()
-                    each()
+                    after_period()
                     clock_time = monotonic()
                     due = max(due + period, clock_time - _MAX_LAG)
                 wait = min(wait, due - clock_time)
@@ -83,7 +85,7 @@ class Server:
             self._deliver()
             if emulator.clocked and emulator.body.tick != last_tick:
                 last_tick = emulator.body.tick
-                each()
+                after_period()
             if emulator.diverged is not None:
                 raise emulator.diverged
 

@@ -4,15 +4,15 @@ from suchus.robot.blueprint.corrections import read_correction
 from suchus.robot.blueprint.gaits import read_gait
 from suchus.robot.blueprint.mistakes import MistakenFile
 from suchus.robot.blueprint.motors import read_motors
-from suchus.robot.blueprint.read import described, described_robot, read
+from suchus.robot.blueprint.read import parse_robot, parse_table, read_design
 from suchus.robot.blueprint.write import render, write
 
 __all__ = [
     "MistakenFile",
-    "described",
-    "described_robot",
-    "read",
+    "parse_robot",
+    "parse_table",
     "read_correction",
+    "read_design",
     "read_gait",
     "read_motors",
     "render",

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from suchus.core.reading import read_toml
-from suchus.robot.blueprint.read import described
+from suchus.robot.blueprint.read import parse_table
 from suchus.robot.design import SectionCorrection
 
 
@@ -15,4 +15,4 @@ def read_correction(path: str | Path) -> SectionCorrection:
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
     """
     path = Path(path)
-    return described({"name": path.stem, **read_toml(path)}, SectionCorrection, path.name)
+    return parse_table({"name": path.stem, **read_toml(path)}, SectionCorrection, path.name)

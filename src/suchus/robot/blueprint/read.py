@@ -22,14 +22,14 @@ T = TypeVar("T")
 
 
 @overload
-def read(path: str | Path, kind: type[T], shelf: Mapping[str, Any]) -> T: ...
+def read_design(path: str | Path, kind: type[T], shelf: Mapping[str, Any]) -> T: ...
 
 
 @overload
-def read(path: str | Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ...
+def read_design(path: str | Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ...
 
 
-def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
+def read_design(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     """Read a robot or a gait from a TOML file.
 
     With ``base = "caiman"`` at the top the file changes numbers of that entry of the shelf. A design without a ``name``
@@ -77,7 +77,7 @@ def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     return crocodile(value) if isinstance(value, Tables) else value
 
 
-def described_robot(values: Mapping[str, Any]) -> Robot:
+def parse_robot(values: Mapping[str, Any]) -> Robot:
     """Return the robot that the plain values of a result's settings describe.
 
     Args:
@@ -93,7 +93,7 @@ def described_robot(values: Mapping[str, Any]) -> Robot:
     return TypeAdapter(Robot).validate_python(values)
 
 
-def described(data: Mapping[str, Any], kind: type[T], label: str) -> T:
+def parse_table(data: Mapping[str, Any], kind: type[T], label: str) -> T:
     """Return the frozen value that a table of a file describes.
 
     Args:

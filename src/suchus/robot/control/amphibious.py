@@ -10,12 +10,12 @@ from jaxtyping import Bool, Float
 
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
-from suchus.robot.control.controller import Command, Controller, Runs, united
+from suchus.robot.control.controller import Command, Controller, Runs, union_of_needs
 from suchus.robot.control.heading import Heading, HeadingRule
-from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.control.swimming import Swimming
 from suchus.robot.design import GRAVITY, Robot, layout
-from suchus.robot.motion import START, Batch, Bend, Gait, Held, Steer, check_limits
+from suchus.robot.motion import START, Batch, Bend, FixedLimbs, Gait, Steer, check_limits
 
 _SLACK = 1e-9  # [s]
 _GROWS = 0.5  # [cycle]; over which stroke and bends grow when the walk begins
@@ -94,7 +94,7 @@ class Amphibious:
     @property
     def needs(self) -> tuple[str, ...]:
         """Sensors of the ground load, and those of the rules for swim and heading."""
-        return united(
+        return union_of_needs(
             ("foot_pressure", "belly_pressure", "tail_pressure"),
             self.swimming.needs,
             ("orientation", "servo_position") if self.heading else (),
@@ -155,7 +155,7 @@ class Amphibian:
             np.array([getattr(control, name) for control in controls])
             for name in ("touch", "afloat", "aground", "change", "patience", "air_released", "pump")
         )
-        self._decay = np.array([keep(control.memory, period) for control in controls])
+        self._decay = np.array([decay_factor(control.memory, period) for control in controls])
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
         n, limbs = len(robots), len(layout(robots[0]).limbs)
         self.walking: Bool[np.ndarray, " run"] = np.array([control.begins == "walking" for control in controls])
@@ -283,7 +283,7 @@ _WAVE = Gait(
     name="wave",
     period=1.0,
     limb_phases=(0.0,) * 4,
-    limbs=(Held(angles=(-pi / 2, -0.15)),) * 2,
+    limbs=(FixedLimbs(angles=(-pi / 2, -0.15)),) * 2,
     axis=(
         Bend(part="trunk", amplitude=(0.33, 0.39, 1.08), lag=(-0.29, -0.11, 0.08)),
         Bend(part="tail", amplitude=(0.75,), lag=(0.39,)),

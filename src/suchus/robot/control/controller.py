@@ -38,7 +38,7 @@ SENSED = tuple(field.name for field in fields(Sensed) if field.name != "time")
 """What a robot can sense: the fields of ``Sensed``, the time aside."""
 
 
-def united(*rule_needs: tuple[str, ...]) -> tuple[str, ...]:
+def union_of_needs(*rule_needs: tuple[str, ...]) -> tuple[str, ...]:
     """Return the sensors that any of several rules needs, in the order of ``Sensed``."""
     return tuple(name for name in SENSED if any(name in names for names in rule_needs))
 

@@ -7,12 +7,12 @@ from jaxtyping import Float
 
 from suchus.core.checks import Checks, require
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
-from suchus.robot.control.controller import Command, Runs, united
+from suchus.robot.control.controller import Command, Runs, union_of_needs
 from suchus.robot.control.heading import Heading, HeadingRule, Steering
 from suchus.robot.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
 from suchus.robot.control.open_loop import OpenLoop
 from suchus.robot.control.sensed import Sensed
-from suchus.robot.control.shared import silence
+from suchus.robot.control.shared import initial_shared
 from suchus.robot.control.spine import SpineController, SpineRule
 from suchus.robot.control.tail import TailController, TailRule
 from suchus.robot.design import Robot, layout
@@ -74,7 +74,7 @@ class Coordinated:
     @property
     def needs(self) -> tuple[str, ...]:
         """What the rules that are on feel."""
-        return united(
+        return union_of_needs(
             self.limbs.needs,
             ("servo_position",) if self.spine else (),
             ("servo_torque",) if self.tail else (),
@@ -139,7 +139,7 @@ class Coordinator:
         self._tail = TailController([control.tail for control in controls], robots, gaits, period)
         steers = any(control.heading is not None for control in controls)
         self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steers else None
-        self._shared = silence(len(robots), limbs)
+        self._shared = initial_shared(len(robots), limbs)
         self._steering = Steering.none(len(robots), limbs)
 
     def take_over(self, predecessor: "Coordinator") -> None:

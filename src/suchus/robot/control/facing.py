@@ -11,7 +11,7 @@ from suchus.robot.control.sensed import Sensed, finite
 from suchus.robot.design import Robot, layout
 
 
-class Facing:
+class HeadingEstimator:
     """Direction of the pelvis by the IMU plus half of the trunk's sensed bend, averaged over the last cycle.
 
     Args:
@@ -42,7 +42,7 @@ class Facing:
         window = np.minimum(self._cycle, self._count)
         return np.asarray((self._summed[slot] - self._summed[(self._count - window) % size, self._runs]) / window)
 
-    def take_over(self, predecessor: "Facing") -> None:
+    def take_over(self, predecessor: "HeadingEstimator") -> None:
         """Continue from another estimator of the same runs; the mean over the last cycle starts again."""
         self._walks, self._turned = predecessor._walks, predecessor._turned
         self._previous_facing = predecessor._previous_facing

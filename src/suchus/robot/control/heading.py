@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from suchus.core.checks import Checks
-from suchus.robot.control.facing import Facing
+from suchus.robot.control.facing import HeadingEstimator
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.design import Robot, layout
-from suchus.robot.motion import Gait, longest_strokes
+from suchus.robot.motion import Gait, max_stroke_factor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,7 +89,7 @@ class Heading:
         self._runs = np.arange(len(gaits))
         self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
         self._max_steering = np.array([_steering_limit(*setup) for setup in zip(settings, robots, gaits, strict=True)])
-        self._facing = Facing(robots, [int(cycle) for cycle in self._cycle])
+        self._facing = HeadingEstimator(robots, [int(cycle) for cycle in self._cycle])
         self._limb_sides = np.array([limb.side for limb in layout(robots[0]).limbs])
         self._offset = np.zeros(len(gaits))
 
@@ -125,4 +125,4 @@ def _steering_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
         return 0.0
     if rule.gain == rule.integral_gain == 0.0:  # nothing steers; computing the limbs' reach would be slow
         return rule.most
-    return min(rule.most, max(longest_strokes(robot, gait) - 1.0, 0.0))
+    return min(rule.most, max(max_stroke_factor(robot, gait) - 1.0, 0.0))

@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.checks import Checks
-from suchus.robot.control.facing import Facing
-from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.control.facing import HeadingEstimator
+from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.design import Robot
 from suchus.robot.design.pieces import chambers
 from suchus.robot.kinematics.trim import spare_volume
@@ -84,7 +84,7 @@ def neutral_air_fraction(robot: Robot) -> float:
     return 1.0 - spare_volume(robot) / sum(chambers(robot))
 
 
-class Headings:
+class HeadingHolds:
     """The heading holds of a batch."""
 
     def __init__(
@@ -104,7 +104,7 @@ class Headings:
             np.array([getattr(rule, name) for rule in active_rules])
             for name in ("direction", "gain", "integral_gain", "turn", "trunk_turn")
         )
-        self._facing, self._period = Facing(robots, cycle), period
+        self._facing, self._period = HeadingEstimator(robots, cycle), period
         self._offset = np.zeros(len(active_rules))
 
     def bend(self, sensed: Sensed) -> tuple[Float[np.ndarray, " run"], Float[np.ndarray, " run"]]:
@@ -115,7 +115,7 @@ class Headings:
         return self._turn * bend_fraction, self._trunk * bend_fraction
 
 
-class Depths:
+class DepthHolds:
     """The depth holds of a batch."""
 
     def __init__(self, rules: Sequence[DepthHold | None], robots: Sequence[Robot], period: float) -> None:
@@ -135,7 +135,7 @@ class Depths:
         self._neutral = np.array(
             [1.0 if rule is None else neutral_air_fraction(robot) for rule, robot in zip(rules, robots, strict=True)]
         )
-        self._period, self._decay = period, keep(0.2, period)
+        self._period, self._decay = period, decay_factor(0.2, period)
         self._previous_depth: np.ndarray | None = None
         self._sinking, self._offset = np.zeros(len(active_rules)), np.zeros(len(active_rules))
         self._air_fraction = np.ones(len(active_rules))

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from suchus.core.checks import Checks
 from suchus.core.errors import OutsideLimits
-from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.control.shared import Shared
 from suchus.robot.design import GRAVITY, Layout, Robot, layout
 from suchus.robot.motion import Gait
@@ -109,7 +109,7 @@ class Loads:
         self._trunk, self._shift, self._clip = (
             np.array([getattr(law, name) for law in laws])[:, None] for name in ("trunk", "shift", "clip")
         )
-        self._keep = np.array([keep(law.delay, period) for law in laws])[:, None]
+        self._keep = np.array([decay_factor(law.delay, period) for law in laws])[:, None]
         self._middle = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
         self._share = np.array([robot.mass * GRAVITY / max(len(place.limbs), 1) for robot in robots])[:, None]
         self._torque = np.array([_trunk_torque(robot) for robot in robots])[:, None]

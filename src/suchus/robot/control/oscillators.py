@@ -105,7 +105,7 @@ class Couplings(NamedTuple):
     """Phase lead of the sender at which the coupling vanishes [rad]."""
 
 
-class AxisPart(NamedTuple):
+class LimbCoupling(NamedTuple):
     """A segment of the axis as the oscillators see it."""
 
     girdle: int
@@ -115,7 +115,7 @@ class AxisPart(NamedTuple):
 
 
 def couple(
-    numbers: Oscillators, axis: Sequence[AxisPart], limbs: Sequence[str], phases: Sequence[float], lag: float
+    numbers: Oscillators, axis: Sequence[LimbCoupling], limbs: Sequence[str], phases: Sequence[float], lag: float
 ) -> Couplings:
     """Return the couplings of a body.
 
@@ -161,7 +161,7 @@ def couple(
     return Couplings((*names, *limbs), receiver, sender, weights.astype(float), biases.astype(float))
 
 
-def cut(couplings: Couplings, lesions: Sequence[tuple[str, str]]) -> Couplings:
+def cut_couplings(couplings: Couplings, lesions: Sequence[tuple[str, str]]) -> Couplings:
     """Return the couplings with the weights of some set to zero, in both directions.
 
     Args:

@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.core.checks import Checks, Course, require
+from suchus.core.checks import Checks, Schedule, require
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.core.progress import Progress, silent
-from suchus.robot.control.controller import Command, Runs, united
+from suchus.robot.control.controller import Command, Runs, union_of_needs
 from suchus.robot.control.limbs import LAWS, LimbLaw, Loads
-from suchus.robot.control.oscillators import Oscillators, Rhythm, couple, cut
-from suchus.robot.control.pattern_load import FeltDrive, LoadRule
+from suchus.robot.control.oscillators import Oscillators, Rhythm, couple, cut_couplings
+from suchus.robot.control.pattern_load import LoadDrive, LoadRule
 from suchus.robot.control.pattern_posture import PatternPosture, initial_phases, waves
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.control.spine import SpineController, SpineRule
@@ -24,12 +24,12 @@ from suchus.robot.design.scale import control_period
 from suchus.robot.motion import START, Gait, check_limits
 
 
-class Courses:
+class TimeCourses:
     """What changes over time, for a batch; most of it is constant."""
 
-    def __init__(self, values: Sequence[Course]) -> None:
+    def __init__(self, values: Sequence[Schedule]) -> None:
         self._steady = np.array([0.0 if isinstance(value, tuple) else value for value in values], dtype=float)
-        tables = members([value if isinstance(value, tuple) else None for value in values])
+        tables = group_indices([value if isinstance(value, tuple) else None for value in values])
         self._tables = [(np.array(table).T, runs) for table, runs in tables if table is not None]
 
     def at(self, time: float) -> Float[np.ndarray, " run"]:
@@ -40,7 +40,7 @@ class Courses:
         return current
 
 
-def members(keys: Sequence[Any]) -> list[tuple[Any, np.ndarray]]:
+def group_indices(keys: Sequence[Any]) -> list[tuple[Any, np.ndarray]]:
     """Return each distinct key with the indices of its occurrences."""
     indices: dict[Any, list[int]] = {}
     for i, key in enumerate(keys):
@@ -136,11 +136,11 @@ class PatternGenerator:
     After Ijspeert, Crespi, Ryczko and Cabelguen 2007, Science 315, 1416; see ``Oscillators`` for the numbers.
     """
 
-    drive: Course = 2.0
+    drive: Schedule = 2.0
     """Drive of all oscillators, 0 to 10 [-]."""
-    asymmetry: Course = 0.0
+    asymmetry: Schedule = 0.0
     """Drive of the right side minus that of the left one, -4 to 4 [-]; with the published numbers it hardly turns."""
-    steering: Course = 0.0
+    steering: Schedule = 0.0
     """Turning command, -1 to 1, to the left where positive [-]."""
     steering_gain: float = radians(8)
     """Steady bend of each joint ahead of the hindmost limbs at ``steering`` 1 [rad]; of all joints without limbs."""
@@ -149,7 +149,8 @@ class PatternGenerator:
     gradient: tuple[tuple[float, float], ...] = ((0.0, 1.0), (1.0, 1.0))
     """Place along the body, 0 at the snout and 1 at the tip of the tail, and factor on the bends there [-]."""
     lesions: tuple[tuple[str, str], ...] = ()
-    """Couplings cut, in both directions: ``("axis_3", "axis_4")`` cuts the axis through; see ``oscillators.cut``."""
+    """Couplings cut, in both directions: ``("axis_3", "axis_4")`` cuts the axis through; see
+    ``oscillators.cut_couplings``."""
     initial: str | tuple[float, ...] = "gait"
     """Phases in which the oscillators begin.
 
@@ -176,7 +177,7 @@ class PatternGenerator:
             check.course("drive", 0.0, 10.0, "", start=0.0)
             check.course("asymmetry", -4.0, 4.0, "", start=0.0)
             check.course("steering", -1.0, 1.0, "", start=0.0)
-            check.course("gradient", 0.0, 10.0, "", over="place", start=0.0)
+            check.course("gradient", 0.0, 10.0, "", abscissa="place", start=0.0)
             check.number("steering_gain", 0.0, 1.0, "rad")
             if self.lag is not None:
                 check.number("lag", -0.5, 0.5, "cycle")
@@ -201,7 +202,7 @@ class PatternGenerator:
     @property
     def needs(self) -> tuple[str, ...]:
         """What the rules that are on feel."""
-        return united(
+        return union_of_needs(
             self.limbs.needs,
             ("servo_position", "servo_torque") if self.spine or self.tail else (),
             ("foot_pressure", "belly_pressure", "tail_pressure") if self.load else (),
@@ -240,9 +241,9 @@ class Generator:
         self._limbs = slice(2 * len(self._posture[0].segments), None)
         n = self._limbs.start // 2
         self._sides = np.array([-0.5] * n + [0.5] * n + [-0.5, 0.5] * (len(limbs) // 2))
-        self._numbers = members([control.oscillators for control in controls])
+        self._numbers = group_indices([control.oscillators for control in controls])
         self._drive, self._asymmetry, self._steering = (
-            Courses([getattr(control, name) for control in controls]) for name in ("drive", "asymmetry", "steering")
+            TimeCourses([getattr(control, name) for control in controls]) for name in ("drive", "asymmetry", "steering")
         )
         self._shift = np.array([posture.shift for posture in self._posture])[:, None]
         self._gradient = np.array([_graded(*pair) for pair in zip(controls, self._posture, strict=True)])
@@ -257,13 +258,13 @@ class Generator:
         self.couplings = []
         """Of each run; see ``oscillators.Couplings``."""
         phases = []
-        self._sensed_drive = FeltDrive([control.load for control in controls], robots, period)
+        self._sensed_drive = LoadDrive([control.load for control in controls], robots, period)
         _, amplitude = self._natural_rhythm(START)
         for i, (control, robot, gait, seed) in enumerate(zip(controls, robots, gaits, seeds, strict=True)):
             parts = [segment.part for segment in self._posture[i].segments]
             lag = 1.0 / n if control.lag is None else control.lag
             couplings = couple(control.oscillators, parts, limbs, gait.limb_phases, lag)
-            self.couplings.append(cut(couplings, control.lesions))
+            self.couplings.append(cut_couplings(couplings, control.lesions))
             has_active_limbs = bool(amplitude[i, self._limbs].any())
             phases.append(
                 _initial(control, robot, gait, seed, self._posture[i], lag, has_active_limbs=has_active_limbs)
@@ -368,7 +369,9 @@ def _grouped(
     for robot, gait in set(zip(robots, gaits, strict=True)):
         check_limits(robot, gait)
     keys = list(zip(robots, gaits, (control.silent == "standing" for control in controls), strict=True))
-    return [(PatternPosture(robot, gait, standing=standing), runs) for (robot, gait, standing), runs in members(keys)]
+    return [
+        (PatternPosture(robot, gait, standing=standing), runs) for (robot, gait, standing), runs in group_indices(keys)
+    ]
 
 
 def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
@@ -435,7 +438,7 @@ def _initial(
             )
         return 2 * np.pi * np.array(control.initial, dtype=float)
     limbs = [phase - posture.shift for phase in gait.limb_phases]
-    return initial_phases(posture.segments, limbs, lag, driven=has_active_limbs)
+    return initial_phases(posture.segments, limbs, lag, has_active_limbs=has_active_limbs)
 
 
 class OscillatorStates(NamedTuple):
@@ -460,7 +463,7 @@ def oscillate(
     *,
     duration: float,
     seeds: Sequence[int] | None = None,
-    every: int = 1,
+    sample_interval: int = 1,
     progress: Progress = silent,
 ) -> OscillatorStates:
     """Let pattern generators turn without a body, from the time at which a walk begins.
@@ -471,7 +474,7 @@ def oscillate(
         gait: which they drive.
         duration: of the oscillation [s].
         seeds: one for each run; all 0 if None.
-        every: keep one sample of so many control periods.
+        sample_interval: keep one sample of so many control periods.
         progress: told the share that is done.
     """
     require("oscillate", "duration", duration, 0.0, 86400.0, "s")
@@ -481,7 +484,7 @@ def oscillate(
     samples = []
     for tick in range(first_tick, first_tick + ticks + 1):
         generator.advance(tick)
-        if (tick - first_tick) % every == 0:
+        if (tick - first_tick) % sample_interval == 0:
             samples.append((tick * period, generator.phase, generator.amplitude, generator.wave))
             progress("oscillating", (tick - first_tick) / max(ticks, 1))
     time, phase, amplitude, wave = zip(*samples, strict=True)

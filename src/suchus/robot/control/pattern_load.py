@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.checks import Checks
-from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.design import GRAVITY, Robot
 
 
@@ -36,7 +36,7 @@ class LoadRule:
             check.number("memory", 0.0, 60.0, "s")
 
 
-class FeltDrive:
+class LoadDrive:
     """The filtered ground load of each run of a batch, and the drive that it adds."""
 
     def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[Robot], period: float) -> None:
@@ -53,7 +53,7 @@ class FeltDrive:
         self._afloat_drive, self._touch = (
             np.array([getattr(rule, name) for rule in active_rules]) for name in ("afloat", "touch")
         )
-        self._decay = np.array([keep(rule.memory, period) for rule in active_rules])
+        self._decay = np.array([decay_factor(rule.memory, period) for rule in active_rules])
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
         self.load: Float[np.ndarray, " run"] = np.ones(len(active_rules))
         """Share of the weight that the ground carries, through the low pass; as on land before anything is felt [-]."""

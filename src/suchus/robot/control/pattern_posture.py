@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.errors import UnsuitedRobot
-from suchus.robot.control.oscillators import AxisPart
+from suchus.robot.control.oscillators import LimbCoupling
 from suchus.robot.design import Crank, Layout, Robot, hips_behind_snout, layout, servo_ranges
 from suchus.robot.kinematics import tail as tail_kinematics
-from suchus.robot.motion import Gait, Held, Sweep, limb_movement, middle_stance, movement
+from suchus.robot.motion import FixedLimbs, Gait, Sweep, limb_movement, middle_stance, movement
 
 _FOLDED = radians(-85)  # yaw of a folded limb, backward along the body, as a swimming salamander holds them
 
@@ -30,7 +30,7 @@ class AxisSegment:
     """Amplitude of its bend in the gait [rad]."""
     offset: float
     """Steady bend of it in the gait, left positive [rad]."""
-    part: AxisPart
+    part: LimbCoupling
     """The limbs that drive it, and its phase lag behind them."""
     steers: bool
     """Whether an offset on it turns the robot: it lies ahead of the hindmost limbs, or there are none."""
@@ -67,7 +67,7 @@ def axis_segments(robot: Robot, gait: Gait) -> tuple[AxisSegment, ...]:
                 left=sign,
                 amplitude=float(amplitude[k]),
                 offset=float(steady[k]),
-                part=AxisPart(girdle, _lag(gait, complex(yaw.swing[0, k]), girdle)),
+                part=LimbCoupling(girdle, _lag(gait, complex(yaw.swing[0, k]), girdle)),
                 steers=not hips or position < hips[-1],
             )
         )
@@ -155,7 +155,7 @@ def _folded(place: Layout, gait: Gait, center: np.ndarray) -> np.ndarray:
     """
     folded, ranges = center.copy(), servo_ranges(place.robot)
     for limb in place.limbs:
-        if isinstance(gait.limbs[limb.number], Held):
+        if isinstance(gait.limbs[limb.number], FixedLimbs):
             continue
         driven_hinges = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
         yaws = [i for i, hinge in enumerate(driven_hinges) if hinge.turn == "yaw"]
@@ -185,7 +185,7 @@ def waves(
 
 
 def initial_phases(
-    segments: Sequence[AxisSegment], limbs: Sequence[float], lag: float, *, driven: bool
+    segments: Sequence[AxisSegment], limbs: Sequence[float], lag: float, *, has_active_limbs: bool
 ) -> Float[np.ndarray, " oscillator"]:
     """Return first phases near equilibrium: the axis in phase with its limbs, or a wave along the axis [rad].
 
@@ -193,9 +193,9 @@ def initial_phases(
         segments: of the axis.
         limbs: phases of the limbs' oscillators [cycle].
         lag: of each segment behind the one ahead of it [cycle].
-        driven: whether the limbs are active.
+        has_active_limbs: whether the limbs are active.
     """
-    if driven and limbs:
+    if has_active_limbs and limbs:
         sides = [
             [limbs[2 * segment.part.girdle + side] - segment.part.phase_lag for segment in segments] for side in (0, 1)
         ]

@@ -40,7 +40,7 @@ def finite(values: Float[np.ndarray, "*any"]) -> Float[np.ndarray, "*any"]:
     return np.where(np.isfinite(values), values, 0.0)
 
 
-def keep(delay: float, period: float) -> float:
+def decay_factor(delay: float, period: float) -> float:
     """Return the decay factor of a low-pass filter over one control period, exp(-period / delay) [-].
 
     Args:

@@ -62,7 +62,7 @@ class Shared:
         return replace(self, **values)
 
 
-def silence(runs: int, limbs: int) -> Shared:
+def initial_shared(runs: int, limbs: int) -> Shared:
     """Return the shared variables of a batch before the first control period: zeros.
 
     Args:

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.checks import Checks
-from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.control.shared import Shared
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion import Batch
@@ -51,7 +51,7 @@ class SpineController:
         """
         self._is_active = np.array([rule is not None for rule in rules])
         self._share = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
-        self._keep = np.array([0.0 if rule is None else keep(rule.delay, period) for rule in rules])
+        self._keep = np.array([0.0 if rule is None else decay_factor(rule.delay, period) for rule in rules])
         self._yaw = list(layout(robots[0]).trunk_yaw)
         ranges = np.array([servo_ranges(robot)[self._yaw] for robot in robots])
         self._lower_bound, self._upper_bound = ranges[..., 0], ranges[..., 1]

@@ -144,13 +144,13 @@ class Standing:
         unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
         time = np.arange(runs.ticks) * period
         courses = [control._course(robot, gait, time) for control, robot, gait in unique]
-        course = Course(*(np.array(quantity) for quantity in zip(*courses, strict=True)))
+        course = StandingTrajectory(*(np.array(quantity) for quantity in zip(*courses, strict=True)))
         legs = [upright(skeleton(robot)).leg for robot in robots]
         balances = [control.balance for control in runs.controls]
         rows = np.array([unique[key] for key in keys])
         return Stander(balances, course, rows, legs, layout(robots[0]), period)
 
-    def _course(self, robot: Robot, gait: Gait, time: np.ndarray) -> "Course":
+    def _course(self, robot: Robot, gait: Gait, time: np.ndarray) -> "StandingTrajectory":
         """Return the intended motion over time: crawl, rise, stand, lie down, crawl on.
 
         Args:
@@ -166,7 +166,7 @@ class Standing:
         fraction = (1.0 - np.cos(np.pi * blend_progress)) / 2.0
         phase, crawling = intended(robot, gait, np.where(time < end, np.minimum(time, self.at), time - (end - self.at)))
         pitch = fraction * planned.pitch
-        return Course(
+        return StandingTrajectory(
             targets=crawling + fraction[:, None] * (planned.targets - crawling),
             phase=phase,
             pitch=pitch,
@@ -175,7 +175,7 @@ class Standing:
         )
 
 
-class Course(NamedTuple):
+class StandingTrajectory(NamedTuple):
     """Intended motion over time, one row for each distinct robot and gait."""
 
     targets: Float[np.ndarray, "*row tick servo"]
@@ -196,7 +196,7 @@ class Stander:
     def __init__(
         self,
         balances: Sequence[Balance | None],
-        course: Course,
+        course: StandingTrajectory,
         row: np.ndarray,
         legs: Sequence[LegMeasures],
         place: Layout,
@@ -234,7 +234,7 @@ class Stander:
             tick: number of the control period.
             sensed: readings; None without feedback.
         """
-        planned = Course(*(quantity[self._row, tick] for quantity in self._course))
+        planned = StandingTrajectory(*(quantity[self._row, tick] for quantity in self._course))
         if sensed is None:
             return Command(planned.targets, planned.phase)
         upright = self._answers & (planned.pitch > self._gains["upright"])
@@ -251,7 +251,9 @@ class Stander:
         targets[upright, self._first_pitch] -= bend[upright]
         return Command(targets, planned.phase)
 
-    def _answer(self, planned: Course, sensed: Sensed, upright: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _answer(
+        self, planned: StandingTrajectory, sensed: Sensed, upright: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Return how far the hips go back [m] and the trunk bends back [rad].
 
         Args:

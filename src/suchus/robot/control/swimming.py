@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.checks import Checks
-from suchus.robot.control.controller import Command, Runs, united
-from suchus.robot.control.holding import DepthHold, Depths, HeadingHold, Headings
+from suchus.robot.control.controller import Command, Runs, union_of_needs
+from suchus.robot.control.holding import DepthHold, DepthHolds, HeadingHold, HeadingHolds
 from suchus.robot.control.sensed import Sensed
-from suchus.robot.control.trim import Pitches, PitchHold
+from suchus.robot.control.trim import PitchHold, PitchHolds
 from suchus.robot.design import Robot
 from suchus.robot.motion import Batch, Bend, Gait, Steer, check_limits, check_speeds
 
@@ -49,7 +49,7 @@ class Swimming:
     @property
     def needs(self) -> tuple[str, ...]:
         """Sensors of the rules that are on."""
-        return united(
+        return union_of_needs(
             ("orientation", "servo_position") if self.heading else (),
             ("depth",) if self.depth else (),
             ("orientation", "angular_velocity", "depth") if self.pitch else (),
@@ -95,10 +95,10 @@ class SwimmingController:
         self._ramp = np.array([control.ramp for control in controls])
         self._feels = any(control.feels for control in controls)
         cycle = [max(1, round(gait.period / period)) for gait in gaits]
-        self._headings = Headings([control.heading for control in controls], robots, cycle, period)
-        self._depths = Depths([control.depth for control in controls], robots, period)
+        self._headings = HeadingHolds([control.heading for control in controls], robots, cycle, period)
+        self._depths = DepthHolds([control.depth for control in controls], robots, period)
         target_depths = [np.nan if control.depth is None else control.depth.depth for control in controls]
-        self._pitches = Pitches([control.pitch for control in controls], target_depths, robots, period)
+        self._pitches = PitchHolds([control.pitch for control in controls], target_depths, robots, period)
         self._zeros = np.zeros(len(controls))
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
@@ -129,11 +129,11 @@ class SwimmingController:
         """
         clock = time / self._gaits.periods
         phase = clock[:, None] + self._gaits.phases
-        steer = Steer(size=grown(time, self._ramp), bend=trunk, tail=tail)
+        steer = Steer(size=ramp_fraction(time, self._ramp), bend=trunk, tail=tail)
         return self._gaits.targets(phase, self._gaits.axis_phase(phase, clock), steer), phase
 
 
-def grown(time: float, ramp: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
+def ramp_fraction(time: float, ramp: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
     """Return the fraction of a motion at a time [s]: 0 to 1 over a ramp, smooth at both ends [-]."""
     fraction = np.where(ramp > 0.0, np.clip(time / np.where(ramp > 0.0, ramp, 1.0), 0.0, 1.0), 1.0)
     return np.asarray(fraction**2 * (3.0 - 2.0 * fraction))

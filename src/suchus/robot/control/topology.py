@@ -9,7 +9,7 @@ from suchus.robot.control.coordinated import Coordinated
 from suchus.robot.control.heading import Heading, HeadingRule
 from suchus.robot.control.limbs import Limbs
 from suchus.robot.control.sensed import Sensed
-from suchus.robot.control.shared import OWNERS, Shared, silence
+from suchus.robot.control.shared import OWNERS, Shared, initial_shared
 from suchus.robot.control.spine import SpineController
 from suchus.robot.control.tail import TailController
 from suchus.robot.design import Layout, Robot, layout
@@ -81,7 +81,7 @@ def _observe_step(name: str, step: Callable[[Any, Any], Shared | None], place: L
         step: takes the shared variables and the readings.
         place: layout of the robot.
     """
-    shared, shared_names, sensed_names = silence(1, len(place.limbs)), set[str](), set[str]()
+    shared, shared_names, sensed_names = initial_shared(1, len(place.limbs)), set[str](), set[str]()
     result = step(_watching(shared, shared_names), _watching(_quiet(place), sensed_names))
     written_names = [] if result is None else [v for v in OWNERS if getattr(result, v) is not getattr(shared, v)]
     return ControlPart(

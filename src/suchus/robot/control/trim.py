@@ -10,7 +10,7 @@ from jaxtyping import Float
 from suchus.core import rotation
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
-from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.design import Robot
 from suchus.robot.design.pieces import chambers
 
@@ -55,7 +55,7 @@ class PitchHold:
             check.number("pump", 1e-3, 100.0, "1/s")
 
 
-class Pitches:
+class PitchHolds:
     """The pitch holds of a batch.
 
     Args:
@@ -87,7 +87,7 @@ class Pitches:
         air[air.sum(axis=1) == 0.0] = 1.0
         self._share = air / air.sum(axis=1, keepdims=True)
         self._asked_depth, self._period = np.array(depths), period
-        self._decay = np.array([keep(value, period) for value in self._rule["memory"]])
+        self._decay = np.array([decay_factor(value, period) for value in self._rule["memory"]])
         self._filtered: np.ndarray | None = None
         self._offset, self._air_shift = np.zeros(len(rules)), np.zeros(len(rules))
 

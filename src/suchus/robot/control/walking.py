@@ -8,7 +8,7 @@ from jaxtyping import Float
 from suchus.core.checks import Checks, require
 from suchus.core.errors import OutsideLimits
 from suchus.robot.control.attitude import Attitude, AttitudeRule
-from suchus.robot.control.controller import Command, Runs, united
+from suchus.robot.control.controller import Command, Runs, union_of_needs
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.control.switching import Switcher, SwitchRule
 from suchus.robot.design import Robot, layout, servo_ranges
@@ -68,7 +68,7 @@ class Walking:
     @property
     def needs(self) -> tuple[str, ...]:
         """What the rules that are on feel."""
-        return united(
+        return union_of_needs(
             ("orientation", "angular_velocity") if self.attitude else (),
             ("foot_pressure", "belly_pressure", "tail_pressure", "orientation") if self.switching else (),
         )

@@ -2,7 +2,7 @@
 
 from suchus.robot.design.article import crocodile, tables_of
 from suchus.robot.design.body import Robot
-from suchus.robot.design.chosen import Chosen, unit_at, value_at, with_values
+from suchus.robot.design.chosen import Assumption, unit_at, value_at, with_values
 from suchus.robot.design.correction import LinkFactors, SectionCorrection
 from suchus.robot.design.ground import Contact
 from suchus.robot.design.hinge import Cable, Crank, Hinge, LinearActuator, Servo, Spring, Turn
@@ -49,9 +49,9 @@ __all__ = [
     "STANDING",
     "WATER_DENSITY",
     "WATER_VISCOSITY",
+    "Assumption",
     "Cable",
     "Chamber",
-    "Chosen",
     "Contact",
     "Crank",
     "Foam",

@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 PASSIVE_RANGE = 1.2
 """Stops of the passive joints of a tail to either side [rad]."""
-SLIM = 0.8
+TIBIA_RADIUS_RATIO = 0.8
 """Radius of a tibia over that of its femur [-]."""
 _PASSIVE_ARMATURE = 1e-4  # [kg m2]
 _SPARE = 1.5  # stop of a joint over its share of the greatest bend [-]
@@ -48,7 +48,7 @@ def crocodile(tables: Tables) -> Robot:
     return robot
 
 
-def remade(robot: Robot, change: Callable[[Any], Any]) -> Robot:
+def rebuild(robot: Robot, change: Callable[[Any], Any]) -> Robot:
     """Return a robot with a change in its tables if it has some, else in itself.
 
     Args:
@@ -263,7 +263,7 @@ def _girdle(name: str, segment: str, position: float, leg: Leg) -> Girdle:
         name="tibia",
         hinges=(hinge("knee", "pitch", leg.knee_range),),
         end=(0.0, leg.tibia, 0.0),
-        radius=SLIM * leg.radius,
+        radius=TIBIA_RADIUS_RATIO * leg.radius,
         mass=LEG_SHARES[1] * leg.mass,
     )
     foot = Foot(radius=leg.foot_radius, mass=LEG_SHARES[2] * leg.mass)

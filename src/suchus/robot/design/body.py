@@ -33,7 +33,7 @@ from suchus.robot.design.tables import Tables
 M = TypeVar("M")
 _TRUNK_YAW = "spine_yaw_"
 """How the names begin of the yaw hinges between the root and the foremost girdle, and of no others."""
-MOST_SERVOS = 31
+MAX_SERVOS = 31
 """Servos at most [-]: MuJoCo can switch off so many one by one."""
 
 
@@ -274,8 +274,8 @@ def _check_drives(robot: Robot, check: Checks) -> None:
             drive_of_hinge[name] = f"cable {cable.name}"
     servos = servos_of(robot)
     check.that(
-        1 <= len(servos) <= MOST_SERVOS,
-        f"robot {robot.name} has {len(servos)} servos; 1 to {MOST_SERVOS} are allowed",
+        1 <= len(servos) <= MAX_SERVOS,
+        f"robot {robot.name} has {len(servos)} servos; 1 to {MAX_SERVOS} are allowed",
     )
     check_scale(check, robot.name, servos, robot.mass, robot.length)
 
@@ -298,7 +298,7 @@ def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float
             inertia_ratio <= 0.1,
             f"servo {name} of {robot} has an armature of {servo.armature:.3g} kg m2, {inertia_ratio:.3g} of mass "
             f"times length squared ({mass:.3g} kg, {length:.3g} m), where up to 0.1 makes sense: it belongs to a "
-            "larger robot; see suchus.robot.design.scale.scaled",
+            "larger robot; see suchus.robot.design.scale.rescale",
         )
         if inertia_ratio > 0.1:
             break

@@ -16,7 +16,7 @@ _STEP = re.compile(r"(\w+)|\[(\d+)\]")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Chosen:
+class Assumption:
     """The reason for the value of a field, and its plausible range."""
 
     field: str
@@ -30,7 +30,7 @@ class Chosen:
 
 
 @runtime_checkable
-class Numbered(Protocol):
+class HasNumbers(Protocol):
     """A value with numbers besides its fields, as the stroke of all limbs of a gait."""
 
     def numbers(self) -> Mapping[str, str]:
@@ -165,4 +165,4 @@ def _field_names(kind: type) -> tuple[str, ...]:
 @cache
 def _has_numbers(kind: type) -> bool:
     """Return whether the values of a class are ``Numbered``: to ask each value takes longer than to change it."""
-    return issubclass(kind, Numbered)
+    return issubclass(kind, HasNumbers)

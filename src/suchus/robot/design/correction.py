@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
 
-MOST = 100.0
+MAX_FACTOR = 100.0
 """Greatest factor [-]."""
 
 
@@ -20,16 +20,16 @@ class LinkFactors:
     """Factor on their added mass and on the momentum that is shed with it [-]."""
     drag: float
     """Factor on their drag, across and along [-]."""
-    added_interval: tuple[float, float] = (0.0, MOST)
+    added_interval: tuple[float, float] = (0.0, MAX_FACTOR)
     """Interval of the first that the fit gave, for the reader [-]."""
-    drag_interval: tuple[float, float] = (0.0, MOST)
+    drag_interval: tuple[float, float] = (0.0, MAX_FACTOR)
     """Interval of the second [-]."""
 
     def __post_init__(self) -> None:
         with Checks("link", self) as check:
             check.that(bool(self.bodies), "a link of a correction has no bodies; name those that it is made of")
             for name in ("added", "drag"):
-                check.number(name, 0.0, MOST, "")
+                check.number(name, 0.0, MAX_FACTOR, "")
                 lower_bound, upper_bound = getattr(self, f"{name}_interval")
                 check.that(
                     lower_bound <= upper_bound,

@@ -11,11 +11,11 @@ from jaxtyping import Float
 from scipy.ndimage import gaussian_filter, map_coordinates
 
 from suchus.core.checks import Checks
-from suchus.core.rotation import about, multiply
+from suchus.core.rotation import from_axis_angle, multiply
 
 REACH = (-1.0, 6.0)
 """Along which relief extends, from the hips of a robot at the start [m]."""
-ASIDE = 1.4
+HALF_WIDTH = 1.4
 """How far it extends to either side [m]; beyond it the ground is even."""
 CELL = 0.025
 """Between the points of a height field [m]; about the size of a foot."""
@@ -57,7 +57,7 @@ class Stone:
     def __post_init__(self) -> None:
         with Checks("stone", self) as checks:
             checks.number("at", *REACH, "m")
-            checks.number("aside", -ASIDE, ASIDE, "m")
+            checks.number("aside", -HALF_WIDTH, HALF_WIDTH, "m")
             checks.number("height", _MIN_SIZE, 0.5, "m")
             checks.number("length", _MIN_SIZE, 1.0, "m")
             checks.number("width", _MIN_SIZE, 1.0, "m")
@@ -87,7 +87,7 @@ class Bumps:
     @property
     def aside(self) -> float:
         """Half-width, to either side [m]."""
-        return ASIDE * self.scale
+        return HALF_WIDTH * self.scale
 
     @property
     def cell(self) -> float:
@@ -113,7 +113,7 @@ def field(bumps: Bumps) -> Float[np.ndarray, "across along"]:
 
     Smoothing white noise with a Gaussian of half the correlation length leaves a correlation of 1/e at that length.
     """
-    lateral_cells, axial_cells = round(2 * ASIDE / CELL) + 1, round((REACH[1] - REACH[0]) / CELL) + 1
+    lateral_cells, axial_cells = round(2 * HALF_WIDTH / CELL) + 1, round((REACH[1] - REACH[0]) / CELL) + 1
     noise = np.random.default_rng(bumps.seed).standard_normal((lateral_cells, axial_cells))
     smooth = gaussian_filter(noise, bumps.correlation / 2 / bumps.cell, mode="wrap")
     lower_quantile, upper_quantile = np.quantile(smooth, _OUTER)
@@ -135,7 +135,7 @@ def heights(relief: Relief | None, x: Float[np.ndarray, "*b"], y: Float[np.ndarr
         y: to the left of them [m].
     """
     if isinstance(relief, Step):
-        return np.where((x >= relief.at) & (x <= REACH[1]) & (np.abs(y) <= ASIDE), relief.height, 0.0)
+        return np.where((x >= relief.at) & (x <= REACH[1]) & (np.abs(y) <= HALF_WIDTH), relief.height, 0.0)
     if isinstance(relief, Stone):
         is_on_stone = (np.abs(x - relief.at) <= relief.length / 2) & (np.abs(y - relief.aside) <= relief.width / 2)
         return np.where(is_on_stone, relief.height, 0.0)
@@ -213,12 +213,12 @@ def slope(uphill: float, sideways: float) -> Float[np.ndarray, "4"]:
         uphill: along the walk, up positive [rad].
         sideways: left side up positive [rad].
     """
-    pitch_rotation = about(np.array([0.0, 1.0, 0.0]), -uphill)
-    roll_rotation = about(np.array([1.0, 0.0, 0.0]), sideways)
+    pitch_rotation = from_axis_angle(np.array([0.0, 1.0, 0.0]), -uphill)
+    roll_rotation = from_axis_angle(np.array([1.0, 0.0, 0.0]), sideways)
     return multiply(pitch_rotation, roll_rotation)
 
 
-BEFORE = 0.42
+BUMPS_START = 0.42
 """Where bumps begin, ahead of the hips at the start [m]: just ahead of the front feet."""
 STONE = Stone(at=0.75, aside=0.0, height=0.05, length=0.06, width=0.05)
 """A stone that fits between the feet."""
@@ -231,7 +231,7 @@ ARENAS: Mapping[str, Ground] = MappingProxyType(
         "sideways": Ground(sideways=radians(10)),
         "step": Ground(relief=Step(at=0.66, height=0.02)),
         "stone": Ground(relief=STONE),
-        "bumps": Ground(relief=Bumps(height=0.03, correlation=0.06, start=BEFORE, seed=0)),
+        "bumps": Ground(relief=Bumps(height=0.03, correlation=0.06, start=BUMPS_START, seed=0)),
     }
 )
 """Grounds by name; vary one with ``dataclasses.replace``."""

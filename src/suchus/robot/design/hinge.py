@@ -76,7 +76,7 @@ class Servo:
         return np.clip(self.torque * (supply - np.asarray(speed) / self.ideal_speed), 0.0, self.torque)
 
     @staticmethod
-    def of(motor: Motor, volts: float | None = None, *, like: Optional["Servo"] = None) -> "Servo":
+    def of(motor: Motor, volts: float | None = None, *, template: Optional["Servo"] = None) -> "Servo":
         """Return a servo that is bought, at a supply.
 
         Torque, speed and winding are those of the motor. Data sheets do not give the gains of the loop and the friction
@@ -86,7 +86,7 @@ class Servo:
         Args:
             motor: as it is bought.
             volts: its supply [V]; that of its data sheet if None.
-            like: whose gains, rotor inertia and friction it has; None for those in proportion to its torque.
+            template: whose gains, rotor inertia and friction it has; None for those in proportion to its torque.
 
         Raises:
             InvalidFields: the supply is not one that the motor bears.
@@ -94,8 +94,8 @@ class Servo:
         volts = motor.volts if volts is None else volts
         winding, supply_ratio = motor.winding(volts), volts / motor.volts
         torque, speed = supply_ratio * motor.stall_torque, supply_ratio * motor.no_load_speed
-        if like is not None:
-            return replace(like, torque=torque, speed=speed, winding=winding)
+        if template is not None:
+            return replace(template, torque=torque, speed=speed, winding=winding)
         return Servo(
             kp=_STIFFNESS * torque,
             ki=0.0,

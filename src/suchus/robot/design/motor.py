@@ -11,7 +11,7 @@ Protocol = Literal["dynamixel", "dynamixel1", "feetech", "pwm"]
 
 COPPER = 0.0039
 """How much more a copper winding resists for each kelvin, as a part of it at ``ROOM`` [1/K]."""
-ROOM = 25.0
+ROOM_TEMPERATURE = 25.0
 """Temperature at which data sheets hold, and of the air around a servo [degC]."""
 SPECIFIC_HEAT = 700.0
 """Heat that a servo takes up for each kilogram [J/(kg K)].
@@ -31,7 +31,7 @@ class Heat:
     """Heat for each kelvin [J/K]."""
     limit: float
     """Temperature at which the servo should be switched off [degC]."""
-    ambient: float = ROOM
+    ambient: float = ROOM_TEMPERATURE
     """Temperature of the air around it, and of the servo at the beginning [degC]."""
 
     def __post_init__(self) -> None:
@@ -52,7 +52,7 @@ class Heat:
         margin = 1.0 - COPPER * cold  # a warm winding resists more, which warms it further
         if margin <= 0.0:
             return float("inf")
-        return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM)) / margin
+        return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM_TEMPERATURE)) / margin
 
     def reached_after(self, loss: float) -> float:
         """Return the time in which a cold servo reaches its temperature limit [s]; infinite if it never does.
@@ -60,7 +60,7 @@ class Heat:
         Args:
             loss: what it would turn into heat with its winding at ``ROOM`` [W].
         """
-        cold = loss * (1.0 + COPPER * (self.ambient - ROOM))
+        cold = loss * (1.0 + COPPER * (self.ambient - ROOM_TEMPERATURE))
         cools = (1.0 / self.resistance - COPPER * loss) * (
             self.limit - self.ambient
         )  # heat flow to the air at the limit [W]
@@ -192,8 +192,8 @@ class Motor:
     def heat(self) -> Heat:
         """Thermal model by which the servo stays at its temperature limit at continuous torque."""
         cold = self.volts * self.stall_current * (self.continuous_torque / self.stall_torque) ** 2
-        hot = cold * (1.0 + COPPER * (self.temperature_limit - ROOM))
-        resistance = (self.temperature_limit - ROOM) / hot
+        hot = cold * (1.0 + COPPER * (self.temperature_limit - ROOM_TEMPERATURE))
+        resistance = (self.temperature_limit - ROOM_TEMPERATURE) / hot
         return Heat(resistance=resistance, capacity=SPECIFIC_HEAT * self.mass, limit=self.temperature_limit)
 
     def winding(self, volts: float) -> Winding:

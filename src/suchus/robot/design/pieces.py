@@ -202,7 +202,7 @@ def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
         body_pieces = table[is_in_body]
         own_volume = body_pieces[:, COLUMNS["volume"][0]].sum()
         factor = 1.0 + foam.volume / own_volume
-        table[is_in_body] = swollen(body_pieces, factor)
+        table[is_in_body] = swell(body_pieces, factor)
         column(table, "at")[is_in_body, 2] += foam.raised * foam.volume / (own_volume + foam.volume)
     if hull.air == 0.0:
         return
@@ -276,7 +276,7 @@ def chambers(robot: Robot) -> tuple[float, float]:
     return float(front), float(rear)
 
 
-def swollen(body_pieces: Float[np.ndarray, "piece column"], factor: float) -> Float[np.ndarray, "piece column"]:
+def swell(body_pieces: Float[np.ndarray, "piece column"], factor: float) -> Float[np.ndarray, "piece column"]:
     """Return pieces of so many times their volume: sections thicker, balls larger.
 
     Args:

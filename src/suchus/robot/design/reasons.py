@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from typing import Any, NamedTuple
 
 from suchus.core.errors import InvalidDesign
-from suchus.robot.design.chosen import Chosen
+from suchus.robot.design.chosen import Assumption
 
 
 class Reason(NamedTuple):
@@ -36,7 +36,7 @@ def numbers(design: Any, path: str = "") -> Iterator[tuple[str, float]]:
         yield path, design
 
 
-def chosen_numbers(design: Any, reasons: Sequence[Reason], published: Sequence[str] = ()) -> tuple[Chosen, ...]:
+def assumptions_of(design: Any, reasons: Sequence[Reason], published: Sequence[str] = ()) -> tuple[Assumption, ...]:
     """Return the reason for every number of a design that is neither zero nor published.
 
     Args:
@@ -57,5 +57,5 @@ def chosen_numbers(design: Any, reasons: Sequence[Reason], published: Sequence[s
                 f"{path} of {design.name!r} is {value:g} without a reason; give one, or say its source."
             )
         lower_bound, upper_bound = sorted((reason.low * value, reason.high * value))
-        choices.append(Chosen(field=path, low=lower_bound, high=upper_bound, why=reason.why))
+        choices.append(Assumption(field=path, low=lower_bound, high=upper_bound, why=reason.why))
     return tuple(choices)

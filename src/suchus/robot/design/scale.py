@@ -21,11 +21,11 @@ from suchus.robot.design.motor import Winding
 from suchus.robot.design.physics import GRAVITY
 
 T = TypeVar("T")
-PERIODS = 20.0
+MIN_PERIODS_PER_GRAVITY_TIME = 20.0
 """The control period is at most this part of the gravity time; a tenth already jerks the feet loose [-]."""
 PHYSICS_STEPS = 5
 """Physics steps in a control period [-]; the physics step is then a hundredth to a 250th of the gravity time."""
-COARSEST = 20.0
+MIN_STEPS_PER_GRAVITY_TIME = 20.0
 """A physics step above this part of the gravity time is refused: a tenth loses a fifth of the stride [-]."""
 _POWERS = {
     "kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "Hz": (0, 0, -1), "rad": (0, 0, 0),
@@ -45,7 +45,7 @@ def control_period(robot: Robot) -> float:
 
     It is 10 ms for bodies of 0.4 to 1.6 m.
     """
-    max_period = gravity_time(robot.length) / PERIODS
+    max_period = gravity_time(robot.length) / MIN_PERIODS_PER_GRAVITY_TIME
     power = floor(log10(max_period))
     digit = max(candidate for candidate in (1, 2, 5) if candidate * 10.0**power <= max_period)
     return round(digit * 10.0**power, 12)
@@ -70,7 +70,7 @@ def check_step(robot: Robot, timestep: float) -> None:
     Raises:
         InvalidDesign: it is above a twentieth of the gravity time.
     """
-    max_step = gravity_time(robot.length) / COARSEST
+    max_step = gravity_time(robot.length) / MIN_STEPS_PER_GRAVITY_TIME
     if timestep > max_step:
         raise InvalidDesign(
             f"simulate.timestep is {timestep:g} s; robot {robot.name!r} is {robot.length:.3g} m long and needs at most "
@@ -101,10 +101,10 @@ def servo_for(mass: float, length: float) -> Servo:
     )
 
 
-SWIM = 8.0
+JOINT_FREQUENCY_RATIO = 8.0
 """Natural frequency of a joint with half of the body and its water behind it, over that of the swim, at which a servo
 does not swing with the water [-]."""
-BEHIND = 0.04
+JOINT_LAG = 0.04
 """How far a joint of a swimmer is behind its command at the beat [rad]: 1.4 degrees of an amplitude of 33, where motors
 of swimming robots follow within 2."""
 _WATER = 2.0
@@ -133,11 +133,11 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
     frequency = 1.5 / sqrt(length) if beat is None else beat
     require("swim_servo_for", "beat", frequency, 0.01, 100.0, "Hz")
     inertia, omega = _WATER * mass * length**2 / 24.0, tau * frequency
-    stiffness = inertia * (SWIM * omega) ** 2
+    stiffness = inertia * (JOINT_FREQUENCY_RATIO * omega) ** 2
     return Servo(
         kp=stiffness,
         ki=0.0,
-        kd=BEHIND * stiffness / omega,
+        kd=JOINT_LAG * stiffness / omega,
         integral_limit=0.0,
         torque=0.5 * stiffness,
         speed=4.0 * omega,
@@ -181,7 +181,7 @@ def contact_for(length: float, *, foot_friction: float, skin_friction: float) ->
     )
 
 
-def scaled(design: T, *, length_factor: float, mass_factor: float | None = None) -> T:
+def rescale(design: T, *, length_factor: float, mass_factor: float | None = None) -> T:
     """Return a robot, a gait or a part in another size: every number by the power of its unit, gravity as it is.
 
     Times go with the square root of the length. A robot of the article's kind is then one
@@ -201,7 +201,7 @@ def scaled(design: T, *, length_factor: float, mass_factor: float | None = None)
     return _scaled(design, (mass_scale, length_factor, sqrt(length_factor)))
 
 
-def scaled_fields(design: Any, names: Iterable[str], *, length_factor: float, mass_factor: float) -> dict[str, Any]:
+def rescale_fields(design: Any, names: Iterable[str], *, length_factor: float, mass_factor: float) -> dict[str, Any]:
     """Return some fields of a frozen value in another size, each by the power of its unit.
 
     Args:

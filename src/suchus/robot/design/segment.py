@@ -120,7 +120,7 @@ class Inertia:
         return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
-def together(parts: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> tuple[float, np.ndarray, np.ndarray]:
+def combine_inertias(parts: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> tuple[float, np.ndarray, np.ndarray]:
     """Return mass, centre and inertia of several rigid bodies joined to one, by the parallel-axis theorem.
 
     Args:

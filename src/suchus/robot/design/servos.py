@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
-from suchus.robot.design.article import remade
+from suchus.robot.design.article import rebuild
 from suchus.robot.design.body import Robot
 from suchus.robot.design.hinge import Cable, Crank, Hinge, LinearActuator, Servo, Spring
 from suchus.robot.design.limb import Girdle
@@ -24,7 +24,7 @@ def with_leg_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
             design, **{name: _with_changed_servos(limb_design, change) for name, limb_design in parts.items()}
         )
 
-    return remade(robot, in_limbs)
+    return rebuild(robot, in_limbs)
 
 
 def with_speed_line(servo: Servo) -> Servo:
@@ -47,7 +47,7 @@ def with_speed_lines(robot: Robot) -> Robot:
 
 def with_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
     """Return a robot with each of its servos changed; a linear actuator as the servo that would do the same."""
-    return remade(robot, lambda design: _with_changed_servos(design, change))
+    return rebuild(robot, lambda design: _with_changed_servos(design, change))
 
 
 def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:

@@ -64,7 +64,7 @@ CROSS_DRAG = 8
 """Place of the drag coefficient of a section across [-]."""
 THICKENING = 9
 """Place of the factor on plate friction [-]."""
-ADDED = 10
+ADDED_MASS_FACTOR = 10
 """Place of the factor on added mass [-]."""
 SHEDDING = 11
 """Place of the factor on what is shed at the tail [-]."""
@@ -74,7 +74,7 @@ FORCE = 18
 """Place where the kernel leaves the force of the water on the robot (3) [N]."""
 POWER = 21
 """Place where it leaves the power of that force [W]."""
-UNDER = 22
+SUBMERGED_VOLUME = 22
 """Place where it leaves the volume under water [m3]."""
 NUMBERS = 23
 """Length of the row [-]. Where it is longer the water is solved elsewhere: from this place on stands the added mass
@@ -88,7 +88,7 @@ def column(table: Float[np.ndarray, "piece column"], name: str) -> Float[np.ndar
     return table[:, start:stop]
 
 
-def packed(
+def pack_table(
     table: Float[np.ndarray, "piece column"], length: float, count: int | None = None
 ) -> Float[np.ndarray, " n"]:
     """Return a table as the row of numbers that a model carries: the header, then ``LANES`` pieces at a time.
@@ -108,7 +108,7 @@ def packed(
     return np.concatenate([[MAGIC, len(table), length], rows.reshape(blocks, LANES, WIDTH).swapaxes(1, 2).ravel()])
 
 
-def unpacked(numbers: Float[np.ndarray, " n"]) -> Float[np.ndarray, "piece column"]:
+def unpack_table(numbers: Float[np.ndarray, " n"]) -> Float[np.ndarray, "piece column"]:
     """Return the table in the row of numbers that a model carries; a copy."""
     blocks = numbers[HEADER:].reshape(-1, WIDTH, LANES)
     return np.array(blocks.swapaxes(1, 2).reshape(-1, WIDTH)[: int(numbers[1])])

@@ -12,7 +12,7 @@ from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import control_period, gravity_time
 from suchus.robot.gaits._animal_swim import ANIMAL_SWIM
 from suchus.robot.gaits.limbs_tail_lifted import LIFTED
-from suchus.robot.motion import Gait, divided, draft_gait, form_of, suits
+from suchus.robot.motion import Gait, divide_axis, draft_gait, form_of, suits
 from suchus.robot.robots import ROBOTS
 
 
@@ -37,7 +37,7 @@ def _read_gait(path: Path) -> Gait:
 
 
 GAITS: Catalog[Gait] = Catalog(
-    "gait", "suchus.robot.gaits", "suchus.robot.motion:Gait", named=attrgetter("name"), read=_read_gait
+    "gait", "suchus.robot.gaits", "suchus.robot.motion:Gait", name_of=attrgetter("name"), read_file=_read_gait
 )
 """The gaits of the shelf."""
 
@@ -48,11 +48,11 @@ a tail dragged still; with the trunk and the tail in the air; with a straight tr
 
 DRAFTED = "drafted_gait"
 """Name of the gait of a robot that none of the shelf suits."""
-ALIKE = 1.5
+MAX_LENGTH_RATIO = 1.5
 """Lengths of two robots whose ratio is below this are about the same: the shorter one takes no quicker gait [-]."""
 
 
-def own_gait(robot: Robot) -> Gait:
+def default_gait(robot: Robot) -> Gait:
     """Return the default gait of a robot.
 
     A gait made for a robot of this name comes first. Next come gaits made for other robots whose limbs turn about the
@@ -98,7 +98,7 @@ def in_size(gait: Gait, robot: Robot, maker: Robot) -> Gait:
         robot: who is to move in it.
         maker: for whom it was made.
     """
-    if 1 / ALIKE < robot.length / maker.length < ALIKE:
+    if 1 / MAX_LENGTH_RATIO < robot.length / maker.length < MAX_LENGTH_RATIO:
         return gait
     period, step = gait.period * gravity_time(robot.length) / gravity_time(maker.length), control_period(robot)
     return replace(gait, period=round(max(1, round(period / step)) * step, 12))
@@ -124,7 +124,7 @@ def gait_of(robot: Robot, gait: Gait | str | Path | None, place: str | Path = Pa
         UnsuitedRobot: none is given, no gait of the shelf suits the robot, and none can be drafted.
     """
     if gait is None:
-        return own_gait(robot)
+        return default_gait(robot)
     path = GAITS.file(gait, place)
     if path is None:
         return GAITS.resolve(gait)
@@ -173,7 +173,7 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
         gait: with all of the axis.
         control: with limbs only.
     """
-    place, gait = layout(robot), divided(robot, gait)
+    place, gait = layout(robot), divide_axis(robot, gait)
     tail_servos = {*place.tail_yaw, *place.tail_pitch, *place.cables}
     front_servos = set(place.axial_yaw) - tail_servos
     lifts = place.tail_pitch and gait.has("steering")
@@ -192,6 +192,15 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
 
 
 __all__ = [
-    "ALIKE", "ANIMAL_SWIM", "CONDITIONS", "DRAFTED", "GAITS", "conditions_of", "control_group", "gait_of", "in_size",
-    "own_gait", "suits",
+    "ANIMAL_SWIM",
+    "CONDITIONS",
+    "DRAFTED",
+    "GAITS",
+    "MAX_LENGTH_RATIO",
+    "conditions_of",
+    "control_group",
+    "default_gait",
+    "gait_of",
+    "in_size",
+    "suits",
 ]  # fmt: skip

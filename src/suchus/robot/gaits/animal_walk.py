@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.motion import Curve, Gait
 
 # fmt: off
@@ -56,5 +56,5 @@ _REASONS = (
     Reason(r"^period$", 0.5, 2.0, "a slow walk; the measured cycle is given as shares of its duration"),
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.2, "read from the angles: a foot that goes forward swings"),
 )
-chosen = chosen_numbers(gait, _REASONS, PUBLISHED)
+assumptions = assumptions_of(gait, _REASONS, PUBLISHED)
 """Every number that was not measured, with its plausible range and the reason."""

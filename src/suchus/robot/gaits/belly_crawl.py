@@ -3,7 +3,7 @@
 from math import radians
 
 from suchus.article.paper import CYCLE_PERIOD
-from suchus.robot.design import Chosen
+from suchus.robot.design import Assumption
 from suchus.robot.motion import GaitInMetres
 
 LIMBS = (0.1575, 0.175)
@@ -32,7 +32,7 @@ metres = GaitInMetres(
 """The crawl in metres."""
 gait = metres.gait(LIMBS)
 """Spine and tail take part."""
-made_for = ("caiman", "floating_caiman", "long_tail")
+robot_names = ("caiman", "floating_caiman", "long_tail")
 """Robots of the shelf whose gait it is."""
 
 _FIT_REASON = (
@@ -60,8 +60,8 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("tail_lag", 0.5, 1.0, _MISSING_FIGURE + "against the trunk, which keeps the heading best"),
     ("tail_pitch", 0.1, 0.3, "the tail drags without lifting the hind feet"),
 )
-chosen = tuple(
-    Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+assumptions = tuple(
+    Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
     for field, lower_bound, upper_bound, reason in _ROWS
 )
 """Every number of the gait that the article does not give, with its plausible range and the reason."""

@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.robot.design import Chosen
+from suchus.robot.design import Assumption
 from suchus.robot.gaits.belly_crawl import FRONT, HIND, LIMBS
 from suchus.robot.motion import GaitInMetres
 
@@ -68,8 +68,8 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
         "the tail carries some weight: lifted, the body rolls more and loses speed",
     ),
 )
-chosen = tuple(
-    Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+assumptions = tuple(
+    Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
     for field, lower_bound, upper_bound, reason in _ROWS
 )
 """The article shows the posture and gives no number: every number with its plausible range and the reason."""

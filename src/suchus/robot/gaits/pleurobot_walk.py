@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.motion import Bend, FootPath, Gait
 
 _TAIL = (3.2307692307692186, 6.395604395604396, 6.879120879120879, 7.362637362637363, 7.846153846153846)
@@ -24,7 +24,7 @@ gait = Gait(
     ),
 )
 """The walk of the robot with four joints a limb."""
-made_for = ("pleurobot",)
+robot_names = ("pleurobot",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
@@ -33,5 +33,5 @@ _REASONS = (
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "opposite limbs in turn, a little more stance than swing"),
     Reason(r"^limbs|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
 )
-chosen = chosen_numbers(gait, _REASONS)
+assumptions = assumptions_of(gait, _REASONS)
 """Every number with its plausible range and the reason."""

@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.motion import Bend, FootPath, Gait
 
 _TAIL = (6.0, 8.829694323144105, 11.633187772925764, 12.93, 14.0)  # [degree]; of its joints, toward the tip
@@ -20,7 +20,7 @@ gait = Gait(
     ),
 )
 """Diagonal limbs and a standing wave, as the animal walks."""
-made_for = ("salamander",)
+robot_names = ("salamander",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
@@ -34,5 +34,5 @@ _REASONS = (
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "opposite limbs in turn, a little more stance than swing"),
     Reason(r"^limbs|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
 )
-chosen = chosen_numbers(gait, _REASONS)
+assumptions = assumptions_of(gait, _REASONS)
 """Every number with its plausible range and the reason."""

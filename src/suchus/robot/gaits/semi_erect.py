@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.robot.design import Chosen
+from suchus.robot.design import Assumption
 from suchus.robot.gaits.belly_crawl import FRONT, HIND, LIMBS
 from suchus.robot.motion import GaitInMetres
 
@@ -65,8 +65,8 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("tail_lag", 0.5, 1.0, "against the trunk, which keeps the heading best"),
     ("tail_pitch", 0.3, 0.4, "the tail carries some weight and keeps the body from rolling"),
 )
-chosen = tuple(
-    Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+assumptions = tuple(
+    Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
     for field, lower_bound, upper_bound, reason in _ROWS
 )
 """The article gives no number of it: every number with its plausible range and the reason."""

@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.motion import Bend, FootPath, Gait
 
 _PATH = FootPath(stroke=0.20, lift=0.18, outward=0.55, ahead=0.0)
@@ -16,7 +16,7 @@ gait = Gait(
     axis=(Bend(part="trunk", amplitude=(radians(10),)),),
 )
 """The insects' gait."""
-made_for = ("strider",)
+robot_names = ("strider",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
@@ -25,5 +25,5 @@ _REASONS = (
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "opposite limbs in turn, a little more stance than swing"),
     Reason(r"^limbs|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
 )
-chosen = chosen_numbers(gait, _REASONS)
+assumptions = assumptions_of(gait, _REASONS)
 """Every number with its plausible range and the reason."""

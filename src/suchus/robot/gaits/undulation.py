@@ -2,7 +2,7 @@
 
 from math import radians
 
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.motion import Bend, Gait
 
 gait = Gait(
@@ -14,7 +14,7 @@ gait = Gait(
 """At the places of ten hinges, one wavelength along the body, 15 degrees a hinge at the snout and 35 at the tip.
 
 For water; on even ground it hardly moves, since friction is the same along the body and across."""
-made_for = ("swimmer",)
+robot_names = ("swimmer",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
@@ -22,5 +22,5 @@ _REASONS = (
     Reason(r"^period$", 0.5, 2.0, "about the frequency at which its servos reach these angles"),
     Reason(r"^(duty_factor)", 0.8, 1.3, "it has no limbs: unused"),
 )
-chosen = chosen_numbers(gait, _REASONS)
+assumptions = assumptions_of(gait, _REASONS)
 """Every number with its plausible range and the reason."""

@@ -51,7 +51,7 @@ def number(value: Any, label: str) -> float:
     return float(array)
 
 
-def spread_over(values: Any, shape: tuple[int, ...], label: str) -> np.ndarray:
+def broadcast_to_shape(values: Any, shape: tuple[int, ...], label: str) -> np.ndarray:
     """Return finite numbers broadcast to a shape.
 
     Raises:
@@ -64,7 +64,7 @@ def spread_over(values: Any, shape: tuple[int, ...], label: str) -> np.ndarray:
         raise InvalidDesign(f"{label} has the shape {array.shape}; one number, or {shape}, is needed.") from error
 
 
-def together(*arrays: np.ndarray, what: str) -> None:
+def check_broadcast(*arrays: np.ndarray, label: str) -> None:
     """Refuse arrays that do not broadcast against each other.
 
     Raises:
@@ -74,7 +74,7 @@ def together(*arrays: np.ndarray, what: str) -> None:
         np.broadcast_shapes(*(array.shape for array in arrays))
     except ValueError as error:
         shapes = ", ".join(str(array.shape) for array in arrays)
-        raise InvalidDesign(f"{what} have the shapes {shapes}, which do not go together; give one each.") from error
+        raise InvalidDesign(f"{label} have the shapes {shapes}, which do not go together; give one each.") from error
 
 
 def rows(values: Any, count: int, label: str) -> np.ndarray:

@@ -15,7 +15,7 @@ from suchus.core.errors import NotConverged, Unreachable
 from suchus.robot.design import Girdle, Limb
 from suchus.robot.design.layout import LIMB_AXES
 from suchus.robot.kinematics import leg as closed
-from suchus.robot.kinematics.given import rows, spread_over
+from suchus.robot.kinematics.given import broadcast_to_shape, rows
 from suchus.robot.kinematics.tree import rotation
 
 STEPS = 60
@@ -112,7 +112,7 @@ def inverse(
         base = np.stack([points[..., 1], points[..., 0], -points[..., 2]], axis=-1)
         return closed.inverse(PlainLeg(0.0, links[0].length, links[1].length, 0.0, 0.0), base)
     if method == "arm":
-        return _arm(limb, points, spread_over(plane, points.shape[:-1], "the plane of the limb"))
+        return _arm(limb, points, broadcast_to_shape(plane, points.shape[:-1], "the plane of the limb"))
     return _numeric(limb, points, start, tries)
 
 
@@ -176,9 +176,9 @@ def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: in
     lower_bound, upper_bound = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
     flat = points.reshape(-1, 3)
     center = np.where(np.isfinite(lower_bound), (lower_bound + upper_bound) / 2.0, 0.0)
-    start_angles = spread_over(center if start is None else start, (*points.shape[:-1], count), "the start").reshape(
-        -1, count
-    )
+    start_angles = broadcast_to_shape(
+        center if start is None else start, (*points.shape[:-1], count), "the start"
+    ).reshape(-1, count)
     angles, error = _descend(limb, flat, np.clip(start_angles, lower_bound, upper_bound), lower_bound, upper_bound)
     rng = np.random.default_rng(0)
     for _ in range(tries):

@@ -13,7 +13,7 @@ from jaxtyping import Float
 from suchus.article.paper.tables import SPINE_CHAIN, Chain
 from suchus.core.errors import Unreachable
 from suchus.robot.kinematics import dh
-from suchus.robot.kinematics.given import check_sign, number, numbers, rows, spread_over, together
+from suchus.robot.kinematics.given import broadcast_to_shape, check_broadcast, check_sign, number, numbers, rows
 from suchus.robot.kinematics.links import Numbers, SpineLinks
 
 ROUNDING = 1e-12
@@ -22,7 +22,7 @@ CHUNK = 1000
 """Points that ``least_bending`` solves at a time, to spare memory [-]."""
 TRIALS = 48
 """First yaw angles that ``least_bending`` tries on each branch before it refines the best [-]."""
-STEEP, STEEP_COST = 0.05, 1e3
+MIN_LEVELNESS, STEEP_COST = 0.05, 1e3
 """A head less level than this [-] has no azimuth to speak of; ``least_bending`` makes it cost much [rad2]."""
 REFINEMENTS = 60
 """Golden-section steps of ``least_bending`` [-]: enough to exhaust double precision."""
@@ -70,7 +70,7 @@ def joints(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> Float[np
 
 
 def jacobian(
-    spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"], *, ahead: float = 0.0
+    spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"], *, forward_offset: float = 0.0
 ) -> Float[np.ndarray, "*batch 6 5"]:
     """Return how a point on the head moves with the joints: three rows [m/rad], then three of rotation [-].
 
@@ -79,10 +79,10 @@ def jacobian(
     Args:
         spine: the lengths.
         angles: yaw, pitch, yaw, pitch, yaw [rad].
-        ahead: how far the point lies ahead of joint 5 along the head [m].
+        forward_offset: how far the point lies ahead of joint 5 along the head [m].
     """
     T = dh.frames(chain(spine), angles)
-    tip = T[..., -1, :3, 3] + number(ahead, "ahead") * T[..., -1, :3, 0]
+    tip = T[..., -1, :3, 3] + number(forward_offset, "ahead") * T[..., -1, :3, 0]
     axes = T[..., :3, 2]  # (*batch, joint, 3)
     moves = np.cross(axes, tip[..., None, :] - T[..., :3, 3])
     return np.swapaxes(np.concatenate([moves, axes], axis=-1), -1, -2)
@@ -137,7 +137,7 @@ def candidates(
     point = rows(point, 3, "the point")
     azimuth, first_yaw = numbers(azimuth, "the azimuth"), numbers(first_yaw, "the first yaw angle")
     branch = numbers(branch, "the branch")
-    together(point[..., 0], azimuth, first_yaw, branch, what="point, azimuth, first yaw angle and branch")
+    check_broadcast(point[..., 0], azimuth, first_yaw, branch, label="point, azimuth, first yaw angle and branch")
     return _closed_form(spine, point, azimuth, first_yaw, branch)[0]
 
 
@@ -159,7 +159,7 @@ def least_bending(
     """
     point = rows(point, 3, "the point")
     points = point.reshape(-1, 3)
-    heading = spread_over(azimuth, point.shape[:-1], "the azimuth").reshape(-1, 1)
+    heading = broadcast_to_shape(azimuth, point.shape[:-1], "the azimuth").reshape(-1, 1)
     starts = range(0, max(len(points), 1), CHUNK)
     solutions = [_minimise_bending(spine, points[i : i + CHUNK], heading[i : i + CHUNK]) for i in starts]
     return np.concatenate(solutions).reshape(*point.shape[:-1], 5)
@@ -185,7 +185,7 @@ def _minimise_bending(spine: SpineLinks, points: np.ndarray, heading: np.ndarray
 
     def bending(t: np.ndarray, case: np.ndarray) -> np.ndarray:
         angles, level = posture(t, case)
-        total = np.sum(angles**2, axis=-1) + STEEP_COST * (level < STEEP)
+        total = np.sum(angles**2, axis=-1) + STEEP_COST * (level < MIN_LEVELNESS)
         return np.where(np.isnan(total), np.inf, total)
 
     trials = np.tile(np.linspace(-np.pi / 2, np.pi / 2, TRIALS), 4)  # two arcs of the yaw times two branches

@@ -13,7 +13,7 @@ from jaxtyping import Float
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.layout import Axis
 from suchus.robot.design.pieces import foam_centres
-from suchus.robot.kinematics.given import numbers, rows, spread_over
+from suchus.robot.kinematics.given import broadcast_to_shape, numbers, rows
 
 
 class BodyFrames(NamedTuple):
@@ -75,7 +75,7 @@ def frames(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrame
 
 def rotation(axis: Axis, angle: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch 3 3"]:
     """Return the matrices of turns about one axis of unit length (Rodrigues)."""
-    x, y, z = spread_over(rows(axis, 3, "the axis"), (3,), "the axis")
+    x, y, z = broadcast_to_shape(rows(axis, 3, "the axis"), (3,), "the axis")
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     angle = numbers(angle, "the angle", finite=False)
     s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]

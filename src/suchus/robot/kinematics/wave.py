@@ -18,7 +18,7 @@ from suchus.article.paper.tables import C1, C2, K
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.core.kinds import show
-from suchus.robot.kinematics.given import number, numbers, together
+from suchus.robot.kinematics.given import check_broadcast, number, numbers
 from suchus.robot.kinematics.links import Numbers
 
 MILLIMETRE, CENTIMETRE = 1e-3, 1e-2
@@ -119,7 +119,7 @@ def reading(
     return TravellingWave(linear=C1, quadratic=quadratic, wave_number=k, angular_frequency=angular_frequency, sign=sign)
 
 
-def as_printed(*, angular_frequency: float) -> TravellingWave:
+def printed_wave(*, angular_frequency: float) -> TravellingWave:
     """Return (20) letter by letter: reading A, running from tail to head."""
     return reading("A", length=1.0, angular_frequency=angular_frequency, sign=1)
 
@@ -161,5 +161,5 @@ def speed(wave: TravellingWave, x: Numbers, t: Numbers) -> Float[np.ndarray, "*b
 
 def _phase(wave: TravellingWave, x: Numbers, t: Numbers) -> np.ndarray:
     place, time = numbers(x, "the place", finite=False), numbers(t, "the time", finite=False)
-    together(place, time, what="place and time")
+    check_broadcast(place, time, label="place and time")
     return np.asarray(wave.wave_number * place + wave.sign * wave.angular_frequency * time)

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Complex, Float
 
 from suchus.robot.design import Robot, layout
 from suchus.robot.motion.gait import Gait
-from suchus.robot.motion.parts import Bend, Part
+from suchus.robot.motion.parts import AxisRegion, Bend
 
 
 class Hinges(NamedTuple):
@@ -21,12 +21,12 @@ class Hinges(NamedTuple):
     """Servo that moves each of them."""
     signs: tuple[float, ...]
     """1 where a positive angle of the servo is a positive bend, else -1 [-]."""
-    parts: tuple[Part, ...]
+    parts: tuple[AxisRegion, ...]
     """Part of the axis that each belongs to."""
     places: tuple[float, ...]
     """Of each along the body, 0 at the snout and 1 at the tip of the tail [-]."""
 
-    def within(self, region: Part) -> list[int]:
+    def within(self, region: AxisRegion) -> list[int]:
         """Return which of them a part has."""
         return [i for i, hinge_region in enumerate(self.parts) if region in ("axis", hinge_region)]
 
@@ -35,9 +35,9 @@ class Hinges(NamedTuple):
 def yaw_hinges(robot: Robot) -> Hinges:
     """Return the driven hinges that bend a robot sideways; positive is concave to the left."""
     place = layout(robot)
-    rows: list[tuple[float, str, int, float, Part]] = []
+    rows: list[tuple[float, str, int, float, AxisRegion]] = []
     for servo, sign, position in zip(place.axial_yaw, place.axial_left, place.axial_place, strict=True):
-        region: Part = "trunk" if servo in place.trunk_yaw else "tail" if servo in place.tail_yaw else "neck"
+        region: AxisRegion = "trunk" if servo in place.trunk_yaw else "tail" if servo in place.tail_yaw else "neck"
         rows.append((position, place.servos[servo], servo, sign, region))
     for servo in place.cables:
         hinges = place.cable(servo).hinges
@@ -54,7 +54,7 @@ def pitch_hinges(robot: Robot) -> Hinges:
     """Return the driven hinges that bend a robot up and down; positive is concave below."""
     place = layout(robot)
 
-    def region_of(servo: int) -> Part:
+    def region_of(servo: int) -> AxisRegion:
         return "trunk" if servo in place.trunk_pitch else "tail" if servo in place.tail_pitch else "neck"
 
     servos = place.axial_pitch

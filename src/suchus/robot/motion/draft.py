@@ -16,7 +16,7 @@ from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.motion.draft_table import is_upright, table_walk
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.limbs import foot_path
-from suchus.robot.motion.limits import check_limits, shortest_period
+from suchus.robot.motion.limits import check_limits, min_gait_period
 from suchus.robot.motion.parts import Bend, FootPath, Sweep
 
 _STROKES = (0.2, 0.15, 0.1, 0.06)  # [limb reach]; the longest stroke that all girdles can follow is chosen
@@ -234,4 +234,4 @@ def _axis(robot: Robot) -> tuple[Bend, ...]:
 
 def _with_feasible_period(robot: Robot, gait: Gait) -> Gait:
     """Return a gait whose period keeps every servo below a fraction of its speed."""
-    return replace(gait, period=float(np.round(max(gait.period, shortest_period(robot, gait)[0] / _SPEED), 4)))
+    return replace(gait, period=float(np.round(max(gait.period, min_gait_period(robot, gait)[0] / _SPEED), 4)))

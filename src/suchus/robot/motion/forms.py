@@ -18,8 +18,8 @@ from suchus.robot.design import LEGS, Robot, check_needs
 from suchus.robot.motion.axis import Waves, yaw_hinges
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.limits import check_limits, check_speeds
-from suchus.robot.motion.parts import Bend, FootPath, Held, Limbs, Sweep
-from suchus.robot.motion.swim import held
+from suchus.robot.motion.parts import Bend, FixedLimbs, FootPath, Limbs, Sweep
+from suchus.robot.motion.swim import hold_limb
 
 DIAGONAL = (0.0, 0.5, 0.5, 0.0)
 """Phases at which LF, RF, LH and RH pull on the trunk in the article's law [cycle]."""
@@ -371,7 +371,7 @@ class GaitByPlaces:
     """Share of the cycle in which a foot stands [-]."""
     limb_phases: tuple[float, ...]
     """Phase of each limb when the movement begins, in the order of the robot's limbs [cycle]."""
-    girdles: tuple[FootPathByPlane | Sweep | Held, ...]
+    girdles: tuple[FootPathByPlane | Sweep | FixedLimbs, ...]
     """Movement of the limbs of each girdle, from the front one."""
     height: float
     """Height of the hindmost girdle's hips above the ground [reach of its limb]; 0 for a body on its belly."""
@@ -484,7 +484,7 @@ def roll(
         ("tail_pitch", Bend(part="tail", turn="pitch", amplitude=tail[1:], lag=(tail_lag + lag,))),
     )
     check_needs(robot, [need for need, bend in bends if any(bend.amplitude)], "a death roll")
-    limbs = tuple(held(girdle.limb, (-pi / 2, 0.0)) for girdle in robot.girdles)
+    limbs = tuple(hold_limb(girdle.limb, (-pi / 2, 0.0)) for girdle in robot.girdles)
     gait = Gait(
         name="death_roll",
         period=period,

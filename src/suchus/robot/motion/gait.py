@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple
 
 from suchus.core.checks import Checks, require
 from suchus.core.errors import OutsideLimits, UnknownName
-from suchus.robot.motion.parts import Bend, Curve, FootPath, Held, Limbs, Part, Sweep, Turn
+from suchus.robot.motion.parts import AxisRegion, Bend, Curve, FixedLimbs, FootPath, Limbs, Sweep, Turn
 
 Ability = Literal["foot paths", "strokes", "wave", "tail pitch", "steering"]
 """What a gait has that may be changed: feet on paths, limbs that stride, an axis that bends sideways, a tail that it
@@ -111,7 +111,7 @@ class Gait:
         require("gait", "length", length, 1e-4, 1e4, "")
         return replace(self, period=sqrt(length) * self.period)
 
-    def straightened(self, *parts: Part, name: str = "") -> "Gait":
+    def straightened(self, *parts: AxisRegion, name: str = "") -> "Gait":
         """Return the gait with regions of the axis held straight, all of them if none is named; a steady bend stays.
 
         Args:
@@ -269,7 +269,7 @@ class Number(NamedTuple):
 def _standing(limb: Limbs) -> Limbs:
     if isinstance(limb, FootPath):
         return replace(limb, stroke=0.0, lift=0.0)
-    return Held(angles=(limb.down,)) if isinstance(limb, Sweep) else limb
+    return FixedLimbs(angles=(limb.down,)) if isinstance(limb, Sweep) else limb
 
 
 def _strode(limb: Limbs, fraction: float) -> Limbs:
@@ -332,11 +332,11 @@ def _of_limbs(kind: type[FootPath] | type[Sweep], name: str, unit: str, descript
     return Number(unit, description, lambda gait: bool(matching_limbs(gait)), current_number, write)
 
 
-def _yaw_of(gait: Gait, region: Part) -> list[Bend]:
+def _yaw_of(gait: Gait, region: AxisRegion) -> list[Bend]:
     return [bend for bend in gait.axis if bend.turn == "yaw" and bend.part == region]
 
 
-def _bend_of(region: Part, description: str) -> Number:
+def _bend_of(region: AxisRegion, description: str) -> Number:
     """Return the amplitude of a part's lateral bend: the mean of its knots, which keep their proportion."""
 
     def current_amplitude(gait: Gait) -> float:
@@ -359,12 +359,12 @@ def _bend_of(region: Part, description: str) -> Number:
     return Number("rad", description, lambda gait: bool(_yaw_of(gait, region)), current_amplitude, write)
 
 
-def _first_lag(gait: Gait, *parts: Part) -> float:
+def _first_lag(gait: Gait, *parts: AxisRegion) -> float:
     """Return the phase lag of the first lateral bend of some parts behind the limbs [cycle]."""
     return next((float(bend.lag[0]) for bend in gait.axis if bend.turn == "yaw" and bend.part in parts), 0.0)
 
 
-def _with_lag(gait: Gait, extra_lag: float, *parts: Part) -> Gait:
+def _with_lag(gait: Gait, extra_lag: float, *parts: AxisRegion) -> Gait:
     """Return a gait whose lateral bends of some regions lag more.
 
     Args:
@@ -397,7 +397,7 @@ def _with_tail_lag(gait: Gait, value: float) -> Gait:
     return _with_lag(gait, value - _tail_lag(gait), "tail")
 
 
-def _has_yaw(gait: Gait, *parts: Part) -> bool:
+def _has_yaw(gait: Gait, *parts: AxisRegion) -> bool:
     return any(bend.turn == "yaw" and (not parts or bend.part in parts) for bend in gait.axis)
 
 
@@ -416,11 +416,11 @@ def _with_waves(gait: Gait, value: float) -> Gait:
     return replace(gait, axis=tuple(stretched_bend(bend) for bend in gait.axis))
 
 
-def _steady(gait: Gait, region: Part, turn: Turn) -> float:
+def _steady(gait: Gait, region: AxisRegion, turn: Turn) -> float:
     return sum(bend.offset for bend in gait.axis if bend.turn == turn and bend.part == region)
 
 
-def _with_steady(gait: Gait, region: Part, turn: Turn, value: float) -> Gait:
+def _with_steady(gait: Gait, region: AxisRegion, turn: Turn, value: float) -> Gait:
     """Return a gait with another steady bend of a region, in its first bend or in an additional one.
 
     Args:

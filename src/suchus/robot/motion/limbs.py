@@ -15,7 +15,7 @@ from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.kinematics.limb import PlainLeg
 from suchus.robot.motion.gait import Gait
-from suchus.robot.motion.parts import FootPath, Held, Limbs, Sweep
+from suchus.robot.motion.parts import FixedLimbs, FootPath, Limbs, Sweep
 
 _PICOMETRE = 12  # decimals of a metre to which lengths are rounded, so that fractions of a reach give round numbers
 # distance inside its reach to which a foot is drawn: [m] for a leg, [reach] for other limbs
@@ -244,14 +244,14 @@ def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> Non
     robot = place.robot
     drives = [hinge.drive for hinge in girdle.limb.hinges]
     cranks = len(drives) == 1 and isinstance(drives[0], Crank)
-    if cranks != isinstance(limb, Sweep) and not isinstance(limb, Held):
+    if cranks != isinstance(limb, Sweep) and not isinstance(limb, FixedLimbs):
         raise OutsideLimits(
             f"gait {gait.name!r} {_MOVES[type(limb)]}; limbs L{girdle.name} and R{girdle.name} of robot {robot.name!r} "
             f"{'are' if cranks else 'are not'} cranks: choose a gait made for it, or leave the gait out for the "
             "robot's own."
         )
     servo_count = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
-    if isinstance(limb, Held) and len(limb.angles) > servo_count:
+    if isinstance(limb, FixedLimbs) and len(limb.angles) > servo_count:
         raise OutsideLimits(
             f"gait {gait.name!r} holds {len(limb.angles)} angles of girdle {girdle.name}; its limbs have {servo_count} "
             "servos: give one for each."
@@ -291,7 +291,7 @@ def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Cran
         return None
     limbs: list[Any] = [gait.limbs[number] for gait in gaits]
     girdle = robot.girdles[number]
-    if isinstance(limbs[0], Held):
+    if isinstance(limbs[0], FixedLimbs):
         servos = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
         return np.array([(*limb.angles, *(0.0,) * (servos - len(limb.angles))) for limb in limbs])
     if isinstance(limbs[0], Sweep):

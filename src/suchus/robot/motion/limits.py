@@ -10,7 +10,7 @@ from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion.axis import at_knot, yaw_hinges
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.movement import Movement, cycle_targets, movement
-from suchus.robot.motion.parts import MOST_ANGLES, Bend, Curve, Part, ServoPart
+from suchus.robot.motion.parts import MAX_ANGLES, AxisRegion, Bend, Curve, ServoPart
 
 SAMPLES = 128
 """Looks over a cycle [-]."""
@@ -88,7 +88,7 @@ def suits(robot: Robot, gait: Gait) -> bool:
     return True
 
 
-def shortest_period(robot: Robot, gait: Gait) -> tuple[float, str]:
+def min_gait_period(robot: Robot, gait: Gait) -> tuple[float, str]:
     """Return the period below which a servo would have to turn faster than it can [s], and which servo that is.
 
     Args:
@@ -109,7 +109,7 @@ def check_speeds(robot: Robot, gait: Gait) -> None:
     Raises:
         OutsideLimits: a servo is too slow; the message names it and the shortest period.
     """
-    min_period, servo = shortest_period(robot, gait)
+    min_period, servo = min_gait_period(robot, gait)
     if min_period > gait.period:
         limit = robot.servo(servo).speed
         raise OutsideLimits(
@@ -119,7 +119,7 @@ def check_speeds(robot: Robot, gait: Gait) -> None:
 
 
 @lru_cache(maxsize=256)
-def longest_strokes(robot: Robot, gait: Gait) -> float:
+def max_stroke_factor(robot: Robot, gait: Gait) -> float:
     """Return the greatest factor on a gait's strokes that a robot's limbs can follow, up to 8 [-]."""
     if not gait.has("strokes"):
         return 1.0
@@ -177,7 +177,7 @@ def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
     Raises:
         OutsideLimits: the robot cannot follow it.
     """
-    samples = min(samples, MOST_ANGLES)
+    samples = min(samples, MAX_ANGLES)
     clock = np.arange(samples) / samples
     servo_curves = zip(layout(robot).servos, cycle_targets(robot, gait, clock).T, strict=True)
     short_curves = {name: curve[:1] if np.ptp(curve) < 1e-9 else curve for name, curve in servo_curves}
@@ -211,10 +211,10 @@ def servo_parts(robot: Robot) -> dict[str, ServoPart]:
     return parts
 
 
-def divided(robot: Robot, gait: Gait) -> Gait:
+def divide_axis(robot: Robot, gait: Gait) -> Gait:
     """Return a gait whose bends of the whole axis are split into neck, trunk and tail, with a knot for each hinge."""
     hinges, axis = yaw_hinges(robot), []
-    parts: tuple[Part, ...] = ("neck", "trunk", "tail")
+    parts: tuple[AxisRegion, ...] = ("neck", "trunk", "tail")
     for bend in gait.axis:
         if bend.part != "axis" or bend.turn != "yaw":
             axis.append(bend)

@@ -20,7 +20,7 @@ from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion.axis import Waves, pitch_hinges, yaw_hinges
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.limbs import LimbMotion, Steer, check_limbs, girdles, quarter
-from suchus.robot.motion.parts import FootPath, Part
+from suchus.robot.motion.parts import AxisRegion, FootPath
 
 START = CRAWL_START
 """A robot stands still until then, so that it has settled on the ground [s]."""
@@ -126,7 +126,7 @@ class Movement:
         start = self.axis_of_clock(np.zeros(len(self.gaits)))
         return np.asarray(self.yaw.swing * start[:, None] / self.yaw.share)
 
-    def bend_of(self, region: Part, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
+    def bend_of(self, region: AxisRegion, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
         """Return how far a part bends sideways, left positive, measured curves aside [rad]."""
         return self.yaw.whole(self.yaw.hinges.within(region), self.yaw.bends(axis))
 
@@ -268,14 +268,14 @@ class Batch:
             targets[runs] = movement.targets(limbs[runs], axis[runs], run_steer)
         return targets
 
-    def bend_of(self, region: Part, axis: Complex[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
+    def bend_of(self, region: AxisRegion, axis: Complex[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
         """Return how far a part of each run bends sideways, left positive [rad]."""
         bend = np.zeros(len(axis))
         for movement, runs in self.groups:
             bend[runs] = movement.bend_of(region, axis[runs])
         return bend
 
-    def together(self, region: Part) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+    def together(self, region: AxisRegion) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return swing and steady bend of a part of each run: its bend is ``steady + Re(swing z)`` [rad]."""
         swing, steady = np.zeros(len(self.periods), dtype=complex), np.zeros(len(self.periods))
         for movement, runs in self.groups:

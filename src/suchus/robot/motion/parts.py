@@ -12,12 +12,12 @@ from jaxtyping import Float
 
 from suchus.core.checks import Checks
 
-MOST_ANGLES = 1000
+MAX_ANGLES = 1000
 """Samples of a curve at most."""
-MOST_KNOTS = 100
+MAX_KNOTS = 100
 """Numbers along a part of the axis at most."""
 
-Part = Literal["neck", "trunk", "tail", "axis"]
+AxisRegion = Literal["neck", "trunk", "tail", "axis"]
 """A part of the axis: ahead of the foremost limbs, from there to the root, behind the root, or all of it.
 
 A body without limbs has no neck: what lies ahead of its root is trunk.
@@ -75,14 +75,14 @@ class Sweep:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Held:
+class FixedLimbs:
     """Limbs that are held still, as when a salamander swims."""
 
     angles: tuple[float, ...]
     """One for each servo of a limb, or those of its first servos; the others are held at 0 [rad]."""
 
 
-Limbs = FootPath | Sweep | Held
+Limbs = FootPath | Sweep | FixedLimbs
 """The movement of a pair of limbs."""
 
 
@@ -97,7 +97,7 @@ class Bend:
     place, so that the part bends alike on every body.
     """
 
-    part: Part
+    part: AxisRegion
     """Part of the axis that bends."""
     turn: Turn = "yaw"
     """Sideways or up and down."""
@@ -114,8 +114,8 @@ class Bend:
             for name, limit, unit in (("amplitude", 100 * pi, "rad"), ("lag", 100.0, "cycle")):
                 row = getattr(self, name)
                 check.that(
-                    1 <= len(row) <= MOST_KNOTS and all(-limit <= value <= limit for value in row),
-                    f"bend.{name} is {str(row)[:80]}; 1 to {MOST_KNOTS} numbers of {-limit:g} to {limit:g} {unit} are "
+                    1 <= len(row) <= MAX_KNOTS and all(-limit <= value <= limit for value in row),
+                    f"bend.{name} is {str(row)[:80]}; 1 to {MAX_KNOTS} numbers of {-limit:g} to {limit:g} {unit} are "
                     "needed",
                 )
 
@@ -134,8 +134,8 @@ class Curve:
     def __post_init__(self) -> None:
         with Checks(f"curve {self.servo}", self) as check:
             check.that(
-                1 <= len(self.angles) <= MOST_ANGLES,
-                f"curve {self.servo} has {len(self.angles)} angles; 1 to {MOST_ANGLES} are allowed",
+                1 <= len(self.angles) <= MAX_ANGLES,
+                f"curve {self.servo} has {len(self.angles)} angles; 1 to {MAX_ANGLES} are allowed",
             )
             invalid_angle = next((angle for angle in self.angles if not abs(angle) <= 2 * pi), None)
             check.that(

@@ -20,7 +20,7 @@ from suchus.robot.design.measures import LegMeasures, leg_of
 from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.kinematics.tree import centre_of_mass
 
-SETTLING = 12
+BALANCE_ITERATIONS = 12
 """Rounds that bring the centre of mass to its place [-]; each leaves a tenth of the error, since the legs are light."""
 _REACH_MARGIN = 1e-6  # [m]; distance inside its reach to which a leg is clipped
 
@@ -224,7 +224,7 @@ def plan(robot: Robot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Pl
     )
 
 
-def mass_ahead(robot: Robot, posture: Posture, feet_ahead: float) -> float:
+def mass_forward_of_hips(robot: Robot, posture: Posture, feet_ahead: float) -> float:
     """Return how far the centre of mass lies ahead of the hips in a posture [m], whatever its own ``lead``.
 
     Args:
@@ -301,7 +301,7 @@ def _balance(robot: Robot, keys: np.ndarray) -> np.ndarray:
         keys: numbers of the posture at each key, shape (key, number).
     """
     feet_forward = keys[:, FIELDS.index("lead")]
-    for _ in range(SETTLING):
+    for _ in range(BALANCE_ITERATIONS):
         com = mass_from_hips(robot, _angles(robot, _fields_by_name(keys), feet_forward, clip=True))
         feet_forward = _forward_in_world(keys[:, FIELDS.index("pelvis_pitch")], com) + keys[:, FIELDS.index("lead")]
     return np.asarray(feet_forward)
@@ -336,7 +336,7 @@ def _angles(
         ) from error
     for hinges in chains.standing:
         angles[..., hinges] = legs
-    angles[..., list(chains.trunk)] = bent_up(chains, parameters["trunk_first"], parameters["trunk_second"])
+    angles[..., list(chains.trunk)] = trunk_angles(chains, parameters["trunk_first"], parameters["trunk_second"])
     angles[..., chains.tail] = np.clip(
         tail_down(chains, parameters["hip_height"], parameters["pelvis_pitch"], parameters["tail_press"]),
         *chains.tail_range,
@@ -344,7 +344,7 @@ def _angles(
     return angles
 
 
-def bent_up(
+def trunk_angles(
     chains: Upright, first_angle: Float[np.ndarray, "*batch"], second_angle: Float[np.ndarray, "*batch"]
 ) -> Float[np.ndarray, "*batch hinge"]:
     """Return the angles of the trunk's pitch hinges, from the root forward [rad]; see ``Posture.trunk_second``.

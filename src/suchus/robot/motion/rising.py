@@ -13,11 +13,11 @@ from suchus.robot.motion.posture import (
     Keyed,
     Posture,
     belly,
-    bent_up,
     hind_leg,
-    mass_ahead,
+    mass_forward_of_hips,
     mass_from_hips,
     tail_down,
+    trunk_angles,
     upright,
 )
 
@@ -83,7 +83,7 @@ def stand_up(
     bent_posture = replace(level, trunk_first=radians(50), trunk_second=radians(40), tail_press=press, **_ARMS_RAISED)
     feet_forward = _feet_ahead(robot, level)
     lead_level, lead_bent = (
-        feet_forward - mass_ahead(robot, posture, feet_forward) for posture in (level, bent_posture)
+        feet_forward - mass_forward_of_hips(robot, posture, feet_forward) for posture in (level, bent_posture)
     )
     raised_fields = {"stance": stance, "lift": 0.0, **_ARMS_RAISED}
     postures = (
@@ -124,10 +124,10 @@ def _feet_ahead(robot: Robot, level: Posture) -> float:
     length = leg.femur + leg.tibia
     down = level.hip_height - leg.foot_radius
     max_forward = np.sqrt((_NOT_QUITE * length) ** 2 - down**2 - level.stance**2)
-    return float(min(mass_ahead(robot, level, max_forward) + 0.17 * length, max_forward))
+    return float(min(mass_forward_of_hips(robot, level, max_forward) + 0.17 * length, max_forward))
 
 
-def stretched(robot: Robot) -> float:
+def stretched_length(robot: Robot) -> float:
     """Return the length of hind leg, trunk and head in a straight line [m], an upper bound of the snout's height."""
     chains, straight = upright(robot), np.zeros(len(layout(robot).hinges))
     snout_forward = float(landmarks(robot, straight).snout[0]) - chains.hips[0]
@@ -148,7 +148,7 @@ def cantilever_torque(robot: Robot) -> float:
     return float(GRAVITY * np.sum((masses * forward + moments[:, 0])[is_lifted]))
 
 
-def tallest(
+def max_snout_height(
     robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float | None = None
 ) -> Float[np.ndarray, "*batch"]:
     """Return how high the snout can be while the centre of mass lies ``lead`` behind the feet [m].
@@ -171,7 +171,7 @@ def tallest(
     for arm in chains.arms:
         for hinge, name in zip(arm, ("arm_yaw", "arm_pitch", "arm_knee"), strict=False):
             angles[:, hinge] = _ARMS_RAISED[name]
-    angles[:, list(chains.trunk)] = bent_up(chains, first_angles, second_angles)
+    angles[:, list(chains.trunk)] = trunk_angles(chains, first_angles, second_angles)
     s, c = np.sin(pitch), np.cos(pitch)
     heights = []
     for shift in np.ravel(lead):

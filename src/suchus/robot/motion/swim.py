@@ -11,13 +11,13 @@ from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Limb, Robot, layout
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.motion.gait import Gait
-from suchus.robot.motion.parts import Bend, Held, Part
+from suchus.robot.motion.parts import AxisRegion, Bend, FixedLimbs
 
 LIMBS_BACK = (-np.pi / 2, -0.15)
 """Yaw, forward positive, and pitch, down positive, of limbs that lie back along the body as it swims [rad]."""
 LIMBS_UP = (-np.pi / 2, -0.3)
 """Those of limbs that point up to the surface: foam on them keeps the body upright [rad]."""
-_PARTS: tuple[Part, ...] = ("neck", "trunk", "tail")
+_PARTS: tuple[AxisRegion, ...] = ("neck", "trunk", "tail")
 
 
 def lateral_servos(robot: Robot) -> tuple[str, ...]:
@@ -31,7 +31,7 @@ def limbs_back(robot: Robot) -> Float[np.ndarray, " joint"]:
     place = layout(robot)
     angles = np.zeros(len(place.hinges))
     for limb in place.limbs:
-        back = held(limb.girdle.limb, LIMBS_BACK).angles
+        back = hold_limb(limb.girdle.limb, LIMBS_BACK).angles
         angles[limb.hinges.start : limb.hinges.start + len(back)] = back
     return angles
 
@@ -89,12 +89,12 @@ def swimming_gait(
         name=name,
         period=1.0 / frequency,
         limb_phases=(0.0,) * len(place.limbs),
-        limbs=tuple(held(girdle.limb, limbs) for girdle in robot.girdles),
+        limbs=tuple(hold_limb(girdle.limb, limbs) for girdle in robot.girdles),
         axis=tuple(axis),
     )
 
 
-def still(robot: Robot, *, frequency: float = 1.0, limbs: tuple[float, float] = LIMBS_BACK) -> Gait:
+def straight_gait(robot: Robot, *, frequency: float = 1.0, limbs: tuple[float, float] = LIMBS_BACK) -> Gait:
     """Return the swimming gait that is none: a straight axis, limbs held back; see ``swimming_gait``."""
     zeros = (0.0,) * len(lateral_servos(robot))
     return swimming_gait(robot, name="still", frequency=frequency, amplitude=zeros, lag=zeros, limbs=limbs)
@@ -102,14 +102,14 @@ def still(robot: Robot, *, frequency: float = 1.0, limbs: tuple[float, float] = 
 
 def with_limbs(robot: Robot, gait: Gait, limbs: tuple[float, float]) -> Gait:
     """Return a gait whose limbs are held at other angles, yaw and pitch as in ``swimming_gait`` [rad]."""
-    return replace(gait, limbs=tuple(held(girdle.limb, limbs) for girdle in robot.girdles))
+    return replace(gait, limbs=tuple(hold_limb(girdle.limb, limbs) for girdle in robot.girdles))
 
 
 def _knots(values: tuple[float, ...]) -> tuple[float, ...]:
     return values[:1] if len({*values}) == 1 else values
 
 
-def held(limb: Limb, angles: tuple[float, float]) -> Held:
+def hold_limb(limb: Limb, angles: tuple[float, float]) -> FixedLimbs:
     """Return a limb held at a yaw and a pitch within its ranges, all other joints as near to 0 as they go [rad].
 
     Args:
@@ -122,7 +122,7 @@ def held(limb: Limb, angles: tuple[float, float]) -> Held:
         if turn in turns:
             row[turns.index(turn)] = angle
     ranges = [hinge.range or (-np.pi, np.pi) for hinge in driven_hinges]
-    return Held(
+    return FixedLimbs(
         angles=tuple(
             float(min(max(angle, lower_bound), upper_bound))
             for angle, (lower_bound, upper_bound) in zip(row, ranges, strict=True)

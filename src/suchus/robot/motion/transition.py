@@ -14,9 +14,9 @@ from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.limbs import Steer
 from suchus.robot.motion.movement import movement
 
-MEETING = 0.090 / LIMB_REACH
+MIN_TRANSITION_HEIGHT = 0.090 / LIMB_REACH
 """Least height of the hips at which limbs change their posture [limb reach]: a folded limb needs room."""
-RAISED = 0.2
+LIFT_HEIGHT = 0.2
 """How high limbs are lifted while they turn [reach of the hindmost limb]."""
 _TIMES = (0.6, 0.3, 0.5, 0.3, 0.3, 0.5, 0.3, 0.7)  # durations between keys [s]
 _LENGTH = 1.01  # length of the body for which the times are [m]
@@ -70,11 +70,11 @@ def transition(robot: Robot, old_gait: Gait, new_gait: Gait, *, slower: float = 
         [(phase - old_gait.limb_phases[0] + 0.25) % 1.0 < 0.5 for phase in old_gait.limb_phases], dtype=bool
     )
     reach = place.limbs[-1].girdle.limb.reach if place.limbs else 0.0
-    height = max(MEETING, min(old_gait.height, new_gait.height))
+    height = max(MIN_TRANSITION_HEIGHT, min(old_gait.height, new_gait.height))
     old, new = replace(old_gait, height=height), replace(new_gait, height=height)
 
     def standing(gait: Gait, lifted: np.ndarray) -> np.ndarray:
-        steer = Steer(size=0.0, lower=-RAISED * reach * lifted[None])
+        steer = Steer(size=0.0, lower=-LIFT_HEIGHT * reach * lifted[None])
         phase = np.full((1, len(place.limbs)), _STANDING)
         return np.asarray(movement(robot, gait).targets(phase, np.zeros(1, dtype=complex), steer)[0])
 

@@ -29,7 +29,7 @@ ARMS_TUCKED = (0.2, -0.3, 1.2)
 _CHUNK = 2**15
 
 
-class Reached(NamedTuple):
+class Configurations(NamedTuple):
     """Configurations that were kept; the world's origin lies on the ground midway between the hind feet, x forward."""
 
     snout: Float[np.ndarray, "n 3"]
@@ -42,7 +42,7 @@ class Reached(NamedTuple):
     """Number of postures that were drawn [-]."""
 
 
-def reached(robot: Robot, gait: Gait, *, standing: bool, count: int, seed: int = 0) -> Reached:
+def sample_configurations(robot: Robot, gait: Gait, *, standing: bool, count: int, seed: int = 0) -> Configurations:
     """Return configurations of a robot that keeps its feet where they are.
 
     Hind feet, and on all fours front feet, stand where they stand in the middle of the gait's stance with the trunk
@@ -63,7 +63,7 @@ def reached(robot: Robot, gait: Gait, *, standing: bool, count: int, seed: int =
         _feasible(robot, metres, samples[start : start + _CHUNK], standing) for start in range(0, len(samples), _CHUNK)
     ]
     snout, angles, pelvis = (np.concatenate(fields) for fields in zip(*parts, strict=True))
-    return Reached(snout, angles, pelvis, len(samples))
+    return Configurations(snout, angles, pelvis, len(samples))
 
 
 def _box(robot: Robot, standing: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -124,7 +124,7 @@ def _feasible(
         if standing
         else [feet[:, LEGS.index(name)] for name in ("LF", "LH", "RH", "RF")]
     )
-    upright = over(com[:, :2], np.stack(corners, axis=1)[..., :2]) & (snout[:, 2] >= robot.head.height / 2)
+    upright = is_inside(com[:, :2], np.stack(corners, axis=1)[..., :2]) & (snout[:, 2] >= robot.head.height / 2)
     return snout[upright], angles[upright], pelvis[upright]
 
 
@@ -195,7 +195,7 @@ def _to_world(pelvis: np.ndarray, points: np.ndarray) -> np.ndarray:
     return origin[:, None] + np.einsum("nij,npj->npi", turn, points)
 
 
-def over(point: Float[np.ndarray, "n 2"], corners: Float[np.ndarray, "n corner 2"]) -> Bool[np.ndarray, " n"]:
+def is_inside(point: Float[np.ndarray, "n 2"], corners: Float[np.ndarray, "n corner 2"]) -> Bool[np.ndarray, " n"]:
     """Return whether a point lies in a convex polygon whose corners go around anticlockwise, seen from above."""
     edges = np.roll(corners, -1, axis=1) - corners
     offsets = point[:, None] - corners

@@ -20,20 +20,20 @@ class RelativeSize(NamedTuple):
 def _read_robot(path: Path) -> Robot:
     from suchus.robot import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
-    robot: Robot = blueprint.read(path, Robot, ROBOTS)
+    robot: Robot = blueprint.read_design(path, Robot, ROBOTS)
     return robot
 
 
 ROBOTS: Catalog[Any] = Catalog(
-    "robot", "suchus.robot.robots", "suchus.robot.design:Robot", named=attrgetter("name"), read=_read_robot
+    "robot", "suchus.robot.robots", "suchus.robot.design:Robot", name_of=attrgetter("name"), read_file=_read_robot
 )
 """Robots by name."""
 
 
-def beside_article(robot: Robot) -> RelativeSize:
+def size_relative_to_article(robot: Robot) -> RelativeSize:
     """Return the size of a robot over that of the article's robot."""
     article = ROBOTS["caiman"]
     return RelativeSize(robot.length / article.length, robot.mass / article.mass)
 
 
-__all__ = ["ROBOTS", "RelativeSize", "beside_article"]
+__all__ = ["ROBOTS", "RelativeSize", "size_relative_to_article"]

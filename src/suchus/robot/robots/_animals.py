@@ -9,7 +9,7 @@ from math import pi, sqrt
 from suchus.robot.design import Robot, Rod, Segment, Servo
 from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.pieces import volumes
-from suchus.robot.design.scale import scaled, swim_servo_for
+from suchus.robot.design.scale import rescale, swim_servo_for
 from suchus.robot.robots.salamander import robot as _salamander
 
 _CATSHARK_JOINTS = tuple(0.14 + 0.79 * i / 11 for i in range(12))
@@ -29,7 +29,7 @@ def pleurodeles(length: float, mass: float, density: float, keel: float, *, beat
         keel: share of the mass of each part of the axis that lies low [-].
         beat: frequency of the swim for which its joints are stiff enough [Hz].
     """
-    animal = scaled(_salamander, length_factor=length / _salamander.length, mass_factor=mass / _salamander.mass)
+    animal = rescale(_salamander, length_factor=length / _salamander.length, mass_factor=mass / _salamander.mass)
     animal = replace(
         animal, axis=tuple(_with_stiff_hinges(segment, swim_servo_for(mass, length, beat)) for segment in animal.axis)
     )

@@ -5,12 +5,12 @@ A number without a source beside it is chosen: ``chosen`` says why, and how far 
 
 from math import pi, radians
 
-from suchus.robot.design import Chosen, Contact, Head, Leg, Pelvis, Servo, Spine, Tables, Tail, Thorax, crocodile
+from suchus.robot.design import Assumption, Contact, Head, Leg, Pelvis, Servo, Spine, Tables, Tail, Thorax, crocodile
 from suchus.robot.motors import motor
 
 _servo = Servo.of(
     motor("STS3250"),
-    like=Servo(
+    template=Servo(
         kp=40.0,
         ki=0.0,
         kd=0.6,
@@ -222,8 +222,8 @@ _ROWS: tuple[_Row, ...] = (
     ("contact.skin_friction", 0.2, 0.6, "plastic on a floor"),
     ("contact.time_constant", 0.01, 0.03, "a rubber sole; displacement within 1 % over the range"),
 )
-chosen = tuple(
-    Chosen(field=field, low=lower_bound, high=upper_bound, why=reason)
+assumptions = tuple(
+    Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
     for field, lower_bound, upper_bound, reason in _ROWS
 )
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

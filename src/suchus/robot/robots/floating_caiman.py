@@ -4,14 +4,14 @@ from dataclasses import replace
 
 from suchus.robot.design import crocodile
 from suchus.robot.design.flotation import float_hull
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.kinematics.trim import level_chambers
 from suchus.robot.motion import limbs_back
 from suchus.robot.robots import caiman
 
 _FREEBOARD, _FOAM_OFFSET, _AIR = 0.05, 0.016, 0.0004
 
-_hull = float_hull(caiman.robot, above=_FREEBOARD, raised=_FOAM_OFFSET, air=_AIR)
+_hull = float_hull(caiman.robot, freeboard_fraction=_FREEBOARD, foam_offset=_FOAM_OFFSET, air=_AIR)
 _buoyant_robot = crocodile(replace(caiman.tables, name="floating_caiman", hull=_hull))
 _chambers = level_chambers(_buoyant_robot, limbs_back(_buoyant_robot), front="thorax", rear="pelvis")
 tables = replace(caiman.tables, name="floating_caiman", hull=replace(_hull, chambers=_chambers))
@@ -26,5 +26,5 @@ _REASONS = (
     Reason(r"^hull\.chambers\[\d+\]\.share$", 0.9, 1.1, "level at neutral buoyancy, its limbs back"),
     Reason(r"^hull\.air$", 0.5, 1.2, "a tenth of the volume let out brings the feet down on a steep shore"),
 )
-chosen = (*caiman.chosen, *chosen_numbers(robot, _REASONS, (r"^(?!hull\.)",)))
+assumptions = (*caiman.assumptions, *assumptions_of(robot, _REASONS, (r"^(?!hull\.)",)))
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

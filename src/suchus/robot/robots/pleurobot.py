@@ -3,7 +3,7 @@
 from math import radians
 
 from suchus.robot.design import Robot
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.design.scale import contact_for, servo_for
 from suchus.robot.robots._plans import BY_SIZE, Joint, girdle, limb, row
 
@@ -68,5 +68,5 @@ _REASONS = (
     Reason(r"^girdles\[\d\]\.(at|aside|above)$", 0.7, 1.3, "hips beside the girdles' servos"),
 )
 _PUBLISHED = (r"^girdles.*\.end\[1\]$",)
-chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
+assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the publication does not give, with its plausible range and the reason."""

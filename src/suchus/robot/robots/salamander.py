@@ -5,7 +5,7 @@ from math import radians
 
 from suchus.robot.design import Robot, Spring
 from suchus.robot.design.physics import GRAVITY
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.design.scale import contact_for, gravity_time, servo_for
 from suchus.robot.robots._plans import BY_SIZE, Joint, girdle, limb, row
 
@@ -89,5 +89,5 @@ _PUBLISHED = (
     r"\.foot\.radius$",
     r"^girdles.*\.end\[",
 )
-chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
+assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the model does not give, with its plausible range and the reason."""

@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import cos, radians, sin
 
 from suchus.robot.design import Crank, Foot, Hinge, Limb, Link, Robot
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.design.scale import contact_for, servo_for
 from suchus.robot.robots._plans import BY_SIZE, Joint, girdle, row
 
@@ -74,5 +74,5 @@ _PUBLISHED = (
     r"\.foot\.radius$",
     r"^girdles.*\.end\[",
 )
-chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
+assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the public model does not give, with its plausible range and the reason."""

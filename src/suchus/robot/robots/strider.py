@@ -3,7 +3,7 @@
 from math import radians
 
 from suchus.robot.design import Robot
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.design.scale import contact_for, servo_for
 from suchus.robot.robots._plans import BY_SIZE, girdle, limb, row
 
@@ -43,5 +43,5 @@ _REASONS = (
     ),
     Reason(r"^girdles\[\d\]\.(at|aside|above)$", 0.7, 1.4, "hips beside the body, in the middle of each segment"),
 )
-chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE))
+assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE))
 """Every number, with its plausible range and the reason: the robot is invented."""

@@ -5,7 +5,7 @@ from math import radians
 from suchus.robot.design import Hinge, Robot, Rod, Segment, Servo, Shell
 from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import volumes
-from suchus.robot.design.reasons import Reason, chosen_numbers
+from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.design.scale import contact_for, servo_for
 from suchus.robot.robots._plans import BY_SIZE
 
@@ -80,5 +80,5 @@ _REASONS = (
     Reason(r"\.mass$", 0.9, 1.1, "together they float with a twentieth of their volume above the water, batteries low"),
 )
 _PUBLISHED = (r"^axis\[\d+\]\.(front|rear)$", r"\.half\[[12]\]$")
-chosen = chosen_numbers(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
+assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the public models do not give, with its plausible range and the reason."""

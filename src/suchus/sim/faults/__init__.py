@@ -32,7 +32,7 @@ __all__ = [
 ]
 
 FAULTS: Catalog[type[Fault]] = Catalog(
-    "fault", "suchus.sim.faults", "suchus.sim.fault:Fault", classes=True, named=methodcaller("kind")
+    "fault", "suchus.sim.faults", "suchus.sim.fault:Fault", classes=True, name_of=methodcaller("kind")
 )
 """The kinds of fault by name."""
 

@@ -17,7 +17,20 @@ import numpy as np
 from suchus.robot.design.water_table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
 from suchus.sim.hydro import lanes
 from suchus.sim.hydro.lanes import WaterProperties
-from suchus.sim.hydro.vectors import Vector, blend, compiled, cross, dot, lane, part, plus, put, three, times, turned
+from suchus.sim.hydro.vectors import (
+    Vector,
+    blend,
+    compile_inline,
+    compile_kernel,
+    cross,
+    dot,
+    lane,
+    plus,
+    three,
+    times,
+    to_world,
+    write_lane,
+)
 
 _TURBULENT = 5e5
 """Reynolds number from which a plate's turbulent friction counts [-]."""
@@ -38,7 +51,7 @@ _SERIES = (
 """(asin(x) / x - 1) / x^2 as a polynomial of x^2 up to 1/4, by interpolation at Chebyshev's points."""
 
 
-@part
+@compile_inline
 def immersed(kind: float, depth: float) -> tuple[float, float]:
     """Return the share of a unit shape under a plane, and its first moment along the plane's normal.
 
@@ -57,7 +70,7 @@ def immersed(kind: float, depth: float) -> tuple[float, float]:
     )
 
 
-@part
+@compile_inline
 def _arcsine(x: float) -> float:
     """Return the arc sine, to a few units in the last place; the library's would keep a loop from being vectorised."""
     size = abs(x)
@@ -81,7 +94,7 @@ def _arcsine(x: float) -> float:
     return angle if x > 0.0 else -angle
 
 
-@compiled
+@compile_kernel
 def hydrostatic(
     table: np.ndarray,
     xpos: np.ndarray,
@@ -105,8 +118,8 @@ def hydrostatic(
     sums, vertical = np.zeros(5), three(up_axis, 0)
     for row in table:
         body = int(row[0])
-        axes = turned(xmat[body], row, 5), turned(xmat[body], row, 8), turned(xmat[body], row, 11)
-        centre = plus(three(xpos[body], 0), turned(xmat[body], row, 2))
+        axes = to_world(xmat[body], row, 5), to_world(xmat[body], row, 8), to_world(xmat[body], row, 11)
+        centre = plus(three(xpos[body], 0), to_world(xmat[body], row, 2))
         ua, ub, ut = (
             row[14] * dot(vertical, axes[0]),
             row[15] * dot(vertical, axes[1]),
@@ -124,7 +137,7 @@ def hydrostatic(
     return sums
 
 
-@part
+@compile_inline
 def _orbit(user: np.ndarray, time: float, x: Vector, up_axis: Vector) -> tuple[float, Vector, Vector]:
     """Return the surface elevation of waves at a point [m], and velocity and acceleration of the water there.
 
@@ -149,21 +162,21 @@ def _orbit(user: np.ndarray, time: float, x: Vector, up_axis: Vector) -> tuple[f
     return height * c, moving, blend(omega * speed * s / number, wave, -omega * speed * c, up_axis, 0.0, zero)
 
 
-@part
+@compile_inline
 def place(table: np.ndarray, rows: np.ndarray) -> None:
     """Turn axes and centres of pieces from the frames of their bodies into the world."""
     for n in range(LANES):
         turn = lane(rows, lanes.TURN, n), lane(rows, lanes.TURN + 3, n), lane(rows, lanes.TURN + 6, n)
-        a, b = lane(table, lanes.ACROSS, n), lane(table, lanes.UPWARD, n)
-        t, centre = lane(table, lanes.FORWARD, n), lane(table, lanes.AT, n)
-        put(rows, lanes.E_A, n, (dot(turn[0], a), dot(turn[1], a), dot(turn[2], a)))
-        put(rows, lanes.E_B, n, (dot(turn[0], b), dot(turn[1], b), dot(turn[2], b)))
-        put(rows, lanes.E_T, n, (dot(turn[0], t), dot(turn[1], t), dot(turn[2], t)))
+        a, b = lane(table, lanes.AXIS_A, n), lane(table, lanes.AXIS_B, n)
+        t, centre = lane(table, lanes.AXIS_T, n), lane(table, lanes.CENTRE_IN_BODY, n)
+        write_lane(rows, lanes.E_A, n, (dot(turn[0], a), dot(turn[1], a), dot(turn[2], a)))
+        write_lane(rows, lanes.E_B, n, (dot(turn[0], b), dot(turn[1], b), dot(turn[2], b)))
+        write_lane(rows, lanes.E_T, n, (dot(turn[0], t), dot(turn[1], t), dot(turn[2], t)))
         centre = (dot(turn[0], centre), dot(turn[1], centre), dot(turn[2], centre))
-        put(rows, lanes.CENTRE, n, plus(lane(rows, lanes.ORIGIN, n), centre))
+        write_lane(rows, lanes.CENTRE, n, plus(lane(rows, lanes.ORIGIN, n), centre))
 
 
-@part
+@compile_inline
 def flow(rows: np.ndarray, user: np.ndarray, time: float, up_axis: Vector) -> None:
     """Write the surface elevation at each piece, and velocity and acceleration of the water there.
 
@@ -178,12 +191,12 @@ def flow(rows: np.ndarray, user: np.ndarray, time: float, up_axis: Vector) -> No
         elevation, stream, surge = 0.0, current, zero
         if wave:
             elevation, stream, surge = _orbit(user, time, lane(rows, lanes.CENTRE, n), up_axis)
-        rows[lanes.RAISED, n] = elevation
-        put(rows, lanes.STREAM, n, stream)
-        put(rows, lanes.SURGE, n, surge)
+        rows[lanes.ELEVATION, n] = elevation
+        write_lane(rows, lanes.STREAM, n, stream)
+        write_lane(rows, lanes.SURGE, n, surge)
 
 
-@part
+@compile_inline
 def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Write the depth of each piece below the surface, and its velocity relative to the water.
 
@@ -197,19 +210,19 @@ def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
         ua, ub, ut = dot(water.up, a), dot(water.up, b), dot(water.up, t)
         ua, ub, ut = table[lanes.HALF, n] * ua, table[lanes.HALF + 1, n] * ub, table[lanes.HALF + 2, n] * ut
         extent, centre = sqrt(ua * ua + ub * ub + ut * ut), lane(rows, lanes.CENTRE, n)
-        depth = (water.level + rows[lanes.RAISED, n] - dot(water.up, centre)) / extent
+        depth = (water.level + rows[lanes.ELEVATION, n] - dot(water.up, centre)) / extent
         rows[lanes.DEPTH, n] = depth
         arm = blend(table[lanes.HALF, n] * ua, a, table[lanes.HALF + 1, n] * ub, b, table[lanes.HALF + 2, n] * ut, t)
-        put(rows, lanes.ARM, n, times(1.0 / extent, arm))
+        write_lane(rows, lanes.ARM, n, times(1.0 / extent, arm))
         r = plus(centre, times(-1.0, lane(rows, lanes.REFERENCE, n)))
         v = plus(lane(rows, lanes.MOVING + 3, n), cross(lane(rows, lanes.MOVING, n), r))
         v = plus(v, times(-1.0, lane(rows, lanes.STREAM, n)))  # of the centre against the water
-        put(rows, lanes.FROM, n, r)
-        put(rows, lanes.AGAINST, n, v)
-        put(rows, lanes.SPEED, n, (dot(v, a), dot(v, b), dot(v, t)))
+        write_lane(rows, lanes.LEVER, n, r)
+        write_lane(rows, lanes.AGAINST, n, v)
+        write_lane(rows, lanes.SPEED, n, (dot(v, a), dot(v, b), dot(v, t)))
 
 
-@part
+@compile_inline
 def rub(rows: np.ndarray, water: WaterProperties) -> None:
     """Write the coefficient of turbulent friction of each piece; 0 below the critical Reynolds number."""
     per_speed = water.length / water.viscosity
@@ -220,7 +233,7 @@ def rub(rows: np.ndarray, water: WaterProperties) -> None:
         rows[lanes.TURBULENT, n] = friction
 
 
-@part
+@compile_inline
 def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Write the load of the water on each piece: force, couple about the point of reference, submerged volume.
 
@@ -240,7 +253,7 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
             lane(rows, lanes.E_T, n),
             lane(rows, lanes.SPEED, n),
         )
-        r, omega, surge = lane(rows, lanes.FROM, n), lane(rows, lanes.MOVING, n), lane(rows, lanes.SURGE, n)
+        r, omega, surge = lane(rows, lanes.LEVER, n), lane(rows, lanes.MOVING, n), lane(rows, lanes.SURGE, n)
         # buoyancy and the pressure of the waves, at the centre of what is under water
         f = times(water.density * volume, plus(times(water.gravity, water.up), surge))
         torque = cross(times(moment / fraction, lane(rows, lanes.ARM, n)), f)
@@ -263,26 +276,26 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
         )
         torque = plus(torque, times(-dense * water.cross_drag * table[lanes.ROLL, n] * abs(roll) * roll, t))
         # momentum that is shed, where the tail ends and the water passes towards it
-        end = times(table[lanes.SHED_AT, n], t)
+        end = times(table[lanes.SHED_POSITION, n], t)
         end_velocity = plus(lane(rows, lanes.AGAINST, n), cross(omega, end))
         u, wa, wb = dot(end_velocity, t), dot(end_velocity, a), dot(end_velocity, b)
         momentum_flux = dense * water.added * water.shedding * max(u, 0.0)
-        pa, pb = momentum_flux * table[lanes.SHED, n] * wa, momentum_flux * table[lanes.SHED + 1, n] * wb
+        pa, pb = momentum_flux * table[lanes.SHED_MASS, n] * wa, momentum_flux * table[lanes.SHED_MASS + 1, n] * wb
         half = (
             0.5
             * dense
             * water.added
             * water.shedding
-            * (table[lanes.SHED, n] * wa * wa + table[lanes.SHED + 1, n] * wb * wb)
+            * (table[lanes.SHED_MASS, n] * wa * wa + table[lanes.SHED_MASS + 1, n] * wb * wb)
         )
         shed_force = blend(-pa, a, -pb, b, half if u > 0.0 else 0.0, t)
         torque = plus(plus(torque, cross(end, shed_force)), cross(r, plus(f, shed_force)))
-        put(rows, lanes.FORCE, n, plus(f, shed_force))
-        put(rows, lanes.FORCE - 3, n, torque)
-        rows[lanes.SHARE, n], rows[lanes.UNDER, n] = fraction, volume
+        write_lane(rows, lanes.FORCE, n, plus(f, shed_force))
+        write_lane(rows, lanes.FORCE - 3, n, torque)
+        rows[lanes.WET_FRACTION, n], rows[lanes.WET_VOLUME, n] = fraction, volume
 
 
-@part
+@compile_inline
 def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force.
 
@@ -292,28 +305,42 @@ def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> N
         water: its properties.
     """
     for n in range(LANES):
-        dense = water.density * rows[lanes.SHARE, n] * water.added
+        dense = water.density * rows[lanes.WET_FRACTION, n] * water.added
         a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
-        ma, mb, mt = dense * table[lanes.ADDED, n], dense * table[lanes.ADDED + 1, n], dense * table[lanes.ADDED + 2, n]
+        ma, mb, mt = (
+            dense * table[lanes.ADDED_MASS, n],
+            dense * table[lanes.ADDED_MASS + 1, n],
+            dense * table[lanes.ADDED_MASS + 2, n],
+        )
         tensor = (
             blend(ma * a[0], a, mb * b[0], b, mt * t[0], t),
             blend(ma * a[1], a, mb * b[1], b, mt * t[1], t),
             blend(ma * a[2], a, mb * b[2], b, mt * t[2], t),
         )  # rows of the tensor A
-        r, v, omega = lane(rows, lanes.FROM, n), lane(rows, lanes.AGAINST, n), lane(rows, lanes.MOVING, n)
+        r, v, omega = lane(rows, lanes.LEVER, n), lane(rows, lanes.AGAINST, n), lane(rows, lanes.MOVING, n)
         alpha, stream = lane(rows, lanes.BIAS, n), lane(rows, lanes.STREAM, n)
         p = dot(tensor[0], v), dot(tensor[1], v), dot(tensor[2], v)
         rate = plus(lane(rows, lanes.BIAS + 3, n), plus(cross(alpha, r), cross(omega, stream)))
         rate = plus(rate, times(-1.0, lane(rows, lanes.SURGE, n)))
         f = plus((dot(tensor[0], rate), dot(tensor[1], rate), dot(tensor[2], rate)), cross(omega, p))
         torque = plus(cross(v, p), cross(r, f))
-        put(rows, lanes.FORCE, n, plus(lane(rows, lanes.FORCE, n), times(-1.0, f)))
-        put(rows, lanes.FORCE - 3, n, plus(lane(rows, lanes.FORCE - 3, n), times(-1.0, torque)))
+        write_lane(rows, lanes.FORCE, n, plus(lane(rows, lanes.FORCE, n), times(-1.0, f)))
+        write_lane(rows, lanes.FORCE - 3, n, plus(lane(rows, lanes.FORCE - 3, n), times(-1.0, torque)))
         x, y, z = cross(r, tensor[0]), cross(r, tensor[1]), cross(r, tensor[2])  # rows: force by rotation
-        put(rows, lanes.MIXED, n, x)
-        put(rows, lanes.MIXED + 3, n, y)
-        put(rows, lanes.MIXED + 6, n, z)
-        put(rows, lanes.SPUN, n, (r[1] * z[0] - r[2] * y[0], r[2] * x[0] - r[0] * z[0], r[2] * x[1] - r[0] * z[1]))
-        put(rows, lanes.SPUN + 3, n, (r[0] * y[0] - r[1] * x[0], r[0] * y[1] - r[1] * x[1], r[0] * y[2] - r[1] * x[2]))
-        put(rows, lanes.PUSHED, n, (tensor[0][0], tensor[1][0], tensor[1][1]))
-        put(rows, lanes.PUSHED + 3, n, (tensor[2][0], tensor[2][1], tensor[2][2]))
+        write_lane(rows, lanes.COUPLING_INERTIA, n, x)
+        write_lane(rows, lanes.COUPLING_INERTIA + 3, n, y)
+        write_lane(rows, lanes.COUPLING_INERTIA + 6, n, z)
+        write_lane(
+            rows,
+            lanes.ROTATIONAL_INERTIA,
+            n,
+            (r[1] * z[0] - r[2] * y[0], r[2] * x[0] - r[0] * z[0], r[2] * x[1] - r[0] * z[1]),
+        )
+        write_lane(
+            rows,
+            lanes.ROTATIONAL_INERTIA + 3,
+            n,
+            (r[0] * y[0] - r[1] * x[0], r[0] * y[1] - r[1] * x[1], r[0] * y[2] - r[1] * x[2]),
+        )
+        write_lane(rows, lanes.LINEAR_INERTIA, n, (tensor[0][0], tensor[1][0], tensor[1][1]))
+        write_lane(rows, lanes.LINEAR_INERTIA + 3, n, (tensor[2][0], tensor[2][1], tensor[2][2]))

@@ -7,20 +7,35 @@ it runs. All spatial vectors are MuJoCo's: rotation first, about the centre of m
 import numpy as np
 from numba import carray
 
-from suchus.robot.design.water_table import COLUMNS, FORCE, HEADER, LANES, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
+from suchus.robot.design.water_table import (
+    COLUMNS,
+    FORCE,
+    HEADER,
+    LANES,
+    MAGIC,
+    NUMBERS,
+    POWER,
+    SUBMERGED_VOLUME,
+    WAVE,
+    WIDTH,
+)
 from suchus.sim.hydro import lanes, memory
 from suchus.sim.hydro.forces import added_mass, flow, meet, place, press, rub
-from suchus.sim.hydro.lanes import MIXED, PUSHED, ROWS, SPUN, SUMS, WaterProperties
-from suchus.sim.hydro.memory import Bodies, Motion, pointer, read_bodies, read_given, read_motion, read_water
-from suchus.sim.hydro.vectors import Vector, compiled, dot, part, plus, put, three, times, write
+from suchus.sim.hydro.lanes import COUPLING_INERTIA, LINEAR_INERTIA, ROTATIONAL_INERTIA, ROWS, SUMS, WaterProperties
+from suchus.sim.hydro.memory import Bodies, Motion, pointer, read_added_mass, read_bodies, read_motion, read_water
+from suchus.sim.hydro.vectors import Vector, compile_inline, compile_kernel, dot, plus, three, times, write, write_lane
 
 _BODY, _REACH = COLUMNS["body"][0], COLUMNS["reach"][0]
-_COUPLE, _LINEAR = lanes.FORCE - 3 - lanes.FOUND, lanes.FORCE - lanes.FOUND
-_ROTATIONAL_INERTIA, _COUPLING_INERTIA, _LINEAR_INERTIA = SPUN - lanes.FOUND, MIXED - lanes.FOUND, PUSHED - lanes.FOUND
+_COUPLE, _LINEAR = lanes.FORCE - 3 - lanes.FIRST_SUM, lanes.FORCE - lanes.FIRST_SUM
+_ROTATIONAL_INERTIA, _COUPLING_INERTIA, _LINEAR_INERTIA = (
+    ROTATIONAL_INERTIA - lanes.FIRST_SUM,
+    COUPLING_INERTIA - lanes.FIRST_SUM,
+    LINEAR_INERTIA - lanes.FIRST_SUM,
+)
 
 
-@compiled
-def wet(model: int, data: int, offsets: np.ndarray) -> bool:
+@compile_kernel
+def apply_water(model: int, data: int, offsets: np.ndarray) -> bool:
     """Add the water's forces to the passive forces and its added mass to the mass matrix; return whether that changed.
 
     Args:
@@ -43,12 +58,12 @@ def wet(model: int, data: int, offsets: np.ndarray) -> bool:
     table = carray(pointer(model_words[offsets[memory.NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
     for i in range(4):
         user[FORCE + i] = 0.0
-    user[UNDER] = 0.0
+    user[SUBMERGED_VOLUME] = 0.0
     if _all_dry(table, int(numbers[1]), water, abs(user[WAVE]), motion):
         return False
     bodies = read_bodies(model, offsets)
     sums = _gathered(table, int(numbers[1]), water, bodies, motion)
-    if user[UNDER] == 0.0:
+    if user[SUBMERGED_VOLUME] == 0.0:
         return False
     _hand_over(sums, bodies, motion)
     if water.added <= 0.0:
@@ -57,16 +72,16 @@ def wet(model: int, data: int, offsets: np.ndarray) -> bool:
     return True
 
 
-@part
+@compile_inline
 def _add_stored_mass(model: int, data: int, offsets: np.ndarray) -> None:
     """Add the stored added mass to the mass matrix; it follows the numbers of the water in the user data."""
     bodies, motion = read_bodies(model, offsets), read_motion(model, data, offsets)
-    stored_mass = read_given(model, data, offsets)
+    stored_mass = read_added_mass(model, data, offsets)
     for n in range(len(bodies.column)):
         motion.mass[n] += stored_mass[n]
 
 
-@part
+@compile_inline
 def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: float, motion: Motion) -> bool:
     """Return whether all pieces are far above the surface, waves of a height included.
 
@@ -85,7 +100,7 @@ def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: floa
     return True
 
 
-@part
+@compile_inline
 def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bodies, motion: Motion) -> np.ndarray:
     """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``).
 
@@ -103,13 +118,13 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
         for n in range(LANES):
             b = np.uint32(block_table[_BODY, n])
             for k in range(0, 9, 3):
-                put(rows, lanes.TURN + k, n, three(motion.xmat[b], k))
-            put(rows, lanes.ORIGIN, n, three(motion.xpos[b], 0))
-            put(rows, lanes.REFERENCE, n, three(motion.com[bodies.root[b]], 0))
-            put(rows, lanes.MOVING, n, three(motion.cvel[b], 0))
-            put(rows, lanes.MOVING + 3, n, three(motion.cvel[b], 3))
-            put(rows, lanes.BIAS, n, three(bias[b], 0))
-            put(rows, lanes.BIAS + 3, n, three(bias[b], 3))
+                write_lane(rows, lanes.TURN + k, n, three(motion.xmat[b], k))
+            write_lane(rows, lanes.ORIGIN, n, three(motion.xpos[b], 0))
+            write_lane(rows, lanes.REFERENCE, n, three(motion.com[bodies.root[b]], 0))
+            write_lane(rows, lanes.MOVING, n, three(motion.cvel[b], 0))
+            write_lane(rows, lanes.MOVING + 3, n, three(motion.cvel[b], 3))
+            write_lane(rows, lanes.BIAS, n, three(bias[b], 0))
+            write_lane(rows, lanes.BIAS + 3, n, three(bias[b], 3))
         place(block_table, rows)
         if block == 0 or motion.user[WAVE] != 0.0:
             flow(rows, motion.user, motion.time, water.up)
@@ -118,16 +133,16 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
         press(block_table, rows, water)
         added_mass(block_table, rows, water)
         for n in range(min(LANES, count - block * LANES)):
-            if rows[lanes.SHARE, n] > 0.0:
-                wet_volume += rows[lanes.UNDER, n]
+            if rows[lanes.WET_FRACTION, n] > 0.0:
+                wet_volume += rows[lanes.WET_VOLUME, n]
                 b = np.uint32(block_table[_BODY, n])
                 for k in range(SUMS):
-                    sums[b, k] += rows[lanes.FOUND + k, n]
-    motion.user[UNDER] = wet_volume
+                    sums[b, k] += rows[lanes.FIRST_SUM + k, n]
+    motion.user[SUBMERGED_VOLUME] = wet_volume
     return sums
 
 
-@part
+@compile_inline
 def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
     """Return spatial accelerations of the bodies without those of the joints, shape (body, 6)."""
     bias = np.empty((len(bodies.parent), 6))
@@ -143,7 +158,7 @@ def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
     return bias
 
 
-@part
+@compile_inline
 def _hand_over(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
     """Sum the loads of the bodies from the leaves to the roots, and add the generalised forces to the joints.
 
@@ -170,7 +185,7 @@ def _hand_over(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
     user[POWER] = power
 
 
-@part
+@compile_inline
 def _burden(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
     """Add the added inertia of each joint's subtree to the matrix.
 
@@ -199,7 +214,7 @@ def _burden(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
     write(motion.user, FORCE, plus(three(motion.user, FORCE), times(-1.0, added_force)))
 
 
-@part
+@compile_inline
 def _answer(inertia: np.ndarray, turns: Vector, moves: Vector) -> tuple[Vector, Vector]:
     """Return couple and force of an added inertia that is accelerated.
 

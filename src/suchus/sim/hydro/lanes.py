@@ -9,7 +9,10 @@ from typing import NamedTuple
 from suchus.robot.design.water_table import COLUMNS
 from suchus.sim.hydro.vectors import Vector
 
-KIND, AT, ACROSS, UPWARD, FORWARD, HALF, VOLUME, AIR, ADDED, AREA, SKIN, END, ROLL, SHED, SHED_AT = (
+(
+    KIND, CENTRE_IN_BODY, AXIS_A, AXIS_B, AXIS_T, HALF, VOLUME, AIR, ADDED_MASS, AREA, SKIN, END, ROLL, SHED_MASS,
+    SHED_POSITION,
+) = (
     COLUMNS[name][0]
     for name in ("kind", "at", "across", "upward", "forward", "half", "volume", "air", "added", "area", "skin", "end",
                  "roll", "shed", "shed_at")
@@ -33,11 +36,11 @@ E_T = E_B + 3
 """Row of t (3)."""
 CENTRE = E_T + 3
 """Row of the centre (3) [m]."""
-FROM = CENTRE + 3
+LEVER = CENTRE + 3
 """Row of the centre from the point of reference (3) [m]."""
-RAISED = FROM + 3
+ELEVATION = LEVER + 3
 """Row of the height of the surface above the level [m]."""
-STREAM = RAISED + 1
+STREAM = ELEVATION + 1
 """Row of the velocity of the water (3) [m/s]."""
 SURGE = STREAM + 3
 """Row of its acceleration (3) [m/s2]."""
@@ -51,23 +54,23 @@ SPEED = AGAINST + 3
 """Row of the same along e_a, e_b and t (3) [m/s]."""
 TURBULENT = SPEED + 3
 """Row of the coefficient of turbulent friction, 0 where it does not count [-]."""
-SHARE = TURBULENT + 1
+WET_FRACTION = TURBULENT + 1
 """Row of the share under water [-]."""
-UNDER = SHARE + 1
+WET_VOLUME = WET_FRACTION + 1
 """Row of the volume under water [m3]."""
-FOUND = UNDER + 1
+FIRST_SUM = WET_VOLUME + 1
 """First row of what is added up over the pieces of a body."""
-SPUN = FOUND
+ROTATIONAL_INERTIA = FIRST_SUM
 """Row of the moments that resist rotation: the lower half, row by row (6) [kg m2]."""
-MIXED = SPUN + 6
+COUPLING_INERTIA = ROTATIONAL_INERTIA + 6
 """Row of the forces that resist rotation: three rows (9) [kg m]."""
-PUSHED = MIXED + 9
+LINEAR_INERTIA = COUPLING_INERTIA + 9
 """Row of the forces that resist motion: the lower half, row by row (6) [kg]."""
-FORCE = PUSHED + 9
+FORCE = LINEAR_INERTIA + 9
 """Row of the force (3) [N], after that of the couple (3) [N m]."""
 SUMS = 28
 """Rows that are added up, one of them empty: four numbers are added at once [-]."""
-ROWS = FOUND + SUMS
+ROWS = FIRST_SUM + SUMS
 """Rows in all."""
 
 

@@ -9,7 +9,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from suchus.robot.design.water_table import (
-    ADDED,
+    ADDED_MASS_FACTOR,
     AIR_FRACTION,
     CROSS_DRAG,
     DENSITY,
@@ -20,7 +20,7 @@ from suchus.robot.design.water_table import (
     VISCOSITY,
 )
 from suchus.sim.hydro.lanes import WaterProperties
-from suchus.sim.hydro.vectors import dot, part, three, times
+from suchus.sim.hydro.vectors import compile_inline, dot, three, times
 
 FIELDS = (
     "nv", "nbody", "nnumericdata", "nuserdata", "opt.gravity", "numeric_data", "body_parentid", "body_rootid",
@@ -99,7 +99,7 @@ class Motion(NamedTuple):
     """The numbers of the water, changed."""
 
 
-@part
+@compile_inline
 def read_bodies(model: int, offsets: np.ndarray) -> Bodies:
     """Return the tree of a model."""
     model_words = carray(model, (4096,), np.int64)
@@ -118,7 +118,7 @@ def read_bodies(model: int, offsets: np.ndarray) -> Bodies:
     )
 
 
-@part
+@compile_inline
 def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
     """Return where the bodies of a model are.
 
@@ -146,8 +146,8 @@ def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
     )
 
 
-@part
-def read_given(model: int, data: int, offsets: np.ndarray) -> np.ndarray:
+@compile_inline
+def read_added_mass(model: int, data: int, offsets: np.ndarray) -> np.ndarray:
     """Return the stored added mass, which follows the numbers of the water in the user data."""
     model_words, state = carray(model, (4096,), np.int64), carray(data, (65536,), np.int64)
     start_byte = 8 * NUMBERS
@@ -156,7 +156,7 @@ def read_given(model: int, data: int, offsets: np.ndarray) -> np.ndarray:
     )
 
 
-@part
+@compile_inline
 def read_water(model: int, user: np.ndarray, offsets: np.ndarray, length: float) -> WaterProperties:
     """Return what the water is.
 
@@ -171,5 +171,5 @@ def read_water(model: int, user: np.ndarray, offsets: np.ndarray, length: float)
     up_axis = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
     return WaterProperties(
         user[LEVEL], user[DENSITY], (user[AIR_FRACTION], user[AIR_FRACTION + 1]), user[VISCOSITY], user[CROSS_DRAG],
-        user[THICKENING], user[ADDED], user[SHEDDING], up_axis, gravity, length,
+        user[THICKENING], user[ADDED_MASS_FACTOR], user[SHEDDING], up_axis, gravity, length,
     )  # fmt: skip

@@ -10,11 +10,11 @@ from jaxtyping import Float
 from scipy.optimize import brentq
 
 from suchus.core.errors import Doubtful, InvalidDesign
-from suchus.core.rotation import about, multiply
+from suchus.core.rotation import from_axis_angle, multiply
 from suchus.robot.design import Robot
 from suchus.robot.design.hull import Hull
 from suchus.robot.design.pieces import chambers, pieces, volumes
-from suchus.robot.design.water_table import column, unpacked
+from suchus.robot.design.water_table import column, unpack_table
 from suchus.sim.hydro.forces import hydrostatic
 from suchus.sim.land import wetting
 from suchus.sim.land.lake import Lake
@@ -159,11 +159,13 @@ def surfaced(
     model = wet_model(robot, timestep, None, len(table), acting=True)
     data = mujoco.MjData(model)
     floating = np.array(qpos)
-    floating[3:7] = multiply(multiply(_raising(up_axis), about(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7])
+    floating[3:7] = multiply(
+        multiply(_raising(up_axis), from_axis_angle(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7]
+    )
     floating[:3] = 0.0
     data.qpos[:] = floating
     mujoco.mj_kinematics(model, data)
-    bodies = unpacked(model.numeric_data)
+    bodies = unpack_table(model.numeric_data)
 
     def lacking(height: float) -> float:
         return (

@@ -19,7 +19,7 @@ from suchus.robot.motion import hip_height
 from suchus.sim.land import wetting
 from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.corrected import correct
-from suchus.sim.land.lake import Waters, gravity, up
+from suchus.sim.land.lake import Waters, gravity, up_direction
 from suchus.sim.land.run import Afloat, Run
 from suchus.sim.model import SUPPLY, activations, compile_model, force_sensors, standing, supplies
 from suchus.sim.model.wet import wet_model
@@ -203,13 +203,13 @@ class SimulationBatch:
             setattr(self._private_model(sim).opt, name, value)
             self._is_modified = True
 
-    def power(self, sim: int, servo: str, *, on: bool) -> None:
+    def power(self, sim: int, servo: str, *, is_powered: bool) -> None:
         """Give a servo its torque, or take it away, from the next ``commit`` on.
 
         Args:
             sim: the run.
             servo: name of the servo.
-            on: whether it gets its torque.
+            is_powered: whether it gets its torque.
         """
         bit = 1 << int(self.model.actuator(servo).group[0])
         disabled_groups = (
@@ -217,7 +217,9 @@ class SimulationBatch:
             if self._single
             else self._private_model(sim).opt.disableactuator
         )
-        self._set_option("disableactuator", sim, int(disabled_groups) & ~bit if on else int(disabled_groups) | bit)
+        self._set_option(
+            "disableactuator", sim, int(disabled_groups) & ~bit if is_powered else int(disabled_groups) | bit
+        )
 
     @property
     def pressed(self) -> np.ndarray:
@@ -277,7 +279,7 @@ class SimulationBatch:
                 float_key = (key, run.lake, run.ground)
                 if float_key not in floating_postures:
                     floating_postures[float_key] = surfaced(
-                        run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep
+                        run.robot, run.lake, up_direction(run.ground), self.qpos[sim], self._timestep
                     )
                 self.qpos[sim] = floating_postures[float_key]
             self.ctrl[sim] = initial_angles[sim]
@@ -333,8 +335,8 @@ class SimulationBatch:
         time: float,
         selection: np.ndarray | None = None,
         *,
-        felt: bool = True,
-        read: bool = True,
+        need_forces: bool = True,
+        need_readings: bool = True,
     ) -> None:
         """Command servo angles and advance the runs that are alive by some physics steps.
 
@@ -348,8 +350,10 @@ class SimulationBatch:
             steps: number of physics steps.
             time: at which they begin [s].
             selection: whether each run is advanced, shape (run,); None advances all.
-            felt: whether contact forces are needed as means; if not, they are those of the last step, which is faster.
-            read: whether ``readings`` are needed; if not, they stay as they were, and a step takes a ninth less time.
+            need_forces: whether contact forces are needed as means; if not, they are those of the last step, which
+                is faster.
+            need_readings: whether ``readings`` are needed; if not, they stay as they were, and a step takes a ninth
+                less time.
         """
         # what all runs share is done at once: with one run alone each of these lines shows in its time
         going = self._going(selection)
@@ -358,8 +362,8 @@ class SimulationBatch:
         else:
             self.ctrl[self.alive] = targets[self.alive]
         meter = self._meter(steps)
-        self._sense(read or meter is not None)
-        calls = steps if felt or meter is not None else 1
+        self._sense(need_readings or meter is not None)
+        calls = steps if need_forces or meter is not None else 1
         self._sum.fill(0.0)
         for call in range(calls):
             try:
@@ -452,7 +456,7 @@ def _model(
     """
     robot, relief, correction = body
     if max_pieces:
-        base_model = wet_model(robot, timestep, relief, max_pieces, acting=True, solved=is_solved)
+        base_model = wet_model(robot, timestep, relief, max_pieces, acting=True, is_solved=is_solved)
     else:
         base_model = compile_model(robot, timestep, relief)
     model = copy.copy(base_model)

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from suchus.robot.design.correction import SectionCorrection
-from suchus.robot.design.water_table import HEADER, WIDTH, column, packed, unpacked
+from suchus.robot.design.water_table import HEADER, WIDTH, column, pack_table, unpack_table
 
 _ADDED_MASS_COLUMNS, _DRAG_COLUMNS = ("added", "shed"), ("area", "roll", "skin", "end")
 """Columns of the table of pieces that each factor is on."""
@@ -19,11 +19,11 @@ def correct(model: Any, correction: SectionCorrection) -> None:
         correction: the factors.
     """
     numbers = model.numeric_data
-    table = unpacked(numbers)
+    table = unpack_table(numbers)
     for name, factors in correction.factors.items():
         ids = [body for body in range(model.nbody) if model.body(body).name == name]
         is_corrected = np.isin(table[:, 0].astype(int), ids)
         for columns, factor in ((_ADDED_MASS_COLUMNS, factors.added), (_DRAG_COLUMNS, factors.drag)):
             for column_name in columns:
                 column(table, column_name)[is_corrected] *= factor
-    numbers[:] = packed(table, float(numbers[2]), (len(numbers) - HEADER) // WIDTH)
+    numbers[:] = pack_table(table, float(numbers[2]), (len(numbers) - HEADER) // WIDTH)

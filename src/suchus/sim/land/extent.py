@@ -34,7 +34,7 @@ def processor_seconds(run: Run, duration: float, timestep: float) -> float:
     return _SECONDS * len(layout(run.robot).hinges) * duration / timestep
 
 
-def check_extent(runs: Sequence[Run], duration: float, timestep: float, period: float, stride: int) -> None:
+def check_extent(runs: Sequence[Run], duration: float, timestep: float, period: float, sample_stride: int) -> None:
     """Refuse runs that the machine cannot hold, or that compute for longer than a day, see ``suchus.core.large``.
 
     Args:
@@ -42,13 +42,13 @@ def check_extent(runs: Sequence[Run], duration: float, timestep: float, period: 
         duration: of each [s].
         timestep: of the physics [s].
         period: of control [s].
-        stride: control periods for each sample that is kept [-].
+        sample_stride: control periods for each sample that is kept [-].
 
     Raises:
         InvalidDesign: with the estimate.
     """
     subject = f"a batch of {len(runs)} runs of {duration:g} s" if len(runs) > 1 else f"a run of {duration:g} s"
-    samples = duration / period / stride
+    samples = duration / period / sample_stride
     need = _COPIES * sum(record_bytes(run, samples) for run in runs)
     large.check_memory(subject, need, "ask for fewer or shorter runs, or keep one sample of many (every)")
     seconds = sum(processor_seconds(run, duration, timestep) for run in runs)

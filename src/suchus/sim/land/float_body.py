@@ -12,7 +12,7 @@ from jaxtyping import Float
 from suchus.core.checks import Checks
 from suchus.core.errors import Diverged
 from suchus.robot.design import GRAVITY
-from suchus.robot.design.water_table import BALL, COLUMNS, DISC, SLAB, WIDTH, column, unpacked
+from suchus.robot.design.water_table import BALL, COLUMNS, DISC, SLAB, WIDTH, column, unpack_table
 from suchus.sim.hydro.forces import hydrostatic
 from suchus.sim.land import wetting
 from suchus.sim.land.lake import Lake
@@ -113,7 +113,7 @@ class FloatTank:
         self.model = with_pieces(spec, table, 2 * max(body.half), acting=True)
         self.data = mujoco.MjData(self.model)
         self.data.userdata[:] = lake.numbers(_UP_AXIS)
-        self._table = unpacked(self.model.numeric_data)
+        self._table = unpack_table(self.model.numeric_data)
 
     def place(self, centre: Point, turn: Float[np.ndarray, "4"] | None = None, velocity: Point = (0, 0, 0),
               spin: Point = (0, 0, 0)) -> None:  # fmt: skip

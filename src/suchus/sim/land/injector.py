@@ -135,14 +135,14 @@ class Site:
     def unpower(self, servo: str) -> None:
         """Take the torque from a servo."""
         self._unpowered.append(servo)
-        self._batch.power(self._sim, servo, on=False)
+        self._batch.power(self._sim, servo, is_powered=False)
 
     def restore(self) -> None:
         """Undo what was written."""
         for (field, row), original in self._original_rows.items():
             self._batch.field(field, self._sim)[row : row + 1] = original
         for servo in self._unpowered:
-            self._batch.power(self._sim, servo, on=True)
+            self._batch.power(self._sim, servo, is_powered=True)
         self._original_rows, self._unpowered = {}, []
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from suchus.core.checks import Checks, Course
+from suchus.core.checks import Checks, Schedule
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.design import water_table as hydro
@@ -68,7 +68,7 @@ class Lake:
     Level and air fraction may be courses over time, as ``((0.0, 0.1), (5.0, 0.3))``.
     """
 
-    level: Course
+    level: Schedule
     """Level of the surface above the world's origin, against gravity [m]; the ground passes through the origin."""
     water: Water = field(default_factory=Water)
     """Density, viscosity, and what sections of a body feel."""
@@ -76,7 +76,7 @@ class Lake:
     """Velocity of the water, forward and to the left [m/s]."""
     wave: Wave | None = None
     """Waves on the surface; None where it is flat."""
-    air_fraction: Course = 1.0
+    air_fraction: Schedule = 1.0
     """Share of the air of the robot's hull that is kept, 0 to 1, alike in all its chambers [-]."""
     heel: float = 0.0
     """Roll with which a robot that floats is put on the water, right side down positive [rad]."""
@@ -121,7 +121,7 @@ class Lake:
         row[hydro.LEVEL], row[hydro.AIR_FRACTION : hydro.AIR_FRACTION + 2] = self.at(time)
         row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
         row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
-        row[hydro.ADDED], row[hydro.SHEDDING] = self.added_mass, self.shedding
+        row[hydro.ADDED_MASS_FACTOR], row[hydro.SHEDDING] = self.added_mass, self.shedding
         forward, leftward = _level_axes(up_axis)
         row[hydro.CURRENT : hydro.CURRENT + 3] = self.current[0] * forward + self.current[1] * leftward
         if self.wave is not None:
@@ -156,7 +156,7 @@ def check_lake(robot: Robot, lake: Lake) -> None:
         )
 
 
-def _value_at(course: Course, time: float) -> float:
+def _value_at(course: Schedule, time: float) -> float:
     if isinstance(course, (int, float)):
         return float(course)
     return float(np.interp(time, [instant for instant, _ in course], [value for _, value in course]))
@@ -185,7 +185,7 @@ class Waters:
         """Bind the physics' memory and write the water of each run into it."""
         self._lakes = {sim: lake for sim, lake in enumerate(lakes) if lake is not None}
         self._changing = {sim: lake for sim, lake in self._lakes.items() if lake.changes()}
-        self._ups = np.array([up(ground) for ground in grounds])
+        self._ups = np.array([up_direction(ground) for ground in grounds])
         self.rows: Float[np.ndarray, "run number"] = (
             physics.bind("userdata") if self._lakes else np.zeros((len(grounds), 0))
         )
@@ -230,7 +230,7 @@ class Waters:
     def tilt(self, sim: int, ground: Ground) -> None:
         """Change the slope of a run's ground; the surface of the water stays level."""
         if sim in self._lakes:
-            self._ups[sim] = up(ground)
+            self._ups[sim] = up_direction(ground)
 
     def depths(self, roots: Float[np.ndarray, "run 3"]) -> Float[np.ndarray, " run"] | None:
         """Return the depth of the roots below the water level, 0 above it [m]; None without water.
@@ -248,7 +248,7 @@ class Waters:
         return self.rows[:, hydro.FORCE : hydro.FORCE + 4]
 
 
-def up(ground: Ground) -> Float[np.ndarray, "3"]:
+def up_direction(ground: Ground) -> Float[np.ndarray, "3"]:
     """Return the direction against gravity in the frame of a tilted ground, a unit vector."""
     return -gravity(ground) / GRAVITY
 

@@ -131,27 +131,35 @@ class Loop:
         targets = self.disturbances.disturb(self.clocks, self.tick, self._intended_command.targets)
         self.command = Command(targets, self._intended_command.phase, self._intended_command.air_fraction)
 
-    def advance(self, *, felt: bool = True, read: bool = True, before: tuple[np.ndarray, int] | None = None) -> None:
+    def advance(
+        self,
+        *,
+        need_forces: bool = True,
+        need_readings: bool = True,
+        late_command: tuple[np.ndarray, int] | None = None,
+    ) -> None:
         """Let one control period pass in which the servos do as they are commanded.
 
         Args:
-            felt: whether contact forces will be read after it, see ``SimulationBatch.advance``.
-            read: whether any sensor will be.
-            before: servo angles that still act at the beginning, shape (run, servo) [rad], and for how many physics
-                steps, fewer than the period has, where a command arrives late; of a loop of one run.
+            need_forces: whether contact forces will be read after it, see ``SimulationBatch.advance``.
+            need_readings: whether any sensor will be.
+            late_command: servo angles that still act at the beginning, shape (run, servo) [rad], and for how many
+                physics steps, fewer than the period has, where a command arrives late; of a loop of one run.
         """
-        if before is not None:
-            self._advance_late(*before)
+        if late_command is not None:
+            self._advance_late(*late_command)
             return
         targets, _, air_fraction = self.command
         shared = self._deduplication
         shared.part(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
         self.batch.waters.flood(self.time, air_fraction)
         if shared.others.size:
-            self.batch.advance(targets, self.steps, self.time, shared.first, felt=felt, read=read)
+            self.batch.advance(
+                targets, self.steps, self.time, shared.first, need_forces=need_forces, need_readings=need_readings
+            )
             self.batch.copy(shared.others, shared.whom)
         else:
-            self.batch.advance(targets, self.steps, self.time, felt=felt, read=read)
+            self.batch.advance(targets, self.steps, self.time, need_forces=need_forces, need_readings=need_readings)
         self._count()
 
     def _advance_late(self, previous_targets: np.ndarray, steps: int) -> None:

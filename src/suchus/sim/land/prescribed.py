@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 from suchus.robot.design import Robot
 from suchus.robot.design import water_table as hydro
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import HEADER, WIDTH, column, packed, unpacked
+from suchus.robot.design.water_table import HEADER, WIDTH, column, pack_table, unpack_table
 from suchus.robot.motion import Gait, movement
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.sim.land import wetting
@@ -307,11 +307,11 @@ class _Submerged:
         restricted._model = copy(self._model)
         restricted._data = mujoco.MjData(restricted._model)
         numbers = restricted._model.numeric_data
-        table = unpacked(numbers)
+        table = unpack_table(numbers)
         is_removed = ~np.isin(table[:, 0].astype(int), bodies)
         for name in ("volume", "added", "area", "skin", "end", "roll", "shed"):
             column(table, name)[is_removed] = 0.0
-        numbers[:] = packed(table, float(numbers[2]), (len(numbers) - HEADER) // WIDTH)
+        numbers[:] = pack_table(table, float(numbers[2]), (len(numbers) - HEADER) // WIDTH)
         return restricted
 
     def freed(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> Float[np.ndarray, "3"]:
@@ -324,7 +324,7 @@ class _Submerged:
 
     def fill(self, density: float) -> None:
         """Give every body the mass of the water that its pieces displace, and its inertia."""
-        model, table = self._model, unpacked(self._model.numeric_data)
+        model, table = self._model, unpack_table(self._model.numeric_data)
         for body in range(1, model.nbody):
             body_pieces = table[table[:, 0] == body]
             if not len(body_pieces):

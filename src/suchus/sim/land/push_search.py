@@ -18,10 +18,10 @@ def smallest_pushes(
     runs: Sequence[Run],
     directions: Sequence[tuple[float, float, float]],
     *,
-    at: float,
+    start_time: float,
     levels: Sequence[float],
     fell: Callable[[xr.Dataset], xr.DataArray],
-    finer: int = 4,
+    refinement_count: int = 4,
     duration: float = 0.2,
     body: str = "thorax",
     wait: float = 3.0,
@@ -37,11 +37,12 @@ def smallest_pushes(
     Args:
         runs: without pushes of their own.
         directions: unit vectors in the world: forward, left, up.
-        at: when the push begins [s].
+        start_time: when the push begins [s].
         levels: forces to try, increasing [N].
         fell: returns from a record whether each run fell, along the dimension ``run``; the last sample of the record is
             ``wait`` after the push.
-        finer: number of forces of the second batch; the answer is off by at most the gap between two of them.
+        refinement_count: number of forces of the second batch; the answer is off by at most the gap between two of
+            them.
         duration: of the push [s].
         body: what is pushed.
         wait: time from the end of the push to the end of a run [s].
@@ -55,17 +56,19 @@ def smallest_pushes(
     if len(scan) < 2 or np.any(np.diff(scan) <= 0):
         raise InvalidDesign(f"levels are {tuple(levels)}; increasing forces above 0 N are needed.")
     topples = _Trial(
-        runs, directions, Push(force=(0.0, 0.0, 0.0), at=at, duration=duration, body=body), fell, wait, timestep
+        runs, directions, Push(force=(0.0, 0.0, 0.0), at=start_time, duration=duration, body=body), fell, wait, timestep
     )
     forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
     coarse = topples(forces, staged(progress, "coarse levels", 0.0, 0.6))
     first_level = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
     lower_force, smallest = scan[first_level], np.append(scan[1:], np.inf)[first_level]
-    if finer:
+    if refinement_count:
         gap = np.where(
             np.isfinite(smallest), smallest - lower_force, 1.0
         )  # of those that never fall any will do: it is not used
-        fine_forces = lower_force[..., None] + gap[..., None] * (np.arange(1, finer + 1) / (finer + 1))
+        fine_forces = lower_force[..., None] + gap[..., None] * (
+            np.arange(1, refinement_count + 1) / (refinement_count + 1)
+        )
         fine = topples(fine_forces, staged(progress, "finer levels", 0.6, 1.0))
         fine_smallest = np.take_along_axis(fine_forces, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
         smallest = np.where(fine.any(axis=-1) & np.isfinite(smallest), fine_smallest, smallest)
@@ -94,7 +97,7 @@ class _Trial(NamedTuple):
             for force in levels
         ]
         end = self.push.at + self.push.duration + self.wait
-        record = simulate(batch, duration=end, timestep=self.timestep, every=10, progress=progress)
+        record = simulate(batch, duration=end, timestep=self.timestep, sample_stride=10, progress=progress)
         return np.asarray(self.fell(record).values, dtype=bool).reshape(forces.shape)
 
 

@@ -13,7 +13,7 @@ from suchus.robot.design import water_table as hydro
 from suchus.robot.design.pieces import chambers, pieces
 from suchus.robot.design.water_table import column
 from suchus.sim.land.batch import SimulationBatch
-from suchus.sim.land.lake import lake_text, up
+from suchus.sim.land.lake import lake_text, up_direction
 from suchus.sim.land.run import Run
 from suchus.sim.model import ambient, joint_addresses, sensor_names, warming
 from suchus.sim.record import HEAT, WATER, dataset, ground_text
@@ -196,7 +196,7 @@ class Recorder:
         """Return the samples of the water by the names of ``record.WATER``."""
         water, period_means = self._water, self._period_means
         total = np.array([column(pieces(run.robot), "volume").sum() for run in self._runs])
-        ups = np.array([up(run.ground) for run in self._runs])
+        ups = np.array([up_direction(run.ground) for run in self._runs])
         air = np.array([chambers(run.robot) for run in self._runs])
         air[air.sum(axis=1) == 0.0] = 1.0  # nothing to share out
         air_kept = water[..., hydro.AIR_FRACTION : hydro.AIR_FRACTION + 2]
@@ -205,7 +205,7 @@ class Recorder:
             "water_level": water[..., hydro.LEVEL],
             "air_fraction": np.einsum("rtc,rc->rt", air_kept, air / air.sum(axis=1, keepdims=True)),
             "air_fraction_front": air_kept[..., 0],
-            "share_under": water[..., hydro.UNDER] / total[:, None],
+            "share_under": water[..., hydro.SUBMERGED_VOLUME] / total[:, None],
             "water_force": period_means[..., :3],
             "water_power": period_means[..., 3],
             "servo_power": period_means[..., 4],

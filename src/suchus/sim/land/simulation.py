@@ -30,7 +30,7 @@ def simulate(
     *,
     duration: float = 9.0,
     timestep: float | None = None,
-    every: int = 1,
+    sample_stride: int = 1,
     progress: Progress = silent,
 ) -> xr.Dataset:
     """Simulate a batch of runs.
@@ -44,7 +44,7 @@ def simulate(
         duration: [s].
         timestep: of the physics [s], a whole part of the control period; that of the robots' size if None, and where
             one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints.
-        every: keep one sample of so many control periods.
+        sample_stride: keep one sample of so many control periods.
         progress: told the share that is done.
 
     Returns:
@@ -61,15 +61,17 @@ def simulate(
     if not runs:
         raise InvalidDesign("there are no runs to simulate; give at least one.")
     timestep = _own_step(runs) if timestep is None else timestep
-    period = _check(runs, duration, timestep, every)
-    check_extent(runs, duration, timestep, period, every)
+    period = _check(runs, duration, timestep, sample_stride)
+    check_extent(runs, duration, timestep, period, sample_stride)
     ticks = round(duration / period)
     parts, order = [], []
     groups = _groups(runs)
     for number, members in enumerate(groups):
         grouped = [runs[i] for i in members]
         with out_of_memory():
-            parts.append(_simulate_group(grouped, ticks, timestep, every, portion(progress, number, len(groups))))
+            parts.append(
+                _simulate_group(grouped, ticks, timestep, sample_stride, portion(progress, number, len(groups)))
+            )
         order.extend(members)
     parts = with_equal_variables(parts)
     record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
@@ -161,7 +163,7 @@ def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, stride: in
             recorder.store(tick // stride, loop.command.phase, loop.command.targets)
         if tick < ticks:
             need_readings = loop.feels or (tick + 1) % stride == 0
-            loop.advance(felt=need_readings, read=need_readings)
+            loop.advance(need_forces=need_readings, need_readings=need_readings)
         if tick % 16 == 0:
             progress("simulating", tick / ticks)
     progress("simulating", 1.0)

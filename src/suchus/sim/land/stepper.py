@@ -54,7 +54,7 @@ class CoordinateState:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stretch:
+class StepInterval:
     """Displacement, works and momentum of the robot over an interval of time.
 
     Works are those of the forces as they act over each step, dampers and the servos' loops with the velocity at its
@@ -381,7 +381,7 @@ class Stepper:
             self.steps += 1
         return self.now
 
-    def account(self) -> Stretch:
+    def account(self) -> StepInterval:
         """Return displacement, works and momentum of the last iteration of the interval."""
         saved = self._saved
         assert saved is not None
@@ -394,7 +394,7 @@ class Stepper:
         end_rate, momentum = rate[-1], self._momentum()
         impulse = dt * (np.array(tape.smooth) + np.array(tape.bias[:-1]) + np.array(tape.constraint_force)).sum(axis=0)
         applied_impulse = (impulse - saved.added_mass @ (end_rate - rate[0]))[: self.axes]
-        return Stretch(
+        return StepInterval(
             way=displacement.sum(axis=0)[self.dofs],
             worked=float(((np.array(tape.servo_force) + implicit_force - damped) * displacement).sum()),
             yielded=float(

@@ -18,8 +18,8 @@ from llvmlite import binding
 from numba import cfunc, types
 
 from suchus.core.errors import OtherMuJoCo
-from suchus.robot.design.water_table import AIR_FRACTION, BALL, DENSITY, LEVEL, UNDER, WIDTH, column
-from suchus.sim.hydro.kernel import wet
+from suchus.robot.design.water_table import AIR_FRACTION, BALL, DENSITY, LEVEL, SUBMERGED_VOLUME, WIDTH, column
+from suchus.sim.hydro.kernel import apply_water
 from suchus.sim.hydro.memory import DATA_FIELDS, FIELDS
 from suchus.sim.land.structs import offset, plugin_struct, verify
 from suchus.sim.model.wet import PLUGIN, with_pieces
@@ -71,7 +71,7 @@ def _register(field_offsets: np.ndarray) -> list[Any]:
     factor = types.ExternalFunction(f"suchus_{_FACTOR}", types.void(*pair))
 
     def act(model: Any, data: Any, _instance: int, _capability: int) -> None:
-        if wet(model, data, field_offsets):
+        if apply_water(model, data, field_offsets):
             factor(model, data)
 
     def no_state(_model: Any, _instance: int) -> int:
@@ -117,8 +117,8 @@ def _check_that_it_acts() -> None:
     data = mujoco.MjData(model)
     data.userdata[[LEVEL, DENSITY, AIR_FRACTION, AIR_FRACTION + 1]] = 5.0, 1000.0, 1.0, 1.0
     mujoco.mj_forward(model, data)
-    if data.userdata[UNDER] != 0.004:
-        reason = f"a ball of 4 l under water displaces {1000 * data.userdata[UNDER]:g} l"
+    if data.userdata[SUBMERGED_VOLUME] != 0.004:
+        reason = f"a ball of 4 l under water displaces {1000 * data.userdata[SUBMERGED_VOLUME]:g} l"
         raise OtherMuJoCo("mjpPlugin.compute", mujoco.__version__, reason)
 
 

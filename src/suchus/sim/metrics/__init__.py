@@ -37,7 +37,7 @@ from suchus.sim.metrics.progress import (
     slip,
     speed,
 )
-from suchus.sim.metrics.reach import held, lead, reach, static_margin
+from suchus.sim.metrics.reach import lead, longest_hold, reach, static_margin
 from suchus.sim.metrics.rolling import roll_angle, roll_rate
 from suchus.sim.metrics.similarity import SIMILARITY, SwimNumbers, swim_numbers
 from suchus.sim.metrics.stability import (
@@ -51,13 +51,12 @@ from suchus.sim.metrics.stability import (
     tilt,
     two_feet_alone_share,
 )
-from suchus.sim.metrics.window import between, each_cycle, first_harmonic, mean_cycle, whole
+from suchus.sim.metrics.window import each_cycle, first_harmonic, mean_cycle, require_complete, time_window
 
 __all__ = [
     "SIMILARITY",
     "SwimNumbers",
     "bend_swings",
-    "between",
     "cost_of_transport",
     "diagonal_phase_error",
     "displacement",
@@ -70,18 +69,19 @@ __all__ = [
     "heading_change",
     "height_peak_to_peak",
     "height_std",
-    "held",
     "lateral_bend",
     "lead",
     "line_distance",
     "line_distance_max",
     "loaded",
+    "longest_hold",
     "loss",
     "mean_cycle",
     "path_length",
     "path_speed",
     "peak_torque",
     "reach",
+    "require_complete",
     "roll_angle",
     "roll_peak_to_peak",
     "roll_rate",
@@ -106,9 +106,9 @@ __all__ = [
     "tail_swing_least",
     "tail_swings",
     "tilt",
+    "time_window",
     "two_feet_alone_share",
     "two_feet_share",
     "vertical_bend",
-    "whole",
     "work",
 ]

@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus.article.paper.signs import spine_lateral
 from suchus.robot.motion import START
-from suchus.sim.metrics.window import between
+from suchus.sim.metrics.window import time_window
 
 
 def tail_joint_spread(angles: xr.DataArray, joints: Sequence[str]) -> xr.DataArray:
@@ -26,23 +26,23 @@ def tail_joint_spread(angles: xr.DataArray, joints: Sequence[str]) -> xr.DataArr
 
 def tail_joint_spread_max(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the greatest difference between the angles of two cable joints of the tail at one time [rad]."""
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     names = [str(name) for name in window.joint.values if str(name).startswith("tail_yaw")]
     return tail_joint_spread(window.joint_angle, names).max("time").assign_attrs(units="rad")
 
 
-Bent = Literal["spine", "tail"]
+BendRegion = Literal["spine", "tail"]
 _WIGGLE = 0.1  # of the range of an angle: less is no change of side
 
 
-def lateral_bend(record: xr.Dataset, region: Bent) -> xr.DataArray:
+def lateral_bend(record: xr.Dataset, region: BendRegion) -> xr.DataArray:
     """Return the lateral bend of the spine or the tail's cable section over time, the sum of its joints [rad]."""
     names = [str(name) for name in record.joint.values if str(name).startswith(f"{region}_yaw")]
     bend = record.joint_angle.sel(joint=names).sum("joint")
     return (spine_lateral(bend) if region == "spine" else bend).assign_attrs(units="rad")
 
 
-def vertical_bend(record: xr.Dataset, region: Bent) -> xr.DataArray:
+def vertical_bend(record: xr.Dataset, region: BendRegion) -> xr.DataArray:
     """Return the vertical bend of the spine, the sum of its pitch joints, or the angle of the tail's pitch joint [rad].
 
     The signs of the joints and of the article agree here, see ``suchus.article.paper.signs``.
@@ -85,16 +85,16 @@ def tail_swings(record: xr.Dataset, start: float = START, end: float | None = No
     return _swings(record, "tail", start, end)
 
 
-def _window(record: xr.Dataset, region: Bent, start: float, end: float | None) -> xr.DataArray:
+def _window(record: xr.Dataset, region: BendRegion, start: float, end: float | None) -> xr.DataArray:
     """Return a bend over whole cycles: the last sample, which begins the next one, is left out."""
-    return lateral_bend(between(record, start, end).isel(time=slice(0, -1)), region)
+    return lateral_bend(time_window(record, start, end).isel(time=slice(0, -1)), region)
 
 
 def _amplitude(bend: xr.DataArray) -> xr.DataArray:
     return (bend.max("time") - bend.min("time")) / 2
 
 
-def _swings(record: xr.Dataset, region: Bent, start: float, end: float | None) -> xr.DataArray:
+def _swings(record: xr.Dataset, region: BendRegion, start: float, end: float | None) -> xr.DataArray:
     return bend_swings(_window(record, region, start, end), record.period)
 
 

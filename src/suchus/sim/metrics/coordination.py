@@ -6,7 +6,7 @@ import xarray as xr
 from suchus.robot.motion import Gait
 from suchus.sim.metrics.gait import diagonals
 
-WITHIN = 0.1
+PHASE_TOLERANCE = 0.1
 """Greatest phase error against another limb with which a limb counts as coordinated [cycle]."""
 
 
@@ -33,7 +33,7 @@ def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
 
 
 def cycles_until(
-    error: xr.DataArray, period: float, *, start: float, hold: float, tolerance: float = WITHIN
+    error: xr.DataArray, period: float, *, start: float, hold: float, tolerance: float = PHASE_TOLERANCE
 ) -> xr.DataArray:
     """Return after how many cycles an error has come within bounds for good, infinity if it has not [cycle].
 

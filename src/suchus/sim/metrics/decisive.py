@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy import stats
 
-SURE = 0.01
+MAX_CHANCE = 0.01
 """Greatest probability by chance of the best separation among all parameters that counts as decisive [-]."""
 _MIN_SAMPLES = 5  # samples on one side; fewer say nothing about a border
 
@@ -58,7 +58,7 @@ def border(
     tests = [stats.ks_2samp(column[holds], column[~holds], method="asymp") for column in parameters.T]
     best = int(np.argmax([test.statistic for test in tests]))
     best_test = tests[best]
-    if float(best_test.pvalue) * len(tests) > SURE:
+    if float(best_test.pvalue) * len(tests) > MAX_CHANCE:
         return None
     # the sign is positive where more of the first sample lies below the location
     return DecisionBoundary(

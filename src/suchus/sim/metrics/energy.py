@@ -5,7 +5,7 @@ import xarray as xr
 from suchus.robot.design import GRAVITY
 from suchus.robot.motion import START
 from suchus.sim.metrics.progress import displacement
-from suchus.sim.metrics.window import between
+from suchus.sim.metrics.window import time_window
 
 METRES = {
     "land": "on level dry land",
@@ -19,7 +19,7 @@ METRES = {
 
 def work(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the work of all servos, braking counted as much as driving [J]."""
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     power = abs(window.servo_torque * window.servo_velocity).sum("servo", skipna=False)
     return power.integrate("time")
 
@@ -32,7 +32,7 @@ def cost_of_transport(record: xr.Dataset, start: float = START, end: float | Non
 
 def peak_torque(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the greatest torque of each servo [N m]."""
-    return abs(between(record, start, end).servo_torque).max("time")
+    return abs(time_window(record, start, end).servo_torque).max("time")
 
 
 measures = (cost_of_transport, peak_torque, work)

@@ -5,7 +5,7 @@ import xarray as xr
 
 from suchus.robot.design import GRAVITY
 from suchus.robot.motion import START
-from suchus.sim.metrics.window import between
+from suchus.sim.metrics.window import time_window
 
 LOADED_SHARE = 0.0145
 """Least normal force of a foot that counts as standing [weight of the robot]."""
@@ -40,7 +40,7 @@ def two_feet_share(record: xr.Dataset, start: float = START, end: float | None =
 
 def foot_clearance(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how far each foot is lifted above its lowest place on even ground [m]."""
-    height = between(record, start, end).foot_position.sel(xyz="z")
+    height = time_window(record, start, end).foot_position.sel(xyz="z")
     return height.max("time") - height.min("time")
 
 
@@ -81,7 +81,7 @@ def diagonals(legs: int) -> list[tuple[int, int]]:
 
 def _cycles(record: xr.Dataset, start: float, end: float | None) -> xr.Dataset:
     """Return the window without its last sample, which begins the next cycle."""
-    return between(record, start, end).isel(time=slice(0, -1))
+    return time_window(record, start, end).isel(time=slice(0, -1))
 
 
 def flight_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -89,7 +89,7 @@ def flight_share(record: xr.Dataset, start: float = START, end: float | None = N
 
     Carrying is more than a thousandth of the weight, so that the rounding of a contact does not count.
     """
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     vertical_force = (
         window.foot_force.sel(xyz="z").sum("leg", skipna=False)
         + window.belly_force.sel(xyz="z").sum("segment", skipna=False)

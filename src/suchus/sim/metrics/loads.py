@@ -6,7 +6,7 @@ import xarray as xr
 from suchus.robot.design import GRAVITY
 from suchus.robot.motion import START
 from suchus.sim.metrics.gait import loaded
-from suchus.sim.metrics.window import between
+from suchus.sim.metrics.window import time_window
 
 
 def swing_loads(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
@@ -14,7 +14,7 @@ def swing_loads(record: xr.Dataset, leg: str, start: float = START, end: float |
 
     The parts are the four legs, ``tail`` and ``belly``.
     """
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     loads = xr.concat(
         [
             window.foot_force.sel(xyz="z", drop=True).rename(leg="part"),
@@ -28,27 +28,27 @@ def swing_loads(record: xr.Dataset, leg: str, start: float = START, end: float |
 
 def swing_lift(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how far the centre of a foot rises while it is meant to swing: from lowest to highest [m]."""
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     height = window.foot_position.sel(leg=leg, xyz="z", drop=True).where(_swings(window, leg))
     return (height.max("time") - height.min("time")).assign_attrs(units="m")
 
 
 def tail_load_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return which share of the weight the tail carries, on average [-]."""
-    load = between(record, start, end).tail_force.sel(xyz="z", drop=True).mean("time")
+    load = time_window(record, start, end).tail_force.sel(xyz="z", drop=True).mean("time")
     return load / (record.mass * GRAVITY)
 
 
 def swing_height(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the mean height of the centre of mass while a leg is meant to swing [m]."""
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     height = window.centre_of_mass.sel(xyz="z", drop=True).where(_swings(window, leg))
     return height.mean("time").assign_attrs(units="m")
 
 
 def swing_unloaded(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the share of the time in which a foot is off the ground while it is meant to swing [-]."""
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     free = ~loaded(window).sel(leg=leg, drop=True)
     return free.where(_swings(window, leg)).mean("time").assign_attrs(units="1")
 

@@ -7,12 +7,12 @@ from suchus.core import rotation
 from suchus.robot.design import GRAVITY
 from suchus.robot.design.body import bends_trunk
 from suchus.robot.motion import START
-from suchus.sim.metrics.window import between
+from suchus.sim.metrics.window import time_window
 
 
 def displacement(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the displacement of the centre of mass in the world, with the dimension ``xyz`` [m]."""
-    com = between(record, start, end).centre_of_mass
+    com = time_window(record, start, end).centre_of_mass
     return com.isel(time=-1) - com.isel(time=0)
 
 
@@ -23,7 +23,7 @@ def speed(record: xr.Dataset, start: float = START, end: float | None = None) ->
     Whoever turns on the way comes less far than the way is long, and on a circle nowhere: see ``path_speed``, and
     ``heading_change`` beside it.
     """
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     return displacement(record, start, end).sel(xyz="x", drop=True) / float(window.time[-1] - window.time[0])
 
 
@@ -37,7 +37,7 @@ def heading(record: xr.Dataset) -> xr.DataArray:
 
 def heading_change(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how far the body has turned, left positive [rad]."""
-    facing = heading(between(record, start, end))
+    facing = heading(time_window(record, start, end))
     return facing.isel(time=-1) - facing.isel(time=0)
 
 
@@ -50,7 +50,7 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
     if len(periods) > 1:  # each run is sampled at its own period
         lengths = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
         return xr.concat(lengths, "run", coords="different", compat="equals")
-    path = between(record, start, end).centre_of_mass.sel(xyz=["x", "y"]).transpose(..., "time", "xyz")
+    path = time_window(record, start, end).centre_of_mass.sel(xyz=["x", "y"]).transpose(..., "time", "xyz")
     stride = max(1, round(float(periods[0]) / float(path.time[1] - path.time[0])))
     points = path.isel(time=slice(None, None, stride))
     if points.sizes["time"] < 2:
@@ -68,7 +68,7 @@ def path_speed(record: xr.Dataset, start: float = START, end: float | None = Non
     if len(periods) > 1:
         speeds = [path_speed(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
         return xr.concat(speeds, "run", coords="different", compat="equals")
-    time = between(record, start, end).time
+    time = time_window(record, start, end).time
     stride = max(1, round(float(periods[0]) / float(time[1] - time[0])))
     last_sample = stride * ((len(time) - 1) // stride) or -1  # a part of a cycle at the end is not in the path's length
     return path_length(record, start, end) / float(time[last_sample] - time[0])
@@ -79,7 +79,7 @@ def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> 
 
     Each foot's sliding counts by the share of the weight that the foot carries meanwhile.
     """
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     steps = window.foot_position.sel(xyz=["x", "y"]).diff("time")
     load_fraction = window.foot_force.sel(xyz="z").isel(time=slice(1, None)) / (window.mass * GRAVITY)
     slid = ((steps**2).sum("xyz") ** 0.5 * load_fraction).sum(["time", "leg"])

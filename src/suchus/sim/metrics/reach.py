@@ -100,7 +100,7 @@ def _forward(hind: xr.DataArray) -> xr.DataArray:
     return forward / np.sqrt((forward**2).sum("xyz"))
 
 
-def held(height: xr.DataArray, min_height: float) -> xr.DataArray:
+def longest_hold(height: xr.DataArray, min_height: float) -> xr.DataArray:
     """Return the longest time without a break in which a height is at least ``min_height`` [s].
 
     Args:

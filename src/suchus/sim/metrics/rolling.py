@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.core import rotation
-from suchus.sim.metrics.window import between
+from suchus.sim.metrics.window import time_window
 
 
 def roll_angle(record: xr.Dataset, start: float = 0.0, end: float | None = None) -> xr.DataArray:
@@ -19,7 +19,7 @@ def roll_angle(record: xr.Dataset, start: float = 0.0, end: float | None = None)
         start: of the measurement, where the angle is zero [s].
         end: of the measurement [s]; the last sample if None.
     """
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     body_line = window.snout - window.tail_tip
     axis = (body_line / (body_line**2).sum("xyz") ** 0.5).mean("time")
     axis = axis / (axis**2).sum("xyz") ** 0.5

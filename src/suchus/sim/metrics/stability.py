@@ -8,17 +8,17 @@ from scipy.spatial import ConvexHull, QhullError
 from suchus.core import rotation
 from suchus.robot.motion import START
 from suchus.sim.metrics.gait import loaded, threshold_of
-from suchus.sim.metrics.window import between
+from suchus.sim.metrics.window import time_window
 
 
 def height_std(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the standard deviation of the height of the centre of mass [m]."""
-    return between(record, start, end).centre_of_mass.sel(xyz="z").std("time")
+    return time_window(record, start, end).centre_of_mass.sel(xyz="z").std("time")
 
 
 def height_peak_to_peak(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the highest less the lowest height of the centre of mass [m]."""
-    height = between(record, start, end).centre_of_mass.sel(xyz="z")
+    height = time_window(record, start, end).centre_of_mass.sel(xyz="z")
     return height.max("time") - height.min("time")
 
 
@@ -33,7 +33,7 @@ def tilt(record: xr.Dataset) -> xr.Dataset:
 
 def roll_peak_to_peak(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the greatest less the least roll of the pelvis [rad]."""
-    roll = tilt(between(record, start, end))["roll"]
+    roll = tilt(time_window(record, start, end))["roll"]
     return roll.max("time") - roll.min("time")
 
 
@@ -105,13 +105,13 @@ def line_distance_max(record: xr.Dataset, start: float = START, end: float | Non
 
     Not a number where two feet never carry alone: a tail or a belly on the ground is a third support.
     """
-    window = between(record, start, end)
+    window = time_window(record, start, end)
     return line_distance(window).where(_on_two_feet(window)).max("time").assign_attrs(units="m")
 
 
 def two_feet_alone_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the share of the time in which two feet carry, and neither another one nor tail or belly [-]."""
-    return _on_two_feet(between(record, start, end)).mean("time").assign_attrs(units="1")
+    return _on_two_feet(time_window(record, start, end)).mean("time").assign_attrs(units="1")
 
 
 def _on_two_feet(record: xr.Dataset) -> xr.DataArray:

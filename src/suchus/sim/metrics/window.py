@@ -9,7 +9,7 @@ from suchus.robot.motion import START
 _SLACK = 1e-9  # [s]; sample times are multiples of the control period up to rounding
 
 
-def between(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.Dataset:
+def time_window(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.Dataset:
     """Return the samples from ``start`` to ``end``, both included.
 
     Args:
@@ -30,7 +30,7 @@ def between(record: xr.Dataset, start: float = START, end: float | None = None) 
     return window
 
 
-def whole(record: xr.Dataset) -> xr.Dataset:
+def require_complete(record: xr.Dataset) -> xr.Dataset:
     """Return a record none of whose runs ended early.
 
     Args:

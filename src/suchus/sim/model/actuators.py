@@ -7,7 +7,7 @@ import numpy as np
 
 from suchus.robot.design import Layout, Robot, Servo, Winding, layout
 from suchus.robot.design.body import servos_of
-from suchus.robot.design.motor import COPPER, ROOM
+from suchus.robot.design.motor import COPPER, ROOM_TEMPERATURE
 
 SUPPLY = 7
 """Column of ``actuator_gainprm`` in which MuJoCo's dcmotor keeps the greatest voltage of its drive [V]."""
@@ -60,7 +60,14 @@ def _wind(actuator: Any, servo: Servo, winding: Winding) -> None:
     heat, thermal = winding.heat, [0.0] * 6
     if heat is not None:
         heat_ratio = winding.volts * winding.stall_current / (servo.torque * servo.ideal_speed)
-        thermal = [heat.resistance * heat_ratio, heat.capacity / heat_ratio, 0.0, COPPER, ROOM, heat.ambient]
+        thermal = [
+            heat.resistance * heat_ratio,
+            heat.capacity / heat_ratio,
+            0.0,
+            COPPER,
+            ROOM_TEMPERATURE,
+            heat.ambient,
+        ]
     integral = servo.integral_limit / servo.ki if servo.ki > 0 else 0.0
     actuator.set_to_dcmotor(
         motorconst=[0.0, 0.0],

@@ -9,12 +9,12 @@ import mujoco
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
-from suchus.core.rotation import about
+from suchus.core.rotation import from_axis_angle
 from suchus.robot.design import GRAVITY, Contact, Hinge, Layout, LimbPlace, Robot, Rod, Segment, Spring, layout
 from suchus.robot.design.body import servos_of
-from suchus.robot.design.ground import ASIDE, REACH, Bumps, Relief, Step, Stone, field
+from suchus.robot.design.ground import HALF_WIDTH, REACH, Bumps, Relief, Step, Stone, field
 from suchus.robot.design.pieces import foam_centres, masses
-from suchus.robot.design.segment import Point, together
+from suchus.robot.design.segment import Point, combine_inertias
 from suchus.sim.model.actuators import add_servo, warms
 
 TIMESTEP = 0.002  # [s]; of the article's robot; 0.5 to 8 ms were measured to give the same displacement within 1 %
@@ -367,7 +367,7 @@ def state_inertia(spec: Any, robot_layout: Layout) -> None:
         if volume * density >= _MIN_FOAM_MASS:
             ball = 0.4 * density * volume * (3 * volume / (4 * pi)) ** (2 / 3)
             parts.append((density * volume, np.array(foam_centres(robot_layout.robot)[body.name]), ball * np.eye(3)))
-        mass, centre, tensor = together(parts)
+        mass, centre, tensor = combine_inertias(parts)
         body_spec = spec.body(body.name)
         body_spec.mass, body_spec.ipos, body_spec.explicitinertial = mass, centre.tolist(), True
         body_spec.fullinertia = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
@@ -411,7 +411,7 @@ def add_ground(spec: Any, relief: Relief | None) -> None:
     spec.worldbody.add_light(pos=[0, 0, 3], dir=[0, 0, -1])
     if isinstance(relief, Step):
         half = (REACH[1] - relief.at) / 2
-        _block(spec, (relief.at + half, 0.0), (max(half, 0.01), ASIDE), relief.height)
+        _block(spec, (relief.at + half, 0.0), (max(half, 0.01), HALF_WIDTH), relief.height)
     elif isinstance(relief, Stone):
         _block(spec, (relief.at, relief.aside), (relief.length / 2, relief.width / 2), relief.height)
     elif isinstance(relief, Bumps):
@@ -470,7 +470,7 @@ def standing(model: Any, robot: Robot, hip_height: float, servos: np.ndarray) ->
     robot_layout = layout(robot)
     data.qpos[2] = hip_height
     turn = -sum(servos[i] for i in robot_layout.trunk_yaw) / 2
-    data.qpos[3:7] = about(np.array([0.0, 0.0, 1.0]), turn)
+    data.qpos[3:7] = from_axis_angle(np.array([0.0, 0.0, 1.0]), turn)
     direct = len(robot_layout.servos) - len(robot_layout.cables)
     data.qpos[joint_addresses(model, robot_layout.servos[:direct])] = servos[:direct]
     for i in robot_layout.cables:

@@ -13,7 +13,7 @@ from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import WATER_DENSITY, Robot, layout, servo_names
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import column, unpacked
+from suchus.robot.design.water_table import column, unpack_table
 from suchus.sim.hydro.forces import hydrostatic
 from suchus.sim.model.build import TIMESTEP, joint_addresses
 from suchus.sim.model.wet import wet_model
@@ -79,7 +79,7 @@ class _Rigid:
         data.qpos[:3] = 0.0  # the model begins at a height that may be beyond the reach of a small robot
         _bend(model, data, robot, servos)
         mujoco.mj_fwdPosition(model, data)
-        self.table = unpacked(model.numeric_data)
+        self.table = unpack_table(model.numeric_data)
         self.centre, self.mass = np.array(data.subtree_com[0]), float(model.body_subtreemass[0])
         air = float(column(table, "air").sum(axis=0) @ (1.0 - np.array(air_fraction)))
         self.volume, self.air_fraction, self.density = float(column(table, "volume").sum()) - air, air_fraction, density

@@ -9,7 +9,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.ground import Relief
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import NUMBERS, column, packed
+from suchus.robot.design.water_table import NUMBERS, column, pack_table
 from suchus.sim.model.build import build
 
 NUMERIC = "water"
@@ -22,7 +22,13 @@ PLUGIN = "suchus.swimming.water"
 
 @lru_cache(maxsize=32)
 def wet_model(
-    robot: Robot, timestep: float, relief: Relief | None, room: int, *, acting: bool = False, solved: bool = False
+    robot: Robot,
+    timestep: float,
+    relief: Relief | None,
+    max_pieces: int,
+    *,
+    acting: bool = False,
+    is_solved: bool = False,
 ) -> Any:
     """Compile a robot for the water; the same values give the same ``mujoco.MjModel`` again: copy it before an edit.
 
@@ -30,44 +36,54 @@ def wet_model(
         robot: the design.
         timestep: of the physics [s].
         relief: what stands up from even ground.
-        room: pieces that the table has room for, alike in all models of a batch.
+        max_pieces: pieces that the table has room for, alike in all models of a batch.
         acting: whether the water acts in it; ``land.wetting.install`` goes before.
-        solved: whether the water is solved elsewhere, so that the model has room for the added mass that it is told.
+        is_solved: whether the water is solved elsewhere, so that the model has room for the added mass that it is told.
 
     Raises:
         InvalidDesign: MuJoCo cannot compile it.
     """
     try:
         spec = build(robot, timestep=timestep, relief=relief)
-        if not solved:
-            return carrying(spec, robot, room, acting=acting)
+        if not is_solved:
+            return compile_with_pieces(spec, robot, max_pieces, acting=acting)
         velocities = 6 + len(layout(robot).hinges)
-        return carrying(spec, robot, room, acting=acting, more=velocities * (velocities + 1) // 2)
+        return compile_with_pieces(
+            spec, robot, max_pieces, acting=acting, extra_numbers=velocities * (velocities + 1) // 2
+        )
     except ValueError as error:
         raise InvalidDesign(f"robot {robot.name!r} does not compile: {error}") from error
 
 
-def carrying(spec: Any, robot: Robot, room: int | None = None, *, acting: bool = False, more: int = 0) -> Any:
+def compile_with_pieces(
+    spec: Any, robot: Robot, max_pieces: int | None = None, *, acting: bool = False, extra_numbers: int = 0
+) -> Any:
     """Return a compiled ``mujoco.MjSpec`` that carries a robot's pieces.
 
     Args:
         spec: of a robot, perhaps with further edits that keep its bodies.
         robot: the design.
-        room: see ``wet_model``; as much as needed if None.
+        max_pieces: see ``wet_model``; as much as needed if None.
         acting: see ``wet_model``.
-        more: numbers for the added mass of water that is solved elsewhere, see ``hydro.NUMBERS``.
+        extra_numbers: numbers for the added mass of water that is solved elsewhere, see ``hydro.NUMBERS``.
     """
     table = np.array(pieces(robot))
     names = [body.name for body in layout(robot).bodies]
-    model = with_pieces(spec, table, robot.length, room, acting=acting, more=more)
+    model = with_pieces(spec, table, robot.length, max_pieces, acting=acting, extra_numbers=extra_numbers)
     ids = np.array([model.body(name).id for name in names])
     column(table, "body")[:, 0] = ids[table[:, 0].astype(int)]
-    model.numeric_data[:] = packed(table, robot.length, room)
+    model.numeric_data[:] = pack_table(table, robot.length, max_pieces)
     return model
 
 
 def with_pieces(
-    spec: Any, table: np.ndarray, length: float, room: int | None = None, *, acting: bool = False, more: int = 0
+    spec: Any,
+    table: np.ndarray,
+    length: float,
+    max_pieces: int | None = None,
+    *,
+    acting: bool = False,
+    extra_numbers: int = 0,
 ) -> Any:
     """Return a compiled ``mujoco.MjSpec`` that carries a table of pieces.
 
@@ -75,14 +91,14 @@ def with_pieces(
         spec: of any bodies.
         table: of pieces; its bodies are numbered as MuJoCo numbers them.
         length: for the Reynolds number of friction [m].
-        room: pieces that the table has room for; as many as there are if None.
+        max_pieces: pieces that the table has room for; as many as there are if None.
         acting: see ``wet_model``.
-        more: see ``carrying``.
+        extra_numbers: see ``carrying``.
     """
-    data = packed(table, length, room)
+    data = pack_table(table, length, max_pieces)
     numeric = spec.add_numeric(name=NUMERIC, size=len(data))
     numeric.data = data
-    spec.nuserdata = NUMBERS + more
+    spec.nuserdata = NUMBERS + extra_numbers
     if acting:
         spec.activate_plugin(PLUGIN)
         spec.add_plugin(name=NUMERIC, plugin_name=PLUGIN, active=True)

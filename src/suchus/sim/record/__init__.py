@@ -1,8 +1,8 @@
 """The schema of a record: the variables of a run, their dimensions and units."""
 
 from suchus.sim.record.schema import (
+    BUS_VARIABLES,
     COUPLED,
-    DRIVEN,
     HEAT,
     PER_RUN,
     VARIABLES,
@@ -14,8 +14,8 @@ from suchus.sim.record.schema import (
 )
 
 __all__ = [
+    "BUS_VARIABLES",
     "COUPLED",
-    "DRIVEN",
     "HEAT",
     "PER_RUN",
     "VARIABLES",

@@ -82,7 +82,7 @@ COUPLED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 Forces and torques are means over the control period before each sample; the rest is of the step that holds the sample.
 """
 
-DRIVEN: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+BUS_VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "tick_began": (("time",), "s", "delay of the tick against its plan"),
     "tick_took": (("time",), "s", "from the beginning of the tick until its goals were sent"),
     "servo_asked": (("time", "servo"), "rad", "angle that the controller asked for, before limits and steps"),

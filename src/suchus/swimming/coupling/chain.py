@@ -97,9 +97,9 @@ class MidlineChain:
         """Return a generalised force or an added mass in the robot's own coordinates."""
         return self._signs * values if values.ndim == 1 else self._signs[:, None] * values * self._signs
 
-    def way(self, time: float, posture: ChainState) -> "Way":
+    def way(self, time: float, posture: ChainState) -> "ChainPath":
         """Return a path that begins at a posture."""
-        return Way(time, posture)
+        return ChainPath(time, posture)
 
     def turned(self, place: np.ndarray, other_place: np.ndarray) -> float:
         """Return the greatest angle between root and joints of two postures [rad]."""
@@ -300,7 +300,9 @@ class MidlineChain:
         """Return the motions of the parts at a unit rate of each coordinate; see ``twists``."""
         return [self.twists(place, unit, origin, axes) for unit in np.eye(self.size)]
 
-    def body(self, path: "Way", axes: int, min_half_width: float, half_height: np.ndarray) -> flow.Midline | flow.Trunk:
+    def body(
+        self, path: "ChainPath", axes: int, min_half_width: float, half_height: np.ndarray
+    ) -> flow.Midline | flow.Trunk:
         """Return the robot as a body of the flow that moves along a path."""
 
         def spine(time: float) -> flow.MidlineState:
@@ -310,12 +312,12 @@ class MidlineChain:
             return flow.Midline(spine=spine, cuts=self.cuts)
         return flow.Trunk(spine=spine, half_height=half_height, cuts=self.cuts)
 
-    def motion(self, path: "Way", axes: int, min_half_width: float) -> Callable[[float], flow.Pose]:
+    def motion(self, path: "ChainPath", axes: int, min_half_width: float) -> Callable[[float], flow.Pose]:
         """Return the function that gives the pose of the body's centre at a time [s]."""
         return lambda time: path.seen(time, lambda posture: self.state(posture, min_half_width))[1].along(axes)
 
 
-class Way:
+class ChainPath:
     """The path of a chain through one step: the cubic with the positions and rates at both ends."""
 
     def __init__(self, time: float, posture: ChainState) -> None:

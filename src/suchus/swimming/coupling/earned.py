@@ -14,7 +14,15 @@ from jaxtyping import Float
 
 from suchus.robot.design import LinkFactors, Robot, SectionCorrection
 from suchus.sim.land.prescribed import link_bodies
-from suchus.swimming.coupling.residual import BLOCKS, COVERED, DRAWS, drawn, fitted, r2, sections_beside
+from suchus.swimming.coupling.residual import (
+    BLOCKS,
+    COVERAGE,
+    DRAWS,
+    bootstrap_factors,
+    compare_sections,
+    fit_factors,
+    r2,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,11 +59,11 @@ class LinkJudgement:
     """Why the factors are not offered; empty if they are."""
 
 
-def judged(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgement:
+def judge_link(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgement:
     """Return the factors of a link that one swim gives, and whether they reduce the error in other swims."""
-    added_factor, drag_factor = fitted(fit.flow, fit.added, fit.drag).tolist()
-    draws = drawn(fit.flow, fit.added, fit.drag, fit.block)
-    lower_bound, upper_bound = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
+    added_factor, drag_factor = fit_factors(fit.flow, fit.added, fit.drag).tolist()
+    draws = bootstrap_factors(fit.flow, fit.added, fit.drag, fit.block)
+    lower_bound, upper_bound = np.quantile(draws, [(1 - COVERAGE) / 2, (1 + COVERAGE) / 2], axis=0)
     shipped = tuple(r2(swim.flow, swim.added + swim.drag) for swim in test_swims)
     corrected = tuple(r2(swim.flow, added_factor * swim.added + drag_factor * swim.drag) for swim in test_swims)
     refusal = ""
@@ -85,11 +93,11 @@ def _gain(swim: ForceParts, added_factor: float, drag_factor: float) -> float:
         return float("-inf")
     gains = (shipped_residual**2 - corrected_residual**2)[: count * swim.block].reshape(count, swim.block).mean(axis=1)
     means = gains[np.random.default_rng(count).integers(count, size=(DRAWS, count))].mean(axis=1)
-    return float(np.quantile(means, (1 - COVERED) / 2))
+    return float(np.quantile(means, (1 - COVERAGE) / 2))
 
 
 def earned_correction(
-    robot: Robot, records: Sequence[xr.Dataset], *, period: float, first: float, viscosity: float, name: str
+    robot: Robot, records: Sequence[xr.Dataset], *, period: float, start_time: float, viscosity: float, name: str
 ) -> tuple[SectionCorrection | None, dict[str, LinkJudgement]]:
     """Return the correction of all links with valid factors, None without one, and the judgement of every link.
 
@@ -98,11 +106,11 @@ def earned_correction(
         records: of one run each, in a flow of one viscosity; the factors are fitted to the first and held against the
             others.
         period: of a cycle [s].
-        first: time from which samples count [s].
+        start_time: time from which samples count [s].
         viscosity: kinematic, of the flow's water [m2/s].
         name: of the correction.
     """
-    comparisons = [sections_beside(robot, record, first=first, viscosity=viscosity) for record in records]
+    comparisons = [compare_sections(robot, record, start_time=start_time, viscosity=viscosity) for record in records]
     links = link_bodies(robot, comparisons[0].joints)
     judgements = {}
     for k, link in enumerate(comparisons[0].names[: comparisons[0].links]):
@@ -115,7 +123,7 @@ def earned_correction(
             )
             for comparison in comparisons
         ]  # fmt: skip
-        judgements[link] = judged(parts[0], parts[1:])
+        judgements[link] = judge_link(parts[0], parts[1:])
     reynolds = robot.length**2 / (period * viscosity)
     factors = tuple(
         LinkFactors(

@@ -12,12 +12,12 @@ from jaxtyping import Float
 
 from suchus import flow
 from suchus.core import rotation
-from suchus.flow.linked import between, onward
+from suchus.flow.linked import extrapolate_links, interpolate_links
 from suchus.flow.twist import Twists
 from suchus.robot.design import Robot
 from suchus.robot.design.profile import stations
 from suchus.sim.land.links import LinkShape, RobotLinks
-from suchus.swimming.coupling.chain import RECENT, ChainState, Way
+from suchus.swimming.coupling.chain import RECENT, ChainPath, ChainState
 
 _HALF_TURN = np.diag([-1.0, -1.0, 1.0])
 _ROD_TURN = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])  # turns x to where the rod's z was, up to a sign
@@ -90,9 +90,9 @@ class LinkChain:
         rate = jacobian @ posture.rate
         return self._recent[unit.tobytes()][0]._replace(velocity=rate[:, :3], spin=rate[:, 3:])
 
-    def way(self, time: float, posture: ChainState) -> "LinkWay":
+    def way(self, time: float, posture: ChainState) -> "LinkPath":
         """Return a path that begins at a posture."""
-        return LinkWay(self, time, posture)
+        return LinkPath(self, time, posture)
 
     def turned(self, place: np.ndarray, other_place: np.ndarray) -> float:
         """Return the greatest angle between root and joints of two postures [rad]."""
@@ -147,7 +147,7 @@ class LinkChain:
         """Return position and velocity of the point that the grid follows: the mean of the links by volume."""
         return self._weights @ states.position, self._weights @ states.velocity
 
-    def body(self, path: "LinkWay") -> flow.Linked:
+    def body(self, path: "LinkPath") -> flow.Linked:
         """Return the robot as a body of the flow that goes along a path, about its centre."""
 
         def motion(time: float) -> flow.LinkStates:
@@ -157,7 +157,7 @@ class LinkChain:
 
         return flow.Linked(pieces=self.pieces, motion=motion)
 
-    def motion(self, path: "LinkWay") -> Callable[[float], flow.Pose]:
+    def motion(self, path: "LinkPath") -> Callable[[float], flow.Pose]:
         """Return the function that gives the pose of the body's centre at a time [s]."""
 
         def pose(time: float) -> flow.Pose:
@@ -167,7 +167,7 @@ class LinkChain:
         return pose
 
 
-class LinkWay(Way):
+class LinkPath(ChainPath):
     """The path of a robot through one step: each link follows a cubic between its states at both ends."""
 
     def __init__(self, chain: LinkChain, time: float, posture: ChainState) -> None:
@@ -193,7 +193,9 @@ class LinkWay(Way):
             (start_time, end_time), (start, end) = self._times, self._states
             span = end_time - start_time
             link_states = (
-                between(start, end, span, (time - start_time) / span) if span else onward(end, time - end_time)
+                interpolate_links(start, end, span, (time - start_time) / span)
+                if span
+                else extrapolate_links(end, time - end_time)
             )
             self._seen_links[time] = link_states
         return self._seen_links[time]

@@ -47,7 +47,7 @@ class Series:
         return cls(**{name: list(values) if name in arrays else values.tolist() for name, values in state.items()})
 
 
-def recorded(
+def coupling_record(
     run: Run, chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset, added_mass: np.ndarray
 ) -> xr.Dataset:
     """Return the record of a coupled run: the record of the robot, and the forces and errors of the water.

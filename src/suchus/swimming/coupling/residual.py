@@ -23,7 +23,7 @@ DRAWS = 400
 """Draws of the bootstrap, blocks of half a cycle [-]."""
 BLOCKS = 3
 """Blocks without which no interval is given [-]: the draws of fewer say nothing of how cycles differ."""
-COVERED = 0.95
+COVERAGE = 0.95
 """Share of the draws that lies in an interval [-]."""
 _SMOOTHED, _ORDER = 9, 4
 """Samples and order of the polynomials by which places become rates and accelerations [-]."""
@@ -51,7 +51,7 @@ def motion_of(record: xr.Dataset, joints: Sequence[str]) -> RecordedMotion:
 
 
 def residual_table(
-    robot: Robot, record: xr.Dataset, *, period: float, first: float, viscosity: float
+    robot: Robot, record: xr.Dataset, *, period: float, start_time: float, viscosity: float
 ) -> xr.Dataset:  # fmt: skip
     """Return the difference between the section model and the flow of a record.
 
@@ -59,7 +59,7 @@ def residual_table(
         robot: that swam.
         record: of one run in a flow, see ``record.COUPLED``.
         period: of a cycle [s].
-        first: time from which samples count [s].
+        start_time: time from which samples count [s].
         viscosity: kinematic, of the flow's water [m2/s].
 
     Returns:
@@ -67,10 +67,10 @@ def residual_table(
         the section model's, ``r2`` as the model is shipped, factors ``added`` and ``drag`` on its two parts that are
         fitted to the first half of the cycles, with their intervals, and ``r2_held_out`` of the fit in the second half.
     """
-    parts = sections_beside(robot, record, first=first, viscosity=viscosity)
+    parts = compare_sections(robot, record, start_time=start_time, viscosity=viscosity)
     halves = (
-        parts.keep & (parts.time < 0.5 * (first + parts.time[-1])),
-        parts.keep & (parts.time >= 0.5 * (first + parts.time[-1])),
+        parts.keep & (parts.time < 0.5 * (start_time + parts.time[-1])),
+        parts.keep & (parts.time >= 0.5 * (start_time + parts.time[-1])),
     )
     rows = [
         _row(parts.flow[:, k], parts.added[:, k], parts.drag[:, k], parts.keep, halves, period / parts.step)
@@ -85,7 +85,7 @@ def residual_table(
     return xr.Dataset({**data, "part_kind": ("part", kind)}, coords={"part": parts.names})
 
 
-class SectionsBeside(NamedTuple):
+class SectionComparison(NamedTuple):
     """Forces of a flow on links and joints along a record, and the two parts that the section model predicts."""
 
     names: list[str]
@@ -111,7 +111,7 @@ class SectionsBeside(NamedTuple):
         return float(self.time[1] - self.time[0])
 
 
-def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity: float) -> SectionsBeside:
+def compare_sections(robot: Robot, record: xr.Dataset, *, start_time: float, viscosity: float) -> SectionComparison:
     """Return the forces of the flow in a record and those of the section model; see ``residual_table``."""
     lateral = {hinge.name for hinge in robot.axis_hinges if hinge.turn == "yaw"}
     loaded_joints = [
@@ -128,10 +128,12 @@ def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity
         for variant in (lake, lake_without_added_mass)
     )
     time = record.time.values
-    keep = (time >= first) & (time <= time[-1] - _SMOOTHED * (time[1] - time[0]))
+    keep = (time >= start_time) & (time <= time[-1] - _SMOOTHED * (time[1] - time[0]))
     names = [str(name) for name in record.link.values] + joints
     flow = _lateral_loads(_flow_loads(record, joints), motion)
-    return SectionsBeside(names, record.sizes["link"], time, keep, flow, section_loads - drag_loads, drag_loads, joints)
+    return SectionComparison(
+        names, record.sizes["link"], time, keep, flow, section_loads - drag_loads, drag_loads, joints
+    )
 
 
 def _between_joints(robot: Robot, record: xr.Dataset, joints: Sequence[str]) -> xr.Dataset:
@@ -177,7 +179,7 @@ def r2(values: np.ndarray, model: np.ndarray) -> float:
     return float(1.0 - ((values - model) ** 2).sum() / spread) if spread > 0 else float("nan")
 
 
-def fitted(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray) -> np.ndarray:
+def fit_factors(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray) -> np.ndarray:
     """Return the factors on added mass and drag with the least squares of the residual, shape (2,) [-].
 
     Args:
@@ -196,9 +198,9 @@ def _row(
 ) -> list[float]:  # fmt: skip
     """Return a row of the residual table: rms, explained variance, factors with intervals, and the test."""
     fit_half, test_half = halves
-    factors = fitted(values[fit_half], added_force[fit_half], drag[fit_half])
-    draws = drawn(values[fit_half], added_force[fit_half], drag[fit_half], max(round(0.5 * cycle), 2))
-    lower_bound, upper_bound = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
+    factors = fit_factors(values[fit_half], added_force[fit_half], drag[fit_half])
+    draws = bootstrap_factors(values[fit_half], added_force[fit_half], drag[fit_half], max(round(0.5 * cycle), 2))
+    lower_bound, upper_bound = np.quantile(draws, [(1 - COVERAGE) / 2, (1 + COVERAGE) / 2], axis=0)
 
     def fit(mask: np.ndarray) -> float:
         return r2(values[mask], factors[0] * added_force[mask] + factors[1] * drag[mask])
@@ -211,7 +213,7 @@ def _row(
     ]  # fmt: skip
 
 
-def drawn(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
+def bootstrap_factors(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
     """Return the factors of a block bootstrap, shape (draw, 2); NaN if there are too few blocks.
 
     Args:
@@ -227,5 +229,5 @@ def drawn(values: np.ndarray, added_force: np.ndarray, drag: np.ndarray, block: 
     for k in range(DRAWS):
         start = rng.integers(len(values), size=count)
         index = ((start[:, None] + np.arange(block)) % len(values)).ravel()  # each sample is drawn as often
-        draws[k] = fitted(values[index], added_force[index], drag[index])
+        draws[k] = fit_factors(values[index], added_force[index], drag[index])
     return draws

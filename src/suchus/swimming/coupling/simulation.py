@@ -14,7 +14,7 @@ from suchus.sim import land
 from suchus.sim.land.readings import with_equal_variables
 from suchus.sim.land.run import Run
 from suchus.swimming.coupling.swim import Swim
-from suchus.swimming.water.samples import check_kept
+from suchus.swimming.water.samples import check_checkpoint_folder
 
 
 def simulate(
@@ -22,7 +22,7 @@ def simulate(
     *,
     duration: float = 9.0,
     timestep: float | None = None,
-    every: int = 1,
+    sample_stride: int = 1,
     keep: Path | str | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
@@ -35,7 +35,7 @@ def simulate(
         runs: at least one; see ``land.simulate``.
         duration: [s].
         timestep: of the physics [s]; that of the robots' size, and in a flow of its steps, if None.
-        every: keep one sample of so many control periods.
+        sample_stride: keep one sample of so many control periods.
         keep: folder in which each run in a flow, robot and water, is kept as far as it has come, in a file named after
             the run; where it holds one, the run goes on from there, to the same bytes. None keeps nothing.
         progress: told the share that is done.
@@ -53,8 +53,8 @@ def simulate(
     runs = tuple(runs)
     flow_indices = [i for i, run in enumerate(runs) if run.solved is not None]
     if not flow_indices:
-        return land.simulate(runs, duration=duration, timestep=timestep, every=every, progress=progress)
-    check_kept("" if keep is None else str(keep))
+        return land.simulate(runs, duration=duration, timestep=timestep, sample_stride=sample_stride, progress=progress)
+    check_checkpoint_folder("" if keep is None else str(keep))
     swims = [Swim(runs[i], duration, timestep=timestep) for i in flow_indices]  # refused before any is computed
     periods = {swim.stepper.period for swim in swims}
     if len(periods) > 1:
@@ -65,7 +65,9 @@ def simulate(
         run_progress = portion(progress, 0, count)
         plain_runs = [runs[i] for i in plain_indices]
         parts.append(
-            land.simulate(plain_runs, duration=duration, timestep=timestep, every=every, progress=run_progress)
+            land.simulate(
+                plain_runs, duration=duration, timestep=timestep, sample_stride=sample_stride, progress=run_progress
+            )
         )
         order += plain_indices
     for number, (i, swim) in enumerate(zip(flow_indices, swims, strict=True), start=count - len(flow_indices)):
@@ -73,7 +75,7 @@ def simulate(
             kept_path = None if keep is None else Path(keep) / f"{fingerprint(swim.setup)[:16]}.kept-swim"
             run_progress = portion(progress, number, count)
             swim.go(swim.ticks * swim.stepper.period, progress=run_progress, checkpoint=kept_path)
-        parts.append(swim.record().isel(time=slice(None, None, every)))
+        parts.append(swim.record().isel(time=slice(None, None, sample_stride)))
         order.append(i)
     records = with_equal_variables(parts)
     record = records[0] if len(records) == 1 else xr.concat(records, "run", join="outer", data_vars="all")

@@ -31,7 +31,7 @@ from suchus.core.errors import Diverged, Doubtful, InvalidDesign, NotConverged, 
 from suchus.core.progress import Progress
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
-from suchus.flow.simulation import LANDING
+from suchus.flow.simulation import MAX_EVENED_STEPS
 from suchus.robot.control import Controller
 from suchus.robot.design import layout
 from suchus.robot.design.scale import control_period, physics_step
@@ -42,23 +42,23 @@ from suchus.sim.land.afloat import check_floats
 from suchus.sim.land.batch import Beginning
 from suchus.sim.land.lake import Lake
 from suchus.sim.land.run import Run, check_pushes
-from suchus.sim.land.stepper import CoordinateState, Stepper, Stretch
+from suchus.sim.land.stepper import CoordinateState, StepInterval, Stepper
 from suchus.sim.land.waters import Slice, Space
 from suchus.swimming.coupling.chain import ChainState, MidlineChain
-from suchus.swimming.coupling.linked import LinkChain, LinkWay
-from suchus.swimming.coupling.recorded import Series, recorded
-from suchus.swimming.water import Outline, cycle, displaced, recoil
-from suchus.swimming.water.immersed import folded, half_heights
+from suchus.swimming.coupling.linked import LinkChain, LinkPath
+from suchus.swimming.coupling.recorded import Series, coupling_record
+from suchus.swimming.water import Outline, cycle, displaced_mass, recoil
+from suchus.swimming.water.immersed import folded_limbs, half_heights
 from suchus.swimming.water.samples import Samples
 from suchus.swimming.water.setting import DENSITY, SwimSetting
 
 OFF_PLANE = 0.12
 """Greatest angle of a joint out of the plane of the flow [rad]."""
-LOST = 1.0
+MAX_RESIDUAL = 1.0
 """Residual above which a step is unconverged [-]: the residual force exceeds the greatest force so far."""
-PATIENCE = 5
+MAX_UNCONVERGED_STEPS = 5
 """Greatest number of successive unconverged steps [-]: at the start the force is too small for a comparison."""
-LONGEST = 1.25
+MAX_STEP = 1.25
 """Greatest step of the flow, over the time in which the body wave moves by a cell [-].
 
 At rest the flow has no other bound. While the robot swims, the step is about 0.9 of that time."""
@@ -67,9 +67,9 @@ STEPS = 100
 
 Forces and velocities are means over a step. The error of their product, the power, is of second order: up to 0.5 % with
 42 steps, 0.1 % with 100."""
-FINER = 5
+MIN_PHYSICS_STEPS = 5
 """Least number of physics steps in a step of the flow; energy error: 1e-2 with 1, 2e-3 with 5, 8e-4 with 10 [-]."""
-LEAST = 0.1
+MIN_EFFECTIVE_INERTIA = 0.1
 """Least inertia along a correction after an update of the added mass, over the inertia before it [-].
 
 It is chosen: with less, the next guess of the acceleration would be more than ten times as large."""
@@ -163,7 +163,7 @@ def never_negative(
     return added_mass - (mass_modes * np.minimum(values, 0.0)) @ mass_modes.T
 
 
-def learned(
+def update_added_mass(
     added_mass: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"],
     push: Float[np.ndarray, " coordinate"], water_response: Float[np.ndarray, " coordinate"],
 ) -> Float[np.ndarray, "coordinate coordinate"]:  # fmt: skip
@@ -181,7 +181,7 @@ def learned(
     predicted_force = (mass + added_mass) @ push
     observed_force = mass @ push + water_response
     predicted_work, observed_work = float(push @ predicted_force), float(push @ observed_force)
-    if not observed_work > LEAST * predicted_work > 0.0:
+    if not observed_work > MIN_EFFECTIVE_INERTIA * predicted_work > 0.0:
         return added_mass
     return np.asarray(
         added_mass
@@ -190,7 +190,7 @@ def learned(
     )
 
 
-def out_of_step(max_steps: int, period: int) -> int:
+def incommensurate_steps(max_steps: int, period: int) -> int:
     """Return the number of physics steps in a step of the flow, such that steps end at different phases.
 
     Servos get new commands at the beginning of each control period. Light limbs follow so fast that their speed changes
@@ -282,7 +282,7 @@ class Swim:
         if fixed_depth is not None:
             return float(fixed_depth)
         half_width, _ = self.outline.silhouette
-        return displaced(self.outline, 1.0) / float(np.trapezoid(2 * half_width, self.outline.s))
+        return displaced_mass(self.outline, 1.0) / float(np.trapezoid(2 * half_width, self.outline.s))
 
     @property
     def viscosity(self) -> float:
@@ -299,7 +299,7 @@ class Swim:
         period, cell = control_period(self.run.robot), self.run.robot.length / self.water.cells
         lateral_stroke, vertical_stroke = self._strokes if self._linked else (0.0, 0.0)
         fastest = 2 * np.pi / self.run.gait.period * max(self._swing, lateral_stroke, vertical_stroke, cell)
-        max_step = min(physics_step(self.run.robot), 0.8 * cell / (1.5 * fastest) / FINER)
+        max_step = min(physics_step(self.run.robot), 0.8 * cell / (1.5 * fastest) / MIN_PHYSICS_STEPS)
         return float(period / np.ceil(period / max_step * (1 - 1e-9)))
 
     @cached_property
@@ -344,7 +344,7 @@ class Swim:
             setting = replace(setting, beside=self.water.beside)
         swing = _WIDER * self._swing
         if isinstance(self.chain, LinkChain):
-            assert isinstance(self.path, LinkWay)
+            assert isinstance(self.path, LinkPath)
             stretched = [girdle.aside + girdle.limb.reach + girdle.limb.foot.radius for girdle in robot.girdles]
             reach = max(swing, *stretched, 1.5 * self._strokes[1] + float(self.half_height.max()))
             grid = setting.grid_around(robot.length, reach)
@@ -358,7 +358,7 @@ class Swim:
                 assert isinstance(spine_body, flow.Trunk)
                 shape = flow.Limbed(
                     spine=spine_body.spine, half_height=spine_body.half_height, cuts=spine_body.cuts,
-                    limbs=folded(robot),
+                    limbs=folded_limbs(robot),
                 )  # fmt: skip
         setting.check_thickness(robot, shape)
         body = flow.Body(shape=shape, motion=motion, name=robot.name)
@@ -462,7 +462,7 @@ class Swim:
             water_response: force of the water against it.
         """
         previous_mass = self._added_mass
-        self._added_mass = learned(previous_mass, self.stepper.mass(), push, water_response)
+        self._added_mass = update_added_mass(previous_mass, self.stepper.mass(), push, water_response)
         return self._added_mass - previous_mass
 
     def _adrift(self, impulse: np.ndarray) -> float:
@@ -487,13 +487,13 @@ class Swim:
                 "coarser cells."
             )
         period = self.run.gait.period
-        allowed = min(allowed, LONGEST * period / self.water.cells)
+        allowed = min(allowed, MAX_STEP * period / self.water.cells)
         if self._linked:
             allowed = min(allowed, period / STEPS)
         max_steps = max(int(allowed / self.timestep), 1)
         if self._linked:
-            max_steps = out_of_step(max_steps, round(stepper.period / self.timestep))
-        count = stepper.until(end_time, max_steps, LANDING)
+            max_steps = incommensurate_steps(max_steps, round(stepper.period / self.timestep))
+        count = stepper.until(end_time, max_steps, MAX_EVENED_STEPS)
         h, start, began = count * self.timestep, self.time, self._flow_state(stepper.now)
         stepper.begin()
         newton = self._newton()
@@ -566,7 +566,7 @@ class Swim:
         self._watch(residual)
         self._renew(anew=correction_count > 0 and residual > self.water.tolerance)
 
-    def _fluctuation_work(self, stretch: Stretch, push: np.ndarray, h: float) -> float:
+    def _fluctuation_work(self, stretch: StepInterval, push: np.ndarray, h: float) -> float:
         """Return the work of the water in a step beyond the work of its mean force [J].
 
         The part of the force that depends on accelerations changes within a step, because the servos get new commands.
@@ -575,7 +575,7 @@ class Swim:
         return float((self._implicit_added_mass @ push) @ (stretch.way - mean))
 
     def _note(
-        self, stretch: Stretch, water_force: np.ndarray, fluctuation_work: float, posture: ChainState,
+        self, stretch: StepInterval, water_force: np.ndarray, fluctuation_work: float, posture: ChainState,
         residual: tuple[float, float], correction_count: int,
     ) -> None:  # fmt: skip
         """Append the quantities of a step to the series."""
@@ -613,8 +613,8 @@ class Swim:
                     f"its range, {angle:.3g} rad: from then on its stop bears what servo, spring and water do not; a "
                     "stiffer spring or a slower gait keeps it free.", Doubtful, stacklevel=3,
                 )  # fmt: skip
-        self._strikes = self._strikes + 1 if residual > LOST or not np.isfinite(residual) else 0
-        if self._strikes >= PATIENCE or not np.isfinite(residual):
+        self._strikes = self._strikes + 1 if residual > MAX_RESIDUAL or not np.isfinite(residual) else 0
+        if self._strikes >= MAX_UNCONVERGED_STEPS or not np.isfinite(residual):
             raise Diverged(
                 f"at t = {self.time:.4g} s robot and flow do not converge: a force of {residual:.3g} times the "
                 f"greatest so far is left over after {self.water.corrections} corrections; allow more corrections "
@@ -663,7 +663,7 @@ class Swim:
                 bar.move(self.time)
                 if progress is not None:
                     progress("swimming", self.time / end_time)
-        saver.save(self, now=True)
+        saver.save(self, is_forced=True)
         self.stepper.finish()
 
     # --- stopped and gone on -----------------------------------------------------------------------------------
@@ -716,7 +716,7 @@ class Swim:
 
     def record(self) -> xr.Dataset:
         """Return the record so far, with the variables of ``record.WATER`` and ``record.COUPLED``; NaN after it."""
-        return recorded(self.run, self.chain, self.series, self.stepper.record(), self._start_added)
+        return coupling_record(self.run, self.chain, self.series, self.stepper.record(), self._start_added)
 
 
 def _lessened(impulse: np.ndarray, momentum: np.ndarray) -> np.ndarray:

@@ -5,12 +5,21 @@ Swims by CFD stand in ``suchus.swimming.water.resolved``, which loads the flow s
 
 from suchus.robot.design.water import Water
 from suchus.swimming.water.fit import Attempt, Fit, attempts, fit, readings_table, swim_of
-from suchus.swimming.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
+from suchus.swimming.water.measures import (
+    Quarters,
+    Sway,
+    SwimMeasures,
+    convex_higher,
+    efficiency,
+    level,
+    swing,
+    wave_form,
+)
 from suchus.swimming.water.outline import BodySilhouette, MidlineCurve, Outline, silhouette
-from suchus.swimming.water.passive import sprung
+from suchus.swimming.water.passive import with_passive_end
 from suchus.swimming.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
-from suchus.swimming.water.swimming import MODELS, displaced, greatest, survey, swim, wave_speed
-from suchus.swimming.water.undulation import ExactWave, Motion, Undulation, taken, undulation, unevenness
+from suchus.swimming.water.swimming import MODELS, displaced_mass, max_amplitude_factor, survey, swim, wave_speed
+from suchus.swimming.water.undulation import ExactWave, Motion, Undulation, motion_of_record, undulation, unevenness
 from suchus.swimming.water.waves import BodyWave, EelWave, FilmedWave, PrintedWave, printed_wave
 
 __all__ = [
@@ -30,32 +39,32 @@ __all__ = [
     "PrintedWave",
     "Quarters",
     "Sway",
-    "Swum",
+    "SwimMeasures",
     "Undulation",
     "Water",
     "attempts",
     "convex_higher",
     "cruise",
     "cycle",
-    "displaced",
+    "displaced_mass",
     "efficiency",
     "fit",
-    "greatest",
     "level",
+    "max_amplitude_factor",
+    "motion_of_record",
     "printed_wave",
     "reactive",
     "readings_table",
     "recoil",
     "resistive",
     "silhouette",
-    "sprung",
     "survey",
     "swim",
     "swim_of",
     "swing",
-    "taken",
     "undulation",
     "unevenness",
     "wave_form",
     "wave_speed",
+    "with_passive_end",
 ]

@@ -8,7 +8,7 @@ import xarray as xr
 from suchus import flow
 from suchus.swimming.water.samples import Samples
 
-OUTSIDE = 0.99
+MIN_FLUID_FRACTION = 0.99
 """Share of the fluid from which a cell counts as outside the body [-]."""
 VORTEX = 0.4
 """Second invariant Q on the surfaces that are drawn around vortices, over the square of the frequency [-]."""
@@ -149,7 +149,7 @@ def _vortices(sim: flow.Simulation) -> np.ndarray:
     velocity = np.stack(sim.velocity).astype(float)
     image = velocity[:, :1] * np.array([1.0, 1.0, -1.0])[:, None, None, None]
     q = flow.second_invariant(np.concatenate([image, velocity], axis=1), sim.setup.grid.cell)[1:]
-    invariant: np.ndarray = q * (sim.fluid_share > OUTSIDE)
+    invariant: np.ndarray = q * (sim.fluid_share > MIN_FLUID_FRACTION)
     return invariant
 
 

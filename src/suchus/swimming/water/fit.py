@@ -18,7 +18,7 @@ from suchus.robot.kinematics.wave import READINGS
 from suchus.robot.motion import LIMBS_BACK, Gait, lateral_servos, swimming_gait
 from suchus.swimming.water.outline import Outline
 from suchus.swimming.water.undulation import undulation
-from suchus.swimming.water.waves import BodyWave, along, printed_wave
+from suchus.swimming.water.waves import BodyWave, printed_wave, wave_at_arc_lengths
 
 _TIMES = 48
 """Instants of a cycle at which wave and joints are compared [-]."""
@@ -43,7 +43,7 @@ def fit(
     wave: BodyWave,
     *,
     name: str = "wave",
-    most: float = 0.25,
+    max_misfit: float = 0.25,
     limbs: tuple[float, float] = LIMBS_BACK,
 ) -> Fit:
     """Return the gait of the lateral servos that is nearest to a wave, by least squares of tangent angles.
@@ -55,7 +55,7 @@ def fit(
         robot: whose joints.
         wave: to be made.
         name: of the motion.
-        most: greatest misfit that still counts as the same wave, see ``Fit.misfit`` [-].
+        max_misfit: greatest misfit that still counts as the same wave, see ``Fit.misfit`` [-].
         limbs: yaw and pitch at which limbs are held, see ``motion.swimming_gait`` [rad].
 
     Raises:
@@ -70,7 +70,7 @@ def fit(
         raise UnsuitedRobot(f"robot {robot.name!r} has no servo that bends it sideways: choose another robot.")
     outline = Outline(robot)
     time = wave.period * np.arange(_TIMES) / _TIMES
-    heading, x, y = along(wave, outline.s, time)
+    heading, x, y = wave_at_arc_lengths(wave, outline.s, time)
     turning = np.exp(-2j * np.pi * time / wave.period)
     harmonic = 2.0 * turning @ heading / _TIMES
     basis = np.column_stack([np.ones_like(outline.s), outline.bending_at(outline.s)])
@@ -87,12 +87,13 @@ def fit(
         robot, name=name, frequency=1.0 / wave.period, amplitude=amplitudes, lag=left_lags, limbs=limbs
     )
     misfit, requested_bends = _misfit(outline, gait, head, time, x, y), _requested_bends(outline, heading)
-    if not misfit <= most:
+    if not misfit <= max_misfit:
         limits = _limits(outline)
         worst_joint = int(np.argmax(requested_bends / limits))
         raise OutsideLimits(
             f"the joints of robot {robot.name!r} cannot make {name!r}: the nearest motion is off by {100 * misfit:.0f} "
-            f"% of the tail's swing, and {100 * most:.0f} % is allowed. Where {outline.joints[worst_joint]} stands "
+            f"% of the tail's swing, and {100 * max_misfit:.0f} % is allowed. Where {outline.joints[worst_joint]} "
+            f"stands "
             "the wave "
             f"bends by {requested_bends[worst_joint]:.2f} rad and the joint by {limits[worst_joint]:.2f} rad at "
             "most: take a longer or a flatter wave."

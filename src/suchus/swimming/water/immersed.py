@@ -15,7 +15,13 @@ FIN_STARTS, FIN_RISES = 2 / 3, 0.05
 
 
 def immersed(
-    outline: Outline, motion: Motion, *, sway: complex = 0j, turn: complex = 0j, grow: float = 0.0, least: float = 0.0
+    outline: Outline,
+    motion: Motion,
+    *,
+    sway: complex = 0j,
+    turn: complex = 0j,
+    grow: float = 0.0,
+    min_half_width: float = 0.0,
 ) -> flow.Midline:
     """Return the robot as a bending body of ``suchus.flow``, head at the origin, tail towards +x, y to its right.
 
@@ -31,7 +37,7 @@ def immersed(
         sway: harmonic of the snout's displacement to the right [m]; zero for a free body, which finds it by itself.
         turn: harmonic of the head's direction [rad].
         grow: time over which the motion grows from nothing [s].
-        least: half-width below which the body is thickened, its ends made round [m].
+        min_half_width: half-width below which the body is thickened, its ends made round [m].
     """
     body_motion = undulation(outline, motion).held(sway, turn)
     half_width = outline.silhouette.half_width
@@ -40,7 +46,7 @@ def immersed(
     def spine(time: float) -> flow.MidlineState:
         curve = body_motion.curve(np.asarray(time), *_growth(time, grow))
         state = flow.MidlineState(**curve._asdict(), half_width=half_width)
-        return state.thickened(least) if least > 0.0 else state
+        return state.thickened(min_half_width) if min_half_width > 0.0 else state
 
     return flow.Midline(spine=spine)
 
@@ -67,7 +73,7 @@ def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
     return np.maximum(outline.silhouette.half_height, fin)
 
 
-def folded(robot: Robot) -> tuple[flow.Capsule, ...]:
+def folded_limbs(robot: Robot) -> tuple[flow.Capsule, ...]:
     """Return the limbs of a robot, stretched and turned straight back from the hips, in the plane of the body.
 
     Each link is a capsule and each foot a ball. They are fixed to the body at the hip.
@@ -118,5 +124,5 @@ def trunk(
     spine = immersed(outline, motion, sway=sway, turn=turn, grow=grow).spine
     cuts, half_height = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
     if limbs:
-        return flow.Limbed(spine=spine, half_height=half_height, cuts=cuts, limbs=folded(outline.robot))
+        return flow.Limbed(spine=spine, half_height=half_height, cuts=cuts, limbs=folded_limbs(outline.robot))
     return flow.Trunk(spine=spine, half_height=half_height, cuts=cuts)

@@ -125,7 +125,7 @@ def wave_form(
     return float(best.x[0]), float(best.x[1]), float(best.x[2]), 1.0 - 2.0 * float(best.cost) / total_power
 
 
-class Swum(NamedTuple):
+class SwimMeasures(NamedTuple):
     """Measures of a free swim in its last cycle."""
 
     speed: float
@@ -142,7 +142,7 @@ class Swum(NamedTuple):
     """Amplitude of the head's direction [rad]."""
 
     @classmethod
-    def of(cls, free: xr.Dataset, frequency: float) -> "Swum":
+    def of(cls, free: xr.Dataset, frequency: float) -> "SwimMeasures":
         """Return the measures of a record of a free slice."""
         speed, power = float(free.speed[-1]), float(free.power[-1])
         return cls(

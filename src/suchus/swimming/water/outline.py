@@ -217,7 +217,7 @@ def tail_root(robot: Robot) -> float:
     return sum(segment.front + segment.rear for segment in robot.axis[: robot.root_place + 1])
 
 
-def summed(
+def cumulative_positions(
     start_value: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]
 ) -> Float[np.ndarray, "*b station"]:
     """Return the positions to which steps lead from a start."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from suchus.robot.design import Spring
 from suchus.robot.design.water import Water
-from suchus.swimming.water.outline import Outline, summed
+from suchus.swimming.water.outline import Outline, cumulative_positions
 from suchus.swimming.water.slender import recoil
 from suchus.swimming.water.undulation import Motion, Undulation, undulation
 
@@ -14,7 +14,7 @@ _ROUNDS = 12
 """Rounds in which drag, recoil and bends are brought to agree; the last changes the bends by less than 1e-4 [-]."""
 
 
-def sprung(outline: Outline, motion: Motion, speed: float, water: Water | None = None) -> Undulation:
+def with_passive_end(outline: Outline, motion: Motion, speed: float, water: Water | None = None) -> Undulation:
     """Return a motion whose passive end yields to the water, for a free body.
 
     The spring and the damper of each passive joint balance three moments: Lighthill's reaction of the water beyond the
@@ -31,13 +31,13 @@ def sprung(outline: Outline, motion: Motion, speed: float, water: Water | None =
     middle = 0.5 * (outline.s[1:] + outline.s[:-1])
     middles, stations = outline.passive_at(middle), outline.passive_at(outline.s)
     step = outline.s[1] - outline.s[0]
-    shapes = np.stack([summed(np.zeros(()), step * column) for column in middles.T])
+    shapes = np.stack([cumulative_positions(np.zeros(()), step * column) for column in middles.T])
     bends = np.zeros(len(shapes), complex)
     for _ in range(_ROUNDS):
         limber = _with_bend(driven_motion, middles @ bends, stations @ bends)
         sway, turn = recoil(outline, limber, speed, medium)
         slope = limber.stations[1] + turn
-        y = summed(limber.sway[1] + sway, step * (limber.middles[1] + turn))
+        y = cumulative_positions(limber.sway[1] + sway, step * (limber.middles[1] + turn))
         load = _Load(outline, driven_motion.frequency, speed, medium, y, slope)
         response = np.array([load.moments(shape, column) for shape, column in zip(shapes, stations.T, strict=True)]).T
         load_moments = load.moments(y - shapes.T @ bends, slope - stations @ bends)

@@ -105,12 +105,12 @@ def _hash(description: str) -> str:
     return sha256(description.encode()).hexdigest()
 
 
-def kept_in(folder: str, name: str) -> Path | None:
+def checkpoint_path(folder: str, name: str) -> Path | None:
     """Return the file of an unfinished swim in a folder; None if the folder is empty text."""
     return Path(folder) / f"{name.replace(' ', '_')}{_CHECKPOINT_SUFFIX}" if folder else None
 
 
-def check_kept(folder: str) -> None:
+def check_checkpoint_folder(folder: str) -> None:
     """Refuse a folder in which unfinished swims cannot be stored.
 
     Raises:
@@ -120,9 +120,9 @@ def check_kept(folder: str) -> None:
         check_writable(Path(folder))
 
 
-def all_kept(folder: str, names: Iterable[str]) -> tuple[Path, ...]:
+def checkpoint_paths(folder: str, names: Iterable[str]) -> tuple[Path, ...]:
     """Return the files of unfinished swims and of their samples in a folder; none if the folder is empty text."""
-    files = [path for name in names if (path := kept_in(folder, name)) is not None]
+    files = [path for name in names if (path := checkpoint_path(folder, name)) is not None]
     return tuple(path.with_name(path.name + end) for path in files for end in ("", _SAMPLES_SUFFIX))
 
 

@@ -58,7 +58,7 @@ class SectionFlow(NamedTuple):
     """Of set-up and code of the flow."""
 
 
-def attached(keulegan: float, stokes: float = STOKES) -> tuple[float, float]:
+def attached_coefficients(keulegan: float, stokes: float = STOKES) -> tuple[float, float]:
     """Return drag coefficient and added mass of a round section in attached flow [-].
 
     Args:
@@ -72,7 +72,7 @@ def attached(keulegan: float, stokes: float = STOKES) -> tuple[float, float]:
     return drag, 1.0 + 4.0 * layer + layer**3
 
 
-def likely(
+def correction_factors(
     half_width: Float[np.ndarray, " s"], half_height: Float[np.ndarray, " s"], amplitude: Float[np.ndarray, " s"]
 ) -> tuple[float, float]:
     """Return factors between the coefficients of a swim and those of the table, over the sections of a body [-].
@@ -94,7 +94,7 @@ def likely(
     aspect = np.clip(half_height / half_width, ASPECTS[0], ASPECTS[-1])
     keulegan = np.clip(pi * amplitude / half_height, KEULEGANS[0], KEULEGANS[-1])
     table_coefficients = np.array([coefficients(float(a), float(k)) for a, k in zip(aspect, keulegan, strict=True)])
-    layer = np.array([attached(float(k)) for k in keulegan])
+    layer = np.array([attached_coefficients(float(k)) for k in keulegan])
     drag, added_mass = (
         np.maximum(table_coefficients[:, 0] - layer[:, 0], 0.0),
         table_coefficients[:, 1] - layer[:, 1] + 1.0,
@@ -144,7 +144,7 @@ def coefficients(aspect: float, keulegan: float, path: Path = TABLE) -> tuple[fl
     return float(np.exp(drag(log_point)[0])), float(np.exp(added_interpolator(log_point)[0]))
 
 
-def held_out(path: Path = TABLE) -> Float[np.ndarray, "point 2"]:
+def held_out_errors(path: Path = TABLE) -> Float[np.ndarray, "point 2"]:
     """Return the relative errors of interpolated Cd and Ca at the points that are not nodes [-]."""
     flows = {
         (section_flow.aspect, section_flow.keulegan): section_flow

@@ -7,7 +7,7 @@ import numpy as np
 from suchus import flow
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
-from suchus.flow.immerse import THINNEST
+from suchus.flow.immerse import MIN_THICKNESS
 from suchus.robot.design import WATER_DENSITY, Robot
 
 DENSITY = WATER_DENSITY
@@ -18,9 +18,9 @@ FREE, ON_THE_SPOT, TETHERED = (True, True, True), (False, True, True), (False, F
 """A body that nothing holds; one that is kept from moving on; one whose motion is given."""
 TETHERED_BOX, FREE_BOX = (2.75, 1.5), (3.5, 2.0)
 """Length and width of the box of a slice, where a setting gives none [body length]."""
-AHEAD, BEHIND, BESIDE, ABOVE = 0.15, 0.35, 0.2, 0.15
+MARGIN_AHEAD, MARGIN_BEHIND, MARGIN_BESIDE, MARGIN_ABOVE = 0.15, 0.35, 0.2, 0.15
 """In space: water ahead of the snout, behind the tail, beside the widest swing and above the back [body length]."""
-FINEST = {2: 4096, 3: 1024}
+MAX_CELLS = {2: 4096, 3: 1024}
 """Most cells per body length, by the number of axes [-]."""
 _TOLERANCES = {2: 1e-5, 3: 1e-4}
 _MIN_LENGTH, _MIN_WIDTH = 1.75, 1.0
@@ -58,7 +58,7 @@ class SwimSetting:
     blunt: float = 0.0
     """In the plane: least half-width; where the body is thinner it is thickened, its ends made round [cell]. With 1.75
     cells the force has the least noise; with 0 the body stays as it is."""
-    beside: float = BESIDE
+    beside: float = MARGIN_BESIDE
     """In space: water beside the widest swing, to each side [body length]."""
     tail_height: float = 0.0
     """In space: height of the last third of the body, as a fin as thick as the tail is; 0 leaves it as it is [m]."""
@@ -70,8 +70,8 @@ class SwimSetting:
     def __post_init__(self) -> None:
         """Refuse settings out of range, and settings of a slice for a body in space and vice versa."""
         with Checks("setting", self) as check:
-            check.that(self.axes in FINEST, f"setting.axes is {self.axes!r}; 2 is a slice and 3 the body in space")
-            check.whole("cells", 32, FINEST.get(self.axes, FINEST[3]))
+            check.that(self.axes in MAX_CELLS, f"setting.axes is {self.axes!r}; 2 is a slice and 3 the body in space")
+            check.whole("cells", 32, MAX_CELLS.get(self.axes, MAX_CELLS[3]))
             check.whole("cycles", 1, 1000)
             check.whole("frames", 0, 1000)
             check.number("viscosity", 1e-7, 10.0, "m2/s")
@@ -141,7 +141,7 @@ class SwimSetting:
         """
         half_width = reach + (_DRIFT_MARGIN + self.beside) * length
         return flow.Grid.covering(
-            (-AHEAD * length, (1.0 + BEHIND) * length),
+            (-MARGIN_AHEAD * length, (1.0 + MARGIN_BEHIND) * length),
             (-half_width, half_width),
             (-half_width, half_width),
             cell=length / self.cells,
@@ -149,9 +149,9 @@ class SwimSetting:
 
     def _grid_in_space(self, length: float, swing: float, height: float) -> flow.Grid:
         """Return the cells around the upper half of a body."""
-        lateral_reach, top = swing / length + _DRIFT_MARGIN, height / length + ABOVE
+        lateral_reach, top = swing / length + _DRIFT_MARGIN, height / length + MARGIN_ABOVE
         grid = flow.Grid.covering(
-            (-AHEAD * length, (1.0 + BEHIND) * length),
+            (-MARGIN_AHEAD * length, (1.0 + MARGIN_BEHIND) * length),
             (-(lateral_reach + self.beside) * length, (lateral_reach + self.beside) * length),
             (0.0, top * length),
             cell=length / self.cells,
@@ -165,12 +165,13 @@ class SwimSetting:
             InvalidDesign: with the cells that would do.
         """
         max_thickness, cell = float(shape.thickness(0.0)[1].max()), robot.length / self.cells
-        if self.in_space and max_thickness < THINNEST * cell:
-            min_cells = int(np.ceil(THINNEST * robot.length / max_thickness))
+        if self.in_space and max_thickness < MIN_THICKNESS * cell:
+            min_cells = int(np.ceil(MIN_THICKNESS * robot.length / max_thickness))
             raise InvalidDesign(
                 f"robot {robot.name!r} is {max_thickness:.3g} m thick at most, and with {self.cells} cells a length "
                 "a cell is "
-                f"{cell:.3g} m: a flow in space needs {THINNEST:.2f} cells across. Take at least {min_cells} cells, "
+                f"{cell:.3g} m: a flow in space needs {MIN_THICKNESS:.2f} cells across. Take at least {min_cells} "
+                f"cells, "
                 "or a slice."
             )
 
@@ -184,7 +185,7 @@ class SwimSetting:
         if self.in_space and self.beside + _DRIFT_MARGIN < min_margin:
             raise InvalidDesign(
                 f"the box leaves {self.beside:.3g} body lengths of water beside the widest swing, and the body would "
-                f"leave it: give at least {min_margin - _DRIFT_MARGIN:.2g}, better {BESIDE}."
+                f"leave it: give at least {min_margin - _DRIFT_MARGIN:.2g}, better {MARGIN_BESIDE}."
             )
 
 

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from suchus.core.errors import NotConverged
 from suchus.robot.design.water import Water
-from suchus.swimming.water.outline import MidlineCurve, Outline, summed
+from suchus.swimming.water.outline import MidlineCurve, Outline, cumulative_positions
 from suchus.swimming.water.undulation import Motion, undulation
 
 _TIMES = 96
@@ -112,7 +112,10 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
     body_motion = undulation(outline, motion)
     omega = 2 * np.pi * body_motion.frequency
     s, (half_width, half_height) = outline.s, outline.silhouette
-    slope, shape = body_motion.stations[1], summed(body_motion.sway[1], (s[1] - s[0]) * body_motion.middles[1])
+    slope, shape = (
+        body_motion.stations[1],
+        cumulative_positions(body_motion.sway[1], (s[1] - s[0]) * body_motion.middles[1]),
+    )
     mass, added_mass = water.density * np.pi * half_width * half_height, water.density * np.pi * half_height**2
 
     def balance(y: np.ndarray, dy: np.ndarray) -> np.ndarray:

@@ -10,15 +10,15 @@ from jaxtyping import Float
 
 from suchus import flow
 from suchus.core.errors import InvalidDesign
-from suchus.flow.setup import LAYER_CELLS
+from suchus.flow.setup import MIN_LAYER_CELLS
 from suchus.robot.design import Robot
 from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait, check_limits, check_speeds
 from suchus.swimming.water.immersed import half_heights, immersed, trunk
 from suchus.swimming.water.outline import Outline
-from suchus.swimming.water.setting import DENSITY, FINEST, GROWS, SwimSetting
+from suchus.swimming.water.setting import DENSITY, GROWS, MAX_CELLS, SwimSetting
 from suchus.swimming.water.slender import cycle, recoil
-from suchus.swimming.water.undulation import Motion, still
+from suchus.swimming.water.undulation import Motion, straight_motion
 
 SLACK = 1e-6
 """Rounding of the phase [cycle]."""
@@ -120,12 +120,12 @@ class ResolvedSwim:
         moving = cycle(self.outline, self.motion, *self.head)
         speed = float(np.hypot(moving.x_rate, moving.y_rate).max())
         layer, cell = (length * setting.viscosity / max(speed, 1e-12)) ** 0.5, length / setting.cells
-        if layer < LAYER_CELLS * cell:
-            cells = int(np.ceil(LAYER_CELLS * length / layer))
+        if layer < MIN_LAYER_CELLS * cell:
+            cells = int(np.ceil(MIN_LAYER_CELLS * length / layer))
             raise InvalidDesign(
                 f"the boundary layer of {self.motion.name!r} is {layer:.2g} m thin and a cell {cell:.2g} m; take at "
                 f"least {cells} cells per body length{self._cost(cells)}, or a viscosity of at least "
-                f"{setting.viscosity * (LAYER_CELLS * cell / layer) ** 2:.2g} m2/s."
+                f"{setting.viscosity * (MIN_LAYER_CELLS * cell / layer) ** 2:.2g} m2/s."
             )
 
     def _cost(self, cells: int) -> str:
@@ -133,8 +133,8 @@ class ResolvedSwim:
         setting = self.setting
         if not setting.in_space:
             return ""
-        if cells > FINEST[setting.axes]:
-            return f", more than the {FINEST[setting.axes]} that are allowed"
+        if cells > MAX_CELLS[setting.axes]:
+            return f", more than the {MAX_CELLS[setting.axes]} that are allowed"
         swing = float(np.abs(cycle(self.outline, self.motion, *self.head).y).max())
         count = prod(box_grid(self.outline, replace(setting, cells=cells), swing).cells)
         hours = count * STEPS * cells * setting.cycles * SECONDS / 3600.0
@@ -150,7 +150,7 @@ def body_shape(
             outline, motion, grow=grow, tail_height=setting.tail_height, limbs=setting.limbs, sway=sway, turn=turn
         )
     min_half_width = setting.least_half_width(outline.robot.length)
-    return immersed(outline, motion, sway=sway, turn=turn, grow=grow, least=min_half_width)
+    return immersed(outline, motion, sway=sway, turn=turn, grow=grow, min_half_width=min_half_width)
 
 
 def box_grid(outline: Outline, setting: SwimSetting, swing: float) -> flow.Grid:
@@ -167,7 +167,7 @@ def box_sides(setting: SwimSetting) -> flow.Sides:
 def straight_body(outline: Outline, setting: SwimSetting) -> flow.Body:
     """Return the straight body at rest, its limbs left out."""
     limbless_setting = replace(setting, limbs=False)
-    shape = body_shape(outline, still(outline), limbless_setting, sway=0j, turn=0j, grow=0.0)
+    shape = body_shape(outline, straight_motion(outline), limbless_setting, sway=0j, turn=0j, grow=0.0)
     return flow.Body(shape=replace(shape, deforms=False))
 
 

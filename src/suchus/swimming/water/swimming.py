@@ -14,7 +14,7 @@ from suchus.sim.metrics import SIMILARITY, swim_numbers
 from suchus.swimming.water.measures import efficiency
 from suchus.swimming.water.outline import MidlineCurve, Outline
 from suchus.swimming.water.slender import Model, cruise, cycle, reactive, recoil, resistive
-from suchus.swimming.water.undulation import Motion, still, undulation
+from suchus.swimming.water.undulation import Motion, straight_motion, undulation
 
 MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
 """The models by name."""
@@ -90,7 +90,7 @@ def _numbers(
         water: density and viscosity.
     """
     swing = float(np.ptp(curve.y[:, -1]))
-    weight = GRAVITY * displaced(outline)
+    weight = GRAVITY * displaced_mass(outline)
     moving = speed != 0.0
     return {
         "speed": speed,
@@ -105,7 +105,7 @@ def _numbers(
     }
 
 
-def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
+def displaced_mass(outline: Outline, density: float = WATER_DENSITY) -> float:
     """Return the mass of the water that the body displaces; sections are ellipses [kg]."""
     half_width, half_height = outline.silhouette
     return float(density * np.pi * np.trapezoid(half_width * half_height, outline.s))
@@ -147,7 +147,7 @@ def _record(
         data[field] = (("model", "time", "station"), values, {"units": unit})
     for name, values in outline.silhouette._asdict().items():
         data[name] = ("station", values, {"units": "m"})
-    data["displaced_mass"] = ((), displaced(outline, water.density), {"units": "kg"})
+    data["displaced_mass"] = ((), displaced_mass(outline, water.density), {"units": "kg"})
     data.attrs.update(schema="suchus swim record 1", robot=outline.robot.name, motion=motion.name)
     return data
 
@@ -173,15 +173,15 @@ def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None,
     return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
 
 
-def greatest(robot: Robot, motion: Gait, *, most: float = 4.0) -> float:
+def max_amplitude_factor(robot: Robot, motion: Gait, *, max_factor: float = 4.0) -> float:
     """Return the greatest factor on all angles at which joints and servos can follow a motion, to 1e-4 [-].
 
     Args:
         robot: who swims.
         motion: how.
-        most: factor that is not gone beyond [-].
+        max_factor: factor that is not gone beyond [-].
     """
-    lower_bound, upper_bound = 0.0, most
+    lower_bound, upper_bound = 0.0, max_factor
     if _possible(robot, motion.bent(upper_bound)):
         return upper_bound
     while upper_bound - lower_bound > 1e-4:
@@ -199,13 +199,13 @@ def _evaluate_motion(outline: Outline, motion: Gait, model: Model, water: Water)
     if free.speed == 0.0:
         return 0.0, 0.0, float("nan"), float("nan"), 0.0
     curve = cycle(outline, motion, free.sway, free.turn)
-    straight = still(outline, motion.frequency)
+    straight = straight_motion(outline, motion.frequency)
     drag = -model(outline, cycle(outline, straight), free.speed, water).thrust * float(np.sign(free.speed))
     swing = float(np.ptp(curve.y[:, -1]))
     return (
         free.speed,
         efficiency(drag, free.speed, free.power),
-        free.power / (GRAVITY * displaced(outline, water.density) * abs(free.speed)),
+        free.power / (GRAVITY * displaced_mass(outline, water.density) * abs(free.speed)),
         motion.frequency * swing / abs(free.speed),
         free.speed / wave_speed(outline, motion, curve),
     )

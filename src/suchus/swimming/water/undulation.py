@@ -17,8 +17,8 @@ from suchus.core.errors import InvalidDesign
 from suchus.robot.design import layout
 from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion import Gait, cycle_targets, movement
-from suchus.swimming.water.outline import MidlineCurve, Outline, summed
-from suchus.swimming.water.waves import BodyWave, along
+from suchus.swimming.water.outline import MidlineCurve, Outline, cumulative_positions
+from suchus.swimming.water.waves import BodyWave, wave_at_arc_lengths
 
 _INSTANTS = 96
 """Instants of a cycle from which a wave's harmonics are found [-]; the last harmonic of (20) is 1e-9 of the first."""
@@ -93,11 +93,11 @@ class Undulation:
         step = self.outline.robot.length / (self.outline.stations - 1)
         zero = np.zeros_like(y[..., 0])
         return MidlineCurve(
-            summed(zero, step * np.cos(middle)),
-            summed(y[..., 0], step * np.sin(middle)),
+            cumulative_positions(zero, step * np.cos(middle)),
+            cumulative_positions(y[..., 0], step * np.sin(middle)),
             heading,
-            summed(zero, -step * np.sin(middle) * spin),
-            summed(y_rate[..., 0], step * np.cos(middle) * spin),
+            cumulative_positions(zero, -step * np.sin(middle) * spin),
+            cumulative_positions(y_rate[..., 0], step * np.cos(middle) * spin),
             rate,
         )
 
@@ -135,7 +135,7 @@ def undulation(outline: Outline, motion: Motion) -> Undulation:
     return _of_joints(outline, motion.name, motion.frequency, _commanded(outline, motion))
 
 
-def still(outline: Outline, frequency: float = 1.0) -> Undulation:
+def straight_motion(outline: Outline, frequency: float = 1.0) -> Undulation:
     """Return the motion of a straight body at rest."""
     return _of_joints(outline, "still", frequency, np.zeros((2, len(outline.joints)), complex))
 
@@ -176,7 +176,7 @@ def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
     """Return the harmonics of a midline that follows a wave exactly."""
     time = motion.wave.period * np.arange(_INSTANTS) / _INSTANTS
     points = np.sort(np.concatenate([outline.s, 0.5 * (outline.s[1:] + outline.s[:-1])]))
-    heading, _, lateral = along(motion.wave, points, time)
+    heading, _, lateral = wave_at_arc_lengths(motion.wave, points, time)
     harmonics = _harmonics(heading)
     return Undulation(
         name=motion.name,
@@ -195,7 +195,9 @@ def _harmonics(values: np.ndarray) -> np.ndarray:
     return np.asarray(harmonics)
 
 
-def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int, name: str = "as taken") -> Undulation:
+def motion_of_record(
+    outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int, name: str = "as taken"
+) -> Undulation:
     """Return the motion of the midline in the last whole cycles of a run, averaged over them.
 
     Only yaw counts, without its mean, as in a slice of water seen from above. Pitch, heave and roll of the run are left

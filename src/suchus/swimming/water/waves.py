@@ -156,7 +156,7 @@ def printed_wave(
     return PrintedWave(wave=wave, origin=tail_root(robot) if READINGS[reading].tail_only else 0.0)
 
 
-def along(wave: BodyWave, s: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def wave_at_arc_lengths(wave: BodyWave, s: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return heading, x and y of a wave at given arc lengths, each of shape (time, station).
 
     Args:

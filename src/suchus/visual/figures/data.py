@@ -25,7 +25,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Polygon, Rectangle, StepPatch
 from matplotlib.ticker import FixedLocator
 
-MOST: Final = 10_000
+MAX_FIELD_VALUES: Final = 10_000
 """Values of one field that go into the table [-]; of a finer one every n-th along both axes."""
 _FIELD_ATTRIBUTE: Final = "suchus_values"
 
@@ -115,7 +115,7 @@ def _labels_by_style(panels: Sequence[Axes]) -> Mapping[tuple[str, ...], str]:
     """Return the label of each look that a labelled line has: lines that look alike elsewhere show the same."""
     labels: dict[tuple[str, ...], str] = {}
     for line in (line for ax in panels for line in ax.lines):
-        if not hidden(line.get_label()):
+        if not is_hidden(line.get_label()):
             labels.setdefault(_line_style(line), _plain(str(line.get_label())))
     return labels
 
@@ -212,7 +212,7 @@ def _of_patch(patch: Patch, names: _Quantities) -> Iterator[Cells]:
 
 
 def _of_field(x: Any, y: Any, values: np.ndarray, names: _Quantities, colour: str) -> Iterator[Cells]:
-    step = max(1, ceil((values.size / MOST) ** 0.5))
+    step = max(1, ceil((values.size / MAX_FIELD_VALUES) ** 0.5))
     for j in range(0, values.shape[0], step):
         for i in range(0, values.shape[1], step):
             yield _cells(names, (x[i], y[j])) | {colour: _text(values[j, i])}
@@ -278,12 +278,12 @@ def _says(word: str, position: float) -> bool:
 def _series_name(label: object, default: str) -> str:
     """Return the name of a series: its label, or what follows the ``_`` that keeps a label out of the legend."""
     text = _plain(str(label))
-    if not hidden(label):
+    if not is_hidden(label):
         return text
     return default if label is None or not text or text.startswith(("_child", "_nolegend")) else text[1:]
 
 
-def hidden(label: object) -> bool:
+def is_hidden(label: object) -> bool:
     """Return whether a legend leaves out a label."""
     return label is None or not str(label) or str(label).startswith("_")
 

@@ -224,7 +224,7 @@ def bend_sign(angle: np.ndarray) -> np.ndarray:
     return np.where(np.abs(angle) > _STRAIGHT * max_bend, np.sign(angle), 0).astype(int)
 
 
-def stretches(time: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
+def intervals(time: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
     """Return from when to when something holds.
 
     Args:
@@ -252,7 +252,7 @@ def _bars(
     """
     top, height = row_span
     span = float(time[-1] - time[0])
-    for start, end in stretches(time, holds):
+    for start, end in intervals(time, holds):
         ax.add_patch(
             Rectangle((start, top), end - start, height, facecolor=fill, edgecolor=edge, linewidth=1.0, zorder=3)
         )

@@ -143,7 +143,7 @@ def draw_posture(
 
 
 def draw_strip(
-    ax: Axes, robot: Robot, record: xr.Dataset, times: Sequence[float], *, role: str, aside: float = 0.0
+    ax: Axes, robot: Robot, record: xr.Dataset, times: Sequence[float], *, role: str, lateral_offset: float = 0.0
 ) -> None:
     """Draw a robot from above at several times, the earlier ones paler, with the track of its centre of mass.
 
@@ -153,10 +153,13 @@ def draw_strip(
         record: of one run.
         times: increasing [s].
         role: of ``style.COLOURS``, for the track.
-        aside: how far to the left of its place it is drawn [m].
+        lateral_offset: how far to the left of its place it is drawn [m].
     """
     shifted_record = record.assign(
-        {name: record[name] + _lateral_shift(record, aside) for name in ("position", "centre_of_mass", "foot_position")}
+        {
+            name: record[name] + _lateral_shift(record, lateral_offset)
+            for name in ("position", "centre_of_mass", "foot_position")
+        }
     )
     for i, time in enumerate(times):
         earlier_artists = set(ax.get_children())
@@ -192,7 +195,7 @@ def _draw_skin(ax: Axes, robot_layout: Layout, outline: Silhouette, view: View, 
         is_far = view == "side" and not is_near
         face, order = (far_leg, 0.8) if is_far else (body, 2.6) if is_near else (body, 1.0)
         # strokes first, then fillings: only the common outline of all pieces remains
-        leg_path = united(pieces)
+        leg_path = joined_path(pieces)
         ax.add_artist(
             PathPatch(leg_path, facecolor=edge, edgecolor=edge, linewidth=1.8, joinstyle="round", zorder=order)
         )
@@ -205,12 +208,12 @@ def _draw_skin(ax: Axes, robot_layout: Layout, outline: Silhouette, view: View, 
     for eye in outline.eyes if view == "above" else outline.eyes[1:]:
         ax.add_patch(Polygon(eye, facecolor=edge, edgecolor="none", zorder=2.4))
     if strength == 1.0 and outline.scutes:
-        plates = united(outline.scutes)
+        plates = joined_path(outline.scutes)
         ax.add_artist(PathPatch(plates, facecolor=plate, edgecolor=edge, linewidth=0.35, zorder=2.2))
         ax.update_datalim(plates.vertices)
 
 
-def united(pieces: Sequence[np.ndarray]) -> Path:
+def joined_path(pieces: Sequence[np.ndarray]) -> Path:
     """Return polygons as one path: a single element of a vector file, a third of the size."""
     return Path.make_compound_path(*(Path(np.vstack([piece, piece[:1]]), closed=True) for piece in pieces))
 

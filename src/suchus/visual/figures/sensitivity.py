@@ -12,7 +12,7 @@ from scipy import stats
 
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict.judging import ROBUST
-from suchus.sim.metrics.decisive import SURE
+from suchus.sim.metrics.decisive import MAX_CHANCE
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _TRUE, _FALSE = "#0072B2", "#D55E00"
@@ -138,7 +138,7 @@ def _correlations(ax: Axes, claimed: xr.Dataset, samples: int) -> None:
     order = np.argsort(-abs(claimed.correlation.values))[:_MAX_PARAMETERS][::-1]
     values = claimed.correlation.values[order]
     ax.barh(range(len(order)), values, color=[_TRUE if v > 0 else _FALSE for v in values], height=0.65)
-    ax.set_yticks(range(len(order)), [spoken(str(claimed.parameter.values[i])) for i in order], fontsize=10)
+    ax.set_yticks(range(len(order)), [parameter_label(str(claimed.parameter.values[i])) for i in order], fontsize=10)
     limit = _chance(samples, claimed.sizes["parameter"])
     ax.axvspan(-limit, limit, color="#BBBBBB", alpha=0.45, linewidth=0, zorder=3)
     ax.axvline(0.0, color="#555555", linewidth=0.9)
@@ -152,11 +152,11 @@ def _chance(samples: int, parameters: int) -> float:
     """Return the rank correlation that the greatest of so many reaches by chance once in a hundred times."""
     if samples < 4:
         return 1.0
-    t = stats.t.isf(SURE / parameters / 2, samples - 2)
+    t = stats.t.isf(MAX_CHANCE / parameters / 2, samples - 2)
     return float(t / np.sqrt(samples - 2 + t**2))
 
 
-def spoken(parameter: str) -> str:
+def parameter_label(parameter: str) -> str:
     """Return how a free number is called for people: ``gait.lift`` as ``lift (gait)``, a setting by its own name."""
     group, dot, name = parameter.partition(".")
     words = (name if dot else group).replace("_", " ").replace(".", ", ")
@@ -184,4 +184,4 @@ def _plane(ax: Axes, claimed: xr.Dataset, is_finite: np.ndarray, holds: np.ndarr
         ax.set_title("no decision boundary within the ranges")
     ax.xaxis.set_major_locator(MaxNLocator(4))
     for axis, i in ((ax.set_xlabel, first_index), (ax.set_ylabel, second_index)):
-        axis(f"{spoken(str(claimed.parameter.values[i]))} [{claimed.parameter_unit.values[i]}]")
+        axis(f"{parameter_label(str(claimed.parameter.values[i]))} [{claimed.parameter_unit.values[i]}]")

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 
-class Used(NamedTuple):
+class ServoUse(NamedTuple):
     """Use of a servo in its hardest movement."""
 
     servo: str
@@ -21,7 +21,7 @@ class Used(NamedTuple):
     """Root mean square of the torque over the torque that it can give continuously [-]."""
 
 
-def draw_use(servo_uses: Sequence[Used], title: str) -> Figure:
+def draw_use(servo_uses: Sequence[ServoUse], title: str) -> Figure:
     """Draw two bars for each servo, torque at its speed and heat, the one that is used most at the top.
 
     Args:

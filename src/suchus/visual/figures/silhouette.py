@@ -10,7 +10,7 @@ from suchus.robot.design import LEGS, Layout, Robot, layout
 from suchus.visual.skin.head import JAW_AROUND
 from suchus.visual.skin.legs import LEG_AROUND
 from suchus.visual.skin.look import SKIN
-from suchus.visual.skin.plain import AROUND
+from suchus.visual.skin.plain import RING_POINTS
 from suchus.visual.skin.surface import Skin, skin
 
 
@@ -68,7 +68,7 @@ def _plain(robot_layout: Layout, surface: Skin, starts: np.ndarray, part_points:
         owner = next(i for i, limb in enumerate(robot_layout.limbs) if limb.tip >= bone)
         legs[owner].append(_hull(points))
     return Silhouette(
-        body=_sides(part_points[0], AROUND),
+        body=_sides(part_points[0], RING_POINTS),
         jaw=np.empty((0, 2)),
         scutes=[],
         eyes=[_hull(points) for points in part_points[1:3]],

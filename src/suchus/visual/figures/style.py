@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from suchus.core.files import write
 from suchus.robot.design import LEGS, Robot, layout
 from suchus.visual.figures.data import table
-from suchus.visual.figures.uncover import Uncovering
+from suchus.visual.figures.uncover import UncoveredLegendLayout
 
 COLOURS: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -139,7 +139,7 @@ def new(*, width: float = WIDTH, height: float = 3.8) -> Figure:
         height: [inch].
     """
     with styled():
-        return Figure(figsize=(width, height), layout=Uncovering())
+        return Figure(figsize=(width, height), layout=UncoveredLegendLayout())
 
 
 def panels(

@@ -13,7 +13,7 @@ from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.transforms import Bbox, ScaledTranslation
 
-from suchus.visual.figures.data import field_of, hidden
+from suchus.visual.figures.data import field_of, is_hidden
 
 _INNER_LOCATIONS: Final = (
     "upper left", "upper right", "lower right", "lower left",
@@ -24,7 +24,7 @@ _GAP: Final = 0.06
 """Gap between the axis and a legend below it [inch]."""
 
 
-class Uncovering(ConstrainedLayoutEngine):
+class UncoveredLegendLayout(ConstrainedLayoutEngine):
     """Constrained layout after which no legend lies on data: where it did, it moves inside the axes or below them."""
 
     def execute(self, fig: Figure) -> None:
@@ -63,7 +63,7 @@ def _visible_artists(ax: Axes) -> Iterator[Artist]:
     for artist in (*ax.lines, *ax.patches, *ax.collections, *ax.images, *ax.texts):
         ground = (*ax.lines, *ax.patches)
         spans_axes = artist in ground and not all(artist.get_transform().contains_branch_seperately(ax.transData))
-        if artist.get_visible() and not (spans_axes and hidden(artist.get_label())):
+        if artist.get_visible() and not (spans_axes and is_hidden(artist.get_label())):
             yield artist
 
 

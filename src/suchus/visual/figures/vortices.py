@@ -19,7 +19,7 @@ from suchus.core.progress import Progress, silent
 from suchus.visual.figures.fields import VORTICITY
 from suchus.visual.figures.film import film
 from suchus.visual.figures.style import captioned, panels, styled
-from suchus.visual.skin.mesh import Mesh, joined, loft, normals
+from suchus.visual.skin.mesh import Mesh, join_meshes, loft, normals
 
 _LIGHT = np.array([-0.35, 0.75, 0.56])  # to the right, up, towards the camera; of length 1
 _SUPERSAMPLING = 2  # computed pixels along each side of a shown pixel
@@ -83,7 +83,7 @@ def _render(meshes: Sequence[Mesh], camera: Viewpoint, size: tuple[int, int]) ->
         camera: where the picture is taken from.
         size: columns and rows [pixel].
     """
-    mesh = joined(meshes)
+    mesh = join_meshes(meshes)
     fine = (_SUPERSAMPLING * size[0], _SUPERSAMPLING * size[1])
     positions, depth = camera.seen(mesh.vertices, fine)
     corner = positions[mesh.faces]
@@ -119,7 +119,7 @@ def _lit_colours(mesh: Mesh, camera: Viewpoint) -> np.ndarray:
 
 SKIN = (0.42, 0.44, 0.36)
 """Colour of the body."""
-AROUND = 32
+SECTION_POINTS = 32
 """Points around a section of the body [-]."""
 LINES = tuple(f"film_{name}" for name in ("x", "y", "heading", "half_width"))
 """Variables of the body in a record, each (frame, station)."""
@@ -128,7 +128,7 @@ _DARKEST = 0.92  # share of the colour map that is used; its ends are nearly bla
 _SECONDS = 4.0  # [s]; duration of the cycle in the film
 
 
-def check_filmed(record: xr.Dataset, subject: str = "the record") -> None:
+def check_vortex_record(record: xr.Dataset, subject: str = "the record") -> None:
     """Refuse a record without the vortices of a swim in three dimensions over a cycle.
 
     Args:
@@ -199,15 +199,15 @@ def body(record: xr.Dataset, frame: int) -> Mesh:
     """Return the body, elliptic sections along its midline."""
     x, y, heading, half_width = (record[f"film_{name}"].values[frame].astype(float)[:, None]
                            for name in ("x", "y", "heading", "half_width"))  # fmt: skip
-    turn = 2 * np.pi * np.arange(AROUND) / AROUND
+    turn = 2 * np.pi * np.arange(SECTION_POINTS) / SECTION_POINTS
     lateral, vertical = half_width * np.cos(turn), record.half_height.values[:, None] * np.sin(turn)
     return loft(np.stack([x - lateral * np.sin(heading), y + lateral * np.cos(heading), vertical], axis=-1)).painted(
         np.array(SKIN)
     )
 
 
-def around(
-    record: xr.Dataset, frame: int, *, coarse: int = 1, level: float | None = None, lower: bool = False
+def vortex_surfaces(
+    record: xr.Dataset, frame: int, *, coarse: int = 1, level: float | None = None, lower_half_only: bool = False
 ) -> Mesh:  # fmt: skip
     """Return the surfaces around the vortices, coloured by the vorticity about z.
 
@@ -216,12 +216,12 @@ def around(
         frame: which.
         coarse: cells along each side of a block [-].
         level: second invariant on them [1/s2].
-        lower: whether only the half below the plane of symmetry is returned.
+        lower_half_only: whether only the half below the plane of symmetry is returned.
     """
     iso_surface, spin = surface(record, frame, coarse=coarse, level=level)
     half = Mesh(iso_surface.points, iso_surface.faces, colours(spin, colour_limit(record)))
     lower_half = Mesh(iso_surface.points * np.array([1.0, 1.0, -1.0]), iso_surface.faces[:, ::-1], half.colours)
-    return lower_half if lower else joined([half, lower_half])
+    return lower_half if lower_half_only else join_meshes([half, lower_half])
 
 
 def colours(spin: np.ndarray, limit: float) -> np.ndarray:
@@ -243,14 +243,14 @@ def camera(record: xr.Dataset) -> Viewpoint:
     return Viewpoint(azimuth=-1.05, elevation=0.62, distance=3.2 * length, target=target, width=width)
 
 
-def hexed(relative_value: float) -> str:
+def hex_colour(relative_value: float) -> str:
     """Return the colour of a vorticity as #rrggbb, from its share of the one at which the colours end [-1 to 1]."""
     return to_hex(colours(np.array([relative_value]), 1.0)[0])
 
 
-def still(record: xr.Dataset, frame: int, size: tuple[int, int] = (720, 400)) -> np.ndarray:
+def still_picture(record: xr.Dataset, frame: int, size: tuple[int, int] = (720, 400)) -> np.ndarray:
     """Return a picture of a frame from a corner, (row, column, 3) uint8."""
-    return picture(body(record, frame), around(record, frame), camera(record), size)
+    return picture(body(record, frame), vortex_surfaces(record, frame), camera(record), size)
 
 
 def draw_vortices(record: xr.Dataset) -> Figure:
@@ -263,7 +263,7 @@ def draw_vortices(record: xr.Dataset) -> Figure:
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=9.0, height=5.6)
         ax = axes[0, 0]
-        ax.imshow(still(record, last_frame, (1440, 800)), interpolation="none")
+        ax.imshow(still_picture(record, last_frame, (1440, 800)), interpolation="none")
         ax.set_axis_off()
         limit = colour_limit(record)
         ramp = colormaps[VORTICITY](np.linspace(0.5 - 0.5 * _DARKEST, 0.5 + 0.5 * _DARKEST, 256))
@@ -286,10 +286,10 @@ def film_vortices(record: xr.Dataset, progress: Progress = silent) -> bytes:
         figure.set_layout_engine("none")
         axes[0, 0].set_position((0.0, 0.0, 1.0, 1.0))
         axes[0, 0].set_axis_off()
-        image = axes[0, 0].imshow(still(record, 0), interpolation="none", aspect="auto")
+        image = axes[0, 0].imshow(still_picture(record, 0), interpolation="none", aspect="auto")
 
         def show(i: int) -> None:
-            image.set_data(still(record, i))
+            image.set_data(still_picture(record, i))
             progress("drawing", (i + 1) / count)
 
         return film(figure, show, count, seconds=_SECONDS, caption=_caption(record))

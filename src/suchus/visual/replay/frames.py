@@ -12,7 +12,7 @@ from suchus.visual.skin import Poses, poses
 
 RATE = 30.0
 """Frames kept for each second [1/s]; the player moves smoothly between them."""
-MOST = 2700
+MAX_FRAMES = 2700
 """Frames kept at most [-]: a minute and a half at the full rate, 1 MB; longer runs get fewer per second."""
 _VARIABLES = (
     *("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force"),
@@ -41,7 +41,7 @@ class Frames(NamedTuple):
     """Level of the water above the world's origin, against gravity, (frame,) [m]; None on dry land."""
 
 
-def checked(record: xr.Dataset, robot: Robot) -> xr.Dataset:
+def check_record(record: xr.Dataset, robot: Robot) -> xr.Dataset:
     """Check a record and return its one run with the variables that a replay needs.
 
     Raises:
@@ -89,7 +89,7 @@ def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frame
     span = float(time[-1] - time[0])
     if rate is None:
         step = span / max(len(time) - 1, 1)
-        stride = max(1, round(1.0 / RATE / step), int(np.ceil(len(time) / MOST))) if step > 0 else 1
+        stride = max(1, round(1.0 / RATE / step), int(np.ceil(len(time) / MAX_FRAMES))) if step > 0 else 1
         rate = 1.0 / (stride * step) if step > 0 else RATE
     frame_times = time[0] + np.arange(int(span * rate + 1e-6) + 1) / rate
     samples = np.clip(

@@ -22,8 +22,8 @@ from suchus.robot.design.ground import Ground
 from suchus.sim.record import ground_of
 from suchus.visual.figures import limb_colours, panels, styled, vortices
 from suchus.visual.figures.posture import draw_posture
-from suchus.visual.replay.frames import Frames, checked, frames
-from suchus.visual.replay.scene import ARROW, KEYS, PackedArrays, quantised, scene
+from suchus.visual.replay.frames import Frames, check_record, frames
+from suchus.visual.replay.scene import ARROW, KEYS, PackedArrays, quantise, scene
 
 
 def replay(
@@ -53,17 +53,17 @@ def replay(
         IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
         InvalidDesign: there are more runs than labels.
     """
-    return rendered("replay.html", record, robot, ghost=ghost, labels=labels, title=title, caption=caption,
+    return render_template("replay.html", record, robot, ghost=ghost, labels=labels, title=title, caption=caption,
                     overlaid=overlaid)  # fmt: skip
 
 
-def rendered(
+def render_template(
     template: str,
     record: xr.Dataset,
     robot: Robot,
     *,
     ghost: xr.Dataset | None = None,
-    others: Sequence[xr.Dataset] = (),
+    other_records: Sequence[xr.Dataset] = (),
     choice: str = "",
     labels: Sequence[str],
     title: str = "",
@@ -78,7 +78,7 @@ def rendered(
         record: of one run on land.
         robot: whose it is.
         ghost: another run of the same robot, half transparent.
-        others: instead of a ghost, further runs of the robot on such ground, of which a slider chooses one.
+        other_records: instead of a ghost, further runs of the robot on such ground, of which a slider chooses one.
         choice: the name of that slider.
         labels: what the runs are called.
         title: heading; by default robot and gait.
@@ -90,10 +90,10 @@ def rendered(
         IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
         InvalidDesign: there are more runs than labels.
     """
-    records = [record, *others, *([] if ghost is None else [ghost])]
+    records = [record, *other_records, *([] if ghost is None else [ghost])]
     if len(labels) < len(records):
         raise InvalidDesign(f"a replay of {len(records)} runs has {len(labels)} labels; give each run a name.")
-    runs = [checked(run_record, robot) for run_record in records]
+    runs = [check_record(run_record, robot) for run_record in records]
     grounds = [ground_of(run_record) or Ground() for run_record in records]
     first_frames = frames(runs[0], robot)
     moving = [first_frames, *(frames(run, robot, first_frames.rate) for run in runs[1:])]
@@ -195,7 +195,7 @@ def _text(record: xr.Dataset, name: str, default: str) -> str:
     return str(record[name].values.ravel()[0]) if name in record.coords else default
 
 
-LARGEST = 3_500_000
+MAX_ARRAY_BYTES = 3_500_000
 """Bytes of arrays from which the surfaces are taken of blocks of cells [-]; as text they take a third more."""
 _MAX_BLOCK = 4
 
@@ -211,9 +211,9 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
     Raises:
         IncompatibleRecord: the record holds no vortices of a swim in three dimensions.
     """
-    vortices.check_filmed(record)
+    vortices.check_vortex_record(record)
     meta, data = _swim_scene(record)
-    still_picture = vortices.still(record, record.sizes["frame"] - 1)
+    still_picture = vortices.still_picture(record, record.sizes["frame"] - 1)
     png = BytesIO()
     Image.fromarray(still_picture).save(png, format="PNG", optimize=True)
     picture = base64.b64encode(png.getvalue()).decode("ascii")
@@ -224,7 +224,7 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
         "of one cycle.",
         still=picture,
         limit=f"{meta['limit']:.3g}",
-        keys={"left": vortices.hexed(1.0), "right": vortices.hexed(-1.0)},
+        keys={"left": vortices.hex_colour(1.0), "right": vortices.hex_colour(-1.0)},
         version=versions()["suchus"],
         meta=_script(meta),
         data=data,
@@ -236,7 +236,7 @@ def _swim_scene(record: xr.Dataset) -> tuple[dict[str, Any], str]:
     for coarse in range(1, _MAX_BLOCK + 1):
         pack = PackedArrays()
         meta = _packed_swim(record, pack, coarse)
-        if pack.size <= LARGEST or coarse == _MAX_BLOCK:
+        if pack.size <= MAX_ARRAY_BYTES or coarse == _MAX_BLOCK:
             break
     return meta, pack.text()
 
@@ -261,7 +261,7 @@ def _packed_swim(record: xr.Dataset, pack: PackedArrays, coarse: int) -> dict[st
         faces = pack.add(mesh.faces.astype(np.uint16 if small else np.uint32))
         frames.append({"points": pack.add(points), "spin": pack.add(shades), "faces": faces})
     lines = {
-        name.removeprefix("film_"): quantised(record[name].values, np.int16) for name in vortices.LINES
+        name.removeprefix("film_"): quantise(record[name].values, np.int16) for name in vortices.LINES
     }  # fmt: skip
     return {
         "frames": frames,

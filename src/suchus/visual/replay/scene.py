@@ -9,11 +9,11 @@ import numpy as np
 
 from suchus.core.rotation import rotate
 from suchus.robot.design import GRAVITY, Robot, layout
-from suchus.robot.design.ground import ASIDE, REACH, Bumps, Ground, Relief, Step, field, slope
+from suchus.robot.design.ground import HALF_WIDTH, REACH, Bumps, Ground, Relief, Step, field, slope
 from suchus.sim.metrics.gait import LOADED_SHARE
 from suchus.visual.figures import COLOURS, limb_colours
 from suchus.visual.replay.frames import Frames
-from suchus.visual.skin import Skin, ankles, footed
+from suchus.visual.skin import Skin, ankles, skin_with_ankles
 
 _KINDS = {"int8", "uint8", "int16", "uint16", "uint32", "float32"}
 
@@ -41,7 +41,7 @@ class PackedArrays:
         return base64.b64encode(b"".join(self._parts)).decode("ascii")
 
 
-def quantised(values: np.ndarray, kind: type[np.signedinteger[Any]]) -> tuple[np.ndarray, float]:
+def quantise(values: np.ndarray, kind: type[np.signedinteger[Any]]) -> tuple[np.ndarray, float]:
     """Return whole numbers and the size of the largest value, which the greatest whole number stands for."""
     max_value = float(np.abs(values).max(initial=0.0)) or 1.0
     return np.round(values / max_value * np.iinfo(kind).max).astype(kind), max_value
@@ -73,7 +73,7 @@ def scene(
         ground: on what.
         overlaid: whether two runs begin in the same place.
     """
-    pack, surface, relief = PackedArrays(), footed(robot), ground.relief
+    pack, surface, relief = PackedArrays(), skin_with_ankles(robot), ground.relief
     x = np.concatenate([run.mass[:, 0] for run in moving])
     meta = {
         "start": moving[0].start,
@@ -104,7 +104,7 @@ def scene(
 
 def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
     """Pack the skin: vertices, normals, colours, faces, and two bones with weights for each vertex."""
-    vertices, scale = quantised(surface.vertices, np.int16)
+    vertices, scale = quantise(surface.vertices, np.int16)
     assert (surface.weights[:, 2:] == 0).all()  # joints are so far apart that no vertex hangs on three bones
     return {
         "scale": scale,
@@ -131,7 +131,7 @@ def _packed(robot: Robot, run: Frames, label: str, relief: Relief | None, pack: 
     bones = ankles(robot, run.bones, run.feet, relief)
     bone_positions = bones.positions
     origin = (bone_positions.max(axis=(0, 1)) + bone_positions.min(axis=(0, 1))) / 2
-    positions, reach = quantised(bone_positions - origin, np.int16)
+    positions, reach = quantise(bone_positions - origin, np.int16)
     return {
         "label": label,
         "frames": len(run.mass),
@@ -161,7 +161,7 @@ def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:
     """Pack the heights of bumps, or return the block that a step or a stone is."""
     if isinstance(relief, Bumps):
         heights = field(relief)
-        height_values, max_height = quantised(heights, np.int16)
+        height_values, max_height = quantise(heights, np.int16)
         return {
             "heights": pack.add(height_values),
             "shape": list(heights.shape),
@@ -171,7 +171,7 @@ def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:
             "cell": relief.cell,
         }
     if isinstance(relief, Step):
-        return {"block": [relief.at, REACH[1], -ASIDE, ASIDE, relief.height]}
+        return {"block": [relief.at, REACH[1], -HALF_WIDTH, HALF_WIDTH, relief.height]}
     half_length, half_width = relief.length / 2, relief.width / 2
     x, y = (relief.at - half_length, relief.at + half_length), (relief.aside - half_width, relief.aside + half_width)
     return {"block": [*x, *y, relief.height]}

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from suchus.core.rotation import about, multiply, rotate
+from suchus.core.rotation import from_axis_angle, multiply, rotate
 from suchus.robot.design import LEGS, Robot
 from suchus.robot.design.ground import Relief, heights
 from suchus.visual.skin.bones import Poses, bone_names
@@ -19,12 +19,12 @@ ANKLES = tuple(f"{leg}_ankle" for leg in LEGS)
 """Names of the bones, which come after those of the bodies."""
 REACH = 0.9
 """Greatest angle of an ankle [rad], about that of a crocodile's high walk."""
-NEAR = (0.012, 0.06)
+FLAT_FOOT_HEIGHTS = (0.012, 0.06)
 """Heights of the ball over the ground between which a foot ceases to lie flat [m]."""
 
 
 @lru_cache(maxsize=8)
-def footed(robot: Robot) -> Skin:
+def skin_with_ankles(robot: Robot) -> Skin:
     """Return the skin of a robot with its feet hung on ankles; the round feet of a plain body have none."""
     surface = skin(robot)
     if surface.plain:
@@ -57,7 +57,12 @@ def ankles(robot: Robot, bones: Poses, feet: np.ndarray, relief: Relief | None =
     for i, leg in enumerate(LEGS):
         shank = bones.quaternions[:, names.index(f"{leg}_tibia")]
         shank_axis = rotate(shank, np.array([0.0, _side(leg), 0.0]))
-        flat = np.clip((NEAR[1] - (foot_heights[:, i] - robot.leg(leg).foot_radius)) / (NEAR[1] - NEAR[0]), 0.0, 1.0)
+        flat = np.clip(
+            (FLAT_FOOT_HEIGHTS[1] - (foot_heights[:, i] - robot.leg(leg).foot_radius))
+            / (FLAT_FOOT_HEIGHTS[1] - FLAT_FOOT_HEIGHTS[0]),
+            0.0,
+            1.0,
+        )
         ankle_quaternions.append(multiply(_downward(shank_axis, flat * flat * (3 - 2 * flat)), shank))
     return Poses(
         np.concatenate([bones.positions, feet], axis=1),
@@ -75,4 +80,4 @@ def _downward(direction: np.ndarray, fraction: np.ndarray) -> np.ndarray:
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     angle = np.minimum(np.arctan2(sine[:, 0], -direction[:, 2]), REACH) * fraction
     axis = np.divide(axis, sine, out=np.zeros_like(axis), where=sine > 1e-9)
-    return about(axis, angle)
+    return from_axis_angle(axis, angle)

@@ -7,7 +7,7 @@ import numpy as np
 
 from suchus.robot.design import Robot
 from suchus.visual.skin.head import Knot, head_knots
-from suchus.visual.skin.look import Look
+from suchus.visual.skin.look import Proportions
 from suchus.visual.skin.mesh import Mesh, curve, loft, ring
 from suchus.visual.skin.paint import hide
 
@@ -28,7 +28,7 @@ class BodyShape:
     """Depth below the axis over x."""
 
 
-def shape(robot: Robot, proportions: Look) -> BodyShape:
+def shape(robot: Robot, proportions: Proportions) -> BodyShape:
     """Return the outline of a robot's body; on the head it is that of the skull without the lower jaw."""
     knots = [*_tail_knots(robot, proportions), *_trunk_knots(robot, proportions), *head_knots(robot, proportions)]
     knots = [knot for i, knot in enumerate(knots) if i == 0 or knot[0] > max(k[0] for k in knots[:i]) + 1e-6]
@@ -37,7 +37,7 @@ def shape(robot: Robot, proportions: Look) -> BodyShape:
     return BodyShape(x[0], x[-1], width, top, bottom)
 
 
-def _tail_knots(robot: Robot, proportions: Look) -> list[Knot]:
+def _tail_knots(robot: Robot, proportions: Proportions) -> list[Knot]:
     """Return (x, half width, top, bottom) from the tip to the root; it encloses the segments beneath."""
     tail = robot.tail
     tip = -tail.length
@@ -64,7 +64,7 @@ def _tail_knots(robot: Robot, proportions: Look) -> list[Knot]:
     return knots
 
 
-def _trunk_knots(robot: Robot, proportions: Look) -> list[Knot]:
+def _trunk_knots(robot: Robot, proportions: Proportions) -> list[Knot]:
     """Return (x, half width, top, bottom) of the trunk from the pelvis to the shoulders [m]."""
     pelvis, thorax, spine, tail = robot.pelvis, robot.thorax, robot.spine, robot.tail
     m = proportions.margin
@@ -86,7 +86,7 @@ def _trunk_knots(robot: Robot, proportions: Look) -> list[Knot]:
     ]
 
 
-def body(robot: Robot, proportions: Look) -> Mesh:
+def body(robot: Robot, proportions: Proportions) -> Mesh:
     """Return snout to tail tip in one piece, without the lower jaw."""
     outline = shape(robot, proportions)
     length = outline.front - outline.back

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
-from suchus.core.rotation import about, multiply, rotate
+from suchus.core.rotation import from_axis_angle, multiply, rotate
 from suchus.robot.design import Robot, joint_names, layout
 
 
@@ -61,6 +61,6 @@ def poses(robot: Robot, position: np.ndarray, orientation: np.ndarray, angles: n
         )
         positions.append(origin + rotate(turn, np.array(bone.offset)))
         for _, hinge, axis in bone.hinges:
-            turn = multiply(turn, about(np.array(axis), angles[..., joint_index[hinge]]))
+            turn = multiply(turn, from_axis_angle(np.array(axis), angles[..., joint_index[hinge]]))
         quaternions.append(turn)
     return Poses(np.stack(positions, axis=-2), np.stack(quaternions, axis=-2))

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from suchus.robot.design import Robot
-from suchus.visual.skin.look import Look
+from suchus.visual.skin.look import Proportions
 from suchus.visual.skin.mesh import Mesh, curve, ellipsoid, loft, ring, spike
 from suchus.visual.skin.paint import EYE, PUPIL, TOOTH, brow, jaw_paint
 
@@ -56,21 +56,21 @@ class Frame(NamedTuple):
     """Half height [m]."""
 
 
-def frame(robot: Robot, proportions: Look) -> Frame:
+def frame(robot: Robot, proportions: Proportions) -> Frame:
     """Return where the head is and how large."""
     length, start = robot.head.snout - robot.thorax.shoulder, robot.spine.length + robot.thorax.shoulder
     neck = proportions.skull * length
     return Frame(start + neck, length - neck, neck, robot.head.width / 2, robot.head.height / 2)
 
 
-def head_knots(robot: Robot, proportions: Look) -> list[Knot]:
+def head_knots(robot: Robot, proportions: Proportions) -> list[Knot]:
     """Return the outline from shoulders to snout, without the lower jaw."""
     f = frame(robot, proportions)
     rows = [(u * f.neck, *sizes) for u, *sizes in _NECK] + [(u * f.reach, *sizes) for u, *sizes in _SKULL]
     return [(f.joint + x, a * f.w, b * f.h, c * f.h) for x, a, b, c in rows]
 
 
-def jaw(robot: Robot, proportions: Look) -> Mesh:
+def jaw(robot: Robot, proportions: Proportions) -> Mesh:
     """Return the lower jaw, a little open."""
     f = frame(robot, proportions)
     u = np.concatenate([[-0.06], np.linspace(0.0, 0.94, 24), [0.965, 0.98, 0.988]])
@@ -84,14 +84,14 @@ def jaw(robot: Robot, proportions: Look) -> Mesh:
     return mesh.painted(jaw_paint(level))
 
 
-def _opened(points: np.ndarray, f: Frame, proportions: Look) -> np.ndarray:
+def _opened(points: np.ndarray, f: Frame, proportions: Proportions) -> np.ndarray:
     """Turn points of the lower jaw about its joint, which is the origin, and put them in their place."""
     c, s = np.cos(proportions.gape), np.sin(proportions.gape)
     x, y, z = np.moveaxis(points, -1, 0)
     return np.stack([f.joint + c * x + s * z, y, c * z - s * x], axis=-1)
 
 
-def eyes(robot: Robot, proportions: Look) -> list[Mesh]:
+def eyes(robot: Robot, proportions: Proportions) -> list[Mesh]:
     """Return the left eye, its pupil and its brow, and the left nostril."""
     f = frame(robot, proportions)
     x, y, z = f.joint + 0.27 * f.reach, 0.60 * f.w, 0.98 * f.h
@@ -100,14 +100,14 @@ def eyes(robot: Robot, proportions: Look) -> list[Mesh]:
     pupil = (x + 0.1 * size, y + 0.62 * size, z + 0.3 * size)
     nostril = (f.joint + 0.945 * f.reach, 0.19 * f.w, 0.40 * f.h)
     return [
-        ellipsoid((x, y, z + 0.2 * size), (1.25 * size, size, size), around=12, rings=8).painted(EYE),
+        ellipsoid((x, y, z + 0.2 * size), (1.25 * size, size, size), point_count=12, rings=8).painted(EYE),
         ellipsoid(pupil, (0.3 * size, 0.5 * size, 0.72 * size)).painted(PUPIL),
-        ellipsoid(brows, (2.1 * size, size, size), around=12, rings=8).painted(brow),
+        ellipsoid(brows, (2.1 * size, size, size), point_count=12, rings=8).painted(brow),
         ellipsoid(nostril, (0.5 * size, 0.42 * size, 0.75 * size)).painted(PUPIL),
     ]
 
 
-def teeth(robot: Robot, proportions: Look) -> list[Mesh]:
+def teeth(robot: Robot, proportions: Proportions) -> list[Mesh]:
     """Return the left teeth of both jaws; every fourth is long."""
     f = frame(robot, proportions)
     meshes = []

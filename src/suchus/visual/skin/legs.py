@@ -7,7 +7,7 @@ import numpy as np
 from suchus.robot.design import Robot
 from suchus.robot.design.measures import LegMeasures
 from suchus.visual.skin.mesh import Mesh, curve, ellipsoid, loft, ring, spike
-from suchus.visual.skin.paint import CLAW, SOLE, mixed, shaded, smooth
+from suchus.visual.skin.paint import CLAW, SOLE, hide_colours, mix_colours, smooth
 
 LEG_AROUND = 16
 """Points around a leg, a multiple of four [-]."""
@@ -75,8 +75,10 @@ def _limb(robot: Robot, leg: LegMeasures, front: bool, x_offset: float) -> Mesh:
     length = robot.length
 
     def paint(points: np.ndarray) -> np.ndarray:
-        colour = shaded(0.75 * level + 0.15, points[:, 0] / length + 0.6 * points[:, 1] / length, points[:, 1] / length)
-        return mixed(colour, SOLE, 0.5 * smooth(points[:, 1], knee + 0.6 * leg.tibia, end))
+        colour = hide_colours(
+            0.75 * level + 0.15, points[:, 0] / length + 0.6 * points[:, 1] / length, points[:, 1] / length
+        )
+        return mix_colours(colour, SOLE, 0.5 * smooth(points[:, 1], knee + 0.6 * leg.tibia, end))
 
     return mesh.painted(paint)
 
@@ -87,7 +89,7 @@ def _foot(leg: LegMeasures, front: bool, x_offset: float) -> list[Mesh]:
     sole = leg.hip_offset + leg.femur + leg.tibia + r
     size = 1.0 if front else 1.12
     palm = ellipsoid(
-        (x_offset + 0.35 * r, sole - 0.62 * r, 0.0), (1.35 * size * r, 0.62 * r, 1.12 * r), around=12, rings=8
+        (x_offset + 0.35 * r, sole - 0.62 * r, 0.0), (1.35 * size * r, 0.62 * r, 1.12 * r), point_count=12, rings=8
     )
     meshes = [palm.painted(SOLE)]
     toe_angles = np.radians([-38.0, -12.0, 13.0, 38.0, 66.0] if front else [-26.0, -2.0, 22.0, 46.0])

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Look:
+class Proportions:
     """Proportions of the animal where the robot has none; none of them touches the physics."""
 
     around: int = 28
@@ -27,5 +27,5 @@ class Look:
     """Number of visible teeth on each side of each jaw [-]; crocodiles have 14 to 19."""
 
 
-SKIN = Look()
+SKIN = Proportions()
 """The look of every robot on the shelf."""

@@ -88,19 +88,19 @@ def ring(point_count: int, roundness: float = 2.0) -> tuple[np.ndarray, np.ndarr
     return cosine + 0.0, sine + 0.0
 
 
-def ellipsoid(centre: Sequence[float], half: Sequence[float], *, around: int = 8, rings: int = 6) -> Mesh:
+def ellipsoid(centre: Sequence[float], half: Sequence[float], *, point_count: int = 8, rings: int = 6) -> Mesh:
     """Return an ellipsoid.
 
     Args:
         centre: (x, y, z) [m].
         half: its half axes [m].
-        around: number of points around its x axis, a multiple of four.
+        point_count: number of points around its x axis, a multiple of four.
         rings: number of rings along it.
     """
     axial = -np.cos(np.pi * (np.arange(rings) + 0.7) / (rings + 0.4))
-    radius, (c, s) = np.sqrt(1 - axial**2), ring(around)
+    radius, (c, s) = np.sqrt(1 - axial**2), ring(point_count)
     points = np.stack(
-        [np.broadcast_to(axial[:, None], (rings, around)), radius[:, None] * c, radius[:, None] * s], axis=-1
+        [np.broadcast_to(axial[:, None], (rings, point_count)), radius[:, None] * c, radius[:, None] * s], axis=-1
     )
     return loft(np.array(centre) + points * np.array(half))
 
@@ -120,7 +120,7 @@ def spike(base: np.ndarray, apex: np.ndarray) -> Mesh:
     return Mesh(vertices, np.concatenate([side_faces, base_faces]).astype(np.int32), np.ones_like(vertices))
 
 
-def joined(meshes: Sequence[Mesh]) -> Mesh:
+def join_meshes(meshes: Sequence[Mesh]) -> Mesh:
     """Return meshes as one."""
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     return Mesh(

@@ -23,12 +23,12 @@ def smooth(value: np.ndarray, lower_bound: float, upper_bound: float) -> np.ndar
     return t * t * (3 - 2 * t)
 
 
-def mixed(a: np.ndarray, b: np.ndarray, fraction: np.ndarray) -> np.ndarray:
+def mix_colours(a: np.ndarray, b: np.ndarray, fraction: np.ndarray) -> np.ndarray:
     """Return colours between two, (n, 3)."""
     return a + fraction[:, None] * (b - a)
 
 
-def shaded(level: np.ndarray, axial_position: np.ndarray, lateral_distance: np.ndarray) -> np.ndarray:
+def hide_colours(level: np.ndarray, axial_position: np.ndarray, lateral_distance: np.ndarray) -> np.ndarray:
     """Return the hide's colours.
 
     Args:
@@ -36,10 +36,10 @@ def shaded(level: np.ndarray, axial_position: np.ndarray, lateral_distance: np.n
         axial_position: place along the body over its length.
         lateral_distance: distance from the midline over the length; left and right are alike.
     """
-    colour = mixed(BELLY, FLANK, smooth(level, -0.55, -0.05))
-    colour = mixed(colour, BACK, smooth(level, 0.10, 0.85))
+    colour = mix_colours(BELLY, FLANK, smooth(level, -0.55, -0.05))
+    colour = mix_colours(colour, BACK, smooth(level, 0.10, 0.85))
     wave = np.sin(2 * np.pi * 19 * axial_position + 0.8 * np.sin(41 * axial_position) + 3.0 * level)
-    colour = mixed(colour, BAND, 0.62 * smooth(wave, 0.15, 0.75) * smooth(level, -0.35, 0.15))
+    colour = mix_colours(colour, BAND, 0.62 * smooth(wave, 0.15, 0.75) * smooth(level, -0.35, 0.15))
     spots = np.sin(173 * axial_position) * np.cos(191 * lateral_distance) + 0.6 * np.sin(
         117 * axial_position + 143 * lateral_distance
     )
@@ -48,16 +48,16 @@ def shaded(level: np.ndarray, axial_position: np.ndarray, lateral_distance: np.n
 
 def hide(level: np.ndarray, length: float) -> Callable[[np.ndarray], np.ndarray]:
     """Return the paint of the body, by each vertex's height on its section."""
-    return lambda points: shaded(level, points[:, 0] / length, np.abs(points[:, 1]) / length)
+    return lambda points: hide_colours(level, points[:, 0] / length, np.abs(points[:, 1]) / length)
 
 
 def jaw_paint(level: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Return the paint of the lower jaw: mouth inside, hide at the rim, pale below."""
 
     def paint(points: np.ndarray) -> np.ndarray:
-        hide_colour = mixed(BELLY, FLANK, smooth(level, -0.5, 0.35))
+        hide_colour = mix_colours(BELLY, FLANK, smooth(level, -0.5, 0.35))
         del points
-        return mixed(hide_colour, MOUTH, smooth(level, 0.55, 0.8))
+        return mix_colours(hide_colour, MOUTH, smooth(level, 0.55, 0.8))
 
     return paint
 

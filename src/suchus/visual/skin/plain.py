@@ -10,7 +10,7 @@ from suchus.visual.skin.bones import bone_rest
 from suchus.visual.skin.mesh import Mesh, curve, ellipsoid, loft, ring
 from suchus.visual.skin.paint import EYE, FLANK, SOLE, hide
 
-AROUND = 24
+RING_POINTS = 24
 """Points around the axis, a multiple of four [-]."""
 LIMB_AROUND = 12
 """Points around a link of a limb, a multiple of four [-]."""
@@ -35,14 +35,14 @@ def axis_mesh(robot_layout: Layout) -> Mesh:
     width, height = (_outline([(k[0], k[i]) for k in distinct_knots], back, front) for i in (1, 2))
     fractions = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.002, 0.998, _RINGS))  # finer at both ends, where it closes
     axial_positions = back + (front - back) * fractions
-    c, s = ring(AROUND, 2.2)
+    c, s = ring(RING_POINTS, 2.2)
     points = [
-        np.broadcast_to(axial_positions[:, None], (_RINGS, AROUND)),
+        np.broadcast_to(axial_positions[:, None], (_RINGS, RING_POINTS)),
         width(axial_positions)[:, None] * c,
         height(axial_positions)[:, None] * s,
     ]
     mesh = loft(np.stack(points, axis=-1))
-    level = np.concatenate([np.broadcast_to(s, (_RINGS, AROUND)).ravel(), [0.0, 0.0]])
+    level = np.concatenate([np.broadcast_to(s, (_RINGS, RING_POINTS)).ravel(), [0.0, 0.0]])
     return mesh.painted(hide(level, robot_layout.robot.length))
 
 
@@ -69,7 +69,7 @@ def limb_meshes(robot_layout: Layout, limb: LimbPlace) -> list[tuple[Mesh, int]]
         end = start + np.array([link.end[0], limb.side * link.end[1], link.end[2]])
         meshes.append((rod(start, end, link.radius).painted(FLANK), first_bone + number))
     radius = design.foot.radius
-    meshes.append((ellipsoid(end, (radius,) * 3, around=LIMB_AROUND, rings=8).painted(SOLE), limb.tip))
+    meshes.append((ellipsoid(end, (radius,) * 3, point_count=LIMB_AROUND, rings=8).painted(SOLE), limb.tip))
     return meshes
 
 

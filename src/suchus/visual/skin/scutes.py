@@ -4,7 +4,7 @@ import numpy as np
 
 from suchus.robot.design import Robot
 from suchus.visual.skin.body import BodyShape
-from suchus.visual.skin.look import Look
+from suchus.visual.skin.look import Proportions
 from suchus.visual.skin.mesh import Mesh, ring, spike
 from suchus.visual.skin.paint import SCUTE
 
@@ -20,7 +20,7 @@ def middle_scutes(robot: Robot, outline: BodyShape) -> list[Mesh]:
     return scutes
 
 
-def left_scutes(robot: Robot, outline: BodyShape, proportions: Look) -> list[Mesh]:
+def left_scutes(robot: Robot, outline: BodyShape, proportions: Proportions) -> list[Mesh]:
     """Return the left rows: crests on the root of the tail, plates on back and neck."""
     fork, spacing = _fork(robot), _spacing(robot)
     nape = (
@@ -64,7 +64,7 @@ def _spacing(robot: Robot) -> float:
 
 def _seated(
     outline: BodyShape,
-    proportions: Look,
+    proportions: Proportions,
     x: float,
     lateral_fraction: float,
     half_length: float,

@@ -13,8 +13,8 @@ from suchus.visual.skin.body import body, shape
 from suchus.visual.skin.bones import bone_names, bone_rest
 from suchus.visual.skin.head import eyes, jaw, teeth
 from suchus.visual.skin.legs import left_leg
-from suchus.visual.skin.look import SKIN, Look
-from suchus.visual.skin.mesh import Mesh, joined, normals
+from suchus.visual.skin.look import SKIN, Proportions
+from suchus.visual.skin.mesh import Mesh, join_meshes, normals
 from suchus.visual.skin.paint import smooth
 from suchus.visual.skin.plain import axis_mesh, ends, limb_meshes
 from suchus.visual.skin.plain import eyes as plain_eyes
@@ -75,7 +75,7 @@ class Skin:
 
 
 @lru_cache(maxsize=16)
-def skin(robot: Robot, proportions: Look = SKIN) -> Skin:
+def skin(robot: Robot, proportions: Proportions = SKIN) -> Skin:
     """Return the skin of a robot; the same robot gives the same skin again.
 
     Args:
@@ -86,7 +86,7 @@ def skin(robot: Robot, proportions: Look = SKIN) -> Skin:
     plain = bool(lacking(robot, MEASURED))
     parts = _plain(layout(robot)) if plain else _crocodile(robot, proportions)
     hung = [_attach(robot, mesh.vertices, attachment) for mesh, attachment in parts]
-    full_mesh = joined([mesh for mesh, _ in parts])
+    full_mesh = join_meshes([mesh for mesh, _ in parts])
     surface = Skin(
         vertices=full_mesh.vertices,
         normals=normals(full_mesh),
@@ -105,7 +105,7 @@ def skin(robot: Robot, proportions: Look = SKIN) -> Skin:
     return surface
 
 
-def _crocodile(robot: Robot, proportions: Look) -> list[tuple[Mesh, str | int]]:
+def _crocodile(robot: Robot, proportions: Proportions) -> list[tuple[Mesh, str | int]]:
     """Return the parts of a crocodile, each with the limb that it hangs on, or nothing for the axis."""
     limbs = [(mesh, girdle) for girdle in "FH" for mesh in left_leg(robot, girdle)]
     parts: list[tuple[Mesh, str | int]] = [(mesh, "") for mesh in _axial(robot, proportions)]
@@ -137,7 +137,7 @@ def _attach(robot: Robot, vertices: np.ndarray, attachment: str | int) -> tuple[
     return _on_leg(robot, vertices, attachment) if attachment else _on_axis(robot, vertices)
 
 
-def _axial(robot: Robot, proportions: Look) -> list[Mesh]:
+def _axial(robot: Robot, proportions: Proportions) -> list[Mesh]:
     """Return the parts of head, trunk and tail."""
     outline = shape(robot, proportions)
     left_meshes = [*eyes(robot, proportions), *teeth(robot, proportions), *left_scutes(robot, outline, proportions)]

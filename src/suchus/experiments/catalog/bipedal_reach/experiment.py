@@ -20,12 +20,12 @@ from suchus.experiments.catalog.bipedal_reach.figure import (
 )
 from suchus.experiments.catalog.bipedal_reach.variants import (
     PARTS,
-    fitted,
-    heavier,
+    fit_gait_to_legs,
     length,
-    lengthened,
-    stand_soon,
-    up_at,
+    stand_control,
+    upright_time,
+    with_forebody,
+    with_length,
 )
 from suchus.experiments.experiment import (
     Experiment,
@@ -34,7 +34,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     estimated,
     silent,
     staged,
@@ -42,14 +42,14 @@ from suchus.experiments.experiment import (
 from suchus.robot.control import OpenLoop
 from suchus.robot.control.standing import BALANCE, Balance, Standing
 from suchus.robot.design import STANDING, Robot
-from suchus.robot.design.scale import control_period, scaled
+from suchus.robot.design.scale import control_period, rescale
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START, Gait, hip_height
-from suchus.robot.motion.rising import LEAD, cantilever_torque, size_of, stretched, tallest
+from suchus.robot.motion.rising import LEAD, cantilever_torque, max_snout_height, size_of, stretched_length
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, Tolerances, simulate
 from suchus.sim.land.push_search import smallest_pushes
-from suchus.sim.metrics import held, lead, peak_torque, reach, static_margin
+from suchus.sim.metrics import lead, longest_hold, peak_torque, reach, static_margin
 
 _COARSE_TIMESTEP = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
 _STANDING_FRACTION = 0.6  # [stretched length]; a robot with less reach has not stood up, or has fallen
@@ -143,10 +143,10 @@ class BipedalReach(Experiment):
     def gaits_on(self, robot: Robot) -> dict[str, Any]:
         """Return the gaits of a robot of another size, and the balance rule in that size."""
         return Experiment.gaits_on(self, robot) | {
-            "balance": scaled(self.balance, length_factor=size_of(robot) / size_of(self.robot))
+            "balance": rescale(self.balance, length_factor=size_of(robot) / size_of(self.robot))
         }
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate crawling, standing and sitting down; then map the limits, push the robot, and vary its lengths."""
         standing = Standing(at=START + self.gait.period, hold=self.hold, balance=self.balance)
         record = self._standing_record(standing, staged(progress, "standing", 0.0, 0.2))
@@ -157,7 +157,7 @@ class BipedalReach(Experiment):
         ):
             record = record.merge(study(staged(progress, stage, start, end)))
         record = record.merge(self._ceiling()).assign_attrs(self._reference_values())
-        return Simulated(record=record, replays=self._replays(record))
+        return SimulationResult(record=record, replays=self._replays(record))
 
     def _reference_values(self) -> dict[str, float]:
         """Return the numbers that the measures compare with: lengths [m], torques [N m] and times [s]."""
@@ -165,12 +165,12 @@ class BipedalReach(Experiment):
         return {
             "least": self.least,
             "hold": self.hold,
-            "stretched": stretched(self.robot),
+            "stretched": stretched_length(self.robot),
             "cantilever": cantilever_torque(self.robot),
             "pitch_torque": self.robot.spine.pitch_servo.torque,
             "hip_height": hip_height(self.robot, self.gait),
             "hip_height_plausible": plausible["height"] * length(self.robot, "leg"),
-            "up": _STANDING_FRACTION * stretched(self.robot),
+            "up": _STANDING_FRACTION * stretched_length(self.robot),
             "commanded_lead": self._lead,
         }
 
@@ -188,7 +188,7 @@ class BipedalReach(Experiment):
             _heights(record),
             {
                 "margin_standing": Measure(float(margin.sel(time=slice(upright_time, leave_time)).min()), "m"),
-                "margin_rising": Measure(least_lead(record), "m"),
+                "margin_rising": Measure(min_lead(record), "m"),
                 "reach_after": Measure(float(height.sel(time=slice(down_time, None)).max()), "m"),
                 "way_after": Measure(_distance(record.centre_of_mass.isel(run=0), down_time), "m"),
                 "stretched_length": Measure(facts["stretched"], "m"),
@@ -232,12 +232,16 @@ class BipedalReach(Experiment):
         duration = standing.down_from(self.robot) + self.gait.period
         run = Run(robot=self.robot, gait=self.gait, control=standing)
         record = simulate(
-            [run], duration=duration, timestep=self.timestep, every=2, progress=staged(progress, "", 0.0, 0.5)
+            [run], duration=duration, timestep=self.timestep, sample_stride=2, progress=staged(progress, "", 0.0, 0.5)
         )
         run_without_feedback = replace(run, control=replace(standing, balance=None))
         repeat_runs = self.tolerances.repeats((run, run_without_feedback), self.repeats)
         repeats = simulate(
-            repeat_runs, duration=duration, timestep=_COARSE_TIMESTEP, every=10, progress=staged(progress, "", 0.5, 1.0)
+            repeat_runs,
+            duration=duration,
+            timestep=_COARSE_TIMESTEP,
+            sample_stride=10,
+            progress=staged(progress, "", 0.5, 1.0),
         )
         heights = reach(self.robot, repeats).values.reshape(2, self.repeats, -1)
         record = record.assign(reach=reach(self.robot, record), margin=static_margin(record), lead=lead(record))
@@ -257,7 +261,7 @@ class BipedalReach(Experiment):
             progress: callback that gets the finished fraction.
         """
         controls = [
-            stand_soon(*variant, self.balance, size_of(self.robot)) for variant in zip(robots, leads, strict=True)
+            stand_control(*variant, self.balance, size_of(self.robot)) for variant in zip(robots, leads, strict=True)
         ]
         is_feasible = [control is not None for control in controls]
         results = {name: np.zeros(len(is_feasible)) for name in ("reach", "lead")}
@@ -269,9 +273,10 @@ class BipedalReach(Experiment):
         if not runs:
             return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in results.items()})
         duration = (
-            max(up_at(robot) for robot, feasible in zip(robots, is_feasible, strict=True) if feasible) + self.wait
+            max(upright_time(robot) for robot, feasible in zip(robots, is_feasible, strict=True) if feasible)
+            + self.wait
         )
-        record = simulate(runs, duration=duration, timestep=_COARSE_TIMESTEP, every=10, progress=progress)
+        record = simulate(runs, duration=duration, timestep=_COARSE_TIMESTEP, sample_stride=10, progress=progress)
         final_interval = record.sel(time=slice(duration - 0.5, None))
         for i, case in enumerate(np.flatnonzero(is_feasible)):
             final_record = final_interval.isel(run=i)
@@ -281,10 +286,10 @@ class BipedalReach(Experiment):
 
     def _limits(self, progress: Any) -> xr.Dataset:
         """Return the reach over the torque of the trunk's servos and the mass of the forebody."""
-        cells = [heavier(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
+        cells = [with_forebody(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
         stand_results = self._stand_results(cells, [self._lead] * len(cells), progress)
         shape = len(self.torques), len(self.forebodies)
-        cantilever = [cantilever_torque(heavier(self.robot, mass, 1.0)) for mass in self.forebodies]
+        cantilever = [cantilever_torque(with_forebody(self.robot, mass, 1.0)) for mass in self.forebodies]
         data = xr.Dataset(
             {
                 "map_reach": (("torque", "forebody"), stand_results.reach.values.reshape(shape), {"units": "m"}),
@@ -304,20 +309,22 @@ class BipedalReach(Experiment):
         runs = [
             Run(robot=self.robot, gait=self.straight, control=control or OpenLoop())
             for balance in balances.values()
-            for control in (stand_soon(self.robot, lead, balance, size_of(self.robot)) for lead in leads)
+            for control in (stand_control(self.robot, lead, balance, size_of(self.robot)) for lead in leads)
         ]
         forces = smallest_pushes(
             runs,
             list(_DIRECTIONS.values()),
-            at=round(up_at(self.robot) + self.wait, 2),
+            start_time=round(upright_time(self.robot) + self.wait, 2),
             levels=self.pushes,
-            finer=self.finer,
+            refinement_count=self.finer,
             wait=self.wait,
-            fell=lambda record: record.snout.sel(xyz="z").isel(time=-1) < _STANDING_FRACTION * stretched(self.robot),
+            fell=lambda record: (
+                record.snout.sel(xyz="z").isel(time=-1) < _STANDING_FRACTION * stretched_length(self.robot)
+            ),
             timestep=_COARSE_TIMESTEP,
             progress=staged(progress, "", 0.1, 1.0),
         ).reshape(len(balances), len(leads), len(_DIRECTIONS))
-        stands = stand_results.reach.values > _STANDING_FRACTION * stretched(self.robot)
+        stands = stand_results.reach.values > _STANDING_FRACTION * stretched_length(self.robot)
         return xr.Dataset(
             {
                 "push": (
@@ -333,17 +340,17 @@ class BipedalReach(Experiment):
 
     def _lengths(self, progress: Any) -> xr.Dataset:
         """Return the reach of crawls over the hip height, and the gain of reach per added length of each body part."""
-        robots = [self.robot, *(lengthened(self.robot, body_part, 1 + self.longer) for body_part in PARTS)]
+        robots = [self.robot, *(with_length(self.robot, body_part, 1 + self.longer) for body_part in PARTS)]
         stand_results = self._stand_results(robots, [self._lead] * len(robots), staged(progress, "", 0.0, 0.5))
         leg = length(self.robot, "leg")
         crawls = [(self.robot, self.gait.with_numbers(height=hips / leg)) for hips in self.hips]
-        crawls += [(robot, fitted(self.gait, robot, self.robot)) for robot in robots]
+        crawls += [(robot, fit_gait_to_legs(self.gait, robot, self.robot)) for robot in robots]
         runs = [Run(robot=robot, gait=gait) for robot, gait in crawls]
         record = simulate(
             runs,
             duration=START + self.gait.period,
             timestep=_COARSE_TIMESTEP,
-            every=5,
+            sample_stride=5,
             progress=staged(progress, "", 0.5, 1.0),
         ).sel(time=slice(START, None))
         heights = np.array([float(reach(robot, record.isel(run=i)).max()) for i, (robot, _) in enumerate(crawls)])
@@ -376,7 +383,7 @@ class BipedalReach(Experiment):
         """Return the greatest reach of any posture over the distance of the centre of mass behind the feet [m]."""
         leads = size_of(self.robot) * np.linspace(0.0, 0.1, 11)
         return xr.Dataset(
-            {"ceiling": ("behind", tallest(self.robot, leads), {"units": "m"})},
+            {"ceiling": ("behind", max_snout_height(self.robot, leads), {"units": "m"})},
             coords={"behind": ("behind", leads, {"units": "m"})},
         )
 
@@ -387,7 +394,7 @@ class BipedalReach(Experiment):
             "side_views": draw_side_views(self.robot, record),
             "angles": draw_angles(self.robot, record),
             "height_over_time": draw_heights(record, self.hold),
-            "torque_and_mass": draw_limits(self.robot, record, _STANDING_FRACTION * stretched(self.robot)),
+            "torque_and_mass": draw_limits(self.robot, record, _STANDING_FRACTION * stretched_length(self.robot)),
             "ceiling": draw_ceiling(self.robot, record),
             "pushes": draw_pushes(record, record.attrs["commanded_lead"]),
         }
@@ -399,7 +406,7 @@ def _heights(record: xr.Dataset) -> Measures:
     heights = record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
     crawl = heights.sel(time=slice(start, rise_time)).max("time")
     stand = heights.sel(time=slice(upright_time, leave_time)).min("time")
-    standing_time = held(heights, record.attrs["least"])
+    standing_time = longest_hold(heights, record.attrs["least"])
     return (
         estimated("reach_crawl", crawl, "m")
         | estimated(
@@ -446,7 +453,7 @@ def _gains(record: xr.Dataset) -> Measures:
     return gains
 
 
-def least_lead(record: xr.Dataset) -> float:
+def min_lead(record: xr.Dataset) -> float:
     """Return the smallest distance of the centre of mass behind the feet from lift-off of the front to standing [m].
 
     The result is NaN for a robot whose front does not leave the ground before it should stand.

@@ -13,7 +13,7 @@ from suchus.article.paper import CLAIMS
 from suchus.core import rotation
 from suchus.robot.design import Robot, layout
 from suchus.sim.metrics import loaded, tilt
-from suchus.visual.figures.gait_diagram import stretches
+from suchus.visual.figures.gait_diagram import intervals
 from suchus.visual.figures.posture import draw_posture, skeleton
 from suchus.visual.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
 
@@ -343,7 +343,7 @@ def _facing_right(record: xr.Dataset) -> xr.Dataset:
     c, s = np.cos(yaw), np.sin(yaw)
     R = xr.DataArray([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], dims=("to", "xyz"), coords={"xyz": record.xyz})
     rotated = {n: (R * record[n]).sum("xyz").rename(to="xyz").assign_coords(xyz=record.xyz) for n in _POSITION_FIELDS}
-    q = rotation.multiply(rotation.about(np.array([0.0, 0.0, 1.0]), yaw), quaternion)
+    q = rotation.multiply(rotation.from_axis_angle(np.array([0.0, 0.0, 1.0]), yaw), quaternion)
     return record.assign(rotated).assign(orientation=(("time", "wxyz"), [q]))
 
 
@@ -429,7 +429,7 @@ def _draw_stances(ax: Axes, record: xr.Dataset, time_origin: float) -> None:
     """
     legs = [str(leg) for leg in record.leg.values]
     for row, stands in enumerate(loaded(record).transpose("leg", "time").values):
-        spans = [(begin, end - begin) for begin, end in stretches(record.time.values - time_origin, stands)]
+        spans = [(begin, end - begin) for begin, end in intervals(record.time.values - time_origin, stands)]
         ax.broken_barh(spans, (row - 0.36, 0.72), facecolor=COLOURS["neutral"])
     ax.set_yticks(range(len(legs)), legs)
     ax.set_ylim(len(legs) - 0.5, -0.5)

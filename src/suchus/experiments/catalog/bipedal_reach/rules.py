@@ -1,7 +1,7 @@
 """When the claims on the heights that are reached count as what (section IV.D, Figs 22 to 24)."""
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import BUILT, Clause, Rule, Varied, between
+from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, Rule, Variation, measure_with_interval
 
 _ONE_ROBOT = "Lengths and torques of other robots are varied on the maps of the experiment, one or two at a time."
 
@@ -21,7 +21,7 @@ RULES = (
             Clause("distance_high_crawl", ">", 0.0, "a crawl that gets forward"),
         ),
         spread=("reach_crawl", "hips_at_printed_height"),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="The top of the back, with the hips at {hip_height:mm.0f} mm. The article says neither which point it "
         "measured nor how high the hips are; hips at {hips_at_printed_height:mm.0f} mm give the printed height, and up "
         "to {hip_height_plausible:mm.0f} mm are plausible.",
@@ -38,7 +38,7 @@ RULES = (
             ),
         ),
         spread=("reach_standing", "reach_ratio", "held_share"),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="The snout at its lowest while it stands, for {held:.0f} s. Hind leg, spine and head in one line are "
         "{stretched_length:.3f} m: the article does not give the head's length, and ours was chosen so that they make "
         "the printed height.",
@@ -50,7 +50,7 @@ RULES = (
         kind="fitted",
         holds=(Clause("reach_ratio", ">", 2.0, "several times as high is more than twice"),),
         spread=("reach_ratio",),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="The height of the stand was fitted, and so is its ratio. The crawl reaches {reach_crawl:.3f} m; with the "
         "hips at {hips_at_printed_height:mm.0f} mm it would reach the printed height.",
     ),
@@ -85,7 +85,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(
+SWEEP = Variation(
     claims=("height_crawl", "height_standing", "height_ratio", "height_from_spine_head_legs"),
     designs=("robot",),
     settings={"hold": 10.0, "torques": (3.0,), "forebodies": (0.6,), "leads": (), "pushes": (1.0,), "finer": 0},
@@ -96,7 +96,7 @@ _CRAWL = {
     "reach_crawl": 0.16,
     "reach_crawl_low": 0.16,
     "reach_crawl_high": 0.16,
-    **between("hips_at_printed_height", 0.119, 0.1195),
+    **measure_with_interval("hips_at_printed_height", 0.119, 0.1195),
     "hip_height_plausible": 0.12,
     "distance_high_crawl": 0.3,
     "hip_height": 0.09,
@@ -108,7 +108,7 @@ _STAND = {
     "reach_ratio": 4.25,
     "reach_ratio_low": 4.25,
     "reach_ratio_high": 4.25,
-    **between("held_share", 1.0, 1.0),
+    **measure_with_interval("held_share", 1.0, 1.0),
     "held": 60.0,
     "stretched_length": 0.68,
 }
@@ -130,43 +130,43 @@ _STANDING_GAINS = {
 EXAMPLES: Examples = {
     "height_crawl": [
         (_CRAWL, "reproduced"),
-        (_CRAWL | between("reach_crawl", 0.1551, 0.1551), "reproduced"),
-        (_CRAWL | between("reach_crawl", 0.1549, 0.1549), "same sense"),
-        (_CRAWL | between("reach_crawl", 0.1649, 0.1649), "reproduced"),
-        (_CRAWL | between("reach_crawl", 0.1651, 0.1651), "same sense"),
-        (_CRAWL | between("reach_crawl", 0.10, 0.18), "same sense"),
-        (_CRAWL | between("hips_at_printed_height", 0.119, 0.1199), "reproduced"),
-        (_CRAWL | between("hips_at_printed_height", 0.119, 0.1201), "undecided"),
-        (_CRAWL | between("hips_at_printed_height", 0.1199, 0.121), "undecided"),
-        (_CRAWL | between("hips_at_printed_height", 0.1201, 0.121), "contradicted"),
+        (_CRAWL | measure_with_interval("reach_crawl", 0.1551, 0.1551), "reproduced"),
+        (_CRAWL | measure_with_interval("reach_crawl", 0.1549, 0.1549), "same sense"),
+        (_CRAWL | measure_with_interval("reach_crawl", 0.1649, 0.1649), "reproduced"),
+        (_CRAWL | measure_with_interval("reach_crawl", 0.1651, 0.1651), "same sense"),
+        (_CRAWL | measure_with_interval("reach_crawl", 0.10, 0.18), "same sense"),
+        (_CRAWL | measure_with_interval("hips_at_printed_height", 0.119, 0.1199), "reproduced"),
+        (_CRAWL | measure_with_interval("hips_at_printed_height", 0.119, 0.1201), "undecided"),
+        (_CRAWL | measure_with_interval("hips_at_printed_height", 0.1199, 0.121), "undecided"),
+        (_CRAWL | measure_with_interval("hips_at_printed_height", 0.1201, 0.121), "contradicted"),
         (_CRAWL | {"distance_high_crawl": 0.01}, "reproduced"),
         (_CRAWL | {"distance_high_crawl": -0.01}, "contradicted"),
     ],
     "height_standing": [
         (_STAND, "fitted"),
-        (_STAND | between("reach_standing", 0.6751, 0.6751), "fitted"),
-        (_STAND | between("reach_standing", 0.6749, 0.6749), "same sense"),
-        (_STAND | between("reach_standing", 0.6849, 0.6849), "fitted"),
-        (_STAND | between("reach_standing", 0.6851, 0.6851), "same sense"),
-        (_STAND | between("reach_standing", 0.60, 0.70), "same sense"),
-        (_STAND | between("reach_ratio", 1.01, 4.0), "fitted"),
-        (_STAND | between("reach_ratio", 0.99, 4.0), "undecided"),
-        (_STAND | between("reach_ratio", 0.9, 0.99), "contradicted"),
-        (_STAND | between("held_share", 0.991, 1.0), "fitted"),
-        (_STAND | between("held_share", 0.989, 1.0), "undecided"),
-        (_STAND | between("held_share", 0.5, 0.989), "contradicted"),
+        (_STAND | measure_with_interval("reach_standing", 0.6751, 0.6751), "fitted"),
+        (_STAND | measure_with_interval("reach_standing", 0.6749, 0.6749), "same sense"),
+        (_STAND | measure_with_interval("reach_standing", 0.6849, 0.6849), "fitted"),
+        (_STAND | measure_with_interval("reach_standing", 0.6851, 0.6851), "same sense"),
+        (_STAND | measure_with_interval("reach_standing", 0.60, 0.70), "same sense"),
+        (_STAND | measure_with_interval("reach_ratio", 1.01, 4.0), "fitted"),
+        (_STAND | measure_with_interval("reach_ratio", 0.99, 4.0), "undecided"),
+        (_STAND | measure_with_interval("reach_ratio", 0.9, 0.99), "contradicted"),
+        (_STAND | measure_with_interval("held_share", 0.991, 1.0), "fitted"),
+        (_STAND | measure_with_interval("held_share", 0.989, 1.0), "undecided"),
+        (_STAND | measure_with_interval("held_share", 0.5, 0.989), "contradicted"),
     ],
     "height_ratio": [
         (_RATIO, "fitted"),
-        (_RATIO | between("reach_ratio", 4.2451, 4.2451), "fitted"),
-        (_RATIO | between("reach_ratio", 4.2449, 4.2449), "same sense"),
-        (_RATIO | between("reach_ratio", 4.2549, 4.2549), "fitted"),
-        (_RATIO | between("reach_ratio", 4.2551, 4.2551), "same sense"),
-        (_RATIO | between("reach_ratio", 2.02, 4.26), "same sense"),
-        (_RATIO | between("reach_ratio", 1.98, 4.26), "undecided"),
-        (_RATIO | between("reach_ratio", 2.02, 6.48), "fitted"),
-        (_RATIO | between("reach_ratio", 1.98, 6.52), "undecided"),
-        (_RATIO | between("reach_ratio", 1.9, 1.98), "contradicted"),
+        (_RATIO | measure_with_interval("reach_ratio", 4.2451, 4.2451), "fitted"),
+        (_RATIO | measure_with_interval("reach_ratio", 4.2449, 4.2449), "same sense"),
+        (_RATIO | measure_with_interval("reach_ratio", 4.2549, 4.2549), "fitted"),
+        (_RATIO | measure_with_interval("reach_ratio", 4.2551, 4.2551), "same sense"),
+        (_RATIO | measure_with_interval("reach_ratio", 2.02, 4.26), "same sense"),
+        (_RATIO | measure_with_interval("reach_ratio", 1.98, 4.26), "undecided"),
+        (_RATIO | measure_with_interval("reach_ratio", 2.02, 6.48), "fitted"),
+        (_RATIO | measure_with_interval("reach_ratio", 1.98, 6.52), "undecided"),
+        (_RATIO | measure_with_interval("reach_ratio", 1.9, 1.98), "contradicted"),
     ],
     "height_from_legs": [
         (_LEGS, "by construction"),

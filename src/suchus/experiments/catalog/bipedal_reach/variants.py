@@ -11,7 +11,7 @@ from suchus.robot.motion import Gait
 from suchus.robot.motion.posture import plan
 from suchus.robot.motion.rising import stand_up
 
-SOON = 0.2
+START_TIME = 0.2
 """Start of standing up in runs without a crawl [s]."""
 PARTS = {
     "leg": ("hind_leg.femur", "hind_leg.tibia", "front_leg.femur", "front_leg.tibia"),
@@ -21,7 +21,7 @@ PARTS = {
 """Fields of the robot that make up the length of each body part."""
 
 
-def heavier(robot: Robot, mass: float, torque: float) -> Robot:
+def with_forebody(robot: Robot, mass: float, torque: float) -> Robot:
     """Return the robot with another forebody mass and another torque of the trunk's pitch servos.
 
     Args:
@@ -41,7 +41,7 @@ def heavier(robot: Robot, mass: float, torque: float) -> Robot:
     )
 
 
-def lengthened(robot: Robot, body_part: str, factor: float) -> Robot:
+def with_length(robot: Robot, body_part: str, factor: float) -> Robot:
     """Return the robot with one body part scaled in length; its masses do not change."""
     return with_values(robot, {path: factor * attrgetter(path)(robot) for path in PARTS[body_part]})
 
@@ -52,13 +52,13 @@ def length(robot: Robot, body_part: str) -> float:
     return {"leg": leg.femur + leg.tibia, "spine": robot.spine.length, "head": robot.head.snout}[body_part]
 
 
-def fitted(gait: Gait, robot: Robot, original: Robot) -> Gait:
+def fit_gait_to_legs(gait: Gait, robot: Robot, original: Robot) -> Gait:
     """Return the gait with heights and reaches in proportion to a robot's legs; strokes and lifts stay the same."""
     factor = length(robot, "leg") / length(original, "leg")
     return gait.with_numbers(stroke=gait.number("stroke") / factor, lift=gait.number("lift") / factor)
 
 
-def stand_soon(robot: Robot, lead: float, balance: Balance | None, size: float) -> Standing | None:
+def stand_control(robot: Robot, lead: float, balance: Balance | None, size: float) -> Standing | None:
     """Return a control that stands up at once and keeps standing; None where the joints cannot take the postures.
 
     Args:
@@ -72,9 +72,9 @@ def stand_soon(robot: Robot, lead: float, balance: Balance | None, size: float) 
         plan(robot, rise, np.linspace(0.0, rise.duration, 200))
     except OutsideLimits:
         return None
-    return Standing(at=SOON, hold=86400.0, balance=balance, rise=rise)
+    return Standing(at=START_TIME, hold=86400.0, balance=balance, rise=rise)
 
 
-def up_at(robot: Robot) -> float:
+def upright_time(robot: Robot) -> float:
     """Return the time at which a robot that stands up at once is upright [s]."""
-    return Standing(at=SOON, hold=0.0).upright_from(robot)
+    return Standing(at=START_TIME, hold=0.0).upright_from(robot)

@@ -17,14 +17,14 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     estimated,
     silent,
     staged,
 )
 from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import conditions_of
-from suchus.robot.motion import START, FootPath, longest_strokes
+from suchus.robot.motion import START, FootPath, max_stroke_factor
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import (
     displacement,
@@ -87,7 +87,7 @@ class CrawlStability(TwoGroups):
         """One cycle, two repeats."""
         return replace(self, cycles=1, repeats=2)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate every condition, and limbs only with strokes for equal displacement, as designed and as built."""
         end = START + self.cycles * self.gait.period
         arms = conditions_of(self.robot, self.gait, self.control_group)
@@ -99,14 +99,14 @@ class CrawlStability(TwoGroups):
         built_progress = staged(progress, "robots as built", 0.5, 1.0)
         record = record.merge(self.repeated(runs, _quantities, _UNITS | _snapshot_quantities(), end, built_progress))
         record.attrs["equal_stroke"] = stroke_factor * self._stroke()
-        return Simulated(record=record, replays=self._replays(record))
+        return SimulationResult(record=record, replays=self._replays(record))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; only the conditions that they name are simulated."""
-        if any(name.startswith(_COMPARISON_MEASURES) or _EQUAL_DISPLACEMENT in name for name in wanted):
-            return super(CrawlStability, self).measured(wanted, progress)
+        if any(name.startswith(_COMPARISON_MEASURES) or _EQUAL_DISPLACEMENT in name for name in measure_names):
+            return super(CrawlStability, self).measured(measure_names, progress)
         arms = conditions_of(self.robot, self.gait, self.control_group)
-        requested_gaits = {arm: gait for arm, gait in arms.items() if any(f"_{arm}" in name for name in wanted)}
+        requested_gaits = {arm: gait for arm, gait in arms.items() if any(f"_{arm}" in name for name in measure_names)}
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in requested_gaits.items()]
         end = START + self.cycles * self.gait.period
         record = self.repeated(runs, _quantities, _UNITS | _snapshot_quantities(), end, progress)
@@ -134,9 +134,9 @@ class CrawlStability(TwoGroups):
             end: duration of each run [s].
             progress: callback that gets the finished fraction.
         """
-        strokes = np.linspace(1.0, longest_strokes(self.robot, self.control_group), 10)
+        strokes = np.linspace(1.0, max_stroke_factor(self.robot, self.control_group), 10)
         runs = [Run(robot=self.robot, gait=self.control_group.strode(float(s))) for s in strokes]
-        sweep = simulate(runs, duration=end, timestep=coarse_step(self.robot), every=100, progress=progress)
+        sweep = simulate(runs, duration=end, timestep=coarse_step(self.robot), sample_stride=100, progress=progress)
         distances = displacement(sweep).sel(xyz="x").values
         target_distance = float(displacement(record).sel(xyz="x")[0])
         return float(np.interp(target_distance, np.maximum.accumulate(distances), strokes))

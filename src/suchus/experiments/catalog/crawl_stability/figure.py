@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from suchus.robot.design import Robot
 from suchus.robot.motion import START
-from suchus.sim.metrics import between, height_peak_to_peak
+from suchus.sim.metrics import height_peak_to_peak, time_window
 from suchus.visual.figures.posture import draw_posture
 from suchus.visual.figures.style import COLOURS, LINES, captioned, panels, styled
 from suchus.visual.figures.timeseries import draw_lines, mark_cycles
@@ -21,7 +21,7 @@ def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
         record: of one run per condition, then the legs alone at equal displacement.
         names: of the conditions, roles of ``style.LINES``; with spine and tail first, limbs only second.
     """
-    walk = between(record)
+    walk = time_window(record)
     height = walk.centre_of_mass.sel(xyz="z")
     height = height - height.mean("time")
     with styled():

@@ -3,7 +3,7 @@
 from math import nan, radians
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import BUILT, Clause, ControlGroup, Rule, Varied, between
+from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, ControlGroup, Rule, Variation, measure_with_interval
 
 _STEADINESS_REASON = "steadier is a smaller fluctuation"
 _MAX_DUTY_CLAUSE = Clause(
@@ -23,7 +23,7 @@ RULES = (
         holds=(Clause("com_height_pp_change_tail_lifted", "<", 0.0, _STEADINESS_REASON),),
         control=_TAIL_LIFTED_GROUP,
         spread=("com_height_pp_change_tail_lifted", "hind_duty_limbs_tail_lifted"),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="Highest less lowest height: {com_height_pp_coordinated:mm.1f} mm with spine and tail, "
         "{com_height_pp_limbs_tail_lifted:mm.1f} mm with limbs only and the tail in the air, a change of "
         "{com_height_pp_change_tail_lifted:+.0%} ({com_height_pp_change_tail_lifted_low:+.0%} to "
@@ -43,7 +43,7 @@ RULES = (
         ),
         control=_TAIL_LIFTED_GROUP,
         spread=("line_distance_max_limbs_tail_lifted", "hind_duty_limbs_tail_lifted"),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="The article speaks of two feet that carry alone. With limbs only and the tail in the air they do so for "
         "{two_feet_alone_share_limbs_tail_lifted:.0%} of the time; with the tail on the ground, which carries "
         "{tail_load_share_limbs_only:.0%} of the weight, for {two_feet_alone_share_limbs_only:.0%}.",
@@ -67,7 +67,7 @@ RULES = (
             "lean_coordinated_1200_ms",
             "line_distance_limbs_tail_lifted_1200_ms",
         ),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="At 1.2 s {standing_feet_limbs_tail_lifted_1200_ms:.0f} feet stand with limbs only and the tail in the air "
         "and the pelvis leans by {lean_limbs_tail_lifted_1200_ms:deg.1f} degrees, against "
         "{lean_coordinated_1200_ms:deg.1f} with spine and tail and {lean_limbs_only_1200_ms:deg.1f} on "
@@ -92,7 +92,7 @@ RULES = (
             why="What lies on the ground supports: the same crawl with the tail in the air, unswung.",
         ),
         spread=("tail_contact_pp_change", "tail_load_share_coordinated"),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="On the ground the tail carries {tail_load_share_coordinated:.1%} of the weight "
         "({tail_load_share_coordinated_low:.1%} to {tail_load_share_coordinated_high:.1%}) and changes the fluctuation "
         "by {tail_contact_pp_change:+.0%} against the same crawl with the tail in the air ("
@@ -108,7 +108,7 @@ RULES = (
             group="tail_still", why="What wags balances: the same crawl whose tail is dragged without it."
         ),
         spread=("wagging_pp_change",),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="Against a tail that is dragged without a swing wagging changes the fluctuation by "
         "{wagging_pp_change:+.0%} ({wagging_pp_change_low:+.0%} to {wagging_pp_change_high:+.0%}).",
     ),
@@ -122,13 +122,13 @@ RULES = (
     ),
 )
 
-VARIED = Varied(claims=("tilt_limbs_only",), designs=("robot", "gait"), samples=128)
+SWEEP = Variation(claims=("tilt_limbs_only",), designs=("robot", "gait"), samples=128)
 
 _HEIGHT = {
     "com_height_pp_change_tail_lifted": -0.1,
     "com_height_pp_change_tail_lifted_low": -0.2,
     "com_height_pp_change_tail_lifted_high": -0.001,
-    **between("hind_duty_limbs_tail_lifted", 0.7, 0.845),
+    **measure_with_interval("hind_duty_limbs_tail_lifted", 0.7, 0.845),
     "com_height_pp_coordinated": 0.0038,
     "com_height_pp_limbs_only": 0.0042,
     "com_height_pp_limbs_tail_lifted": 0.004,
@@ -136,21 +136,21 @@ _HEIGHT = {
     "com_height_std_change": -0.1,
     "roll_pp_change": 0.1,
 }
-_DUTY_ABOVE_LIMIT = between("hind_duty_limbs_tail_lifted", 0.851, 1.0)
-_DUTY_ACROSS_LIMIT = between("hind_duty_limbs_tail_lifted", 0.8, 0.851)
+_DUTY_ABOVE_LIMIT = measure_with_interval("hind_duty_limbs_tail_lifted", 0.851, 1.0)
+_DUTY_ACROSS_LIMIT = measure_with_interval("hind_duty_limbs_tail_lifted", 0.8, 0.851)
 _LINE = {
-    **between("hind_duty_limbs_tail_lifted", 0.7, 0.845),
+    **measure_with_interval("hind_duty_limbs_tail_lifted", 0.7, 0.845),
     "two_feet_alone_share_limbs_only": 0.0,
     "two_feet_alone_share_limbs_tail_lifted": 0.0,
     "tail_load_share_limbs_only": 0.05,
 }
 _TILT = {
-    **between("hind_duty_limbs_tail_lifted", 0.7, 0.845),
-    **between("lean_on_two_feet_limbs_tail_lifted_1200_ms", radians(1.01), radians(1.1)),
-    **between("lean_limbs_tail_lifted_1200_ms", radians(1.01), radians(1.1)),
-    **between("lean_coordinated_1200_ms", radians(0.9), radians(1.0)),
+    **measure_with_interval("hind_duty_limbs_tail_lifted", 0.7, 0.845),
+    **measure_with_interval("lean_on_two_feet_limbs_tail_lifted_1200_ms", radians(1.01), radians(1.1)),
+    **measure_with_interval("lean_limbs_tail_lifted_1200_ms", radians(1.01), radians(1.1)),
+    **measure_with_interval("lean_coordinated_1200_ms", radians(0.9), radians(1.0)),
     "lean_limbs_only_1200_ms": 0.1,
-    **between("line_distance_limbs_tail_lifted_1200_ms", 0.0241, 0.03),
+    **measure_with_interval("line_distance_limbs_tail_lifted_1200_ms", 0.0241, 0.03),
     "standing_feet_limbs_tail_lifted_1200_ms": 2,
     "standing_feet_limbs_only_1200_ms": 4,
 }
@@ -159,7 +159,7 @@ _TAIL = {
     "tail_contact_pp_change_low": -0.2,
     "tail_contact_pp_change_high": -0.001,
     "tail_contact_pp_change_limbs_only": -0.4,
-    **between("tail_load_share_coordinated", 0.0505, 0.06),
+    **measure_with_interval("tail_load_share_coordinated", 0.0505, 0.06),
 }
 _WAG = {"wagging_pp_change": -0.1, "wagging_pp_change_low": -0.2, "wagging_pp_change_high": -0.001}
 
@@ -167,49 +167,67 @@ EXAMPLES: Examples = {
     "com_fluctuation": [
         (_HEIGHT, "reproduced"),
         (_HEIGHT | {"com_height_pp_change_tail_lifted_high": 0.001}, "undecided"),
-        (_HEIGHT | between("com_height_pp_change_tail_lifted", 0.001, 0.1), "contradicted"),
+        (_HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", 0.001, 0.1), "contradicted"),
         (_HEIGHT | _DUTY_ACROSS_LIMIT, "undecided"),
-        (_HEIGHT | between("com_height_pp_change_tail_lifted", 0.001, 0.1) | _DUTY_ACROSS_LIMIT, "undecided"),
+        (
+            _HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", 0.001, 0.1) | _DUTY_ACROSS_LIMIT,
+            "undecided",
+        ),
         (_HEIGHT | _DUTY_ABOVE_LIMIT, "not testable"),
-        (_HEIGHT | between("com_height_pp_change_tail_lifted", 0.001, 0.1) | _DUTY_ABOVE_LIMIT, "not testable"),
+        (
+            _HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", 0.001, 0.1) | _DUTY_ABOVE_LIMIT,
+            "not testable",
+        ),
     ],
     "com_on_support_line": [
-        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.01, 0.0239), "reproduced"),
-        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.01, 0.0241), "undecided"),
-        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.0241, 0.03), "contradicted"),
-        (_LINE | between("line_distance_max_limbs_tail_lifted", nan, nan), "not testable"),  # never on two feet alone
-        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.01, 0.0239) | _DUTY_ACROSS_LIMIT, "undecided"),
-        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.01, 0.0239) | _DUTY_ABOVE_LIMIT, "not testable"),
+        (_LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0239), "reproduced"),
+        (_LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0241), "undecided"),
+        (_LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.0241, 0.03), "contradicted"),
+        (
+            _LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", nan, nan),
+            "not testable",
+        ),  # never on two feet alone
+        (
+            _LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0239) | _DUTY_ACROSS_LIMIT,
+            "undecided",
+        ),
+        (
+            _LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0239) | _DUTY_ABOVE_LIMIT,
+            "not testable",
+        ),
     ],
     "tilt_limbs_only": [
         (_TILT, "reproduced"),
         (_TILT | {"lean_on_two_feet_limbs_tail_lifted_1200_ms": nan}, "not testable"),
         (
             _TILT
-            | between("lean_limbs_tail_lifted_1200_ms", radians(0.9), radians(0.99))
-            | between("lean_coordinated_1200_ms", 0.0, 0.0),
+            | measure_with_interval("lean_limbs_tail_lifted_1200_ms", radians(0.9), radians(0.99))
+            | measure_with_interval("lean_coordinated_1200_ms", 0.0, 0.0),
             "contradicted",
         ),
-        (_TILT | between("lean_limbs_tail_lifted_1200_ms", radians(0.99), radians(1.02)), "undecided"),
-        (_TILT | between("lean_coordinated_1200_ms", radians(0.9), radians(1.02)), "undecided"),
-        (_TILT | between("lean_coordinated_1200_ms", radians(1.12), radians(1.2)), "contradicted"),
-        (_TILT | between("line_distance_limbs_tail_lifted_1200_ms", 0.0239, 0.03), "undecided"),
-        (_TILT | between("line_distance_limbs_tail_lifted_1200_ms", 0.01, 0.0239), "contradicted"),
+        (_TILT | measure_with_interval("lean_limbs_tail_lifted_1200_ms", radians(0.99), radians(1.02)), "undecided"),
+        (_TILT | measure_with_interval("lean_coordinated_1200_ms", radians(0.9), radians(1.02)), "undecided"),
+        (_TILT | measure_with_interval("lean_coordinated_1200_ms", radians(1.12), radians(1.2)), "contradicted"),
+        (_TILT | measure_with_interval("line_distance_limbs_tail_lifted_1200_ms", 0.0239, 0.03), "undecided"),
+        (_TILT | measure_with_interval("line_distance_limbs_tail_lifted_1200_ms", 0.01, 0.0239), "contradicted"),
         (_TILT | _DUTY_ACROSS_LIMIT, "undecided"),
         (_TILT | _DUTY_ABOVE_LIMIT, "not testable"),
-        (_TILT | between("line_distance_limbs_tail_lifted_1200_ms", 0.01, 0.0239) | _DUTY_ABOVE_LIMIT, "not testable"),
+        (
+            _TILT | measure_with_interval("line_distance_limbs_tail_lifted_1200_ms", 0.01, 0.0239) | _DUTY_ABOVE_LIMIT,
+            "not testable",
+        ),
     ],
     "tail_supports": [
         (_TAIL, "reproduced"),
-        (_TAIL | between("tail_load_share_coordinated", 0.0495, 0.06), "undecided"),
-        (_TAIL | between("tail_load_share_coordinated", 0.04, 0.0495), "contradicted"),
+        (_TAIL | measure_with_interval("tail_load_share_coordinated", 0.0495, 0.06), "undecided"),
+        (_TAIL | measure_with_interval("tail_load_share_coordinated", 0.04, 0.0495), "contradicted"),
         (_TAIL | {"tail_contact_pp_change_high": 0.001}, "undecided"),
-        (_TAIL | between("tail_contact_pp_change", 0.001, 0.1), "contradicted"),
+        (_TAIL | measure_with_interval("tail_contact_pp_change", 0.001, 0.1), "contradicted"),
     ],
     "wagging_balances": [
         (_WAG, "reproduced"),
         (_WAG | {"wagging_pp_change_high": 0.001}, "undecided"),
-        (_WAG | between("wagging_pp_change", 0.001, 0.1), "contradicted"),
+        (_WAG | measure_with_interval("wagging_pp_change", 0.001, 0.1), "contradicted"),
     ],
     "spine_sinusoidal": [
         ({"spine_sine_r2": 0.951}, "by construction"),

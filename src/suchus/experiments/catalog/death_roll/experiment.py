@@ -11,13 +11,22 @@ import xarray as xr
 from suchus.core.checks import Checks
 from suchus.core.progress import portion
 from suchus.experiments.catalog.death_roll.figure import draw_cost, draw_rates, draw_roll, servo_groups
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    SimulationResult,
+    silent,
+    staged,
+)
 from suchus.robot.control import OpenLoop
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, roll
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
-from suchus.sim.metrics import between, peak_torque, roll_rate, whole
+from suchus.sim.metrics import peak_torque, require_complete, roll_rate, time_window
 from suchus.sim.model import longest_step
 
 _STIFFNESS_TOLERANCE = 1.25  # [-]; stiffness ratio from which the time steps are shortened
@@ -106,12 +115,12 @@ class DeathRoll(Experiment):
     def _duration(self) -> float:
         return self.cycles / self.frequency
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate rolls in vacuum and in water, and over phase, amplitude, frequency and time step."""
         arms = self._simulate(self._arms(), self.timestep, staged(progress, "arms", 0.0, 0.55))
         record = arms.assign(rate=(("run"), self._rates(arms, self.frequency), {"units": "Hz"}))
         record = record.merge(self._curves(staged(progress, "curves", 0.55, 0.9)))
-        return Simulated(record=record.merge(self._steps(staged(progress, "time steps", 0.9, 1.0))))
+        return SimulationResult(record=record.merge(self._steps(staged(progress, "time steps", 0.9, 1.0))))
 
     def _roll(self, *, frequency: float | None = None, **changes: Any) -> Gait:
         """Return the roll with the trunk alone, or with changed arguments of ``motion.roll``."""
@@ -142,7 +151,7 @@ class DeathRoll(Experiment):
             media: ``vacuum`` or ``water``; the runs of the first one come first.
         """
         runs = [self._floating_run(gait, arm, medium) for medium in media for arm, gait in rolls.items()]
-        record = whole(simulate(runs, duration=self._duration, timestep=timestep, progress=progress))
+        record = require_complete(simulate(runs, duration=self._duration, timestep=timestep, progress=progress))
         return record.assign_coords(medium=("run", [medium for medium in media for _ in rolls]))
 
     def _floating_run(self, gait: Gait, arm: str, medium: str) -> Run:
@@ -212,7 +221,7 @@ class DeathRoll(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return rate, power and loads of each roll, and the residual angular momentum in vacuum."""
         start = self._window(self.frequency)
-        torque, window = peak_torque(record, start), between(record, start)
+        torque, window = peak_torque(record, start), time_window(record, start)
         power = (window.servo_torque * window.servo_velocity).clip(min=0.0).sum("servo").mean("time")
         speed = abs(window.servo_velocity).max("time")
         measures = Measures()

@@ -10,7 +10,7 @@ from suchus.article.paper.animals import ANIMAL
 from suchus.core import rotation
 from suchus.robot.design import Robot, layout
 from suchus.sim.metrics import peak_torque, roll_angle
-from suchus.visual.figures.posture import silhouette_at, skeleton, united
+from suchus.visual.figures.posture import joined_path, silhouette_at, skeleton
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _BACK, _BELLY, _EDGE = np.array([0.30, 0.45, 0.35]), np.array([0.95, 0.90, 0.76]), "#3B5545"
@@ -236,7 +236,7 @@ def _body(ax: Axes, robot: Robot, run: xr.Dataset, time: float) -> None:
     for limb, points, pieces in zip(layout(robot).limbs, bones.legs, outline.legs, strict=True):
         colour = COLOURS["LF"] if limb.side > 0 else COLOURS["RF"]
         order = 4 if points[:, 1].mean() < center_y else 0
-        ax.add_patch(PathPatch(united(pieces), facecolor=colour, edgecolor=colour, zorder=order))
+        ax.add_patch(PathPatch(joined_path(pieces), facecolor=colour, edgecolor=colour, zorder=order))
     skin_colour = tuple(_BELLY + (_BACK - _BELLY) * np.clip(0.5 + 0.5 * facing, 0.0, 1.0))
     for piece in (outline.jaw, outline.body):
         if len(piece):

@@ -19,7 +19,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     ends,
     estimated,
     silent,
@@ -86,7 +86,7 @@ class Displacement(TwoGroups):
         corners = replace(self, strokes=strokes, bends=bends, pitches=(0.1, 0.3))
         return replace(corners, cycles=1, repeats=2, phases=(0.0, 0.5))
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate every condition as designed and as built, and the map over strokes, bends, pitches and phases."""
         duration = START + self.cycles * self.gait.period
         gaits = conditions_of(self.robot, self.gait, self.control_group)
@@ -96,7 +96,7 @@ class Displacement(TwoGroups):
         record = record.merge(self.repeated(runs, _quantities, _UNITS, duration, built_progress))
         record = record.merge(self._displacement_map(duration, staged(progress, "map", 0.5, 1.0)))
         record.attrs["least"] = _MIN_DISPLACEMENT_FRACTION * self.robot.length
-        return Simulated(record=record, replays=self._replays(record))
+        return SimulationResult(record=record, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         """Return the replay of the crawl with spine and tail and of that with limbs only."""
@@ -124,7 +124,7 @@ class Displacement(TwoGroups):
         lagged_gaits = [self.gait.lagged(p) for p in self.phases]
         runs = [Run(robot=self.robot, gait=gait) for gait in (*limb_gaits, *bent_gaits, *pitched_gaits, *lagged_gaits)]
         distances = _forward(
-            simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=100, progress=progress)
+            simulate(runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=100, progress=progress)
         ).values
         distance_groups = np.split(distances, np.cumsum([len(limb_gaits), len(bent_gaits), len(pitched_gaits)]))
         metres = {"units": "m"}
@@ -204,7 +204,9 @@ class Displacement(TwoGroups):
             "crawling": draw_crawls(self.robot, record.isel(run=[0, 1]), _GROUPS),
             "parts": draw_parts(record, _forward(record), printed_distances if is_article else {}),
             "displacement_over_time": draw_course(record, _GROUPS, printed_distances if is_full_run else {}),
-            "displacement_map": draw_decisions(record, _ratio(record), self.gait, self._stroke(), article=is_article),
+            "displacement_map": draw_decisions(
+                record, _ratio(record), self.gait, self._stroke(), is_article=is_article
+            ),
         }
 
     def _stroke(self) -> float:

@@ -42,7 +42,7 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
         forward_position = record.centre_of_mass.sel(xyz="x")
         for i, role in enumerate(arms):
             run, lateral_offset = record.isel(run=i), -spacing * i
-            draw_strip(ax, robot, run, times, role=role, aside=lateral_offset)
+            draw_strip(ax, robot, run, times, role=role, lateral_offset=lateral_offset)
             start, stop = (float(forward_position.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
             dimension_y = lateral_offset - half_width - 0.02 * size
             ax.annotate(
@@ -165,7 +165,7 @@ def draw_course(record: xr.Dataset, arms: Sequence[str], printed_distances: Mapp
     )
 
 
-def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: float, *, article: bool) -> Figure:
+def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: float, *, is_article: bool) -> Figure:
     """Draw the ratio over stroke and bend, and the displacement over the tail's pitch and the trunk's phase lag.
 
     Args:
@@ -173,7 +173,7 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         ratio: of the displacements with all of the axis and without, shape (stroke, bend) [-].
         gait: the crawl of the other figures.
         stroke: half the distance that its front feet move back in stance; 0 where it has no foot paths [m].
-        article: whether the article's numbers are for this robot and its gaits.
+        is_article: whether the article's numbers are for this robot and its gaits.
     """
     has_pitches = record.sizes["pitch"] > 0
     is_absolute = gait.has("foot paths") and gait.number("trunk_bend") > 0
@@ -186,7 +186,7 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
             ratio = ratio.assign_coords(stroke=record.stroke * star[0], bend=record.bend * star[1])
             ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
             ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
-        printed_ratio = CLAIMS["displacement_ratio"].value if article else None
+        printed_ratio = CLAIMS["displacement_ratio"].value if is_article else None
         ax = axes[0, 0]
         if min(ratio.shape) > 1:
             label = "ratio of displacements [-]"
@@ -223,7 +223,7 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         ax.set_xlabel("phase lag of the trunk [cycle]")
         ax.set_ylabel("displacement forward [m]")
         ax.set_title("phase lag of the trunk")
-    article_text = ", the orange line the article's ratio" if article else ""
+    article_text = ", the orange line the article's ratio" if is_article else ""
     marker_text = "star" if min(ratio.shape) > 1 else "dotted line"
     axes_text = "" if is_absolute else " over shares of the strokes and bends of the robot's gait"
     pitch_text = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if has_pitches else ""

@@ -1,7 +1,7 @@
 """When the claims on the displacement count as what (section IV.B, Fig. 16)."""
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import BUILT, Clause, ControlGroup, Rule, between
+from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, ControlGroup, Rule, measure_with_interval
 
 _FREE_PARAMETERS_REASON = (
     "Leg stroke and trunk bend are free in the article and were chosen so that its two displacements come out; "
@@ -30,7 +30,7 @@ RULES = (
         kind="fitted",
         holds=(Clause("forward_coordinated", ">", 0.0, _FORWARD_REASON),),
         spread=("forward_coordinated",),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why=_FREE_PARAMETERS_REASON,
     ),
     Rule(
@@ -41,7 +41,7 @@ RULES = (
         holds=(Clause("forward_limbs_only", ">", 0.0, _FORWARD_REASON),),
         control=_LIMBS_ONLY_GROUP,
         spread=("forward_limbs_only", *_GAIT_MEASURES),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="The same legs with the trunk straight and the tail lying still; hind feet stand "
         "{hind_duty_limbs_only:.0%} of the time ({hind_duty_limbs_only_low:.0%} to {hind_duty_limbs_only_high:.0%}), "
         "two feet for {two_feet_share_limbs_only:.0%} of it ({two_feet_share_limbs_only_low:.0%} to "
@@ -57,7 +57,7 @@ RULES = (
         holds=(Clause("forward_ratio", ">", 1.0, "farther with than without"),),
         control=_LIMBS_ONLY_GROUP,
         spread=("forward_ratio", *_GAIT_MEASURES),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="Both displacements were fitted, and so is their ratio: other strokes and bends give "
         "{ratio_on_map_low:.1f} to {ratio_on_map_high:.1f}. Against the control group with its tail in the air it is "
         "{forward_ratio_tail_lifted:.2f}.",
@@ -69,7 +69,7 @@ RULES = (
         holds=(Clause("gain_spine_swing", ">", 0.0, _GAIN_REASON),),
         control=_STRAIGHT_TRUNK_GROUP,
         spread=("gain_spine_swing",),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="Against the same crawl with a straight trunk: the tail drags and swings in both. It changes the "
         "displacement by {gain_spine_swing_low:.2f} to {gain_spine_swing_high:.2f} m.",
     ),
@@ -82,7 +82,7 @@ RULES = (
             group="tail_still", why="What swings adds: the same crawl whose tail is dragged without a swing."
         ),
         spread=("gain_tail_swing",),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="Against the same crawl whose tail drags without a swing the swing changes the displacement by "
         "{gain_tail_swing:mm+.0f} mm, {gain_tail_swing_low:mm+.0f} to {gain_tail_swing_high:mm+.0f} mm; "
         "lying on the ground instead of in the air changes it by {gain_tail_contact:mm+.0f} mm.",
@@ -95,7 +95,7 @@ RULES = (
         holds=(Clause("gain_spine_swing", ">", 0.0, _GAIN_REASON),),
         control=_STRAIGHT_TRUNK_GROUP,
         spread=("gain_spine_swing",),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="Said of crocodiles. The robot does the same: at equal strokes of the legs its bending trunk changes the "
         "displacement by {gain_spine_swing:+.2f} m.",
     ),
@@ -112,15 +112,15 @@ _LIMBS = {
     "forward_limbs_only": 0.164,
     "forward_limbs_only_low": 0.160,
     "forward_limbs_only_high": 0.185,
-    **between("hind_duty_limbs_only", 0.80, 0.84),
-    **between("two_feet_share_limbs_only", 0.31, 0.41),
+    **measure_with_interval("hind_duty_limbs_only", 0.80, 0.84),
+    **measure_with_interval("two_feet_share_limbs_only", 0.31, 0.41),
     "hind_clearance_limbs_only": 0.007,
     "forward_limbs_tail_lifted": 0.158,
     "hind_duty_limbs_tail_lifted": 1.0,
 }
 _RATIO = {
-    **between("hind_duty_limbs_only", 0.80, 0.84),
-    **between("two_feet_share_limbs_only", 0.31, 0.41),
+    **measure_with_interval("hind_duty_limbs_only", 0.80, 0.84),
+    **measure_with_interval("two_feet_share_limbs_only", 0.31, 0.41),
     "forward_ratio": 4.39,
     "forward_ratio_low": 4.0,
     "forward_ratio_high": 4.5,
@@ -145,7 +145,7 @@ EXAMPLES: Examples = {
         (_COORDINATED | {"forward_coordinated": 0.7351}, "same sense"),
         (_COORDINATED | {"forward_coordinated_low": 0.001}, "fitted"),
         (_COORDINATED | {"forward_coordinated_low": -0.001}, "undecided"),
-        (_COORDINATED | between("forward_coordinated", -0.1, -0.001), "contradicted"),
+        (_COORDINATED | measure_with_interval("forward_coordinated", -0.1, -0.001), "contradicted"),
         (_COORDINATED | {"forward_coordinated": float("nan")}, "not testable"),
     ],
     "displacement_limbs_only": [
@@ -156,14 +156,15 @@ EXAMPLES: Examples = {
         (_LIMBS | {"forward_limbs_only": 0.1651}, "same sense"),
         (_LIMBS | {"forward_limbs_only_low": 0.001}, "fitted"),
         (_LIMBS | {"forward_limbs_only_low": -0.001}, "undecided"),
-        (_LIMBS | between("forward_limbs_only", -0.1, -0.001), "contradicted"),
-        (_LIMBS | between("hind_duty_limbs_only", 0.8, 0.849), "fitted"),
-        (_LIMBS | between("hind_duty_limbs_only", 0.8, 0.851), "undecided"),
-        (_LIMBS | between("hind_duty_limbs_only", 0.851, 0.9), "not testable"),
-        (_LIMBS | between("two_feet_share_limbs_only", 0.301, 0.4), "fitted"),
-        (_LIMBS | between("two_feet_share_limbs_only", 0.299, 0.4), "undecided"),
-        (_LIMBS | between("two_feet_share_limbs_only", 0.2, 0.299), "not testable"),
-        (_LIMBS | {"forward_limbs_only_low": -0.001} | between("hind_duty_limbs_only", 0.851, 0.9), "not testable"),
+        (_LIMBS | measure_with_interval("forward_limbs_only", -0.1, -0.001), "contradicted"),
+        (_LIMBS | measure_with_interval("hind_duty_limbs_only", 0.8, 0.849), "fitted"),
+        (_LIMBS | measure_with_interval("hind_duty_limbs_only", 0.8, 0.851), "undecided"),
+        (_LIMBS | measure_with_interval("hind_duty_limbs_only", 0.851, 0.9), "not testable"),
+        (_LIMBS | measure_with_interval("two_feet_share_limbs_only", 0.301, 0.4), "fitted"),
+        (_LIMBS | measure_with_interval("two_feet_share_limbs_only", 0.299, 0.4), "undecided"),
+        (_LIMBS | measure_with_interval("two_feet_share_limbs_only", 0.2, 0.299), "not testable"),
+        (_LIMBS | {"forward_limbs_only_low": -0.001} | measure_with_interval("hind_duty_limbs_only", 0.851, 0.9),
+        "not testable"),
     ],
     "displacement_ratio": [
         (_RATIO, "fitted"),
@@ -173,27 +174,27 @@ EXAMPLES: Examples = {
         (_RATIO | {"forward_ratio": 4.75}, "same sense"),
         (_RATIO | {"forward_ratio_low": 1.01}, "fitted"),
         (_RATIO | {"forward_ratio_low": 0.99}, "undecided"),
-        (_RATIO | between("forward_ratio", 0.9, 0.99), "contradicted"),
-        (_RATIO | between("hind_duty_limbs_only", 0.8, 0.849), "fitted"),
-        (_RATIO | between("hind_duty_limbs_only", 0.8, 0.851), "undecided"),
-        (_RATIO | between("hind_duty_limbs_only", 0.851, 0.9), "not testable"),
-        (_RATIO | between("two_feet_share_limbs_only", 0.301, 0.4), "fitted"),
-        (_RATIO | between("two_feet_share_limbs_only", 0.299, 0.4), "undecided"),
-        (_RATIO | between("two_feet_share_limbs_only", 0.2, 0.299), "not testable"),
+        (_RATIO | measure_with_interval("forward_ratio", 0.9, 0.99), "contradicted"),
+        (_RATIO | measure_with_interval("hind_duty_limbs_only", 0.8, 0.849), "fitted"),
+        (_RATIO | measure_with_interval("hind_duty_limbs_only", 0.8, 0.851), "undecided"),
+        (_RATIO | measure_with_interval("hind_duty_limbs_only", 0.851, 0.9), "not testable"),
+        (_RATIO | measure_with_interval("two_feet_share_limbs_only", 0.301, 0.4), "fitted"),
+        (_RATIO | measure_with_interval("two_feet_share_limbs_only", 0.299, 0.4), "undecided"),
+        (_RATIO | measure_with_interval("two_feet_share_limbs_only", 0.2, 0.299), "not testable"),
     ],
     "spine_swing": [
         (_SPINE, "reproduced"),
         (_SPINE | {"gain_spine_swing_low": -0.001}, "undecided"),
-        (_SPINE | between("gain_spine_swing", -0.1, -0.001), "contradicted"),
+        (_SPINE | measure_with_interval("gain_spine_swing", -0.1, -0.001), "contradicted"),
     ],
     "tail_swing": [
         (_TAIL, "reproduced"),
         (_TAIL | {"gain_tail_swing_low": -0.001}, "undecided"),
-        (_TAIL | between("gain_tail_swing", -0.1, -0.001), "contradicted"),
+        (_TAIL | measure_with_interval("gain_tail_swing", -0.1, -0.001), "contradicted"),
     ],
     "bending_lengthens_stride": [
         (_SPINE, "same sense"),
         (_SPINE | {"gain_spine_swing_low": -0.001}, "undecided"),
-        (_SPINE | between("gain_spine_swing", -0.1, -0.001), "not testable"),
+        (_SPINE | measure_with_interval("gain_spine_swing", -0.1, -0.001), "not testable"),
     ],
 }  # fmt: skip

@@ -18,7 +18,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     estimated,
     silent,
     staged,
@@ -27,12 +27,12 @@ from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, Runs
 from suchus.robot.control.topology import topology
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import coarse_step, control_period
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import START, Gait, movement
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Limp, Locked, Push, Run, Tolerances, simulate
 from suchus.sim.metrics import heading
-from suchus.sim.metrics.coordination import WITHIN, cycles_until, phase_error
+from suchus.sim.metrics.coordination import PHASE_TOLERANCE, cycles_until, phase_error
 
 _LIMB_RULE_ONLY: Mapping[str, Any] = {"spine": None, "tail": None}
 STARTS: Mapping[str, Coordinated] = {
@@ -75,7 +75,7 @@ _CLAIM_MEASURES = {
     "kept_undisturbed_tail", "locked_spine_loss_closed", "locked_spine_loss_open",
 }  # fmt: skip
 """Measures of the claims; the laws and disturbances of the claims suffice for them."""
-SHOWN = ("open", "closed", "steered")
+REPORTED_ARMS = ("open", "closed", "steered")
 """Controls whose measures are reported."""
 
 
@@ -151,7 +151,7 @@ class Feedback(Experiment):
         Raises:
             OutsideLimits: its own gait has measured curves.
         """
-        gait = own_gait(robot)
+        gait = default_gait(robot)
         gait.needs_steering(self.name())
         kick = (*self.kick, *(0.0,) * len(gait.limb_phases))[: len(gait.limb_phases)]
         return {"gait": gait, "kick": kick}
@@ -168,22 +168,22 @@ class Feedback(Experiment):
             if name != "tail" or self._suited_control(control).tail is not None
         }
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate crawls from random initial phases, then disturbances of a robot whose phases are right."""
         starts, pair = self._start_record(staged(progress, "random starts", 0.0, 0.7))
         record = xr.merge([starts, self._disturbance_record(staged(progress, "disturbances", 0.7, 1.0))])
-        return Simulated(record=record, replays=self._replays(pair))
+        return SimulationResult(record=record, replays=self._replays(pair))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; those of the claims need fewer laws and disturbances."""
-        if not set(wanted) <= _CLAIM_MEASURES:
-            return super(Feedback, self).measured(wanted, progress)
+        if not set(measure_names) <= _CLAIM_MEASURES:
+            return super(Feedback, self).measured(measure_names, progress)
         starts, _ = self._start_record(staged(progress, "random starts", 0.0, 0.8), _CLAIM_LAWS)
         measures = start_measures(starts, self.gait, self.hold, self.cycles)
-        if not set(wanted) <= measures.keys():
+        if not set(measure_names) <= measures.keys():
             disturbed = self._disturbance_record(staged(progress, "disturbances", 0.8, 1.0), _CLAIM_DISTURBANCES)
             measures |= disturbed_measures(disturbed, self.gait, self.hold, self.after)
-        return Measures({name: measures[name] for name in wanted})
+        return Measures({name: measures[name] for name in measure_names})
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how many starts converge, and the effect of each rule on each disturbance."""
@@ -247,7 +247,9 @@ class Feedback(Experiment):
             for law, i in cells
         ]
         duration = START + self.cycles * self.gait.period
-        record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
+        record = simulate(
+            runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, progress=progress
+        )
         shape = (len(STARTS), self.starts, record.sizes["time"])
         phase, distance = np.full((*shape, record.sizes["leg"]), np.nan), np.full(shape, np.nan)
         for law in open_loop_laws:
@@ -300,7 +302,9 @@ class Feedback(Experiment):
         arms, body_layout = self._arms, layout(self.robot)
         runs = [self._disturbed_run(control, name) for name in names for control in arms.values()]
         duration = self._disturbance_time + self.after * self.gait.period
-        record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
+        record = simulate(
+            runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, progress=progress
+        )
         dims, shape = ("disturbance", "arm", "time"), (len(names), len(arms), record.sizes["time"])
         track = record.centre_of_mass.transpose("run", "time", "xyz").values
         phase = record.limb_phase.transpose("run", "time", "leg").values
@@ -393,7 +397,7 @@ class Feedback(Experiment):
         cycles = (error.time - START) / self.gait.period
         response = record.sel(time=slice(self._disturbance_time - 1e-9, None))
         return {
-            "random_starts": draw_fans(error.assign_coords(time=cycles), WITHIN),
+            "random_starts": draw_fans(error.assign_coords(time=cycles), PHASE_TOLERANCE),
             "finding_the_gait": draw_onset(record.start_phase.assign_coords(start_time=cycles.values), self.gait),
             "what_each_rule_gains": draw_gain(response.x.isel(time=-1) - response.x.isel(time=0)),
             "topology": draw_topology(topology(self.robot, self.gait)),
@@ -449,7 +453,7 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, cycles_after
     distance = {key: float(value.x) for key, value in changes.items()}
     measures = Measures()
     for name in record.disturbance.values:
-        for arm in SHOWN:
+        for arm in REPORTED_ARMS:
             measures[f"recovery_{name}_{arm}"] = Measure(distance[name, arm], "m")
             measures[f"heading_{name}_{arm}"] = Measure(float(changes[name, arm].heading), "rad")
     error = phase_error(record.limb_phase.sel(disturbance="kick", arm="closed"), gait)
@@ -468,7 +472,7 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, cycles_after
     measures |= {name: Measure(value, "-") for name, value in ratios.items()}
     earlier_heading = response.heading.sel(time=response.time[-1] - gait.period, method="nearest")
     turning = (response.heading.isel(time=-1) - earlier_heading).sel(disturbance="limp_yaw")
-    for arm in SHOWN:
+    for arm in REPORTED_ARMS:
         drift = float(changes["other_side", arm].y - changes["side_slope", arm].y) / 2
         measures[f"drift_side_slope_{arm}"] = Measure(drift, "m")
         measures[f"turning_limp_yaw_{arm}"] = Measure(float(turning.sel(arm=arm)), "rad")

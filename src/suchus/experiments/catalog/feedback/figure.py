@@ -218,23 +218,26 @@ _SENSORS, _CONTROLLERS, _SHARED = 2.0, 1.0, 0.0  # heights of the three rows
 _BOX = {"boxstyle": "round,pad=0.45", "facecolor": "white", "linewidth": 1.4}
 
 
-def draw_topology(parts: Sequence[ControlPart]) -> Figure:
+def draw_topology(controllers: Sequence[ControlPart]) -> Figure:
     """Draw which sensors each controller reads, which shared variables it writes, and which ones it reads.
 
     Args:
-        parts: controllers of ``control.topology``.
+        controllers: controllers of ``control.topology``.
     """
-    sensors = sorted({name for controller in parts for name in controller.feels})
+    sensors = sorted({name for controller in controllers for name in controller.feels})
     positions = {
         **{f"feels {name}": (x, _SENSORS) for name, x in zip(sensors, _spread(len(sensors)), strict=True)},
-        **{controller.name: (x, _CONTROLLERS) for controller, x in zip(parts, _spread(len(parts)), strict=True)},
+        **{
+            controller.name: (x, _CONTROLLERS)
+            for controller, x in zip(controllers, _spread(len(controllers)), strict=True)
+        },
         **{f"shared {name}": (x, _SHARED) for name, x in zip(OWNERS, _spread(len(OWNERS)), strict=True)},
     }
     with styled():
         figure = new(width=11.0, height=5.4)
         ax = figure.add_subplot()
         boxes = {name: _box(ax, name, position) for name, position in positions.items()}
-        for controller in parts:
+        for controller in controllers:
             colour = _colour(controller.name)
             for name in sorted(controller.feels):
                 _arrow(ax, boxes[f"feels {name}"], boxes[controller.name], colour, "-")
@@ -246,7 +249,7 @@ def draw_topology(parts: Sequence[ControlPart]) -> Figure:
             ax.text(-0.08, y, text, ha="right", va="center", color=COLOURS["neutral"])
         ax.set(xlim=(-0.2, 1.05), ylim=(-0.4, 2.4))
         ax.set_axis_off()
-    return captioned(figure, _caption(parts))
+    return captioned(figure, _caption(controllers))
 
 
 def _caption(parts: Sequence[ControlPart]) -> str:

@@ -3,7 +3,7 @@
 from math import nan
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, ControlGroup, Rule, Varied, between
+from suchus.article.verdict.rule import Clause, ControlGroup, Rule, Variation, measure_with_interval
 
 _UNDISTURBED_REASON = "a rule must not spoil a walk that is right: 3 % and no more"
 _STARTS = "random starts, each of a robot of its own that is built of the design"
@@ -59,7 +59,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(
+SWEEP = Variation(
     claims=("feedback_rules", "shared_variables"), designs=("robot", "gait"), settings={"starts": 16}, samples=16
 )
 
@@ -70,7 +70,7 @@ _RULES_EXAMPLE = {
     "cycles_to_converge": 2.3,
     "converged_off": 0.0,
     "converged_own_load": 0.9,
-    **between("converged_wrong_sign", 0.0, 0.0),
+    **measure_with_interval("converged_wrong_sign", 0.0, 0.0),
     "distortion": 0.01,
     "spine_lacking_spine": 0.2,
     "spine_lacking_open": 0.5,
@@ -86,7 +86,7 @@ _RULES_EXAMPLE = {
     "heading_push_open": 0.6,
     "heading_limp_yaw_closed": 2.0,
     "heading_limp_yaw_open": 2.0,
-    **between("way_gain_shared", 0.01, 0.1),
+    **measure_with_interval("way_gain_shared", 0.01, 0.1),
     "way_shared": 0.36,
     "way_shared_least": 0.33,
     "way_isolated": 0.3,
@@ -96,12 +96,12 @@ _RULES_EXAMPLE = {
 EXAMPLES: Examples = {
     "feedback_rules": [
         (_RULES_EXAMPLE, "reproduced"),
-        (_RULES_EXAMPLE | between("converged_cross_load", 0.951, 1.0), "reproduced"),
-        (_RULES_EXAMPLE | between("converged_cross_load", 0.949, 1.0), "undecided"),
-        (_RULES_EXAMPLE | between("converged_cross_load", 0.9, 0.949), "contradicted"),
-        (_RULES_EXAMPLE | between("converged_wrong_sign", 0.0, 0.0499), "reproduced"),
-        (_RULES_EXAMPLE | between("converged_wrong_sign", 0.0, 0.0501), "undecided"),
-        (_RULES_EXAMPLE | between("converged_wrong_sign", 0.0501, 0.1), "contradicted"),
+        (_RULES_EXAMPLE | measure_with_interval("converged_cross_load", 0.951, 1.0), "reproduced"),
+        (_RULES_EXAMPLE | measure_with_interval("converged_cross_load", 0.949, 1.0), "undecided"),
+        (_RULES_EXAMPLE | measure_with_interval("converged_cross_load", 0.9, 0.949), "contradicted"),
+        (_RULES_EXAMPLE | measure_with_interval("converged_wrong_sign", 0.0, 0.0499), "reproduced"),
+        (_RULES_EXAMPLE | measure_with_interval("converged_wrong_sign", 0.0, 0.0501), "undecided"),
+        (_RULES_EXAMPLE | measure_with_interval("converged_wrong_sign", 0.0501, 0.1), "contradicted"),
         (_RULES_EXAMPLE | {"distortion": 0.0299}, "reproduced"),
         (_RULES_EXAMPLE | {"distortion": 0.0301}, "contradicted"),
         (_RULES_EXAMPLE | {"spine_lacking_spine": 0.495}, "reproduced"),
@@ -122,11 +122,11 @@ EXAMPLES: Examples = {
     ],
     "shared_variables": [
         (_RULES_EXAMPLE, "reproduced"),
-        (_RULES_EXAMPLE | between("way_gain_shared", 0.001, 0.1), "reproduced"),
-        (_RULES_EXAMPLE | between("way_gain_shared", -0.001, 0.1), "undecided"),
-        (_RULES_EXAMPLE | between("way_gain_shared", -0.1, -0.001), "contradicted"),
+        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", 0.001, 0.1), "reproduced"),
+        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", -0.001, 0.1), "undecided"),
+        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", -0.1, -0.001), "contradicted"),
         (_RULES_EXAMPLE | {"way_isolated_least": 0.327}, "reproduced"),
         (_RULES_EXAMPLE | {"way_isolated_least": 0.333}, "contradicted"),
-        (_RULES_EXAMPLE | between("way_gain_shared", nan, nan), "not testable"),
+        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", nan, nan), "not testable"),
     ],
 }

@@ -17,7 +17,7 @@ from suchus.sim.land.float_body import FloatBody, FloatTank, Integrator
 from suchus.sim.land.lake import Lake
 
 WATER = Water()
-SURFACE, DEEP = Lake(level=0.0), Lake(level=20.0)
+SURFACE_LAKE, DEEP_LAKE = Lake(level=0.0), Lake(level=20.0)
 _UNIT_INERTIA = (1.0, 1.0, 1.0)
 BOX = FloatBody(
     shape="box", half=(0.3, 0.15, 0.075), mass=13.5, inertia=(0.2, 0.6, 0.7), centre=(0.0, 0.0, -0.03), parts=8
@@ -32,9 +32,9 @@ SPHEROID = FloatBody(
     centre=(0.01, 0.02, -0.01),
 )
 """A neutrally buoyant spheroid whose centre of mass is off its centre."""
-KEEL = 1.118721
+KEEL_ACCELERATION = 1.118721
 """Angular acceleration of the keeled hull of MuJoCo's issue 3452 at 45 degrees of heel [rad/s2]."""
-BALLAST = 3.0
+BALLAST_MASS = 3.0
 """Ballast of the trimmed float of the same issue [kg]."""
 _GYRATION = 0.1
 """Square of the keeled hull's radius of gyration [m2]: an ellipsoid 1 m wide and high, of even mass.
@@ -82,7 +82,7 @@ def _draft(name: str, body: FloatBody, density_ratio: float, exact: float) -> Kn
 
 def draft_of(body: FloatBody) -> float:
     """Return the draft at which the buoyancy of a physics step equals the weight of a body [m]."""
-    tank = FloatTank(body, SURFACE)
+    tank = FloatTank(body, SURFACE_LAKE)
 
     def net(depth: float) -> float:
         tank.place((0.0, 0.0, -depth))
@@ -92,7 +92,9 @@ def draft_of(body: FloatBody) -> float:
     return float(brentq(net, -half_height, half_height, xtol=1e-12)) + body.half[2]
 
 
-def heave(added_mass_ratio: float, amplitude: float, periods: int, timestep: float) -> tuple[xr.Dataset, float]:
+def simulate_heave(
+    added_mass_ratio: float, amplitude: float, periods: int, timestep: float
+) -> tuple[xr.Dataset, float]:
     """Return the heave of a half-submerged box that is released above equilibrium, and its exact period [s].
 
     Args:
@@ -107,12 +109,12 @@ def heave(added_mass_ratio: float, amplitude: float, periods: int, timestep: flo
         BOX, added=(0.0, 0.0, added_mass_ratio), centre=(0.0, 0.0, 0.0), mass=0.5 * WATER.density * BOX.volume
     )
     exact = 2 * pi * sqrt((1 + added_mass_ratio) * body.mass / (WATER.density * GRAVITY * waterline_area))
-    tank = FloatTank(body, SURFACE, timestep=timestep)
+    tank = FloatTank(body, SURFACE_LAKE, timestep=timestep)
     tank.place((0.0, 0.0, amplitude))
     return tank.watch(periods * exact, timestep), exact
 
 
-def period_of(motion: xr.Dataset) -> float:
+def heave_period(motion: xr.Dataset) -> float:
     """Return the mean time between downward crossings of the surface [s]."""
     z, t = motion.middle.values[:, 2], motion.time.values
     crossings = np.flatnonzero((z[:-1] > 0) & (z[1:] <= 0))
@@ -120,7 +122,7 @@ def period_of(motion: xr.Dataset) -> float:
     return float(np.diff(times).mean())
 
 
-def rocking(duration: float, integrator: Integrator, timestep: float) -> xr.Dataset:
+def simulate_rocking(duration: float, integrator: Integrator, timestep: float) -> xr.Dataset:
     """Return the motion of a box that is released heeled and pitched, without drag and added mass.
 
     Args:
@@ -128,26 +130,27 @@ def rocking(duration: float, integrator: Integrator, timestep: float) -> xr.Data
         integrator: MuJoCo's integrator.
         timestep: time step of the physics [s].
     """
-    tank = FloatTank(BOX, SURFACE, timestep=timestep, integrator=integrator)
+    tank = FloatTank(BOX, SURFACE_LAKE, timestep=timestep, integrator=integrator)
     quaternion = rotation.multiply(
-        rotation.about(np.array([0.0, 1.0, 0.0]), 0.1), rotation.about(np.array([1.0, 0.0, 0.0]), 0.4)
+        rotation.from_axis_angle(np.array([0.0, 1.0, 0.0]), 0.1),
+        rotation.from_axis_angle(np.array([1.0, 0.0, 0.0]), 0.4),
     )
     tank.place((0.0, 0.0, 0.02), quaternion)
     return tank.watch(duration, 0.1)
 
 
-def gained_energy(motion: xr.Dataset) -> float:
+def relative_energy_gain(motion: xr.Dataset) -> float:
     """Return the greatest gain of energy over the initial energy above equilibrium [-].
 
     Equilibrium is the state of least potential energy: BOX upright and half submerged.
     """
-    rest_tank = FloatTank(BOX, SURFACE)
+    rest_tank = FloatTank(BOX, SURFACE_LAKE)
     rest_tank.place((0.0, 0.0, 0.0))
     energy = motion.energy.values
     return float((energy.max() - energy[0]) / (energy[0] - rest_tank.energy()))
 
 
-def drifting(integrator: Integrator, timestep: float, duration: float = 2.0) -> xr.Dataset:
+def simulate_drift(integrator: Integrator, timestep: float, duration: float = 2.0) -> xr.Dataset:
     """Return the motion of a spheroid in ideal water without gravity, with velocity and spin about all axes.
 
     Args:
@@ -155,13 +158,13 @@ def drifting(integrator: Integrator, timestep: float, duration: float = 2.0) -> 
         timestep: time step of the physics [s].
         duration: duration of the motion [s].
     """
-    tank = FloatTank(SPHEROID, DEEP, timestep=timestep, integrator=integrator)
+    tank = FloatTank(SPHEROID, DEEP_LAKE, timestep=timestep, integrator=integrator)
     tank.model.opt.gravity[:] = 0.0
     tank.place((0.0, 0.0, 0.0), velocity=(0.5, 0.2, 0.1), spin=(0.8, 0.5, -1.0))
     return tank.watch(duration, 0.1)
 
 
-def drift(motion: xr.Dataset) -> float:
+def relative_momentum_drift(motion: xr.Dataset) -> float:
     """Return the greatest change of linear and angular momentum over their initial magnitude [-]."""
     relative_changes = []
     for name in ("momentum", "angular_momentum"):
@@ -170,7 +173,7 @@ def drift(motion: xr.Dataset) -> float:
     return float(max(relative_changes))
 
 
-def kinds() -> dict[str, FloatBody]:
+def bodies_by_piece() -> dict[str, FloatBody]:
     """Return one body for each kind of piece that floating bodies are made of."""
     half = (0.25, 0.1, 0.06)
     return {
@@ -196,7 +199,7 @@ def volume_errors(body: FloatBody, poses: int, points: int) -> np.ndarray:
         "box": lambda p: np.full(len(p), True),
     }
     cloud = cube[is_inside[body.shape](cube)] * body.half
-    tank, errors = FloatTank(body, SURFACE), []
+    tank, errors = FloatTank(body, SURFACE_LAKE), []
     for turn, depth in zip(rng.normal(size=(poses, 4)), rng.uniform(-0.12, 0.12, poses), strict=True):
         quaternion = turn / np.linalg.norm(turn)
         tank.place((0.0, 0.0, -depth), quaternion)
@@ -210,16 +213,16 @@ def public_table() -> dict[str, float]:
 
     The keys are ``neutral`` [m/s2], ``ballast`` [N] and ``keel`` [rad/s2].
     """
-    neutral = FloatTank(SPHEROID_PLAIN, DEEP)
+    neutral = FloatTank(CENTERED_SPHEROID, DEEP_LAKE)
     neutral.place((0.0, 0.0, 0.0))
     float_ = FloatBody(
-        shape="box", half=(0.15, 0.15, 0.15), mass=WATER.density * 0.027 + BALLAST, inertia=_UNIT_INERTIA
+        shape="box", half=(0.15, 0.15, 0.15), mass=WATER.density * 0.027 + BALLAST_MASS, inertia=_UNIT_INERTIA
     )
-    ballasted = FloatTank(float_, DEEP)
+    ballasted = FloatTank(float_, DEEP_LAKE)
     ballasted.place((0.0, 0.0, 0.0))
-    hull = keeled()
-    keel = FloatTank(hull, DEEP)
-    keel.place((0.0, 0.0, 0.0), rotation.about(np.array([1.0, 0.0, 0.0]), radians(45)))
+    hull = keeled_hull()
+    keel = FloatTank(hull, DEEP_LAKE)
+    keel.place((0.0, 0.0, 0.0), rotation.from_axis_angle(np.array([1.0, 0.0, 0.0]), radians(45)))
     return {
         "neutral": float(neutral.acceleration[0][2]),
         "ballast": float(ballasted.acceleration[0][2]) * float_.mass,
@@ -227,14 +230,14 @@ def public_table() -> dict[str, float]:
     }
 
 
-SPHEROID_PLAIN = replace(SPHEROID, centre=(0.0, 0.0, 0.0), added=(0.0, 0.0, 0.0))
+CENTERED_SPHEROID = replace(SPHEROID, centre=(0.0, 0.0, 0.0), added=(0.0, 0.0, 0.0))
 """A neutrally buoyant spheroid whose centre of mass is its centre."""
 
 
-def keeled() -> FloatBody:
+def keeled_hull() -> FloatBody:
     """Return a submerged hull whose keel turns it upright with the issue's angular acceleration."""
     body = FloatBody(shape="ellipsoid", half=(1.0, 0.5, 0.5), mass=1, inertia=_UNIT_INERTIA)
     mass = WATER.density * body.volume
-    center_depth = KEEL * _GYRATION / (GRAVITY * sin(radians(45)))
+    center_depth = KEEL_ACCELERATION * _GYRATION / (GRAVITY * sin(radians(45)))
     inertia = (mass * _GYRATION, mass * 0.25, mass * 0.25)
     return replace(body, mass=mass, inertia=inertia, centre=(0.0, 0.0, -center_depth))

@@ -20,14 +20,14 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     silent,
     staged,
 )
 from suchus.robot.control import Swimming
 from suchus.robot.design import Robot, with_values
 from suchus.robot.design.scale import control_period
-from suchus.robot.motion import LIMBS_UP, cycle_targets, still
+from suchus.robot.motion import LIMBS_UP, cycle_targets, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.model.hydrostatics import hydrostatics
@@ -95,14 +95,14 @@ class Floating(Experiment):
         """Return one heel, few seconds, fewer points and angles."""
         return replace(self, heels=(radians(150),), duration=1.5, energy_time=1.0, poses=2, points=2**14, angles=5)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate the bodies with exact answers, then release the robot from each heel."""
         progress("exact answers", 0.0)
         parts = [self._drafts(), self._heave(), self._energy(), self._drift(), self._volumes(), self._table()]
         progress("righting levers", 0.4)
         parts.append(self._levers())
         record = self._release_record(staged(progress, "let go", 0.5, 1.0))
-        return Simulated(record=xr.merge([*parts, record], compat="no_conflicts"), replays=self._replays(record))
+        return SimulationResult(record=xr.merge([*parts, record], compat="no_conflicts"), replays=self._replays(record))
 
     def _drafts(self) -> xr.Dataset:
         """Return computed and exact draft of the bodies with closed forms [m]."""
@@ -118,10 +118,10 @@ class Floating(Experiment):
     def _heave(self) -> xr.Dataset:
         """Return simulated and exact heave period of a box, without and with added mass [s]."""
         added_mass_ratios = (0.0, 0.6)
-        heaves = [cases.heave(ratio, 0.005, self.periods, self.timestep) for ratio in added_mass_ratios]
+        heaves = [cases.simulate_heave(ratio, 0.005, self.periods, self.timestep) for ratio in added_mass_ratios]
         return xr.Dataset(
             {
-                "heave_period": ("added_mass", [cases.period_of(motion) for motion, _ in heaves], {"units": "s"}),
+                "heave_period": ("added_mass", [cases.heave_period(motion) for motion, _ in heaves], {"units": "s"}),
                 "exact_heave_period": ("added_mass", [exact for _, exact in heaves], {"units": "s"}),
             },
             coords={"added_mass": list(added_mass_ratios)},
@@ -130,24 +130,29 @@ class Floating(Experiment):
     def _energy(self) -> xr.Dataset:
         """Return the energy of a rocking box over time [J] and its relative gain [-], for each integrator."""
         names = ("implicitfast", "RK4")
-        motions = [cases.rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
+        motions = [cases.simulate_rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
         energy = np.array([motion.energy.values for motion in motions])
         return xr.Dataset(
             {
                 "energy": (("integrator", "box_time"), energy, {"units": "J"}),
-                "gained": ("integrator", [cases.gained_energy(motion) for motion in motions], {"units": "1"}),
+                "gained": ("integrator", [cases.relative_energy_gain(motion) for motion in motions], {"units": "1"}),
             },
             coords={"integrator": list(names), "box_time": ("box_time", motions[0].time.values, {"units": "s"})},
         )
 
     def _drift(self) -> xr.Dataset:
         """Return the relative change of momentum of a spheroid in ideal water, for each integrator [-]."""
-        drifts = [cases.drift(cases.drifting("RK4", self.timestep)), cases.drift(cases.drifting("implicitfast", 0.001))]
+        drifts = [
+            cases.relative_momentum_drift(cases.simulate_drift("RK4", self.timestep)),
+            cases.relative_momentum_drift(cases.simulate_drift("implicitfast", 0.001)),
+        ]
         return xr.Dataset({"drift": ("integrator", drifts[::-1], {"units": "1"})})
 
     def _volumes(self) -> xr.Dataset:
         """Return the relative error of the submerged volume for each kind of piece and pose [-]."""
-        errors = {kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.kinds().items()}
+        errors = {
+            kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.bodies_by_piece().items()
+        }
         return xr.Dataset(
             {"volume_off": (("piece", "pose"), np.array(list(errors.values())), {"units": "1"})},
             coords={"piece": list(errors)},
@@ -181,11 +186,11 @@ class Floating(Experiment):
     @staticmethod
     def _posture(robot: Robot) -> np.ndarray:
         """Return the servo angles of the robot lying still with its limbs held out [rad]."""
-        return cycle_targets(robot, still(robot, limbs=LIMBS_UP), np.zeros(1))[0]
+        return cycle_targets(robot, straight_gait(robot, limbs=LIMBS_UP), np.zeros(1))[0]
 
     def _release_record(self, progress: Any) -> xr.Dataset:
         """Simulate the robot released at the surface from each angle of heel."""
-        gait = still(self.robot, limbs=LIMBS_UP)
+        gait = straight_gait(self.robot, limbs=LIMBS_UP)
         runs = [
             Run(
                 robot=self.robot,

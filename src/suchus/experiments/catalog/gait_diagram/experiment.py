@@ -11,7 +11,16 @@ from matplotlib.figure import Figure
 from suchus.article.paper import CYCLES
 from suchus.core.checks import Checks
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    SimulationResult,
+    silent,
+    staged,
+)
 from suchus.robot import blueprint
 from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import GAITS
@@ -21,11 +30,11 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import (
     bend_swings,
-    between,
     diagonal_phase_error,
     duty_factor,
     loaded,
     sensed_phase,
+    time_window,
 )
 from suchus.visual.figures import captioned
 from suchus.visual.figures.gait_diagram import GaitTrack, gait_diagram
@@ -82,7 +91,7 @@ class GaitDiagram(Experiment):
         """The same: it takes a second."""
         return replace(self)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Crawl."""
         end = START + self.cycles * self.gait.period
         run = Run(robot=self.robot, gait=self.gait)
@@ -98,7 +107,7 @@ class GaitDiagram(Experiment):
                 sensed[body_part],
                 {"units": "rad", "long_name": f"bend of the {body_part}"},
             )
-        return Simulated(
+        return SimulationResult(
             record=record,
             tables={"gait_table.toml": blueprint.render(as_table(self.robot, self.gait))},
             replays=replayed("gait_replay.html", record, self.robot, caption=_CAPTION),
@@ -106,7 +115,7 @@ class GaitDiagram(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return duty factors and phases by pressure, lags and amplitudes of the bends."""
-        walk = between(record).isel(time=slice(0, -1))  # whole cycles: the last sample belongs to the next cycle
+        walk = time_window(record).isel(time=slice(0, -1))  # whole cycles: the last sample belongs to the next cycle
         legs = [str(leg) for leg in record.leg.values]
         duty, phase = duty_factor(record), sensed_phase(record)
         measures = Measures({f"duty_factor_{leg}": Measure(float(duty.sel(leg=leg)), "-") for leg in legs})
@@ -149,7 +158,7 @@ class GaitDiagram(Experiment):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the simulated and the commanded gait diagram, and for a body of four limbs that of an animal."""
-        walk = between(outcome.record)
+        walk = time_window(outcome.record)
         bends = {
             source: {
                 body_part: walk[f"{source}_{body_part}"].values if f"{source}_{body_part}" in walk else None

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from suchus.core.checks import Checks
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog.gallop_limits.gaits import BOUNDS, TROTS, Searched
+from suchus.experiments.catalog.gallop_limits.gaits import BOUNDS, TROTS, SearchedGait
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -19,7 +19,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     estimated,
     silent,
     staged,
@@ -32,7 +32,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, Tolerances, simulate
-from suchus.sim.metrics import between, displacement, flight_share
+from suchus.sim.metrics import displacement, flight_share, time_window
 from suchus.visual.figures import captioned
 from suchus.visual.figures.style import COLOURS, panels, styled
 
@@ -58,9 +58,9 @@ class GallopLimits(Experiment):
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that should gallop."""
-    bounds: tuple[Searched, ...] = BOUNDS
+    bounds: tuple[SearchedGait, ...] = BOUNDS
     """Bounding gaits, each found for another servo: both front feet step together, then both hind feet."""
-    trots: tuple[Searched, ...] = TROTS
+    trots: tuple[SearchedGait, ...] = TROTS
     """Trots, found by the same search with the same servos, for an equal comparison."""
     walks: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(replace(GAITS[name], period=_FAST_PERIOD) for name in ("semi_erect", "high_walk"))
@@ -100,7 +100,7 @@ class GallopLimits(Experiment):
         """Return two speeds, one torque, one robot of each design, half a second, a coarse step."""
         return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, seconds=0.5, timestep=0.005)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate every gait with every servo on the map."""
         searched = [("bound", candidate) for candidate in self.bounds] + [
             ("trot", candidate) for candidate in self.trots
@@ -116,7 +116,7 @@ class GallopLimits(Experiment):
             runs, duration=duration, timestep=self.timestep, progress=staged(progress, "bound and walk", 0.0, 1.0)
         )
         shape = (len(self.torques), len(self.speeds), len(gaits), self.repeats)
-        window = between(record, START + _RUN_UP)
+        window = time_window(record, START + _RUN_UP)
         joint_speed = abs(window.servo_velocity.isel(servo=self._leg_servo_indices)).quantile(0.99, "time").max("servo")
         values = {
             "speed": (displacement(record, START + _RUN_UP).sel(xyz="x") / self.seconds, "m/s", "speed forward"),
@@ -147,7 +147,7 @@ class GallopLimits(Experiment):
             },
             attrs={"own_torque": self._leg_servo.torque, "own_speed": self._leg_servo.speed},
         )
-        return Simulated(record=data, replays=self._replays(record, cells, data))
+        return SimulationResult(record=data, replays=self._replays(record, cells, data))
 
     @property
     def _leg_servo(self) -> Servo:
@@ -219,10 +219,10 @@ class GallopLimits(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the speed of a bound with the robot's servos and with better ones, and the speed a gallop needs."""
-        bound, walks = fastest(record, "bound"), fastest(record, "trot", "walk")
+        bound, walks = fastest_gaits(record, "bound"), fastest_gaits(record, "trot", "walk")
         design_servo = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
         own_bound, own_walk = (kind.sel(design_servo, method="nearest") for kind in (bound, walks))
-        gallops = (bound.speed > walks.speed) & (bound.flight >= FLIES)
+        gallops = (bound.speed > walks.speed) & (bound.flight >= MIN_FLIGHT_FRACTION)
         pays = gallops.sel(torque=design_servo["torque"], method="nearest")
         best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
         return estimated("bound_over_walk", own_bound.built_speed / own_walk.built_speed, "-") | Measures(
@@ -238,14 +238,14 @@ class GallopLimits(Experiment):
                 "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
                 "servo_speed_own": Measure(design_servo["servo_speed"], "rad/s"),
                 "torque_own": Measure(design_servo["torque"], "N m"),
-                "servo_speed_needed": Measure(_first(pays.servo_speed.values, pays.values), "rad/s"),
+                "servo_speed_needed": Measure(_min_paying_speed(pays.servo_speed.values, pays.values), "rad/s"),
                 "gallops_share": Measure(float(gallops.mean()), "-"),
             }
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw speed and flight of the bound over the servos' speed, with the speed of the fastest walk."""
-        bound, walks = fastest(outcome.record, "bound"), fastest(outcome.record, "trot", "walk")
+        bound, walks = fastest_gaits(outcome.record, "bound"), fastest_gaits(outcome.record, "trot", "walk")
         figure = captioned(
             draw_gallop_limits(bound, walks, outcome.record.attrs["own_speed"]),
             "The fastest bounding gait with servos of growing no-load speed and torque (colours). Left: its speed; "
@@ -255,11 +255,11 @@ class GallopLimits(Experiment):
         return {"gallop_limits": figure}
 
 
-FLIES = 0.1
+MIN_FLIGHT_FRACTION = 0.1
 """Flight fraction from which a bound counts as a gallop [-]; with less it is a walk that stumbles."""
 
 
-def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
+def fastest_gaits(record: xr.Dataset, *kinds: str) -> xr.Dataset:
     """Return speed [m/s], flight [-] and joint speed [rad/s] of the fastest gait of some kinds with every servo.
 
     ``built_speed`` holds the speeds of the robots as built; their median is the speed.
@@ -291,7 +291,7 @@ def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
     )
 
 
-def _first(speeds: np.ndarray, pays: np.ndarray) -> float:
+def _min_paying_speed(speeds: np.ndarray, pays: np.ndarray) -> float:
     """Return the lowest speed from which on all faster servos pay off [rad/s]; infinite if not even the fastest does.
 
     Args:

@@ -12,7 +12,7 @@ _SAMPLES = 32  # [-]; samples of a cycle in the search
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Searched:
+class SearchedGait:
     """A gait that a search found for one kind of servo."""
 
     servo_speed: float
@@ -33,7 +33,7 @@ def _searched_gait(
     trunk: tuple[float, float, float],
     yaw: tuple[float, float],
     **feet: Any,
-) -> Searched:
+) -> SearchedGait:
     """Return a gait whose trunk also bends vertically; its other joints follow smooth curves, as in the search.
 
     Args:
@@ -64,7 +64,7 @@ def _searched_gait(
     # in a bound left and right cancel in the article's coupling law, so the trunk follows the gait's own phases
     curves = as_table(ROBOTS["caiman"], metres.gait(LIMBS), _SAMPLES)
     gait = replace(curves, axis=(vertical,), coupling=() if amplitude else curves.coupling)
-    return Searched(servo_speed=servo_speed, gait=gait)
+    return SearchedGait(servo_speed=servo_speed, gait=gait)
 
 
 BOUNDS = (

@@ -1,7 +1,7 @@
 """When the claim on galloping counts as what (section II.A)."""
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import BUILT, Clause, Rule, between
+from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, Rule, measure_with_interval
 
 RULES = (
     Rule(
@@ -14,7 +14,7 @@ RULES = (
             Clause("flight_bound", ">=", 0.1, "a gallop has phases of flight; less is a walk that stumbles"),
         ),
         spread=("bound_over_walk",),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="Said of crocodiles. With servos like the robot's own a bound goes {speed_bound:.2f} m/s, "
         "{flight_bound:.0%} of the time in flight, and the fastest walk {speed_walk:.2f} m/s; with the best servos "
         "tried the bound goes {speed_bound_best:.2f} m/s.",
@@ -23,7 +23,7 @@ RULES = (
 )
 
 _FAST = {
-    **between("bound_over_walk", 1.01, 1.2),
+    **measure_with_interval("bound_over_walk", 1.01, 1.2),
     "flight_bound": 0.101,
     "speed_bound": 0.5,
     "speed_walk": 0.4,
@@ -33,8 +33,8 @@ _FAST = {
 EXAMPLES: Examples = {
     "gallop_fastest": [
         (_FAST, "same sense"),
-        (_FAST | between("bound_over_walk", 0.99, 1.2), "undecided"),
-        (_FAST | between("bound_over_walk", 0.8, 0.99), "not testable"),
+        (_FAST | measure_with_interval("bound_over_walk", 0.99, 1.2), "undecided"),
+        (_FAST | measure_with_interval("bound_over_walk", 0.8, 0.99), "not testable"),
         (_FAST | {"flight_bound": 0.099}, "not testable"),
     ],
 }

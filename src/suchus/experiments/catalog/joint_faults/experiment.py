@@ -12,14 +12,19 @@ from suchus.article.paper import CLAIMS
 from suchus.core.checks import Checks
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog._two_groups import TwoGroups
-from suchus.experiments.catalog.joint_faults.figure import draw_held, draw_matrix, draw_over_time, draw_tracks
+from suchus.experiments.catalog.joint_faults.figure import (
+    draw_locking_positions,
+    draw_matrix,
+    draw_over_time,
+    draw_tracks,
+)
 from suchus.experiments.experiment import (
     Measure,
     Measures,
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     estimated,
     silent,
     staged,
@@ -44,16 +49,16 @@ from suchus.sim.land import (
 )
 from suchus.sim.land.failed import Kind, Legs
 from suchus.sim.metrics import (
-    between,
     displacement,
     heading_change,
     loss,
     path_length,
+    require_complete,
     swing_height,
     swing_lift,
     swing_loads,
     swing_unloaded,
-    whole,
+    time_window,
 )
 
 _SUPPORT_PREFIXES = ("support_share_", "tail_load_", "foot_", "com_")
@@ -125,7 +130,7 @@ class JointFaults(TwoGroups):
         """One cycle, two repeats, two places of locking."""
         return replace(self, cycles=1, repeats=2, holds=(0.0, 1.0), timestep=0.01)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Break joints."""
         record = self._campaign(staged(progress, "campaign", 0.0, 0.75))
         record = record.merge(self._locking_record(staged(progress, "places of locking", 0.75, 0.82)))
@@ -133,12 +138,12 @@ class JointFaults(TwoGroups):
         record = record.merge(self._comparison_record(staged(progress, "steered, and with the tail lifted", 0.9, 0.98)))
         record = record.assign_attrs(judged_kind=self.kind, judged_legs=self.legs)
         replays = self._replays(staged(progress, "replay", 0.98, 1.0))
-        return Simulated(record=record, tables={"faults.csv": table(record)}, replays=replays)
+        return SimulationResult(record=record, tables={"faults.csv": table(record)}, replays=replays)
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; those of the support need no other faults."""
-        if not all(name.startswith(_SUPPORT_PREFIXES) for name in wanted):
-            return super(JointFaults, self).measured(wanted, progress)
+        if not all(name.startswith(_SUPPORT_PREFIXES) for name in measure_names):
+            return super(JointFaults, self).measured(measure_names, progress)
         return _support_measures(self._support(progress))
 
     def measure(self, record: xr.Dataset) -> Measures:
@@ -148,19 +153,23 @@ class JointFaults(TwoGroups):
         measures = Measures()
         for arm in ARMS:
             measures |= estimated(f"forward_{arm}", record.intact_forward.sel(arm=arm), "m")
-        limbs_only_loss = lost(record.intact_forward.sel(arm="limbs_only"), intact)
+        limbs_only_loss = displacement_change(record.intact_forward.sel(arm="limbs_only"), intact)
         measures |= estimated("loss_intact_limbs_only", limbs_only_loss, "-") | _cells(record)
         if "lifted_forward" in record:
             measures |= estimated("forward_limbs_tail_lifted", record.lifted_intact_forward, "m")
-            measures |= estimated("loss_intact_limbs_tail_lifted", lost(record.lifted_intact_forward, intact), "-")
+            measures |= estimated(
+                "loss_intact_limbs_tail_lifted", displacement_change(record.lifted_intact_forward, intact), "-"
+            )
         for joint in record.lost.values:
             name = f"loss_{joint}_{reading}"
             if "steered_forward" in record:
-                measures |= estimated(f"{name}_steered", lost(record.steered_forward, intact).sel(lost=joint), "-")
+                measures |= estimated(
+                    f"{name}_steered", displacement_change(record.steered_forward, intact).sel(lost=joint), "-"
+                )
                 heading_changes = record.steered_turn.sel(lost=joint)
                 measures |= estimated(f"turn_{joint}_{reading}_steered", heading_changes, "rad")
             if "lifted_forward" in record:
-                lifted_loss = lost(record.lifted_forward, intact).sel(lost=joint)
+                lifted_loss = displacement_change(record.lifted_forward, intact).sel(lost=joint)
                 measures |= estimated(f"{name}_limbs_tail_lifted", lifted_loss, "-")
         return measures | _effects(record) | _support_measures(record)
 
@@ -208,9 +217,13 @@ class JointFaults(TwoGroups):
     def _repeats_of(self, runs: list[Run], progress: Any) -> xr.Dataset:
         """Simulate the repeats of runs, run by run."""
         repeated = self._built(runs)
-        return whole(
+        return require_complete(
             simulate(
-                repeated, duration=self._duration, timestep=self.timestep, every=_SAMPLING_STRIDE, progress=progress
+                repeated,
+                duration=self._duration,
+                timestep=self.timestep,
+                sample_stride=_SAMPLING_STRIDE,
+                progress=progress,
             )
         )
 
@@ -230,14 +243,16 @@ class JointFaults(TwoGroups):
             "path": (path_length(record), "m", "path length, cycle by cycle"),
             "turn": (heading_change(record), "rad", "how far the body turned, left positive"),
         }
-        distance = between(record).centre_of_mass.sel(xyz=["x", "y"])
+        distance = time_window(record).centre_of_mass.sel(xyz=["x", "y"])
         tracks = (distance - distance.isel(time=0)).transpose("run", "time", "xyz").values
         shape = (len(ARMS), 1 + len(cells), self.repeats)
         data = xr.Dataset(coords={"arm": list(ARMS), "time": distance.time.values, "on_ground": ["x", "y"]})
         data = data.assign_coords(joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_FAILED))
         for name, (array, unit, long_name) in quantities.items():
-            lay(data, name, array.values.reshape(shape), (), unit, long_name)
-        lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass")
+            store_cells(data, name, array.values.reshape(shape), (), unit, long_name)
+        store_cells(
+            data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass"
+        )
         data["time"].attrs["units"] = "s"
         data["period"] = ((), self.gait.period, {"units": "s"})
         return data
@@ -251,9 +266,9 @@ class JointFaults(TwoGroups):
             for a, j, h in points
         ]
         record = simulate(
-            runs, duration=self._duration, timestep=self.timestep, every=_SAMPLING_STRIDE, progress=progress
+            runs, duration=self._duration, timestep=self.timestep, sample_stride=_SAMPLING_STRIDE, progress=progress
         )
-        distance = displacement(whole(record)).sel(xyz="x").values
+        distance = displacement(require_complete(record)).sel(xyz="x").values
         locked_distances = distance[len(ARMS) :].reshape(len(ARMS), len(self._failing_joints), len(self.holds))
         metre = {"units": "m"}
         data = xr.Dataset(
@@ -280,12 +295,14 @@ class JointFaults(TwoGroups):
     def _support(self, progress: Any) -> xr.Dataset:
         """Return the loads that carry the body while the right hind leg, whose pitch joint fails, should swing."""
         runs, step = self._built(self._failed_pitch()), coarse_step(self.robot)
-        return support(whole(simulate(runs, duration=self._duration, timestep=step, progress=progress)), self.repeats)
+        return support(
+            require_complete(simulate(runs, duration=self._duration, timestep=step, progress=progress)), self.repeats
+        )
 
     def _replays(self, progress: Any) -> Mapping[str, Replay]:
         """Return the replay of the crawl with the right hind pitch joint limp, and of the intact one."""
         runs, step = self._failed_pitch()[:2], coarse_step(self.robot)
-        record = whole(simulate(runs, duration=self._duration, timestep=step, progress=progress))
+        record = require_complete(simulate(runs, duration=self._duration, timestep=step, progress=progress))
         return replayed(
             "fault_replay.html",
             record.isel(run=1),
@@ -337,11 +354,11 @@ class JointFaults(TwoGroups):
             "faults_limp": draw_over_time(record, "limp", self.legs),
             "faults_locked": draw_over_time(record, "locked", self.legs),
             "fault_tracks": draw_tracks(record),
-            "fault_places": draw_held(record),
+            "fault_places": draw_locking_positions(record),
         }
 
 
-def lay(
+def store_cells(
     data: xr.Dataset, name: str, values: np.ndarray, extra_dims: tuple[str, ...], unit: str, long_name: str
 ) -> None:
     """Store the values of all cells in a dataset, as ``NAME`` and, for the intact robots, as ``intact_NAME``.
@@ -394,7 +411,7 @@ def support(record: xr.Dataset, repeats: int) -> xr.Dataset:
     )
 
 
-def lost(forward: xr.DataArray, intact: xr.DataArray) -> xr.DataArray:
+def displacement_change(forward: xr.DataArray, intact: xr.DataArray) -> xr.DataArray:
     """Return the relative change of displacement against an intact robot [-].
 
     The result is NaN where the intact robot does not move forward itself.
@@ -412,8 +429,8 @@ def _cells(record: xr.Dataset) -> Measures:
     ``gain`` is the loss with limbs only minus the loss with spine and tail, each of its own displacement, repeat by
     repeat. A loss is at most the whole displacement, also for a robot that goes backwards.
     """
-    common_change = lost(record.forward, record.intact_forward.sel(arm="coordinated", drop=True))
-    own_change = lost(record.forward, record.intact_forward)
+    common_change = displacement_change(record.forward, record.intact_forward.sel(arm="coordinated", drop=True))
+    own_change = displacement_change(record.forward, record.intact_forward)
     bounded_change = own_change.clip(min=-1.0)
     gain = bounded_change.sel(arm="coordinated") - bounded_change.sel(arm="limbs_only")
     measures = Measures()
@@ -429,7 +446,7 @@ def _cells(record: xr.Dataset) -> Measures:
 
 def _effects(record: xr.Dataset) -> Measures:
     """Return the mean difference of the change with spine and tail between two readings of one choice [-]."""
-    change = lost(record.forward, record.intact_forward).sel(arm="coordinated", joint=record.lost.values)
+    change = displacement_change(record.forward, record.intact_forward).sel(arm="coordinated", joint=record.lost.values)
     change = change.median("repeat")
     effects = Measures()
     for dim in ("kind", "joint", "legs"):
@@ -471,15 +488,15 @@ def table(record: xr.Dataset) -> str:
     ]
     for *cell, arm in product(record.joint.values, KINDS, LEGS_FAILED, ARMS):
         cell_record = record.sel(dict(zip((*_CELL_DIMS, "arm"), (*cell, arm), strict=True)))
-        change = lost(cell_record.forward, coordinated.intact_forward)
+        change = displacement_change(cell_record.forward, coordinated.intact_forward)
         numbers = (
             cell_record.forward.median(),
             change.median(),
             change.min(),
             change.max(),
-            lost(cell_record.forward, cell_record.intact_forward).median(),
-            lost(cell_record.net, coordinated.intact_net).median(),
-            lost(cell_record.path, coordinated.intact_path).median(),
+            displacement_change(cell_record.forward, cell_record.intact_forward).median(),
+            displacement_change(cell_record.net, coordinated.intact_net).median(),
+            displacement_change(cell_record.path, coordinated.intact_path).median(),
         )
         medians = [f"{float(number):.3f}" for number in numbers]
         turn_text = f"{float(np.degrees(cell_record.turn.median())):.1f}"

@@ -238,7 +238,7 @@ def _arrow(ax: Axes, start: np.ndarray, facing: float, colour: str) -> None:
     ax.annotate("", xy=tuple(tip), xytext=tuple(start), arrowprops=arrow_style, annotation_clip=False)
 
 
-def draw_held(record: xr.Dataset) -> Figure:
+def draw_locking_positions(record: xr.Dataset) -> Figure:
     """Draw the change of displacement over the position at which a joint is locked.
 
     Args:

@@ -4,7 +4,7 @@ from itertools import product
 
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import BUILT, Clause, ControlGroup, Rule, Varied, between
+from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, ControlGroup, Rule, Variation, measure_with_interval
 
 _SMALL_LOSS = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
 _LARGE_LOSS = Clause("", "<=", -1 / 2, "a loss of most is one of more than half")
@@ -60,7 +60,7 @@ def _fault(joint: str, arm: str, clauses: tuple[Clause, ...]) -> Rule:
         holds=tuple(Clause(measure, clause.relation, clause.bound, clause.why) for clause in clauses),
         control=_INTACT_GROUP,
         spread=(measure,),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why=(_limbs_only_explanation(joint) if arm == "limbs_only" else "") + explanation,
     )
 
@@ -120,7 +120,7 @@ RULES = (
         "{com_rise_limp:mm+.1f} mm. The foot is off the ground for {foot_free_limp:.0%} of its swing (intact "
         "{foot_free_intact:.0%}) and rises by {foot_lift_limp:mm.0f} mm (intact {foot_lift_intact:mm.0f} mm).",
         spread=("support_share_limp", "com_rise_limp", "foot_free_limp"),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
     ),
     Rule(
         claim="fault_tolerance",
@@ -135,12 +135,12 @@ RULES = (
             why="Section IV.C: without trunk cooperative motion. It does not say where the tail is; ours lies still.",
         ),
         spread=tuple(f"gain_{joint}_limp_one" for joint in _TOLERATED_JOINTS),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why=_tolerance_explanation(),
     ),
 )
 
-VARIED = Varied(claims=("fault_support",), designs=("robot", "gait"), settings={"holds": (0.5,)}, samples=16)
+SWEEP = Variation(claims=("fault_support",), designs=("robot", "gait"), settings={"holds": (0.5,)}, samples=16)
 
 _READINGS = list(product(("limp", "locked"), ("one", "both")))
 
@@ -174,7 +174,7 @@ def _gain_measures(**gains: float) -> dict[str, float]:
     measures: dict[str, float] = {}
     for joint in _TOLERATED_JOINTS:
         gain = gains.get(joint, 0.1)
-        measures |= between(f"gain_{joint}_limp_one", gain - 0.02, gain + 0.02)
+        measures |= measure_with_interval(f"gain_{joint}_limp_one", gain - 0.02, gain + 0.02)
         measures |= {f"loss_{joint}_limp_one_coordinated": -0.2, f"own_loss_{joint}_limp_one_limbs_only": -0.2 - gain}
     return measures
 
@@ -194,7 +194,7 @@ def _support_measures(load_fraction: float = 0.9, rise: float = 0.001, free: flo
         "foot_free_intact": 0.6,
         "foot_lift_limp": 0.02,
     }
-    ends = [between(name, value - 5e-4, value + 5e-4) for name, value in judged_measures.items()]
+    ends = [measure_with_interval(name, value - 5e-4, value + 5e-4) for name, value in judged_measures.items()]
     return reported_measures | {"foot_lift_intact": 0.02} | ends[0] | ends[1] | ends[2]
 
 

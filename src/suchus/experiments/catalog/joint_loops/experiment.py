@@ -12,16 +12,25 @@ import xarray as xr
 from suchus.article.paper import CYCLES
 from suchus.core.checks import Checks
 from suchus.experiments.catalog.joint_loops import figure as pictures
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    SimulationResult,
+    silent,
+    staged,
+)
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import control_period, physics_step
 from suchus.robot.design.servos import with_servos
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.land.stand import on_stand
-from suchus.sim.metrics import between, displacement, whole
+from suchus.sim.metrics import displacement, require_complete, time_window
 from suchus.visual.figures import captioned
 
 TESTS = ("step", "load", "let_go")
@@ -81,13 +90,15 @@ class JointLoops(Experiment):
         """Return the robot's own gait, and the left hind servo that lifts the limb, or its only one."""
         hind = layout(robot).limbs[-2]
         servos = layout(robot).servos[hind.servos]
-        return {"gait": own_gait(robot), "joint": servos[min(1, len(servos) - 1)]}
+        return {"gait": default_gait(robot), "joint": servos[min(1, len(servos) - 1)]}
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate the crawl with every gain, then the joint on the stand under the load of the crawl."""
         robots = [with_servos(self.robot, partial(replace, ki=ki)) for ki in self.integrals]
-        crawls = whole(xr.concat([self._crawl_record(i, robot, progress) for i, robot in enumerate(robots)], "run"))
-        walk = between(crawls)
+        crawls = require_complete(
+            xr.concat([self._crawl_record(i, robot, progress) for i, robot in enumerate(robots)], "run")
+        )
+        walk = time_window(crawls)
         load = float(np.sqrt((walk.servo_torque.isel(run=0).sel(servo=self.joint) ** 2).mean()))
         data = _tracking(walk, self.robot, displacement(crawls).sel(xyz="x").values)
         progress("stand", 0.7)
@@ -100,7 +111,7 @@ class JointLoops(Experiment):
         )
         kp = self.robot.servo(self.joint).kp
         attrs = {"gripped": self.gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
-        return Simulated(record=data.assign_attrs(attrs))
+        return SimulationResult(record=data.assign_attrs(attrs))
 
     @property
     def gripped(self) -> float:

@@ -3,7 +3,7 @@
 from math import radians
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule, Varied
+from suchus.article.verdict.rule import Clause, Rule, Variation
 
 _DEAD_BAND_REASON = "the dead band of a digital hobby servo: 3 us of 2 000 us for 270 degrees"
 
@@ -27,7 +27,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(claims=("joint_pid",), designs=("robot",), samples=64)
+SWEEP = Variation(claims=("joint_pid",), designs=("robot",), samples=64)
 
 _PID = {
     "load_error_pid": radians(0.396),

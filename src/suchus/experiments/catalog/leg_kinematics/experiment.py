@@ -12,7 +12,7 @@ from suchus.article.paper.tables import Chain
 from suchus.core.checks import Checks
 from suchus.experiments.catalog._frames import draw_frames, frames_of
 from suchus.experiments.catalog.leg_kinematics import figure as pictures
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, SimulationResult, silent
 from suchus.robot.design import LEGS, Robot, leg_joints, servo_names
 from suchus.robot.design.measures import LegMeasures
 from suchus.robot.gaits import GAITS
@@ -20,10 +20,10 @@ from suchus.robot.kinematics import leg, printed
 from suchus.robot.motion import Gait, movement
 from suchus.robot.robots import ROBOTS
 
-_SHOWN = (0.35, 0.3, 0.8, 0.0)
+_FRAME_ANGLES = (0.35, 0.3, 0.8, 0.0)
 """Angles at which the frames are drawn [rad]."""
 
-EXACT = 1e-9
+EXACT_TOLERANCE = 1e-9
 """Foot error up to which a solution counts as exact [m]."""
 BRANCHES = tuple((knee, side) for knee in (1, -1) for side in (1, -1))
 _AXES = ("outward", "ahead", "down")
@@ -71,7 +71,7 @@ class LegKinematics(Experiment):
             check.whole("grid", 2, 2000)
             check.whole("seed", 0, 2**31)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Solve the inverse for random points on all branches and as printed, then for the feet of the gaits."""
         hind = self.robot.hind_leg
         progress("random foot points", 0.0)
@@ -81,7 +81,7 @@ class LegKinematics(Experiment):
         record = xr.merge([record, _knee_curve(hind), _sweep(hind), _postures(hind), self._steps(), _frames(hind)])
         counts = {"leg_servos": len(leg_joints()) / len(LEGS), "actuators": len(servo_names())}
         reach = {"near": hind.reach[0], "far": hind.reach[1], "hip_offset": hind.hip_offset, "floor": hind.tibia}
-        return Simulated(record=record.assign_attrs(counts | reach))
+        return SimulationResult(record=record.assign_attrs(counts | reach))
 
     def _steps(self) -> xr.Dataset:
         """Return the foot error of (14) along the gaits, each leg with its own lengths [m]."""
@@ -100,7 +100,7 @@ class LegKinematics(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the fractions of the workspace and of the gaits at which (14) is exact, and its errors elsewhere."""
         foot_error = record.error_printed
-        is_wrong = foot_error > EXACT
+        is_wrong = foot_error > EXACT_TOLERANCE
         quarter = (record.foot.sel(axis="outward") > record.attrs["hip_offset"]) & (record.foot.sel(axis="down") > 0)
         return Measures(
             {
@@ -146,7 +146,7 @@ class LegKinematics(Experiment):
 def _frames(hind: LegMeasures) -> xr.Dataset:
     """Return the frames of Table I for a leg that is slightly bent at every joint."""
     chain = Chain(a=(hind.hip_offset, 0.0, hind.femur, hind.tibia), alpha=LEG_CHAIN.alpha, d=LEG_CHAIN.d)
-    return frames_of(chain, _SHOWN, np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]))
+    return frames_of(chain, _FRAME_ANGLES, np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]))
 
 
 def _shell(hind: LegMeasures, count: int, seed: int) -> np.ndarray:
@@ -222,7 +222,7 @@ def _fraction(holds: xr.DataArray, selection: xr.DataArray) -> float:
 
 def _exact(record: xr.Dataset, gait: str) -> float:
     """Return the fraction of the foot positions of a gait at which (14) is exact [-]."""
-    return float((record.step_error.sel(of_gait=gait) <= EXACT).mean())
+    return float((record.step_error.sel(of_gait=gait) <= EXACT_TOLERANCE).mean())
 
 
 def _within_limits(hind: LegMeasures, foot: np.ndarray) -> np.ndarray:

@@ -20,15 +20,15 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     silent,
     staged,
 )
 from suchus.robot.control import Oscillators, PatternGenerator, oscillate
 from suchus.robot.control.pattern_posture import axis_segments
 from suchus.robot.design import Robot
-from suchus.robot.design.scale import scaled_fields
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.design.scale import rescale_fields
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
@@ -131,7 +131,7 @@ class PatternGeneratorExperiment(Experiment):
         if robot == self.robot:
             return variant
         swimmer = robot if floats(robot) else self.swimmer
-        sized = scaled_fields(
+        sized = rescale_fields(
             self,
             ("water_line", "shore_time"),
             length_factor=swimmer.length / self.swimmer.length,
@@ -139,9 +139,9 @@ class PatternGeneratorExperiment(Experiment):
         )
         shore_settings = {"water_line": self.water_line, "shore_time": self.shore_time} | sized
         shore_settings["shore_time"] = max(shore_settings["shore_time"], _MIN_SHORE_TIME)
-        return replace(variant, swimmer=swimmer, swimmer_gait=own_gait(swimmer), **shore_settings)
+        return replace(variant, swimmer=swimmer, swimmer_gait=default_gait(swimmer), **shore_settings)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Sweep the drive, start at random, ramp the drive, and walk."""
         parts = [self._sweep(staged(progress, "drive sweep", 0.0, 0.15))]
         parts += [
@@ -152,17 +152,17 @@ class PatternGeneratorExperiment(Experiment):
         walks, ramped = self._land(progress)
         stage = staged(progress, "one drive across the shore", 0.85, 1.0)
         shore_runs = one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
-        shore_record = simulate(shore_runs, duration=self.shore_time, every=_SAMPLE_INTERVAL, progress=stage)
+        shore_record = simulate(shore_runs, duration=self.shore_time, sample_stride=_SAMPLE_INTERVAL, progress=stage)
         record = xr.merge([*parts, walks, one_drive.reduced(shore_record, self.water_line)]).assign_attrs(
             within=self.within, hold=self.hold, silent_above=_OSCILLATORS.limb_drives[1], walk=self.walk, swim=self.swim
         )
-        return Simulated(record=record, replays=self._replays(ramped))
+        return SimulationResult(record=record, replays=self._replays(ramped))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; if only turns are wanted, only their walks are simulated."""
-        if not set(wanted) <= _TURNS.keys():
-            return super(PatternGeneratorExperiment, self).measured(wanted, progress)
-        arms = dict.fromkeys(arm for name in wanted for arm in _TURNS[name])
+        if not set(measure_names) <= _TURNS.keys():
+            return super(PatternGeneratorExperiment, self).measured(measure_names, progress)
+        arms = dict.fromkeys(arm for name in measure_names for arm in _TURNS[name])
         return _turn_measures(
             self._walk_arms({name: arm for name, arm in self._arms.items() if name in arms}, progress)
         )
@@ -171,8 +171,8 @@ class PatternGeneratorExperiment(Experiment):
         """Return frequencies, lags and indices over the drive, locks, strides and turns."""
         measures = (
             _sweep_measures(record)
-            | _locked(record, "walk", "")
-            | _locked(record, "swim", "_swim")
+            | _lock_measures(record, "walk", "")
+            | _lock_measures(record, "swim", "_swim")
             | _turn_measures(record)
         )
         for arm in STRAIGHT:
@@ -202,7 +202,7 @@ class PatternGeneratorExperiment(Experiment):
         controls = [PatternGenerator(drive=drive) for drive in drives]
         duration = self.followed * self.gait.period
         oscillation = oscillate(
-            controls, self.robot, self.gait, duration=duration, every=_SAMPLE_INTERVAL, progress=progress
+            controls, self.robot, self.gait, duration=duration, sample_interval=_SAMPLE_INTERVAL, progress=progress
         )
         n, start_index = oscillation.wave.shape[2], int((1 - _MEASURED_FRACTION) * len(oscillation.time))
         rate = (oscillation.phase[:, -1] - oscillation.phase[:, start_index]) / (
@@ -253,7 +253,13 @@ class PatternGeneratorExperiment(Experiment):
         seeds = [self.seed, *range(self.seed, self.seed + self.starts)]
         duration = self.followed / frequency
         oscillation = oscillate(
-            controls, self.robot, self.gait, duration=duration, seeds=seeds, every=_SAMPLE_INTERVAL, progress=progress
+            controls,
+            self.robot,
+            self.gait,
+            duration=duration,
+            seeds=seeds,
+            sample_interval=_SAMPLE_INTERVAL,
+            progress=progress,
         )
         active = oscillation.amplitude[0, -1] > 0.0
         error = lock_error(oscillation.phase[1:][..., active], oscillation.phase[0, -1, active])
@@ -320,7 +326,7 @@ class PatternGeneratorExperiment(Experiment):
         """
         runs = [Run(robot=self.robot, gait=self.gait, control=control, label=name) for name, control in arms.items()]
         duration = START + self.cycles * self.gait.period
-        record = simulate(runs, duration=duration, every=_SAMPLE_INTERVAL, progress=progress)
+        record = simulate(runs, duration=duration, sample_stride=_SAMPLE_INTERVAL, progress=progress)
         phase = record.limb_phase.isel(leg=0)
         initial_phase = phase.sel(time=START, method="nearest")
         units = {"forward": "m", "turned": "rad", "walked": "1"}
@@ -340,7 +346,7 @@ class PatternGeneratorExperiment(Experiment):
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
         stage = staged(progress, "drive ramp", 0.65, 0.85)
-        return walks, simulate([ramped], duration=end, every=2, progress=stage)
+        return walks, simulate([ramped], duration=end, sample_stride=2, progress=stage)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
         """Return the replay of the walk under the drive ramp, by file name."""
@@ -403,7 +409,7 @@ def _lags(phase: np.ndarray) -> np.ndarray:
     return np.asarray(np.mod(-np.diff(phase) + 0.5, 1.0) - 0.5)
 
 
-def _locked(record: xr.Dataset, state: str, ending: str) -> Measures:
+def _lock_measures(record: xr.Dataset, state: str, ending: str) -> Measures:
     """Return the fraction of starts that lock, and mean and greatest time until they do; NaN if none does.
 
     Args:

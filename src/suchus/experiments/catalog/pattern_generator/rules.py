@@ -3,7 +3,7 @@
 from math import radians
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule, Varied
+from suchus.article.verdict.rule import Clause, Rule, Variation
 
 _HALF = "half way between a travelling wave, 0, and a standing one, 1"
 
@@ -32,7 +32,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(
+DESIGN_SWEEP = Variation(
     claims=("oscillators_direction",),
     designs=("robot", "gait"),
     settings={"drives": (1.0, 2.0, 4.0), "starts": 1, "shore_time": 3.0, "ramp": 1.0},

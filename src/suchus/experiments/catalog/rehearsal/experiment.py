@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 
 from suchus.core.checks import Checks
 from suchus.core.errors import Diverged
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, SimulationResult, silent
 from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, drive
 from suchus.hardware.bus import BusPlace, Wiring, straight
-from suchus.hardware.emulator import USUAL, EmulatedBody, Emulator, MemoryPort, Trouble
+from suchus.hardware.emulator import DEFAULT_MODELS, EmulatedBody, Emulator, MemoryPort, Trouble
 from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator
 from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS
@@ -25,11 +25,11 @@ from suchus.sim.metrics import displacement, heading_change
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 RULES = ("open", "closed", "steered", "pattern")
-LOSES = 0.02
+MAX_DISPLACEMENT_CHANGE = 0.02
 """Relative change of the displacement above which a rule is flagged [-]; real walks scatter by about as much."""
-TURNS = radians(5.0)
+MAX_HEADING_CHANGE = radians(5.0)
 """Additional change of heading above which a rule is flagged [rad]."""
-ENOUGH = 2.0
+MIN_JUDGED_CYCLES = 2.0
 """Fewest cycles with which a wire is judged [-]; a rule takes about one cycle to respond."""
 _DRIVE_LIMITS = DriveLimits(silent=10_000, patience=10.0)  # lost packets must not stop the walk here
 
@@ -43,7 +43,7 @@ class Wire(NamedTuple):
     """Its imperfections."""
 
 
-class Rehearsed(NamedTuple):
+class RehearsedWalk(NamedTuple):
     """A walk over an emulated bus."""
 
     log: xr.Dataset
@@ -60,8 +60,8 @@ def rehearse(
     *,
     protocol: str = "dynamixel",
     trouble: Trouble | None = None,
-    built: Wiring | None = None,
-) -> Rehearsed:
+    actual_wiring: Wiring | None = None,
+) -> RehearsedWalk:
     """Simulate a walk over an emulated bus whose clock is set by the driver.
 
     Args:
@@ -71,16 +71,18 @@ def rehearse(
         duration: with the first second of standing [s].
         protocol: of the servos.
         trouble: imperfections of the wire; none by default.
-        built: actual wiring of the robot, where it differs from the configured one.
+        actual_wiring: actual wiring of the robot, where it differs from the configured one.
     """
-    wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], USUAL[protocol], boards=True)  # type: ignore[arg-type]
+    wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], DEFAULT_MODELS[protocol], boards=True)  # type: ignore[arg-type]
     trouble = trouble or Trouble()
-    emulator = Emulator(built or wiring, EmulatedBody(robot, gait, latency=trouble.latency), trouble, clocked=True)
-    rig = Rig(robot, wiring, [MemoryPort(emulator)], clocked=True)
+    emulator = Emulator(
+        actual_wiring or wiring, EmulatedBody(robot, gait, latency=trouble.latency), trouble, has_clock=True
+    )
+    rig = Rig(robot, wiring, [MemoryPort(emulator)], has_clock=True)
     settings = DriveSettings(duration=duration, stop="hold", limits=_DRIVE_LIMITS)
     log = drive(rig, gait, control, settings, clock=BusClock(rig))
     truth = emulator.body.record()
-    return Rehearsed(log, truth.isel(time=slice(log.sizes["time"])))
+    return RehearsedWalk(log, truth.isel(time=slice(log.sizes["time"])))
 
 
 def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
@@ -101,14 +103,16 @@ def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
     return body.record().isel(time=slice(len(goals)))
 
 
-def flagged(displacement_change: float, heading_difference: float) -> bool:
+def exceeds_tolerance(displacement_change: float, heading_difference: float) -> bool:
     """Return whether a wire changes a walk by more than ``LOSES`` or ``TURNS``; NaN counts as more.
 
     Args:
         displacement_change: change of the displacement, as a share of that without the wire [-].
         heading_difference: further change of heading [rad].
     """
-    return not (abs(displacement_change) <= LOSES and abs(heading_difference) <= TURNS)  # NaN is flagged
+    return not (
+        abs(displacement_change) <= MAX_DISPLACEMENT_CHANGE and abs(heading_difference) <= MAX_HEADING_CHANGE
+    )  # NaN is flagged
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,7 +159,7 @@ class Rehearsal(Experiment):
         with Checks(self.name(), self) as check:
             check.number("cycles", 0.1, 100.0, "")
             check.number("rule_cycles", 0.1, 100.0, "")
-            for name, options in (("protocols", USUAL), ("controls", RULES)):
+            for name, options in (("protocols", DEFAULT_MODELS), ("controls", RULES)):
                 unknown = [choice for choice in getattr(self, name) if choice not in options]
                 check.that(not unknown, f"{self.name()}.{name} has {unknown}; there is {', '.join(options)}")
             check.that(bool(self.protocols), f"{self.name()}.protocols is empty; one at least is needed")
@@ -181,7 +185,7 @@ class Rehearsal(Experiment):
         for share in self.losses:
             yield Wire(f"lost_{100 * share:g}_percent", Trouble(lost=share, seed=self.seed))
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Walk in the simulation, over ideal wires, and over imperfect ones."""
         wires = list(self.wires())
         steps = len(self.protocols) + len(self.controls) * (1 + len(wires))
@@ -237,7 +241,7 @@ class Rehearsal(Experiment):
                 "wire": ["ideal", *(wire.name for wire in wires)],
             },
         )
-        return Simulated(record=record)
+        return SimulationResult(record=record)
 
     def control(self, rule: str) -> Control:
         """Return the control of a rule by its name."""
@@ -272,7 +276,7 @@ class Rehearsal(Experiment):
                 heading_difference = float(rule_record.turned.sel(wire=wire) - ideal.turned)
                 measures[f"lost_{rule}_{wire}"] = Measure(displacement_change, "-")
                 measures[f"turned_{rule}_{wire}"] = Measure(heading_difference, "rad")
-                bad = flagged(displacement_change, heading_difference)
+                bad = exceeds_tolerance(displacement_change, heading_difference)
                 measures[f"flagged_{rule}_{wire}"] = Measure(float(bad) if self.judges(str(rule)) else np.nan, "-")
                 count += bad
                 latency = float(record.latency.sel(wire=wire))
@@ -291,11 +295,11 @@ class Rehearsal(Experiment):
 
     def judges(self, rule: str) -> bool:
         """Return whether walks are long enough to judge what a wire costs a rule."""
-        return (self.cycles if rule == "open" else self.rule_cycles) >= ENOUGH
+        return (self.cycles if rule == "open" else self.rule_cycles) >= MIN_JUDGED_CYCLES
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what decided, with the bounds beyond which a wire is flagged."""
-        return self.told(measures, loses=LOSES, turns=TURNS, enough=ENOUGH)
+        return self.told(measures, loses=MAX_DISPLACEMENT_CHANGE, turns=MAX_HEADING_CHANGE, enough=MIN_JUDGED_CYCLES)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw what each wire costs each rule, and how far each servo is off over ideal wires."""
@@ -315,7 +319,13 @@ class Rehearsal(Experiment):
             )  # fmt: skip
         for side in (-1.0, 1.0):
             bound = "beyond: flagged" if side > 0 else None
-            axes[0, 0].axhline(side * 100.0 * LOSES, color=COLOURS["alarm"], linewidth=0.8, linestyle="--", label=bound)
+            axes[0, 0].axhline(
+                side * 100.0 * MAX_DISPLACEMENT_CHANGE,
+                color=COLOURS["alarm"],
+                linewidth=0.8,
+                linestyle="--",
+                label=bound,
+            )
         axes[0, 0].set_xticks(np.arange(len(wires)), [_wire_label(str(wire)) for wire in wires])
         axes[0, 0].set_ylabel("change of displacement [%]")
         axes[0, 0].legend(loc="lower right", ncols=2)
@@ -330,7 +340,8 @@ class Rehearsal(Experiment):
         return captioned(
             figure,
             "Above: what an imperfect wire changes of the displacement of each rule, against the same walk in the "
-            f"simulation; beyond the dashed lines, {LOSES:.0%}, it is flagged. Open: the gait alone; closed: three "
+            f"simulation; beyond the dashed lines, {MAX_DISPLACEMENT_CHANGE:.0%}, it is flagged. Open: the gait "
+            f"alone; closed: three "
             "feedback rules; steered: these and a loop that holds the heading; pattern: coupled oscillators. Below: "
             "how far each servo is off the simulation over ideal wires, root mean square.",
         )

@@ -85,7 +85,7 @@ def _slip(record: xr.Dataset, cycle_window: Window, legs: list[str], stance_thre
     return float(speed.where(stands).mean()) / forward if forward > 0 and bool(stands.any()) else nan
 
 
-def beside(measures: Mapping[str, Measure]) -> str:
+def comparison_table(measures: Mapping[str, Measure]) -> str:
     """Return a CSV table with a row for each published number: robot, animal, standard deviation, unit, source."""
     file = io.StringIO()
     rows = csv.writer(file, lineterminator="\n")

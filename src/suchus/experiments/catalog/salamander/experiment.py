@@ -11,7 +11,7 @@ from suchus.article.paper.walking_salamanders import ANIMAL
 from suchus.core.checks import Checks
 from suchus.core.errors import UnsuitedRobot
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog.salamander.animal_walk import PAIRS, beside, steps, waves
+from suchus.experiments.catalog.salamander.animal_walk import PAIRS, comparison_table, steps, waves
 from suchus.experiments.catalog.salamander.animal_walk import window as measured_window
 from suchus.experiments.catalog.salamander.figure import draw_angles, draw_feet
 from suchus.experiments.experiment import (
@@ -21,7 +21,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     silent,
     staged,
 )
@@ -83,7 +83,7 @@ class Salamander(Experiment):
         """Return two cycles after the first one, on one further ground."""
         return replace(self, settle=1, cycles=2, friction_scales=(0.7,))
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Walk with the animal's angles, with a straight axis, and on other ground."""
         robot_layout = layout(self.robot)
         if len(robot_layout.robot.girdles) < 2:
@@ -114,8 +114,8 @@ class Salamander(Experiment):
             fore=[limb.name for limb in robot_layout.limbs if limb.number == 0],
             hind=[limb.name for limb in robot_layout.limbs if limb.number == last_girdle],
         )
-        tables = {"beside_the_animal.csv": beside(self.measure(record))}
-        return Simulated(record=record, tables=tables, replays=self._replays(record))
+        tables = {"beside_the_animal.csv": comparison_table(self.measure(record))}
+        return SimulationResult(record=record, tables=tables, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         """Return the replay of the animal's walk, with the walk of the straight axis half transparent, by file name."""

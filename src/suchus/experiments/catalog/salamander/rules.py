@@ -2,7 +2,7 @@
 
 from suchus.article.paper.claims_animals import FORE_SPREAD, HIND_SPREAD
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule, Varied
+from suchus.article.verdict.rule import Clause, Rule, Variation
 
 _FORE, _HIND = 0.457, 0.479
 _TRIALS = "two standard deviations of single trials, which 19 of 20 animals' steps are within"
@@ -54,7 +54,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(claims=tuple(rule.claim for rule in RULES), settings={"friction_scales": (0.7,), "cycles": 6})
+DESIGN_SWEEP = Variation(claims=tuple(rule.claim for rule in RULES), settings={"friction_scales": (0.7,), "cycles": 6})
 
 _TIMES = {"foot_force_time_fore": 0.6, "foot_force_time_hind": 0.4}
 _PUSHES = {"foot_force_foreaft_hind": 0.01, "foot_force_foreaft_fore": -0.01}

@@ -20,7 +20,7 @@ FREQUENCIES = (2.6, 2.9, 3.4, 3.8)
 """Frequencies at which the animal was filmed [Hz]."""
 
 
-def played(robot: Robot, frequency: float) -> Gait:
+def animal_gait(robot: Robot, frequency: float) -> Gait:
     """Return the animal's swim for a robot with its joints, limbs folded back."""
     robot_layout = layout(robot)
     angles = ANIMAL_SWIM | {f"{limb.name}_yaw": (FOLDED,) for limb in robot_layout.limbs}

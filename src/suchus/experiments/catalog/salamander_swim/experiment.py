@@ -24,7 +24,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     silent,
     staged,
 )
@@ -88,7 +88,7 @@ class SalamanderSwim(Experiment):
             self, frequencies=self.frequencies[:1], settle=1, cycles=2, factors=(), own_size=self.own_size[:1]
         )
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Swim at every frequency, and in other waters at the highest."""
         water = Water()
         lake = Lake(level=2.0 * self.robot.length, water=water)
@@ -103,7 +103,7 @@ class SalamanderSwim(Experiment):
             ]
         records = []
         for i, frequency in enumerate(self.frequencies):
-            gait = animal.played(self.robot, frequency)
+            gait = animal.animal_gait(self.robot, frequency)
             lakes = waters if i == len(self.frequencies) - 1 else waters[:1]
             runs = [
                 Run(robot=self.robot, gait=gait, lake=lake_variant, label=f"{frequency:g} Hz") for lake_variant in lakes
@@ -112,14 +112,14 @@ class SalamanderSwim(Experiment):
             stage = staged(progress, f"swim at {frequency:g} Hz", *stage_bounds)
             records.append(simulate(runs, duration=(self.settle + self.cycles) / frequency, progress=stage))
         fastest_record = records[-1].isel(run=[0])
-        animals = own_size.swum(
+        animals = own_size.swim_animals(
             self.own_size, settle=self.settle, cycles=self.cycles,
             progress=staged(progress, "animals of their own size", 0.7, 1.0),
         )  # fmt: skip
         full_record = fastest_record.merge(self._swims(records), combine_attrs="override", compat="no_conflicts").merge(
             animals, combine_attrs="override", compat="no_conflicts"
         )
-        return Simulated(record=full_record, replays=self._replays(full_record))
+        return SimulationResult(record=full_record, replays=self._replays(full_record))
 
     def _swims(self, records: list[xr.Dataset]) -> xr.Dataset:
         """Return stride, swing and envelope of each swim, and the strides in other waters."""
@@ -157,7 +157,7 @@ class SalamanderSwim(Experiment):
         strides = np.full((len(LADDER), len(records), 2), np.nan)
         outline, length = Outline(self.robot), self.robot.length
         for i, (record, frequency) in enumerate(zip(records, self.frequencies, strict=True)):
-            gait, half = animal.played(self.robot, frequency), self.cycles // 2 / frequency
+            gait, half = animal.animal_gait(self.robot, frequency), self.cycles // 2 / frequency
             for rung, model in MODELS.items():
                 with suppress(SuchusError):
                     strides[list(LADDER).index(rung), i] = (
@@ -227,7 +227,7 @@ class SalamanderSwim(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Set the stride beside the animal's."""
-        return self.told(measures, stride=animal.STRIDE, animals=own_size.CALLED, rolled=own_size.ASTRAY)
+        return self.told(measures, stride=animal.STRIDE, animals=own_size.ANIMAL_LABELS, rolled=own_size.ROLLOVER_HEEL)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the strides over the frequency, and how far the body swings along its length."""

@@ -7,16 +7,16 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from suchus.animals.forces.body import widened
+from suchus.animals.forces.body import widen_body
 from suchus.core import rotation
 from suchus.core.progress import Progress, portion
 from suchus.experiments.catalog._similar import similar
-from suchus.experiments.catalog.salamander_swim.animal_swim import FREQUENCIES, played
+from suchus.experiments.catalog.salamander_swim.animal_swim import FREQUENCIES, animal_gait
 from suchus.experiments.experiment import Measure, Measures
 from suchus.robot.control import Swimming
 from suchus.robot.design import Robot
 from suchus.robot.design.pieces import volumes
-from suchus.robot.design.scale import scaled
+from suchus.robot.design.scale import rescale
 from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait, cycle_targets
 from suchus.robot.robots import ROBOTS
@@ -27,7 +27,7 @@ from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swimming.water import FilmedWave, fit, swim_of
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
-ASTRAY = float(np.radians(90.0))
+ROLLOVER_HEEL = float(np.radians(90.0))
 """Heel above which a body counts as rolled over [rad]."""
 _WATER_DEPTH = 4.0  # [body length]
 
@@ -67,16 +67,16 @@ def _eel(animal: OwnSize) -> Robot:
 def _alligator(animal: OwnSize) -> Robot:
     """Return the article's robot with air at the size of an alligator, its axis as wide as the volume asks."""
     floating_robot = ROBOTS["floating_caiman"]
-    scaled_robot = scaled(
+    scaled_robot = rescale(
         floating_robot,
         length_factor=animal.length / floating_robot.length,
         mass_factor=animal.mass / floating_robot.mass,
     )
-    return widened(scaled_robot, animal.mass / animal.density)
+    return widen_body(scaled_robot, animal.mass / animal.density)
 
 
 def _filmed_gait(animal: OwnSize, robot: Robot) -> Gait:
-    return played(robot, animal.frequency)
+    return animal_gait(robot, animal.frequency)
 
 
 def _wave(wavelength: float, head: float, tail: float) -> Callable[[OwnSize, Robot], Gait]:
@@ -86,7 +86,7 @@ def _wave(wavelength: float, head: float, tail: float) -> Callable[[OwnSize, Rob
         wave = FilmedWave(
             length=robot.length, frequency=animal.frequency, wavelength=wavelength, head=head, tail=tail
         )  # fmt: skip
-        return fit(robot, wave, name="filmed_wave", most=0.4).gait
+        return fit(robot, wave, name="filmed_wave", max_misfit=0.4).gait
 
     return make_gait
 
@@ -141,7 +141,7 @@ ANIMALS: Mapping[str, OwnSize] = {
     ),
 }  # fmt: skip
 """The animals by name."""
-CALLED: Mapping[str, str] = {
+ANIMAL_LABELS: Mapping[str, str] = {
     "salamander": "salamander with filled lungs",
     "salamander_neutral": "salamander that hovers",
     "catshark": "catshark whose fins carry it",
@@ -153,7 +153,7 @@ CALLED: Mapping[str, str] = {
 """Labels of the animals in sentences and figures."""
 
 
-def swum(names: Sequence[str], *, settle: int, cycles: int, progress: Progress) -> xr.Dataset:
+def swim_animals(names: Sequence[str], *, settle: int, cycles: int, progress: Progress) -> xr.Dataset:
     """Return how animals at their own size float and swim, over ``animal``.
 
     Each starts upright at the surface, or on the ground if it sinks, and swims.
@@ -167,11 +167,13 @@ def swum(names: Sequence[str], *, settle: int, cycles: int, progress: Progress) 
     rows = [
         _swim_animal(ANIMALS[name], settle, cycles, portion(progress, i, len(names))) for i, name in enumerate(names)
     ]
-    data = {f"own_{key}": ("animal", [row[key] for row in rows], {"units": unit}) for key, unit in _KEPT.items()}
+    data = {
+        f"own_{key}": ("animal", [row[key] for row in rows], {"units": unit}) for key, unit in _QUANTITY_UNITS.items()
+    }
     return xr.Dataset(data, coords={"animal": list(names)})
 
 
-_KEPT = {
+_QUANTITY_UNITS = {
     "length": "m", "mass": "kg", "volume": "m3", "frequency": "Hz", "keel": "m", "trim": "rad", "vanishing": "rad",
     "speed": "m/s", "surplus": "kg", "heel": "rad", "pitch": "rad", "under": "1", "swing": "m", "missed": "rad",
 }  # fmt: skip
@@ -223,7 +225,7 @@ def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) 
 
 def trim_submerged(robot: Robot) -> float:
     """Return the equilibrium pitch of a submerged robot in the mean posture of the swim, nose down positive [rad]."""
-    gait = played(robot, FREQUENCIES[0])
+    gait = animal_gait(robot, FREQUENCIES[0])
     return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heels=3).trim_submerged
 
 
@@ -231,10 +233,10 @@ def measures(record: xr.Dataset) -> Measures:
     """Return size, stability and swim of each animal; nothing if the record has none."""
     animal_measures = Measures()
     for name in record.animal.values if "animal" in record.dims else ():
-        row = {key: float(record[f"own_{key}"].sel(animal=name)) for key in _KEPT}
+        row = {key: float(record[f"own_{key}"].sel(animal=name)) for key in _QUANTITY_UNITS}
         length, frequency = row["length"], row["frequency"]
         for key in ("length", "mass", "volume", "trim", "vanishing", "heel", "pitch"):
-            animal_measures[f"{key}_{name}"] = Measure(row[key], _KEPT[key])
+            animal_measures[f"{key}_{name}"] = Measure(row[key], _QUANTITY_UNITS[key])
         animal_measures |= {
             f"density_{name}": Measure(row["mass"] / row["volume"], "kg/m3"),
             f"metacentric_height_{name}": Measure(row["keel"], "m"),
@@ -267,7 +269,9 @@ def draw(record: xr.Dataset, filmed_stride: float) -> Figure:
         stride_ax.barh(rows, stride, color=COLOURS["coordinated"], height=0.6)
         salamanders = [i for i, name in enumerate(names) if name.startswith("salamander")]
         stride_ax.plot([filmed_stride] * len(salamanders), salamanders, "D", color=COLOURS["neutral"], label="filmed")
-        stride_ax.set(xlabel="stride [body lengths a cycle]", yticks=rows, yticklabels=[CALLED[name] for name in names])
+        stride_ax.set(
+            xlabel="stride [body lengths a cycle]", yticks=rows, yticklabels=[ANIMAL_LABELS[name] for name in names]
+        )
         angle_ax.barh(rows - 0.17, heel, height=0.3, color=COLOURS["coordinated"], label="greatest heel")
         angle_ax.barh(rows + 0.17, -pitch, height=0.3, color=COLOURS["neutral"], label="mean pitch, nose up positive")
         angle_ax.set(xlabel="angle [deg]", yticks=rows, yticklabels=[])

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import nan
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule, Rung, Varied
+from suchus.article.verdict.rule import Clause, Rule, Rung, Variation
 
 LADDER: Mapping[str, str] = {
     "resistive": "resistive theory",
@@ -46,7 +46,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(
+DESIGN_SWEEP = Variation(
     claims=("salamander_swim_stride",),
     settings={"factors": (), "own_size": (), "settle": 6, "cycles": 4},
     samples=32,

@@ -15,16 +15,16 @@ from suchus.article.verdict import SHARES
 from suchus.article.verdict.judging import ROBUST, Share
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, SimulationResult, silent
 from suchus.experiments.study import Claims, conducted
 from suchus.experiments.study.answers import share_interval
-from suchus.experiments.study.claims_table import claim_row, table, turned
+from suchus.experiments.study.claims_table import border_texts, claim_row, table
 from suchus.robot.design import Robot
 from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.visual.figures.sensitivity import draw_shares, spoken
+from suchus.visual.figures.sensitivity import draw_shares, parameter_label
 
 _MIN_CHANCE = 0.01  # how seldom chance alone may say that this run and the shipped table differ [-]
 _COUNTS = {
@@ -75,13 +75,13 @@ class Sensitivity(Experiment):
         """Four samples, of which one cannot walk, one cycle, a coarser time step."""
         return replace(self, samples=4, cycles=1, timestep=0.01)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Run every sample in every condition, and judge each by the rules of the verdicts."""
         claims = Claims(robot=self.robot, gait=self.gait, samples=self.samples, cycles=self.cycles, seed=self.seed)
         study = claims.study(self.samples, self.timestep)
         record = claims.record(study, conducted(study, progress))
         record.attrs["shipped"] = int(self.comparable())
-        return Simulated(record=record, tables={"sensitivity.csv": table(_rows(record))})
+        return SimulationResult(record=record, tables={"sensitivity.csv": table(_rows(record))})
 
     def comparable(self) -> bool:
         """Whether the shipped table asks the same of the same robots and gaits."""
@@ -134,9 +134,9 @@ class Sensitivity(Experiment):
         rows, record = _rows(outcome.record), outcome.record
         units = dict(zip(record.parameter.values.tolist(), record.parameter_unit.values.tolist(), strict=True))
         if not record.attrs["shipped"] or not SHARES:
-            return {"sensitivity_shares": draw_shares(rows, turned(rows))}
+            return {"sensitivity_shares": draw_shares(rows, border_texts(rows))}
         words = {
-            key: f"{spoken(share.turned_by)} {'above' if share.above else 'below'} {share.at:.3g} "
+            key: f"{parameter_label(share.turned_by)} {'above' if share.above else 'below'} {share.at:.3g} "
             f"{units[share.turned_by]}"
             for key, share in SHARES.items()
             if share.turned_by in units and share.at is not None and max(share.share, 1 - share.share) < ROBUST

@@ -21,7 +21,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     silent,
     staged,
 )
@@ -29,13 +29,13 @@ from suchus.robot.control import Amphibious, Control, DepthHold, HeadingHold, He
 from suchus.robot.design import GRAVITY, Robot
 from suchus.robot.design.scale import control_period
 from suchus.robot.design.water import Water
-from suchus.robot.gaits import DRAFTED, GAITS, own_gait, suits
+from suchus.robot.gaits import DRAFTED, GAITS, default_gait, suits
 from suchus.robot.gaits.belly_crawl import LIMBS
-from suchus.robot.motion import LIMBS_BACK, Gait, GaitInMetres, cycle_targets, draft_gait, still
+from suchus.robot.motion import LIMBS_BACK, Gait, GaitInMetres, cycle_targets, draft_gait, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Lake, Run, Tolerances, simulate
 from suchus.sim.land.afloat import check_floats, hovers
-from suchus.sim.land.lake import up
+from suchus.sim.land.lake import up_direction
 from suchus.sim.metrics import swim_numbers
 from suchus.sim.metrics.energy import METRES
 from suchus.sim.model.hydrostatics import hydrostatics
@@ -53,11 +53,11 @@ the smaller the forces of the water are beside the friction of the ground. The t
 ground it lifts the hind feet. The trunk is straight."""
 _SAMPLE_INTERVAL, _PATH_INTERVAL = 4, 5
 """Control periods between two samples of a run, and samples of a run between two samples of a stored path [-]."""
-FALLEN = np.radians(60)
+MAX_TILT = np.radians(60)
 """Tilt of the body against gravity above which the robot has fallen [rad]."""
-AFLOAT = 0.01
+MAX_AFLOAT_LOAD = 0.01
 """Fraction of the weight on the ground below which the robot counts as afloat [-]."""
-LAST = 2.0
+FINAL_DURATION = 2.0
 """Duration at the end over which the robot must be afloat to count as in the water [s]."""
 _UNITS = {
     "ahead": ("m", "centre of mass beyond the water line, up the shore; less than 0 on the water's side"),
@@ -167,13 +167,13 @@ class Shore(Experiment):
 
     def gaits_on(self, robot: Robot) -> dict[str, Any]:
         """Return the gaits in which another robot walks ashore and lands: its own, or the first that can be steered."""
-        walking_gait = own_gait(robot)
+        walking_gait = default_gait(robot)
         if not walking_gait.has("steering"):
             candidates = (gait for gait in GAITS.values() if gait.has("steering") and gait.has("strokes"))
             walking_gait = next((gait for gait in candidates if suits(robot, gait)), None) or draft_gait(robot, DRAFTED)
         return {"gait": walking_gait, "wade": walking_gait, "others": ()}
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate all runs as one batch: to the shore, with other gaits, with less air let out, and into the water."""
         check_floats(self.robot, Lake(level=_DEEP_LEVEL))
         cases = self._cases()
@@ -182,7 +182,7 @@ class Shore(Experiment):
             [self.tolerances.built(run, run.seed) for run in runs],
             duration=self.duration,
             timestep=self.timestep,
-            every=_SAMPLE_INTERVAL,
+            sample_stride=_SAMPLE_INTERVAL,
             progress=staged(progress, "runs to the shore", 0.0, 0.9),
         )
         case_paths = paths(record, runs, _PATH_INTERVAL)
@@ -195,7 +195,7 @@ class Shore(Experiment):
         ):
             case_paths[name] = ("case", np.array(values), {"units": unit})
         shown_index = self._shown_case_index(case_paths)
-        back = cycle_targets(self.robot, still(self.robot, limbs=LIMBS_BACK), np.zeros(1))[0]
+        back = cycle_targets(self.robot, straight_gait(self.robot, limbs=LIMBS_BACK), np.zeros(1))[0]
         floating = hydrostatics(self.robot, back, heels=3)
         metres = self._metres(staged(progress, "work per metre on land, at the surface and below", 0.9, 1.0))
         full_record = xr.merge(
@@ -206,7 +206,7 @@ class Shore(Experiment):
             air_released=self.air_released, depth=self.depth, approach=self.approach,
             metacentric_height=floating.metacentric_height, length=self.robot.length, beat=self.frequency,
         )  # fmt: skip
-        return Simulated(record=full_record, replays=self._replays(full_record))
+        return SimulationResult(record=full_record, replays=self._replays(full_record))
 
     def _cases(self) -> list[tuple[str, float, Run]]:
         """Return kind, fraction of the air that is let out, and run of each case."""
@@ -283,7 +283,7 @@ class Shore(Experiment):
         ]
         duration = self.cycles * self.gait.period
         record = simulate(
-            runs, duration=2 * duration, timestep=self.timestep, every=_SAMPLE_INTERVAL, progress=progress
+            runs, duration=2 * duration, timestep=self.timestep, sample_stride=_SAMPLE_INTERVAL, progress=progress
         )
         return metres(record, list(controls), duration)
 
@@ -310,7 +310,7 @@ class Shore(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how many runs come ashore and when, by gait and by air let out, the falls, and the work per metre."""
         kind = record.kind.values
-        times, has_fallen, has_capsized = times_ashore(record), fallen(record), capsized(record)
+        times, has_fallen, has_capsized = times_ashore(record), find_fallen(record), find_capsized(record)
         main, is_into_water = kind == "ashore", kind == "into_water"
         ashore = times[main][np.isfinite(times[main])]
         slope, grip = record.slope.values, record.grip.values
@@ -367,7 +367,7 @@ def paths(record: xr.Dataset, runs: list[Run], interval: int) -> xr.Dataset:
         runs: on even slopes in lakes of constant level.
         interval: number of samples of which one is kept; powers and shares are means over them.
     """
-    ups = np.array([up(run.ground) for run in runs])
+    ups = np.array([up_direction(run.ground) for run in runs])
     line = np.array([water_line(run) for run in runs])
     ashore = np.sign([run.ground.uphill for run in runs])  # whether the land is ahead of the line or behind it
     shares = _ground_share(record, ups)
@@ -415,15 +415,15 @@ def _ground_share(record: xr.Dataset, ups: np.ndarray) -> np.ndarray:
     return np.asarray(np.einsum("rti,ri->rt", force, ups) / (GRAVITY * record.mass.values[:, None]))
 
 
-def fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
+def find_fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
     """Return which cases tilted by more than ``FALLEN``, or diverged."""
-    return np.asarray(~(record.tilt < FALLEN).all("moment").values)
+    return np.asarray(~(record.tilt < MAX_TILT).all("moment").values)
 
 
-def capsized(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
+def find_capsized(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
     """Return which cases first tilted by more than ``FALLEN`` while they swam and were afloat."""
-    is_over_tilt = ~(record.tilt < FALLEN)
-    free = (record.walks == 0.0) & (record.ground < AFLOAT)
+    is_over_tilt = ~(record.tilt < MAX_TILT)
+    free = (record.walks == 0.0) & (record.ground < MAX_AFLOAT_LOAD)
     first_index = is_over_tilt.argmax("moment")
     return np.asarray((is_over_tilt.any("moment") & free.isel(moment=first_index)).values)
 
@@ -432,15 +432,15 @@ def times_ashore(record: xr.Dataset) -> Float[np.ndarray, " case"]:
     """Return the time at which each case was first ashore, NaN for one that never was or fell [s]."""
     is_ashore = record.ahead.values >= record.attrs["beyond"]
     first_time = record.moment.values[is_ashore.argmax(axis=1)]
-    return np.where(is_ashore.any(axis=1) & ~fallen(record), first_time, np.nan)
+    return np.where(is_ashore.any(axis=1) & ~find_fallen(record), first_time, np.nan)
 
 
 def ending(record: xr.Dataset) -> str:
     """Return the end of the case that is drawn, in words."""
     case = record.isel(case=[record.attrs["shown"]])
     is_walking, phrases = case.walks.values[0] > 0, []
-    if capsized(case)[0]:
-        first_index = int((~(case.tilt < FALLEN)).values[0].argmax())
+    if find_capsized(case)[0]:
+        first_index = int((~(case.tilt < MAX_TILT)).values[0].argmax())
         return f"after {float(case.moment[first_index]):.2g} s it capsizes"
     if is_walking.any():
         phrases.append(f"after {float(case.moment[is_walking.argmax()]):.0f} s it walks")
@@ -449,7 +449,7 @@ def ending(record: xr.Dataset) -> str:
     time = float(times_ashore(case)[0])
     if np.isfinite(time):
         phrases.append(f"after {time:.0f} s it is {record.attrs['beyond']:g} m beyond the water line")
-    elif fallen(case)[0]:
+    elif find_fallen(case)[0]:
         phrases.append("it falls")
     else:
         phrases.append(f"it does not get {record.attrs['beyond']:g} m beyond the water line")
@@ -458,9 +458,9 @@ def ending(record: xr.Dataset) -> str:
 
 def in_water(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
     """Return which cases are afloat and swim on the water's side of the line for the last ``LAST`` seconds."""
-    end = record.sel(moment=slice(float(record.moment[-1]) - LAST, None))
-    free = (end.ground.mean("moment") < AFLOAT) & (end.walks.max("moment") == 0.0)
-    return np.asarray((free & (end.ahead < 0).all("moment")).values) & ~fallen(record)
+    end = record.sel(moment=slice(float(record.moment[-1]) - FINAL_DURATION, None))
+    free = (end.ground.mean("moment") < MAX_AFLOAT_LOAD) & (end.walks.max("moment") == 0.0)
+    return np.asarray((free & (end.ahead < 0).all("moment")).values) & ~find_fallen(record)
 
 
 def _share(times: np.ndarray, mask: np.ndarray) -> float:
@@ -535,7 +535,7 @@ def _costs(record: xr.Dataset) -> Measures:
     is_settled = (record.moment.values > 3.0)[None, :]
     measures = Measures()
     for name, mask in (
-        ("swimming", ~walks & is_settled & (record.ground.values < AFLOAT)),
+        ("swimming", ~walks & is_settled & (record.ground.values < MAX_AFLOAT_LOAD)),
         ("wading", walks & (submerged_fraction > 0.05)),
         ("ashore", walks & (submerged_fraction <= 0.0)),
     ):

@@ -20,7 +20,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     ranged,
     silent,
     staged,
@@ -34,7 +34,7 @@ from suchus.robot.kinematics.tree import frames
 from suchus.robot.motion import START, Gait, hip_height
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
+from suchus.sim.metrics import cost_of_transport, displacement, duty_factor, roll_peak_to_peak, time_window
 from suchus.visual.figures.gait_diagram import gait_lines
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
@@ -97,10 +97,10 @@ class SpeedRange(Experiment):
         two = tuple(GAITS[name] for name in ("semi_erect", "high_walk"))
         return replace(self, gaits=two if set(two) <= set(self.gaits) else self.gaits[:1], slower=(1.0, 1.5), cycles=1)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Walk in every gait, at every cycle time, with both models of the servos."""
         record, fastest = self._walk(progress)
-        return Simulated(record=record, replays=self._replays(fastest))
+        return SimulationResult(record=record, replays=self._replays(fastest))
 
     def _replays(self, fastest: Sequence[xr.Dataset]) -> Mapping[str, Replay]:
         """Return the replay of the first gait and the last, where there are two."""
@@ -147,7 +147,7 @@ class SpeedRange(Experiment):
         """
         max_duration, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
         quantities, records = [], []
-        for i, robot in enumerate((self.robot, _with_other(self.robot))):
+        for i, robot in enumerate((self.robot, _with_other_servos(self.robot))):
             runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for s in slower]
             record = simulate(
                 runs,
@@ -162,7 +162,7 @@ class SpeedRange(Experiment):
     def _measure_walk(self, record: xr.Dataset, run: Run) -> list[float]:
         """Return the quantities of ``_UNITS``, in their order, over the measured cycles of one walk."""
         start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period
-        excerpt = between(record, start, end)
+        excerpt = time_window(record, start, end)
         speed = float(displacement(record, start, end).sel(xyz="x")) / (end - start)
         legs = [i for limb in layout(run.robot).limbs for i in range(limb.servos.start, limb.servos.stop)]
         fastest = float(abs(excerpt.servo_velocity.isel(servo=legs)).quantile(0.99, "time").max())
@@ -226,14 +226,14 @@ class SpeedRange(Experiment):
             measures |= ranged("tail_on_ground_high_walk", high_walk.tail_lies.mean(), high_walk.tail_lies, "-")
         return measures
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; only gaits whose measures are wanted are simulated."""
-        named_gaits = tuple(gait for gait in self.gaits if any(f"_{gait.name}" in name for name in wanted))
+        named_gaits = tuple(gait for gait in self.gaits if any(f"_{gait.name}" in name for name in measure_names))
         needs_all_gaits = not named_gaits or not all(
-            any(f"_{gait.name}" in name for gait in named_gaits) for name in wanted
+            any(f"_{gait.name}" in name for gait in named_gaits) for name in measure_names
         )
         variant = self if needs_all_gaits else replace(self, gaits=named_gaits)
-        return super(SpeedRange, variant).measured(wanted, progress)
+        return super(SpeedRange, variant).measured(measure_names, progress)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how fast and how dear each gait is, and what the other model of the servos changes."""
@@ -273,7 +273,7 @@ _UNITS = {
 }
 
 
-def _with_other(robot: Robot) -> Robot:
+def _with_other_servos(robot: Robot) -> Robot:
     """Return a robot with the other model of its legs' servos."""
     return with_leg_servos(robot, with_full_torque if _falling(robot)[0] else with_speed_line)
 

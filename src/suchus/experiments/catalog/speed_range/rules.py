@@ -1,7 +1,7 @@
 """When the claims on the animals' high walk count as what (section II.A)."""
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule, Varied, between
+from suchus.article.verdict.rule import Clause, Rule, Variation, measure_with_interval
 
 _KMH = 1 / 3.6
 _MODELS = "both models of the legs' servos"
@@ -48,7 +48,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(
+DESIGN_SWEEP = Variation(
     claims=("high_walk_speed_low", "high_walk_speed_high", "tail_on_ground_in_high_walk"),
     designs=("robot",),
     settings={"slower": (0.45, 0.6, 0.75, 1.0)},
@@ -72,22 +72,28 @@ _REASON_MEASURES = {
 
 EXAMPLES: Examples = {
     "high_walk_speed_low": [
-        (_REASON_MEASURES | between("speed_high_walk_slowest", 1.251, 1.3), "same sense"),  # 4.5 km/h are 1.25 m/s
-        (_REASON_MEASURES | between("speed_high_walk_slowest", 1.249, 1.251), "undecided"),
-        (_REASON_MEASURES | between("speed_high_walk_slowest", 1.2, 1.249), "not testable"),
+        (
+            _REASON_MEASURES | measure_with_interval("speed_high_walk_slowest", 1.251, 1.3),
+            "same sense",
+        ),  # 4.5 km/h are 1.25 m/s
+        (_REASON_MEASURES | measure_with_interval("speed_high_walk_slowest", 1.249, 1.251), "undecided"),
+        (_REASON_MEASURES | measure_with_interval("speed_high_walk_slowest", 1.2, 1.249), "not testable"),
         (_REASON_MEASURES, "not testable"),
     ],
     "high_walk_speed_high": [
-        (_REASON_MEASURES | between("speed_high_walk_fastest", 2.64, 2.7), "same sense"),  # 9.5 km/h are 2.639 m/s
-        (_REASON_MEASURES | between("speed_high_walk_fastest", 2.637, 2.64), "undecided"),
-        (_REASON_MEASURES | between("speed_high_walk_fastest", 2.6, 2.637), "not testable"),
+        (
+            _REASON_MEASURES | measure_with_interval("speed_high_walk_fastest", 2.64, 2.7),
+            "same sense",
+        ),  # 9.5 km/h are 2.639 m/s
+        (_REASON_MEASURES | measure_with_interval("speed_high_walk_fastest", 2.637, 2.64), "undecided"),
+        (_REASON_MEASURES | measure_with_interval("speed_high_walk_fastest", 2.6, 2.637), "not testable"),
         (_REASON_MEASURES, "not testable"),
     ],
     "tail_on_ground_in_high_walk": [
-        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.351, 0.649), "same sense"),
-        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.349, 0.5), "undecided"),
-        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.3, 0.349), "not testable"),
-        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.5, 0.651), "undecided"),
-        (_REASON_MEASURES | between("tail_on_ground_high_walk", 0.651, 0.7), "not testable"),
+        (_REASON_MEASURES | measure_with_interval("tail_on_ground_high_walk", 0.351, 0.649), "same sense"),
+        (_REASON_MEASURES | measure_with_interval("tail_on_ground_high_walk", 0.349, 0.5), "undecided"),
+        (_REASON_MEASURES | measure_with_interval("tail_on_ground_high_walk", 0.3, 0.349), "not testable"),
+        (_REASON_MEASURES | measure_with_interval("tail_on_ground_high_walk", 0.5, 0.651), "undecided"),
+        (_REASON_MEASURES | measure_with_interval("tail_on_ground_high_walk", 0.651, 0.7), "not testable"),
     ],
 }

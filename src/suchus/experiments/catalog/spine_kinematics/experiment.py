@@ -12,13 +12,13 @@ from suchus.core.checks import Checks
 from suchus.experiments.catalog._frames import draw_frames, frames_of
 from suchus.experiments.catalog.spine_kinematics import figure as pictures
 from suchus.experiments.catalog.spine_kinematics.rules import EXACT
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, SimulationResult, silent
 from suchus.robot.design import Robot, spine_joints
 from suchus.robot.design.measures import SpineMeasures
 from suchus.robot.kinematics import printed, spine
 from suchus.robot.robots import ROBOTS
 
-_SHOWN = (0.2, -0.15, 0.25, -0.15, 0.2)
+_FRAME_ANGLES = (0.2, -0.15, 0.25, -0.15, 0.2)
 """Angles at which the frames are drawn [rad]."""
 
 _METRE = {"units": "m"}
@@ -63,7 +63,7 @@ class SpineKinematics(Experiment):
         """Return it with few postures."""
         return replace(self, postures=500, grid=24)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Invert random postures, compare others with (15), and map the workspace."""
         back = self.robot.spine
         angles = _random(back, self.postures, self.seed)
@@ -72,10 +72,10 @@ class SpineKinematics(Experiment):
         progress("workspace and least bending", 0.5)
         parts = [inverted, _workspace(back, angles, self.grid), _errors(back, self.postures, self.seed), _turns(back)]
         record = xr.merge(
-            [*parts, _family(self.robot), frames_of(spine.chain(back), _SHOWN, np.eye(3))],
+            [*parts, _family(self.robot), frames_of(spine.chain(back), _FRAME_ANGLES, np.eye(3))],
             combine_attrs="drop_conflicts",
         )
-        return Simulated(record=record.assign_attrs(_facts(back)))
+        return SimulationResult(record=record.assign_attrs(_facts(back)))
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return lengths and errors of (15), as printed and corrected, and the round-trip errors of the inverse."""

@@ -16,7 +16,7 @@ from suchus.core.fingerprint import fingerprint
 from suchus.core.jobs import at_scheduler, conduct_sweep
 from suchus.experiments.catalog._similar import similar
 from suchus.experiments.catalog._taken import TAKEN, TakenMidline, midlines
-from suchus.experiments.catalog.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake, how
+from suchus.experiments.catalog.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake, drive_caption
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -24,7 +24,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     silent,
     staged,
 )
@@ -42,14 +42,14 @@ from suchus.swimming.water import (
     swim,
 )
 from suchus.swimming.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
-from suchus.swimming.water.samples import all_kept, check_kept, kept_in
-from suchus.swimming.water.setting import BESIDE
+from suchus.swimming.water.samples import check_checkpoint_folder, checkpoint_path, checkpoint_paths
+from suchus.swimming.water.setting import MARGIN_BESIDE
 from suchus.visual.figures.vortices import draw_vortices, film_vortices
 from suchus.visual.replay import wake_replay
 
-MOST_REYNOLDS = 2e4
+MAX_REYNOLDS = 2e4
 """Largest frequency times length squared over viscosity [-]."""
-WHOLE = "trunk and tail"
+TRUNK_AND_TAIL = "trunk and tail"
 """The motion that the others are compared with."""
 LIMBS = "limbs folded"
 """The same with the limbs in the water."""
@@ -124,7 +124,7 @@ class Swim3d(Experiment):
     taken: bool = False
     """Whether the midline that the joints take in six degrees of freedom swims too, with trunk and tail and with the
     tail alone: two more swims like those of trunk and tail."""
-    beside: float = BESIDE
+    beside: float = MARGIN_BESIDE
     """Water between the widest swing and the sides of the box [body length]."""
     slice_cells: int = 96
     """Cells per body length of the slice [-]."""
@@ -145,12 +145,12 @@ class Swim3d(Experiment):
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("beside", 0.0, 3.0, "body lengths")
             reynolds: Any = self.reynolds  # a file may say anything
-            if isinstance(reynolds, (int, float)) and reynolds > MOST_REYNOLDS:
+            if isinstance(reynolds, (int, float)) and reynolds > MAX_REYNOLDS:
                 check.that(False, f"{self.name()}.reynolds is {self.reynolds:.3g}: real water, 1e6 at 1 Hz and 1 m, "
                            "would need to slip along the body and to leave it where its layer does, and that is not "
-                           f"built; at most {MOST_REYNOLDS:.0f} is allowed, whose layers a grid carries")  # fmt: skip
+                           f"built; at most {MAX_REYNOLDS:.0f} is allowed, whose layers a grid carries")  # fmt: skip
             else:
-                check.number("reynolds", 10.0, MOST_REYNOLDS, "")
+                check.number("reynolds", 10.0, MAX_REYNOLDS, "")
             check.that(self.reading in READINGS, f"{self.name()}.reading is {self.reading!r}; there are "
                        f"{', '.join(READINGS)}")  # fmt: skip
             check.rising("cells", 32, 512, "cells")
@@ -170,19 +170,19 @@ class Swim3d(Experiment):
             tail_heights=(), frames=4, jobs=1,
         )  # fmt: skip
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Swim on every grid, held, in other motions and with higher tails; the slice and the models beside them."""
         with at_scheduler(self.scheduler or None) as client:  # refused before anything is computed
             return self._simulated(progress, client)
 
-    def _simulated(self, progress: Progress, client: Any) -> Simulated:
+    def _simulated(self, progress: Progress, client: Any) -> SimulationResult:
         """Run every swim, here or on a cluster, and return record, film, replay and checkpoint files.
 
         Args:
             progress: called with the stage and the fraction that is done.
             client: Dask client of the scheduler; None computes the swims in processes of this machine.
         """
-        check_kept(self.keep)
+        check_checkpoint_folder(self.keep)
         swim_gait, printed_gait = (self._motion(sign) for sign in (-1, 1))
         joint_midlines = midlines(self.robot, swim_gait, self.compared_cells + 1) if self.taken else []
         runs = self._runs(swim_gait, printed_gait, joint_midlines)
@@ -195,16 +195,16 @@ class Swim3d(Experiment):
         items = [item for _, item in runs]
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             records = conduct_sweep(
-                self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
+                self.name(), partial(swim_in_space, self.robot), items, Path(folder) / "swims", client=client,
                 progress=staged(progress, "", 0.0, 0.9), jobs=self.jobs,
-                local=partial(_swum_here, self.robot, self.keep),
+                local=partial(_swim_locally, self.robot, self.keep),
             )  # fmt: skip
         reference = self._reference_speeds(swim_gait, staged(progress, "the slice", 0.9, 0.95))
         swims = {name: swim_record for (name, _), swim_record in zip(runs, records, strict=True)}
         record = self.recorded(swims, with_midlines(reference, joint_midlines))
         film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
-        stored_swims = all_kept(self.keep, ["slice", *map(_checkpoint_name, items)])
-        return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record), kept=stored_swims)
+        stored_swims = checkpoint_paths(self.keep, ["slice", *map(_checkpoint_name, items)])
+        return SimulationResult(record=record, films={"swim_3d.gif": film}, replays=_replays(record), kept=stored_swims)
 
     def recorded(self, swims: Mapping[str, xr.Dataset], reference: xr.Dataset) -> xr.Dataset:
         """Return the record of the experiment.
@@ -219,7 +219,7 @@ class Swim3d(Experiment):
         arms = ("trunk only", "tail only", "as printed", AS_COMMANDED, LIMBS, *TAKEN)
         names = [name for name in arms if name in swims]
         tails = {f"tail {height:g} m": height for height in self.tail_heights}
-        compared_swims = {WHOLE: base_swim, **{name: swims[name] for name in (*names, *tails)}}
+        compared_swims = {TRUNK_AND_TAIL: base_swim, **{name: swims[name] for name in (*names, *tails)}}
         dropped_names = ("speed", "thrust", "power", "steps", "million_cells", "thin", "cycle", *COUPLED)
         finest_record = grids[-1].drop_vars(dropped_names, errors="ignore")
         n, held_swim = self.compared_cycles, swims["held"]
@@ -318,7 +318,7 @@ class Swim3d(Experiment):
     def _reference_speeds(self, swim_gait: Any, progress: Any) -> xr.Dataset:
         """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
         plane = resolved_swim(
-            self.robot, swim_gait, self._slice, checkpoint=kept_in(self.keep, "slice"), progress=progress
+            self.robot, swim_gait, self._slice, checkpoint=checkpoint_path(self.keep, "slice"), progress=progress
         )
         models, real = swim(self.robot, swim_gait, water=Water(viscosity=self.viscosity)), swim(self.robot, swim_gait)
         return xr.Dataset(
@@ -363,7 +363,7 @@ class Item(NamedTuple):
     """Whether the robot's own joints move the body; otherwise it follows the commanded midline."""
 
 
-def swum_in_space(robot: Robot, item: Item, progress: Progress, checkpoint: Path | None = None) -> xr.Dataset:
+def swim_in_space(robot: Robot, item: Item, progress: Progress, checkpoint: Path | None = None) -> xr.Dataset:
     """Return a swim of a robot, see ``water.resolved``; the result depends on robot and item alone."""
     motion, setting, joints = item
     if joints:
@@ -372,9 +372,9 @@ def swum_in_space(robot: Robot, item: Item, progress: Progress, checkpoint: Path
     return resolved_swim(robot, motion, setting, checkpoint=checkpoint, progress=progress)
 
 
-def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
+def _swim_locally(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
     """Return the same swim, with a checkpoint in the folder ``keep``."""
-    return swum_in_space(robot, item, progress, kept_in(keep, _checkpoint_name(item)))
+    return swim_in_space(robot, item, progress, checkpoint_path(keep, _checkpoint_name(item)))
 
 
 def _checkpoint_name(item: Item) -> str:
@@ -396,7 +396,8 @@ def _joints(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
 def _replays(record: xr.Dataset) -> dict[str, Replay]:
     """Return the page on which the body swims through its last cycle on the finest grid, vortices around it."""
     caption = (
-        f"The body of the robot in three dimensions{how(record)} at f L² / ν = {float(record.reynolds):.0f}, on "
+        f"The body of the robot in three dimensions{drive_caption(record)} at f L² / ν = "
+        f"{float(record.reynolds):.0f}, on "
         f"{int(record.cells[-1])} cells a length, in its last cycle. Surfaces lie where the second invariant of the "
         f"velocity gradient is {float(record.vortex_level):.3g} 1/s², around vortices."
     )

@@ -13,7 +13,7 @@ from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 _DOTS = ((0, (1, 1.5)), (0, (3, 1, 1, 1)))
 
 
-def how(record: xr.Dataset) -> str:
+def drive_caption(record: xr.Dataset) -> str:
     """Return a clause for captions if the robot's own joints move the body; otherwise nothing."""
     return ", moved by its own joints," if record.attrs["joints"] else ""
 
@@ -44,7 +44,7 @@ def draw_speeds(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         f"Mean speed of each cycle from rest, at f L² / ν = {float(record.reynolds):.0f}: the robot's body in three "
-        f"dimensions{how(record)} on grids of so many cells a length, and {reference_text}.",
+        f"dimensions{drive_caption(record)} on grids of so many cells a length, and {reference_text}.",
     )
 
 

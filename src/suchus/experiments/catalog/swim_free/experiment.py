@@ -18,13 +18,13 @@ from suchus.experiments.catalog.swim_free import submerged
 from suchus.experiments.catalog.swim_free.figure import draw_below, draw_speeds, draw_tail
 from suchus.experiments.catalog.swim_free.flow_figure import draw_in_flow, film_slice
 from suchus.experiments.catalog.swim_free.in_flow import (
+    checkpoint_names,
     fin_runs,
-    flow_kept,
     flow_measures,
     flow_runs,
     passive_joints,
     residual_text,
-    swum,
+    swim_in_flow,
     water_of,
 )
 from suchus.experiments.experiment import (
@@ -34,7 +34,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     silent,
     staged,
 )
@@ -51,8 +51,8 @@ from suchus.sim.land.waters import Form
 from suchus.sim.metrics import swim_numbers
 from suchus.sim.record import WATER
 from suchus.swimming.water import Outline, swim, swim_of
-from suchus.swimming.water.samples import all_kept, check_kept
-from suchus.swimming.water.sections import likely
+from suchus.swimming.water.samples import check_checkpoint_folder, checkpoint_paths
+from suchus.swimming.water.sections import correction_factors
 from suchus.swimming.water.slender import cruise, cycle, reactive
 from suchus.visual.figures.vortices import film_vortices
 
@@ -66,7 +66,7 @@ _COEFFICIENT_FACTORS = {
     "shedding": (0.5, 1.5),
 }
 """Plausible factors on the coefficients of the water [-]: round sections that oscillate, swimming fish, how the tail
-sheds. Drag and added mass may be farther off, as ``water.sections.likely`` says of the robot's sections."""
+sheds. Drag and added mass may be farther off, as ``water.sections.correction_factors`` says of the robot's sections."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -234,9 +234,9 @@ class SwimFree(Experiment):
     def _duration(self) -> float:
         return (self.settle + self.cycles) / self.frequency
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Swim in every motion, stiffer, steered, in other waters, and at half the time step."""
-        check_kept(self.keep)
+        check_checkpoint_folder(self.keep)
         check_floats(self.robot, Lake(level=self.level))
         check_lake(self.robot, self._lake)
         self._doubt_correction()
@@ -270,18 +270,18 @@ class SwimFree(Experiment):
             **{f"{name}_by_table": factor for name, factor in by_table.items()},
         )
         if not flow:
-            return Simulated(record=record, replays=self._replays(record))
-        flow_record, first_record, judgement, correction = swum(flow, self.flow_cycles, self.keep, progress)
+            return SimulationResult(record=record, replays=self._replays(record))
+        flow_record, first_record, judgement, correction = swim_in_flow(flow, self.flow_cycles, self.keep, progress)
         record = xr.merge([record, flow_record], join="exact", compat="no_conflicts", combine_attrs="override")
         record.attrs.update(flow=self.water, linked=int(self.linked))
         films = {"swim_in_flow.gif": film_vortices(record)} if "vortices" in record else film_slice(record)
-        return Simulated(
+        return SimulationResult(
             record=record, replays={**self._replays(record), **self._flow_replay(first_record)}, films=films,
             tables={
                 "residual.md": residual_text(record, judgement, is_earned=correction is not None),
                 **({} if correction is None else {"correction.toml": render(correction)}),
             },
-            kept=all_kept(self.keep, flow_kept([run.label for run in flow])),
+            kept=checkpoint_paths(self.keep, checkpoint_names([run.label for run in flow])),
         )  # fmt: skip
 
     def _flow_runs(self, motions: Mapping[str, Gait]) -> list[Run]:
@@ -312,14 +312,14 @@ class SwimFree(Experiment):
         """Return the stored variables of the swims below the surface; nothing of a robot that cannot hover."""
         runs = submerged.deep_runs(self.robot, motion, self._lake, self.depth)
         duration = (self.dive + self.cycles) / self.frequency
-        return [submerged.kept(simulate(runs, duration=duration, progress=progress), runs)] if runs else []
+        return [submerged.dive_record(simulate(runs, duration=duration, progress=progress), runs)] if runs else []
 
     def _by_table(self, motion: Gait) -> Mapping[str, float]:
         """Return the factors by which the table of sections differs from the coefficients of the swims [-]."""
         outline = Outline(with_values(self.robot, {"hull": None}))
         free_swim = cruise(outline, motion, reactive, Water())
         side = np.ptp(cycle(outline, motion, free_swim.sway, free_swim.turn).y, axis=0) / 2
-        return dict(zip(("cross_drag", "added_mass"), likely(*outline.silhouette, side), strict=True))
+        return dict(zip(("cross_drag", "added_mass"), correction_factors(*outline.silhouette, side), strict=True))
 
     @property
     def _joints(self) -> Mapping[str, Robot]:
@@ -342,7 +342,7 @@ class SwimFree(Experiment):
             for ending, robot in self._joints.items()
             for name, gait in motions.items()
         ]
-        steered_gait = _steered(self.robot, whole_wave, tail=self.turn, trunk=self.trunk_turn)
+        steered_gait = _steered_gait(self.robot, whole_wave, tail=self.turn, trunk=self.trunk_turn)
         runs.append(Run(robot=self.robot, gait=steered_gait, lake=lake, control=control, label="steered"))
         for name, ends in factors.items():
             for factor in ends:
@@ -442,7 +442,7 @@ class SwimFree(Experiment):
         motions = [name for name in MOTIONS if f"speed_{name}" in speeds]
         figures = {"swim_speeds": draw_speeds(speeds, motions, _MODELS), "tail_shares": draw_tail(outcome.record)}
         if "dive" in outcome.record:
-            figures["below"] = draw_below(outcome.record, submerged.DEEP)
+            figures["below"] = draw_below(outcome.record, submerged.DIVE_LABELS)
         return {**figures, **(draw_in_flow(outcome.record) if "flow_run" in outcome.record else {})}
 
 
@@ -455,10 +455,10 @@ def _motions(motion: Gait) -> dict[str, Gait]:
     return motions | {"reversed": motion.reversed()}
 
 
-def _steered(robot: Robot, motion: Gait, *, tail: float, trunk: float) -> Gait:
+def _steered_gait(robot: Robot, motion: Gait, *, tail: float, trunk: float) -> Gait:
     """Return a wave about mean bends, which are halved until the joints can follow it."""
     candidate = motion.with_numbers(tail_offset=tail, trunk_offset=trunk)
-    return candidate if suits(robot, candidate) else _steered(robot, motion, tail=tail / 2, trunk=trunk / 2)
+    return candidate if suits(robot, candidate) else _steered_gait(robot, motion, tail=tail / 2, trunk=trunk / 2)
 
 
 def _shares(excerpt: xr.Dataset, labels: Sequence[str]) -> Measures:

@@ -19,7 +19,7 @@ from suchus.sim.land.waters import Slice, Space
 from suchus.swimming.coupling import Swim, earned_correction, judgement_text, residual_table
 from suchus.swimming.coupling.earned import LinkJudgement
 from suchus.swimming.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
-from suchus.swimming.water.samples import kept_in
+from suchus.swimming.water.samples import checkpoint_path
 
 _FLOW_VARIABLES = (
     "centre_of_mass", "position", "orientation", "joint_angle", "servo_power", "water_force", "water_power",
@@ -109,12 +109,12 @@ def fins(record: xr.Dataset) -> xr.Dataset:
     )
 
 
-def flow_kept(labels: Sequence[str]) -> list[str]:
+def checkpoint_names(labels: Sequence[str]) -> list[str]:
     """Return the checkpoint names of unfinished swims in a flow."""
     return [f"flow {label}" for label in labels]
 
 
-class InFlow(NamedTuple):
+class FlowSwims(NamedTuple):
     """Results of the swims in a flow."""
 
     kept: xr.Dataset
@@ -127,7 +127,7 @@ class InFlow(NamedTuple):
     """The justified correction of the section model; None if there is none."""
 
 
-def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InFlow:
+def swim_in_flow(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> FlowSwims:
     """Simulate swims in a flow that is solved with the robot.
 
     A later swim that diverges has NaN from there on.
@@ -150,7 +150,7 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InF
         with suppress(*([Diverged] if number else [])):
             swim.go(
                 swim.ticks * swim.stepper.period, progress=stage, watch=film,
-                checkpoint=kept_in(keep, *flow_kept([run.label])),
+                checkpoint=checkpoint_path(keep, *checkpoint_names([run.label])),
             )  # fmt: skip
         records.append(swim.record().isel(run=0))
         film_data = film.dataset() if film is not None else film_data
@@ -193,7 +193,7 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InF
             if record is not first_record and _is_in(record, complete_records)
         ]
         correction, judgements = earned_correction(
-            runs[0].robot, complete_records, period=period, first=_GROWTH_CYCLES * period, viscosity=viscosity,
+            runs[0].robot, complete_records, period=period, start_time=_GROWTH_CYCLES * period, viscosity=viscosity,
             name=f"{runs[0].robot.name}_{water.reynolds:.0f}",
         )  # fmt: skip
     flow_record = xr.Dataset({**data, **numbers}, coords={**coords, **names}).merge(table).merge(film_data)
@@ -201,9 +201,9 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InF
     if correction is not None:
         held_out_runs = [run for run in runs[1:] if run.label in held_out_names]
         in_flow = [flow_speed(flow_record, name) for name in held_out_names]
-        speed_text, is_nearer = speeds_beside(held_out_runs, in_flow, cycles, viscosity, correction)
+        speed_text, is_nearer = compare_section_speeds(held_out_runs, in_flow, cycles, viscosity, correction)
         text, correction = text + speed_text, correction if is_nearer else None
-    return InFlow(flow_record, first_record, text, correction)
+    return FlowSwims(flow_record, first_record, text, correction)
 
 
 def _section_tables(
@@ -225,7 +225,7 @@ def _section_tables(
         valid = record.isel(time=np.flatnonzero(np.isfinite(record.coupling_residual.values)))
         if not tables or _is_in(record, complete_records):
             tables.append(
-                residual_table(run.robot, valid, period=period, first=_GROWTH_CYCLES * period, viscosity=viscosity)
+                residual_table(run.robot, valid, period=period, start_time=_GROWTH_CYCLES * period, viscosity=viscosity)
             )
         else:
             tables.append(
@@ -238,7 +238,7 @@ def _section_tables(
     return tables[0].assign(swims)
 
 
-def nearer(flow: Sequence[float], shipped: Sequence[float], corrected: Sequence[float]) -> bool:
+def reduces_speed_error(flow: Sequence[float], shipped: Sequence[float], corrected: Sequence[float]) -> bool:
     """Return whether corrected speeds have a smaller mean absolute error than those of the shipped model.
 
     Args:
@@ -250,7 +250,7 @@ def nearer(flow: Sequence[float], shipped: Sequence[float], corrected: Sequence[
     return misses[1] < misses[0]
 
 
-def speeds_beside(
+def compare_section_speeds(
     runs: Sequence[Run], in_flow: Sequence[float], cycles: int, viscosity: float, correction: SectionCorrection
 ) -> tuple[str, bool]:
     """Swim by sections as in the flow, with a correction and without, at the flow's viscosity and below the surface.
@@ -274,7 +274,7 @@ def speeds_beside(
     x = simulate(section_runs, duration=cycles * period).centre_of_mass.sel(xyz="x")
     last_cycle = x.sel(time=slice((cycles - 1) * period - 1e-9, None)).transpose("run", "time").values
     speeds = ((last_cycle[:, -1] - last_cycle[:, 0]) / period).reshape(2, len(runs))
-    is_nearer = nearer(in_flow, speeds[0], speeds[1])
+    is_nearer = reduces_speed_error(in_flow, speeds[0], speeds[1])
     head = "\n| speed in the last cycle | flow | sections as shipped | corrected |\n|---|---:|---:|---:|\n"
     rows = [
         f"| {run.label} | {1e3 * flow:.1f} mm/s | {1e3 * shipped:.1f} | {1e3 * corrected:.1f} |\n"

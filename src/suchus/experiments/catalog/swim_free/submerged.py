@@ -17,12 +17,12 @@ from suchus.sim.land import Lake, Run
 from suchus.sim.land.afloat import hovers
 from suchus.sim.model.hydrostatics import hydrostatics
 
-DEEP = {
+DIVE_LABELS = {
     "deep": "chambers as designed", "held": "the same, pitch held", "pitched": "the same, dives by pitch",
     "in_foam": "air in the foam",
 }  # fmt: skip
 """Labels of the swims by name."""
-NEAR = 0.05
+DEPTH_TOLERANCE = 0.05
 """Greatest distance from the depth at which a dive counts as finished [m]."""
 _DIVE = 1.0
 """Pitch of the swim that dives by pitch, over its height above the depth [rad/m]."""
@@ -52,7 +52,7 @@ def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
     ]
 
 
-def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
+def dive_record(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
     """Return the stored variables of the swims below the surface, by name, over their own time.
 
     Beside it, from statics: the pitch at which each robot hovers, straight and at rest, and how much of its air is in
@@ -104,7 +104,7 @@ def measures(record: xr.Dataset) -> Measures:
         dive_measures[f"pitch{ending}"] = Measure(float(swim.deep_pitch.mean()), "rad")
         dive_measures[f"speed{ending}"] = Measure(float((x[-1] - x[0]) / (time[-1] - time[0])), "m/s")
         dive_measures[f"depth_error{ending}"] = Measure(float(np.abs(swim.deep_depth.values - depth).max()), "m")
-        far_samples = np.flatnonzero(np.abs(record.deep_depth.sel(dive=name).values - depth) > NEAR)
+        far_samples = np.flatnonzero(np.abs(record.deep_depth.sel(dive=name).values - depth) > DEPTH_TOLERANCE)
         times = record.dive_time.values
         arrived = (
             0.0

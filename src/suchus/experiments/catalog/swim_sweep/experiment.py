@@ -15,14 +15,23 @@ from suchus.core.checks import Checks
 from suchus.core.jobs import at_scheduler, conduct_sweep
 from suchus.experiments.catalog._similar import similar
 from suchus.experiments.catalog.swim_sweep.figure import draw_check, draw_maps
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    SimulationResult,
+    silent,
+    staged,
+)
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, movement
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics import swim_numbers
-from suchus.swimming.water import MODELS, Swum, fit, greatest, printed_wave, survey
+from suchus.swimming.water import MODELS, SwimMeasures, fit, max_amplitude_factor, printed_wave, survey
 from suchus.swimming.water.resolved import SwimSetting, resolved_swim
-from suchus.swimming.water.samples import check_kept
+from suchus.swimming.water.samples import check_checkpoint_folder
 
 _PEERS = (
     ("C. porosus, 0.3 to 1.1 m", "sustained speed rises with size, in body lengths it falls", "Elsworth et al. 2003"),
@@ -37,7 +46,7 @@ _SWIM_UNITS = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal"
 """Stored numbers of a swim by CFD, with units; see ``water.Swum``."""
 
 
-def swum_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progress) -> xr.Dataset:
+def swim_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progress) -> xr.Dataset:
     """Return the numbers of one swim from rest by CFD.
 
     Args:
@@ -46,7 +55,7 @@ def swum_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progr
         motion: gait at 1 Hz.
         progress: called with the fraction that is done.
     """
-    numbers = Swum.of(resolved_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
+    numbers = SwimMeasures.of(resolved_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
     return xr.Dataset({name: ((), numbers[name], {"units": unit}) for name, unit in _SWIM_UNITS.items()})
 
 
@@ -123,14 +132,14 @@ class SwimSweep(Experiment):
             points=((1.0, 1.0), (1.4, 1.0)), reynolds=1000.0, cells=32, cycles=2,
         )  # fmt: skip
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Compute the maps by the slender-body models, and the points by CFD."""
         with at_scheduler(self.scheduler or None) as client:  # refused before anything is computed
             return self._simulated(progress, client)
 
-    def _simulated(self, progress: Progress, client: Any) -> Simulated:
+    def _simulated(self, progress: Progress, client: Any) -> SimulationResult:
         """Compute maps and points; ``client`` is the Dask client that computes the points, None computes them here."""
-        check_kept(self.keep)
+        check_checkpoint_folder(self.keep)
         gaits = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
         by_frequency = self._map("frequency", self.frequencies, lambda a, f: replace(gaits[1.0].bent(a), period=1 / f))
         progress("slender-body models", 0.15)
@@ -138,7 +147,7 @@ class SwimSweep(Experiment):
         progress("slender-body models", 0.3)
         points = self._points(staged(progress, "CFD", 0.3, 1.0), client)
         record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
-        return Simulated(record=record, tables={"peers.md": self._peers(record)})
+        return SimulationResult(record=record, tables={"peers.md": self._peers(record)})
 
     def _fit(self, waves: float) -> Gait:
         wave = printed_wave(self.robot, self.reading, waves_per_body=waves)
@@ -160,7 +169,7 @@ class SwimSweep(Experiment):
             dims = ("model", "amplitude", axis) if "model" in variable.dims else ("amplitude", axis)
             sizes = (*variable.shape[:-1], *shape)
             data[f"{name}_by_{axis}"] = (dims, variable.values.reshape(sizes), variable.attrs)
-        max_amplitudes = [greatest(self.robot, motion(1.0, value)) for value in values]
+        max_amplitudes = [max_amplitude_factor(self.robot, motion(1.0, value)) for value in values]
         data[f"most_amplitude_by_{axis}"] = (axis, max_amplitudes, {"units": "1"})
         units = {"frequency": "Hz", "waves": "1"}
         coords = {
@@ -179,7 +188,7 @@ class SwimSweep(Experiment):
         """
         motions = [self._fit(waves).bent(amplitude) for amplitude, waves in self.points]
         setting = SwimSetting(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles)
-        work = partial(swum_point, self.robot, setting)
+        work = partial(swim_point, self.robot, setting)
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             swims = conduct_sweep(self.name(), work, motions, Path(folder), progress=progress, client=client)
         slender = survey(self.robot, motions)

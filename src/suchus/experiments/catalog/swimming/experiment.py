@@ -22,10 +22,27 @@ from suchus.experiments.catalog.swimming.figure import (
     film_pressure,
     film_vorticity,
 )
-from suchus.experiments.catalog.swimming.ladder import MOTIONS, Climb, Swims, climbed, measures, motions, swims
+from suchus.experiments.catalog.swimming.ladder import (
+    MOTIONS,
+    LadderSetting,
+    Swims,
+    measures,
+    motions,
+    run_ladder,
+    swims,
+)
 from suchus.experiments.catalog.swimming.ladder import table as ladder_table
 from suchus.experiments.catalog.swimming.rules import LADDER, RULES
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    SimulationResult,
+    silent,
+    staged,
+)
 from suchus.robot.design import Robot
 from suchus.robot.kinematics.wave import READINGS
 from suchus.robot.robots import ROBOTS
@@ -35,7 +52,7 @@ from suchus.swimming.water import (
     Fit,
     Motion,
     Quarters,
-    Swum,
+    SwimMeasures,
     attempts,
     convex_higher,
     efficiency,
@@ -45,7 +62,7 @@ from suchus.swimming.water import (
     swim,
 )
 from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
-from suchus.swimming.water.samples import all_kept, check_kept, kept_in
+from suchus.swimming.water.samples import check_checkpoint_folder, checkpoint_path, checkpoint_paths
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Conditions: the motions whose slices are compared while swimming freely, the first three of them the ladder's."""
@@ -146,7 +163,7 @@ class PlaneSwims(Experiment):
             tow=2.0, frames=3,
         )  # fmt: skip
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Swim tethered and free, in every motion, on every rung of the ladder."""
         climb, printed_fit = self.climb(), self._fit(1)
         wave_fit = climb.fitted
@@ -154,7 +171,7 @@ class PlaneSwims(Experiment):
         held_swim, free_swim = slices["held"], slices[MOTIONS[0]].drop_vars(("course", "course_centre"))
         printed_swim = self._held_swim("as printed", printed_fit, staged(progress, "as printed", 0.3, 0.35))
         conditions = self._conditions(printed_fit, slices, staged(progress, "directions", 0.35, 0.45))
-        rungs = climbed(climb, staged(progress, "", 0.45, 0.92), slices=slices)
+        rungs = run_ladder(climb, staged(progress, "", 0.45, 0.92), slices=slices)
         readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
         drag = self._drag(float(free_swim.speed[-1]), staged(progress, "towed", 0.96, 1.0))
         printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
@@ -177,18 +194,18 @@ class PlaneSwims(Experiment):
         tables = {"readings.md": table, "ladder.md": ladder_table(numbers, self.unable(record))}
         swam = [f"{rung} {name}" for rung in ("slice", "slice_taken", "space") for name in (*MOTIONS, "held")]
         names = ("held as printed", *(f"free {arm}" for arm in ARMS[len(MOTIONS) :]), *swam)
-        return Simulated(record=record, tables=tables, films=films, kept=all_kept(self.keep, names))
+        return SimulationResult(record=record, tables=tables, films=films, kept=checkpoint_paths(self.keep, names))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; if they are the ladder's, only the ladder swims.
 
         Swims that no verdict needs are left out too: once two rungs disagree on a claim, slower rungs do not swim for
         it, and their measures are NaN.
         """
-        if not all(name.endswith(_OF_RUNGS) for name in wanted):
-            return super(PlaneSwims, self).measured(wanted, progress)
-        claims = [rule.claim for rule in RULES if rule.needs & set(wanted)]
-        return Measures(measures(climbed(self.climb(), progress, claims=claims), self.robot.length))
+        if not all(name.endswith(_OF_RUNGS) for name in measure_names):
+            return super(PlaneSwims, self).measured(measure_names, progress)
+        claims = [rule.claim for rule in RULES if rule.needs & set(measure_names)]
+        return Measures(measures(run_ladder(self.climb(), progress, claims=claims), self.robot.length))
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
         """Return the reasons why rungs of the ladder could not run, by name."""
@@ -213,14 +230,14 @@ class PlaneSwims(Experiment):
         viscosity = self.frequency * self.robot.length**2 / reynolds
         return SwimSetting(cells=cells, viscosity=viscosity, cycles=cycles, free=TETHERED if is_held else FREE)
 
-    def climb(self) -> Climb:
+    def climb(self) -> LadderSetting:
         """Return the setting of the ladder.
 
         Raises:
             Unwritable: unfinished swims cannot be kept where they are to be.
         """
-        check_kept(self.keep)
-        return Climb(
+        check_checkpoint_folder(self.keep)
+        return LadderSetting(
             robot=self.robot, fitted=self._fit(-1), viscosity=self.frequency * self.robot.length**2 / self.reynolds,
             cycles=self.cycles, cells=self.cells, space_cells=self.space_cells, keep=self.keep,
         )  # fmt: skip
@@ -231,7 +248,7 @@ class PlaneSwims(Experiment):
 
     def _held_swim(self, name: str, wave_fit: Fit, progress: Progress) -> xr.Dataset:
         """Return a swim in the slice with the snout fixed; it resumes from its checkpoint in ``keep``."""
-        checkpoint = kept_in(self.keep, f"held {name}")
+        checkpoint = checkpoint_path(self.keep, f"held {name}")
         setting = self._setting(self.arm_cycles, cells=self.cells, reynolds=self.reynolds)
         return resolved_swim(
             self.robot, wave_fit.gait, setting, turn=wave_fit.head, checkpoint=checkpoint, progress=progress
@@ -257,7 +274,7 @@ class PlaneSwims(Experiment):
                 swim_record = slices[arm]
             else:
                 checkpoint, stage = (
-                    kept_in(self.keep, f"free {arm}"),
+                    checkpoint_path(self.keep, f"free {arm}"),
                     portion(progress, i - len(MOTIONS), len(motions_by_arm)),
                 )
                 swim_record = resolved_swim(
@@ -369,7 +386,7 @@ def _free_swim(
         frequency: of the wave [Hz].
         reynolds: frequency times length squared over viscosity [-].
     """
-    swim_result = Swum.of(free_swim, frequency)
+    swim_result = SwimMeasures.of(free_swim, frequency)
     yield "speed_free", Measure(swim_result.speed, "m/s")
     yield "speed_free_lengths", Measure(swim_result.speed / robot.length, "1/s")
     yield "speed_free_gain_last_cycle", Measure(swim_result.gain, "-")

@@ -18,7 +18,7 @@ from suchus.core.errors import IncompatibleRecord, SuchusError, UnreadableFile, 
 from suchus.core.fingerprint import fingerprint
 from suchus.core.progress import Progress, portion, staged
 from suchus.experiments.catalog._taken import bare, swum_in_sections
-from suchus.experiments.catalog.swimming.rules import LADDER, RULES, SEEN, SETTLED
+from suchus.experiments.catalog.swimming.rules import LADDER, MAX_SETTLED_SPREAD, MIN_VISIBLE_SWAY, RULES
 from suchus.experiments.experiment import Measure
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, check_limits, check_speeds
@@ -31,26 +31,26 @@ from suchus.swimming.water import (
     Water,
     cruise,
     cycle,
+    motion_of_record,
     swing,
-    taken,
     undulation,
     unevenness,
     wave_form,
 )
 from suchus.swimming.water.field_samples import COURSE, TICKS
 from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
-from suchus.swimming.water.samples import kept_in
+from suchus.swimming.water.samples import checkpoint_path
 
 MOTIONS = ("trunk and tail", "tail only", "trunk only")
 """Motions that swim on every rung."""
 SWIMS = (*MOTIONS, "held")
 """The swims of a rung that resolves the water: each motion free, and the first held at its snout."""
-_READ_OF: Mapping[str, tuple[str, ...]] = {
+_SWIMS_OF_MEASURE: Mapping[str, tuple[str, ...]] = {
     "gain_tail": (MOTIONS[0], MOTIONS[2]), "gain_spine": MOTIONS[:2], "track": MOTIONS[:1], "wave": MOTIONS[:1],
     "tail_sine": MOTIONS[:1], "pressure": ("held",), "force": ("held",), "thrust": ("held",),
 }  # fmt: skip
 """Swims that a measure is read from, by the beginning of its name."""
-FEWEST = 6
+MIN_SETTLED_CYCLES = 6
 """Fewest cycles over which a number can be settled [-]: two halves of three."""
 _QUARTERS = ("difference", "thrust", "aside")
 GRIDS = "grids.json"
@@ -64,7 +64,7 @@ def motions(gait: Gait) -> dict[str, Gait]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Climb:
+class LadderSetting:
     """Robot, motion, water and grids of the ladder."""
 
     robot: Robot
@@ -115,8 +115,8 @@ Swims = Mapping[str, xr.Dataset]
 """Free swims by motion, and the one that is held at its snout as ``held``."""
 
 
-def climbed(
-    climb: Climb, progress: Progress, *, slices: Swims | None = None, claims: Collection[str] | None = None
+def run_ladder(
+    climb: LadderSetting, progress: Progress, *, slices: Swims | None = None, claims: Collection[str] | None = None
 ) -> xr.Dataset:
     """Return the results of every rung; ``unable`` has the reason why a rung could not run, as JSON by its name.
 
@@ -163,7 +163,7 @@ def climbed(
     return data
 
 
-def _ladder(climb: Climb, results: Mapping[str, Any], unable: Mapping[str, str]) -> xr.Dataset:
+def _ladder(climb: LadderSetting, results: Mapping[str, Any], unable: Mapping[str, str]) -> xr.Dataset:
     """Return the results of the rungs so far as a record; NaN of rungs without results."""
     data = xr.Dataset(
         {key: _stacked(key, [results.get(name) or {} for name in LADDER], climb.cycles) for key in _SHAPES},
@@ -172,7 +172,7 @@ def _ladder(climb: Climb, results: Mapping[str, Any], unable: Mapping[str, str])
     return data.assign_attrs(unable=json.dumps(unable), grids=json.dumps(kept_grids(climb)))
 
 
-def _needed_swims(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> set[str]:
+def _needed_swims(record: xr.Dataset, climb: LadderSetting, claims: Collection[str]) -> set[str]:
     """Return the swims that the next rung needs for some claims, without claims on which rungs disagree already."""
     numbers = {name: float(measure.value) for name, measure in _of_rungs(record, climb.robot.length)}
     rules = [rule for rule in RULES if rule.claim in claims and not ladder.disagree(ladder.voices(rule, numbers))]
@@ -180,7 +180,7 @@ def _needed_swims(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> 
     return {
         swim
         for name in measure_names
-        for start, swim_names in _READ_OF.items()
+        for start, swim_names in _SWIMS_OF_MEASURE.items()
         if name.startswith(start)
         for swim in swim_names
     }
@@ -232,7 +232,7 @@ def _stacked(key: str, results: Iterable[Mapping[str, Any]], cycles: int) -> Any
     return ("rung", *dims), np.array([np.asarray(result.get(key, empty), float) for result in results]), {"units": unit}
 
 
-def _of_theory(climb: Climb, model: str) -> dict[str, Any]:
+def _of_theory(climb: LadderSetting, model: str) -> dict[str, Any]:
     """Return speed and sway of the centre of mass by a slender-body theory, the same in every cycle.
 
     Args:
@@ -254,7 +254,7 @@ def _of_theory(climb: Climb, model: str) -> dict[str, Any]:
     }
 
 
-def _of_swims(climb: Climb, swims: Swims) -> dict[str, Any]:
+def _of_swims(climb: LadderSetting, swims: Swims) -> dict[str, Any]:
     """Return speeds, midline and forces of the swims of a rung that resolves the water; NaN of missing swims.
 
     Args:
@@ -275,22 +275,24 @@ def _of_swims(climb: Climb, swims: Swims) -> dict[str, Any]:
     return results
 
 
-def _in_sections(climb: Climb, progress: Progress) -> xr.Dataset:
+def _in_sections(climb: LadderSetting, progress: Progress) -> xr.Dataset:
     """Return the run in six degrees of freedom, the motions along ``run``."""
     return swum_in_sections(climb.robot, [*motions(climb.fitted.gait).values()], climb.cycles, progress)
 
 
-def _joint_midlines(climb: Climb, record: xr.Dataset) -> dict[str, Motion]:
+def _joint_midlines(climb: LadderSetting, record: xr.Dataset) -> dict[str, Motion]:
     """Return the midlines of the joints in six degrees of freedom, by motion."""
     outline, frequency = Outline(bare(climb.robot), climb.cells + 1), climb.fitted.gait.frequency
     averaged_cycles = min(_AVERAGED_CYCLES, climb.cycles)
     return {
-        name: taken(outline, record.isel(run=i), frequency=frequency, cycles=averaged_cycles, name=f"{name} as taken")
+        name: motion_of_record(
+            outline, record.isel(run=i), frequency=frequency, cycles=averaged_cycles, name=f"{name} as taken"
+        )
         for i, name in enumerate(MOTIONS)
     }
 
 
-def _midline_misfits(climb: Climb, joint_midlines: Mapping[str, Motion] | None) -> list[float]:
+def _midline_misfits(climb: LadderSetting, joint_midlines: Mapping[str, Motion] | None) -> list[float]:
     """Return the rms difference of the joints' midlines to the commanded ones, over the commanded angles [-]."""
     if joint_midlines is None:
         return [nan] * len(MOTIONS)
@@ -302,13 +304,13 @@ def _midline_misfits(climb: Climb, joint_midlines: Mapping[str, Motion] | None) 
     ]
 
 
-def space_swims(climb: Climb, progress: Progress) -> Swims:
+def space_swims(climb: LadderSetting, progress: Progress) -> Swims:
     """Return the swims in three dimensions."""
     return swims(climb, "space", motions(climb.fitted.gait), progress)
 
 
 def swims(
-    climb: Climb,
+    climb: LadderSetting,
     rung: str,
     rung_motions: Mapping[str, Motion],
     progress: Progress,
@@ -336,13 +338,13 @@ def swims(
             rung_motions[MOTIONS[0] if is_held else name],
             replace(setting, frames=frames) if is_first else setting,
             turn=climb.fitted.head if is_held else 0j,
-            checkpoint=kept_in(climb.keep, f"{rung} {name}"),
+            checkpoint=checkpoint_path(climb.keep, f"{rung} {name}"),
             progress=portion(progress, i, len(names)),
         )
     return records
 
 
-def _of_sections(climb: Climb, record: xr.Dataset) -> dict[str, Any]:
+def _of_sections(climb: LadderSetting, record: xr.Dataset) -> dict[str, Any]:
     """Return speeds and midline of the runs in six degrees of freedom; y is turned from left to right.
 
     Args:
@@ -380,10 +382,10 @@ def rules_digest() -> str:
         for rule in RULES
         for clause in rule.holds
     ]
-    return sha256("\n".join([*clauses, str(FEWEST)]).encode()).hexdigest()[:16]
+    return sha256("\n".join([*clauses, str(MIN_SETTLED_CYCLES)]).encode()).hexdigest()[:16]
 
 
-def kept_grids(climb: Climb) -> dict[str, Any]:
+def kept_grids(climb: LadderSetting) -> dict[str, Any]:
     """Return the stored study of grids in three dimensions: its cells, and the range of each measure.
 
     It is empty for another body, motion or water.
@@ -403,7 +405,7 @@ def kept_grids(climb: Climb) -> dict[str, Any]:
     return grid_study if grid_study["swim"] == climb.digest else {}
 
 
-class Settled(NamedTuple):
+class SettledNumber(NamedTuple):
     """A number of a rung over its settled cycles, with bounds and spread."""
 
     value: float
@@ -416,7 +418,7 @@ class Settled(NamedTuple):
     """Greatest minus least, over the scale of the number [-]; NaN with too few cycles."""
 
     @classmethod
-    def of(cls, values: Iterable[float], scale: float) -> "Settled":
+    def of(cls, values: Iterable[float], scale: float) -> "SettledNumber":
         """Return a settled number from the values of both halves and both starting sides."""
         sorted_values = np.sort(np.asarray([*values], float))  # sorted, so that a mirrored swim gives the same bytes
         return cls(
@@ -427,7 +429,7 @@ class Settled(NamedTuple):
         )
 
 
-def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 1.0) -> Settled:
+def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 1.0) -> SettledNumber:
     """Return a number over the most cycles whose two halves agree within ``SETTLED``; the first cycle is left out.
 
     Args:
@@ -436,15 +438,15 @@ def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 
         scale: of the number, in its unit.
     """
     number = None
-    for count in range((cycles - 1) // 2 * 2, FEWEST - 1, -2):
+    for count in range((cycles - 1) // 2 * 2, MIN_SETTLED_CYCLES - 1, -2):
         ends = cycles - count, cycles - count // 2, cycles
-        number = Settled.of([*half(*ends[:2]), *half(*ends[1:])], scale)
-        if number.apart <= SETTLED:
+        number = SettledNumber.of([*half(*ends[:2]), *half(*ends[1:])], scale)
+        if number.apart <= MAX_SETTLED_SPREAD:
             return number
-    return number or Settled.of(half(cycles - 1, cycles), scale)._replace(apart=nan)
+    return number or SettledNumber.of(half(cycles - 1, cycles), scale)._replace(apart=nan)
 
 
-def numbers_in_space(climb: Climb, swims: Swims) -> Iterator[tuple[str, Settled]]:
+def numbers_in_space(climb: LadderSetting, swims: Swims) -> Iterator[tuple[str, SettledNumber]]:
     """Return the numbers of the rung in three dimensions from its swims."""
     results = _of_swims(climb, swims)
     rung = xr.Dataset({key: _stacked(key, [results], climb.cycles) for key in _SHAPES}).isel(rung=0)
@@ -495,7 +497,7 @@ def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]
                 )
 
 
-def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
+def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, SettledNumber]]:
     """Yield every number of one rung by name.
 
     Args:
@@ -505,7 +507,7 @@ def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
     cycles = rung.sizes["ladder_cycle"]
     whole_speed, tail, trunk = (rung.ladder_speed.sel(ladder_motion=motion).values for motion in MOTIONS)
 
-    def gain(partial_speed: np.ndarray) -> Settled:
+    def gain(partial_speed: np.ndarray) -> SettledNumber:
         """Return the fraction of the speed that is missing without a part of the motion."""
 
         def share(a: int, b: int) -> list[float]:
@@ -522,18 +524,18 @@ def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
     yield from _pushing(np.stack([rung.ladder_thrust.values, rung.ladder_aside.values], axis=-1), cycles)
 
 
-def _swaying(centre: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
+def _swaying(centre: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumber]]:
     """Yield the sway amplitude of the centre of mass, and the part of its track that is no sine [body length]."""
 
     def sway(a: int, b: int) -> Sway:
         return Sway.of(centre[a * TICKS : b * TICKS + 1], b - a)
 
-    size = max(sway(1, cycles).amplitude, SEEN) if isfinite(centre.sum()) else nan
+    size = max(sway(1, cycles).amplitude, MIN_VISIBLE_SWAY) if isfinite(centre.sum()) else nan
     yield "track_sway", settle(lambda a, b: [sway(a, b).amplitude], cycles, size)
     yield "track_noise", settle(lambda a, b: [sway(a, b).noise], cycles, size)
 
 
-def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
+def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumber]]:
     """Yield the sine fraction of the tip's swing, and the wave of the form (20) that fits the midline best.
 
     Args:
@@ -560,7 +562,7 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
         return [float(np.mean([swing(cycle_course, 1).share[0] for cycle_course in cycle_courses]))]
 
     is_moving = float(np.ptp(course[:, -1])) > 0.0  # neither NaN nor at rest
-    no_number = Settled(nan, nan, nan, nan)
+    no_number = SettledNumber(nan, nan, nan, nan)
     yield "tail_sine_share", settle(tip, cycles) if is_moving else no_number
     size = wave(1, cycles)[-1] if is_moving else nan
 
@@ -571,7 +573,7 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
         yield name, settle(partial(wave_component, i), cycles, scale) if is_moving else no_number
 
 
-def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
+def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumber]]:
     """Yield the pressure difference of the tail's sides at T/4, and its fall to 3T/4, over its mean size [-].
 
     A swim that starts to the other side is the mirror image of this one: it does at T/4 what this one does at 3T/4.
@@ -594,7 +596,7 @@ def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, Settle
     yield "pressure_fall_share", settle(fall, cycles)
 
 
-def _pushing(force: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
+def _pushing(force: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumber]]:
     """Yield angle, asymmetry and forward part of the force at the quarters, for a start to either side.
 
     Args:

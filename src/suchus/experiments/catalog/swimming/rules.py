@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import atan, nan
 
 from suchus.article.verdict.judging import Examples, Word
-from suchus.article.verdict.rule import Clause, ControlGroup, Rule, Rung, Varied
+from suchus.article.verdict.rule import Clause, ControlGroup, Rule, Rung, Variation
 
 LADDER: Mapping[str, str] = {
     "resistive": "resistive theory",
@@ -15,9 +15,9 @@ LADDER: Mapping[str, str] = {
     "space": "three dimensions",
 }
 """Labels of the rungs by name."""
-SETTLED = 0.1
+MAX_SETTLED_SPREAD = 0.1
 """Greatest relative spread of halves and starting sides with which a rung counts for a verdict [-]."""
-SEEN = 0.01
+MIN_VISIBLE_SWAY = 0.01
 """Least sway of the centre of mass that is visible in a picture [body length]."""
 _DIAGONAL = 0.1
 
@@ -147,7 +147,9 @@ RULES = (
         experiment="swimming",
         measure="track_sway",
         holds=(
-            Clause("track_sway", ">=", SEEN, "of the body's length: less is as straight as a line in a picture"),
+            Clause(
+                "track_sway", ">=", MIN_VISIBLE_SWAY, "of the body's length: less is as straight as a line in a picture"
+            ),
             Clause("track_sway", ">", "track_noise", "beyond what of the track is no swing of one cycle"),
         ),
         rungs=_OF_TRACK,
@@ -181,7 +183,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(
+DESIGN_SWEEP = Variation(
     claims=tuple(rule.claim for rule in RULES),
     over={
         "cells": (48, 96, "The article does not say how fine its grid is: from about half of ours to a fifth more."),

@@ -12,8 +12,17 @@ import xarray as xr
 from suchus.article.paper import CYCLES
 from suchus.core.errors import OutsideLimits
 from suchus.experiments.catalog.tail_bending import figure as pictures
-from suchus.experiments.catalog.tail_bending.rules import ALIKE
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.catalog.tail_bending.rules import EQUAL_ANGLE_TOLERANCE
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    SimulationResult,
+    silent,
+    staged,
+)
 from suchus.robot.design import Robot, cable_joints, servo_names
 from suchus.robot.design.measures import TailMeasures
 from suchus.robot.gaits import GAITS
@@ -21,7 +30,7 @@ from suchus.robot.kinematics import printed, tail
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import between, tail_joint_spread, whole
+from suchus.sim.metrics import require_complete, tail_joint_spread, time_window
 
 SHAPES = (0.0, pi / 2, pi)
 """Bends at which the tail is drawn [rad]."""
@@ -67,7 +76,7 @@ class TailBending(Experiment):
         """Return it with few bends and one cycle."""
         return replace(self, steps=19, cycles=1)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Bend the tail by formulas, and let it swing in the crawls."""
         plates = self.robot.tail
         if not self.furthest > 0 or self.steps < 2 or self.cycles < 1:
@@ -81,7 +90,7 @@ class TailBending(Experiment):
         parts = [_cords(plates, bend, self.linear), _shapes(plates, furthest), _errors(plates, furthest)]
         record = xr.merge([*parts, self._crawls(staged(progress, "crawling", 0.1, 1.0))])
         facts = {"plate": plates.plate, "gap": plates.gap, "cord_spacing": plates.cord_spacing} | _facts(self.robot)
-        return Simulated(record=record.assign_attrs(facts | {"plausible_error": self._plausible(furthest)}))
+        return SimulationResult(record=record.assign_attrs(facts | {"plausible_error": self._plausible(furthest)}))
 
     @property
     def linear(self) -> bool:
@@ -94,7 +103,7 @@ class TailBending(Experiment):
         end = START + self.cycles * self.gait.period
         joints, passive = list(cable_joints(self.robot)), list(self.robot.tail.passive[::2])  # of pairs, yaw first
         try:
-            record = between(whole(simulate(runs, duration=end, progress=progress)))
+            record = time_window(require_complete(simulate(runs, duration=end, progress=progress)))
         except OutsideLimits:  # the formulas hold for robots with any legs
             time, angles = np.array([START, end]), np.full((len(runs), 2, len(joints)), np.nan)
             bend = np.full((len(runs), 2), np.nan)
@@ -160,7 +169,7 @@ class TailBending(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how large the dropped term is, what it does to the cords, and how alike the joints turn."""
-        return self.told(measures, alike=ALIKE)
+        return self.told(measures, alike=EQUAL_ANGLE_TOLERANCE)
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
         """Return the bent tails, the error of (17) and what the cords do."""
@@ -168,7 +177,7 @@ class TailBending(Experiment):
             "positions": pictures.tail_positions(outcome.record),
             "error_of_eq_17": pictures.tail_cord_error(outcome.record),
             "cords_and_servo": pictures.tail_cords(outcome.record),
-            "joints_in_the_crawl": pictures.tail_joints(outcome.record, ALIKE),
+            "joints_in_the_crawl": pictures.tail_joints(outcome.record, EQUAL_ANGLE_TOLERANCE),
         }
 
 
@@ -307,7 +316,7 @@ def _spreads(record: xr.Dataset) -> Measures:
         of_crawl = spread.sel(crawl=crawl)
         measures[f"tail_joint_spread{end}"] = Measure(float(of_crawl.max()), "rad")
         measures[f"tail_joint_spread_share{end}"] = Measure(
-            float((of_crawl > ALIKE).where(of_crawl.notnull()).mean()), "-"
+            float((of_crawl > EQUAL_ANGLE_TOLERANCE).where(of_crawl.notnull()).mean()), "-"
         )
     return measures
 

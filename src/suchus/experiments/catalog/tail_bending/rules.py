@@ -3,17 +3,17 @@
 from math import radians
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule, Varied
+from suchus.article.verdict.rule import Clause, Rule, Variation
 
 SMALL = 0.05
 """Greatest ratio of a neglected term to the retained one that counts as small [-]."""
-ALIKE = radians(10)
+EQUAL_ANGLE_TOLERANCE = radians(10)
 """Greatest difference of joint angles that counts as equal [rad].
 
 It is what the stiffness of the robot's tail joints was chosen to keep to, and two thirds of what each of six joints
 turns when the tail bends by 90 degrees.
 """
-SEEN = radians(1)
+MIN_VISIBLE_ANGLE = radians(1)
 """Least angle that a screenshot shows [rad]."""
 EXACT = 1e-9
 """Greatest error that counts as rounding, as a share of the length [-]."""
@@ -59,7 +59,7 @@ RULES = (
             Clause(
                 "tail_joint_spread",
                 "<=",
-                ALIKE,
+                EQUAL_ANGLE_TOLERANCE,
                 "ten degrees, two thirds of what each joint turns at a bend of 90 degrees: what differs by more does "
                 "not turn alike",
             ),
@@ -90,7 +90,7 @@ RULES = (
         experiment="tail_bending",
         measure="end_bend",
         kind="construction",
-        holds=(Clause("end_bend", ">=", SEEN, "flexible is what bends by as much as a picture shows"),),
+        holds=(Clause("end_bend", ">=", MIN_VISIBLE_ANGLE, "flexible is what bends by as much as a picture shows"),),
         why="Behind the last cable joint there are springs and dampers and no servo; in the crawl they let that end "
         "bend to and fro over {end_bend:deg.0f} degrees. The article gives no stiffness: ours was chosen.",
         unswept="What its springs let it do follows from their stiffness, which was chosen so that it does.",
@@ -105,7 +105,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(claims=("tail_quadratic_small",), designs=("robot",), settings={"steps": 91}, samples=128)
+DESIGN_SWEEP = Variation(claims=("tail_quadratic_small",), designs=("robot",), settings={"steps": 91}, samples=128)
 
 _SMALL = {"error_of_eq_17_max": 0.0411, "error_of_eq_17_plausible": 0.063}
 _CORDS = {"cords_opposed_share": 1.0, "slack_max": 0.006}

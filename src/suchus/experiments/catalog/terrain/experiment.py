@@ -20,20 +20,20 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     estimated,
     silent,
     staged,
 )
 from suchus.robot.control import AttitudeRule, Change, Control, SwitchRule, Walking
 from suchus.robot.design import GRAVITY, Robot, layout
-from suchus.robot.design.ground import BEFORE, STONE, Bumps, Relief, Step, Stone, profile
+from suchus.robot.design.ground import BUMPS_START, STONE, Bumps, Relief, Step, Stone, profile
 from suchus.robot.design.scale import control_period
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import START, Gait, suits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run, Tolerances, simulate
-from suchus.sim.metrics import between, cost_of_transport, displacement, heading_change, tilt
+from suchus.sim.metrics import cost_of_transport, displacement, heading_change, tilt, time_window
 from suchus.visual.figures.gait_diagram import GAIT_LINES
 
 _TOUCH = 0.5 / (
@@ -44,9 +44,9 @@ _LADDER = {"crawl": 0.85, "semi_erect": 1.0, "high_walk": 1.12}
 """Heights of the three postures of another body, over the height of its gait [-]."""
 _STEPS = 1.75  # factor on the cycles of another body, whose steps are shorter [-]
 Surface = Literal["even", "bumps"]
-FALLEN = np.radians(60)
+MAX_TILT = np.radians(60)
 """Roll or pitch above which the robot has fallen [rad]."""
-ROUGH = 0.03
+MIN_ROUGH_HEIGHT = 0.03
 """Least height of what counts as rough ground for the article's robot [m]: a third of the legs' hip height in the
 sprawled crawl is less. For others it is in proportion to their length."""
 _HEIGHT_TOLERANCE = 1e-9  # heights that differ by less are equal [m]
@@ -142,7 +142,7 @@ class Terrain(Experiment):
         Raises:
             UnsuitedRobot: its own gait puts no feet at a height.
         """
-        base_gait = own_gait(robot)
+        base_gait = default_gait(robot)
         if not base_gait.has("foot paths"):
             raise UnsuitedRobot(
                 f"{self.name()} needs a gait of foot paths; robot {robot.name!r} has {base_gait.name!r}."
@@ -155,18 +155,18 @@ class Terrain(Experiment):
             settings[name] = base_gait if share == 1.0 else next(gait for gait in candidates if suits(robot, gait))
         return settings
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Walk on every ground, and turn every posture into every other."""
         ground_record = self._ground_record(staged(progress, "grounds", 0.0, 0.9))
         change_record = self._changes(staged(progress, "transitions", 0.9, 0.97))
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(ground_record).merge(change_record)
-        return Simulated(record=record, replays=self._replays(record))
+        return SimulationResult(record=record, replays=self._replays(record))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; for those of crawl and high walk only these conditions are simulated."""
-        names = {name.removesuffix("_low").removesuffix("_high") for name in wanted}
+        names = {name.removesuffix("_low").removesuffix("_high") for name in measure_names}
         if not all(name in _STRUCTURE_MEASURES or name.startswith("transition") for name in names):
-            return super(Terrain, self).measured(wanted, progress)
+            return super(Terrain, self).measured(measure_names, progress)
         needs_rough = any(name in _ROUGH_MEASURES for name in names)
         variant = self if needs_rough else replace(self, bumps=(), steps=(), stones=())
         ground_record = variant._ground_record(staged(progress, "grounds", 0.0, 0.9), _STRUCTURE_ARMS)
@@ -242,7 +242,7 @@ class Terrain(Experiment):
 
     def _bumps(self, height: float, correlation: float, seed: int) -> Bumps:
         size = self._size
-        return Bumps(height=height, correlation=correlation, start=BEFORE * size, seed=seed, scale=size)
+        return Bumps(height=height, correlation=correlation, start=BUMPS_START * size, seed=seed, scale=size)
 
     def arms(self) -> Mapping[str, tuple[Gait, Control]]:
         """Return gait and control of every condition."""
@@ -301,8 +301,10 @@ class Terrain(Experiment):
             for arm, (gait, control) in arms.items()
             for seed, relief in enumerate(reliefs)
         ]
-        record = simulate(runs, duration=START + self.walked, timestep=self.timestep, every=5, progress=progress)
-        is_met = [_met(record.isel(run=j), run) for j, run in enumerate(runs)]
+        record = simulate(
+            runs, duration=START + self.walked, timestep=self.timestep, sample_stride=5, progress=progress
+        )
+        is_met = [_meets_obstacle(record.isel(run=j), run) for j, run in enumerate(runs)]
         table = _run_quantities(record, is_met).reshape(len(grounds), len(arms), -1, len(_UNITS))
         data = xr.Dataset(
             {
@@ -341,7 +343,9 @@ class Terrain(Experiment):
             for start_gait, end_gait in pairs
             for surface in self.surfaces
         ]
-        record = simulate(runs, duration=self._sample_time(6.0), timestep=self.timestep, every=5, progress=progress)
+        record = simulate(
+            runs, duration=self._sample_time(6.0), timestep=self.timestep, sample_stride=5, progress=progress
+        )
         max_tilts = _most_tilt(record).reshape(len(pairs), len(self.surfaces))
         final_distance = (
             displacement(record, self._sample_time(4.6)).sel(xyz="x").values.reshape(len(pairs), len(self.surfaces))
@@ -362,7 +366,9 @@ class Terrain(Experiment):
             Run(robot=self.robot, gait=arms[arm][0], control=arms[arm][1], ground=Ground(relief=relief), label=arm)
             for arm in ("low_crawl", "semi_erect", "high_walk_level")
         ]
-        record = simulate(runs, duration=START + self.walked / 2, timestep=self.timestep, every=5, progress=progress)
+        record = simulate(
+            runs, duration=START + self.walked / 2, timestep=self.timestep, sample_stride=5, progress=progress
+        )
         positions = np.arange(-1.2, 2.4, 0.01) * self._size
         profile_record = xr.Dataset(
             {"ground_height": ("along", profile(relief, positions), {"units": "m"})}, coords={"along": positions}
@@ -397,12 +403,12 @@ def _run_quantities(record: xr.Dataset, is_met: Sequence[bool]) -> np.ndarray:
         record: of the runs.
         is_met: whether each robot reached the obstacle.
     """
-    excerpt, displacements = between(record), displacement(record)
+    excerpt, displacements = time_window(record), displacement(record)
     columns: Sequence[Any] = (
         displacements.sel(xyz="x"),
         displacements.sel(xyz="y"),
         heading_change(record),
-        _most_tilt(record) > FALLEN,
+        _most_tilt(record) > MAX_TILT,
         cost_of_transport(record),
         (excerpt.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * record.mass).mean("time"),
         is_met,
@@ -410,7 +416,7 @@ def _run_quantities(record: xr.Dataset, is_met: Sequence[bool]) -> np.ndarray:
     return np.stack([np.asarray(column, dtype=float) for column in columns], axis=-1)
 
 
-def _met(record: xr.Dataset, run: Run) -> bool:
+def _meets_obstacle(record: xr.Dataset, run: Run) -> bool:
     """Return whether a robot reached the obstacle in its path; True on even ground, which has none.
 
     Args:
@@ -433,7 +439,7 @@ def _met(record: xr.Dataset, run: Run) -> bool:
 
 
 def _most_tilt(record: xr.Dataset) -> np.ndarray:
-    angles = tilt(between(record))
+    angles = tilt(time_window(record))
     return np.maximum(abs(angles["roll"]).max("time").values, abs(angles["pitch"]).max("time").values)
 
 
@@ -479,7 +485,9 @@ def _rough_measures(rough_record: xr.Dataset) -> Measures:
 def _rough_grounds(record: xr.Dataset) -> xr.Dataset:
     """Return the part of a record on grounds of at least ``ROUGH`` height."""
     return record.isel(
-        ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _HEIGHT_TOLERANCE)
+        ground=np.flatnonzero(
+            record.height.values >= MIN_ROUGH_HEIGHT * float(record.size_of_robot) - _HEIGHT_TOLERANCE
+        )
     )
 
 
@@ -494,7 +502,7 @@ def _transitions(record: xr.Dataset) -> Measures:
     return Measures(
         {
             "transitions": Measure(float(record.change_tilt.size), "-"),
-            "transitions_upright": Measure(float((record.change_tilt < FALLEN).mean()), "-"),
+            "transitions_upright": Measure(float((record.change_tilt < MAX_TILT).mean()), "-"),
             "transition_after_least": Measure(float(record.change_after.min()), "m"),
         },
         {

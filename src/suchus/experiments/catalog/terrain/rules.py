@@ -3,7 +3,7 @@
 from math import nan
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import BUILT, Clause, ControlGroup, Rule, Varied, between
+from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, ControlGroup, Rule, Variation, measure_with_interval
 
 RULES = (
     Rule(
@@ -13,7 +13,7 @@ RULES = (
         holds=(Clause("flat_cost_ratio", "<", 1.0, "the structure to adopt is the one that costs less"),),
         control=ControlGroup(group="high_walk", why="Section II.B: one structure or the other, on the same ground."),
         spread=("flat_cost_ratio",),
-        of=BUILT,
+        of=DEFAULT_SPREAD_OF,
         why="On even ground the low crawl costs {flat_cost_ratio:.2f} of the high walk's work over the same "
         "distance, and gets {flat_forward_low_crawl:.2f} m while the high walk gets {flat_forward_high_walk:.2f} m.",
     ),
@@ -49,7 +49,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(
+DESIGN_SWEEP = Variation(
     claims=("crawl_structure_flat", "erect_structure_rough", "switches_structure"), designs=("robot",), samples=16
 )
 
@@ -78,15 +78,15 @@ EXAMPLES: Examples = {
     "crawl_structure_flat": [
         (_REASON_MEASURES | {"flat_cost_ratio_high": 0.999}, "reproduced"),
         (_REASON_MEASURES | {"flat_cost_ratio_high": 1.001}, "undecided"),
-        (_REASON_MEASURES | between("flat_cost_ratio", 1.001, 1.1), "contradicted"),
+        (_REASON_MEASURES | measure_with_interval("flat_cost_ratio", 1.001, 1.1), "contradicted"),
         (_REASON_MEASURES | {"flat_cost_ratio": nan}, "not testable"),
     ],
     "erect_structure_rough": [
         (_REASON_MEASURES, "reproduced"),
-        (_REASON_MEASURES | between("erect_open_loop_ahead_share", 0.501, 0.9), "reproduced"),
-        (_REASON_MEASURES | between("erect_open_loop_ahead_share", 0.5, 0.9), "undecided"),
-        (_REASON_MEASURES | between("erect_open_loop_ahead_share", 0.2, 0.501), "undecided"),
-        (_REASON_MEASURES | between("erect_open_loop_ahead_share", 0.2, 0.5), "contradicted"),
+        (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.501, 0.9), "reproduced"),
+        (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.5, 0.9), "undecided"),
+        (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.2, 0.501), "undecided"),
+        (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.2, 0.5), "contradicted"),
         (_REASON_MEASURES | {"falls_rough_high_walk": 20.0}, "reproduced"),
         (_REASON_MEASURES | {"falls_rough_high_walk": 19.8}, "reproduced"),
         (_REASON_MEASURES | {"falls_rough_high_walk": 20.2}, "contradicted"),

@@ -17,7 +17,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     Replay,
-    Simulated,
+    SimulationResult,
     silent,
     staged,
 )
@@ -95,7 +95,7 @@ class Turning(Experiment):
             cycles=3,
         )
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Turn in every gait, and walk circles on command."""
         rows, record_pairs = [], []
         for i, gait in enumerate(self.gaits):
@@ -105,7 +105,7 @@ class Turning(Experiment):
             record_pairs.append(pair)
         record = xr.concat(rows, "gait").assign_coords(gait=[gait.name for gait in self.gaits])
         tightest = int(record.curvature_mixture.max("mixture").values.argmax())
-        return Simulated(record=record, replays=self._replays(record_pairs[tightest]))
+        return SimulationResult(record=record, replays=self._replays(record_pairs[tightest]))
 
     def _replays(self, pair: tuple[xr.Dataset, xr.Dataset]) -> Mapping[str, Replay]:
         """Return the replay of the gait that turns tightest, and of its first circle."""

@@ -10,11 +10,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from suchus.core.checks import Checks
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, SimulationResult, silent
 from suchus.robot.design import LEGS, Robot
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
-from suchus.robot.motion.working_space import Extent, Reached, extent, outline, reached
+from suchus.robot.motion.working_space import Configurations, Extent, extent, outline, sample_configurations
 from suchus.robot.robots import ROBOTS
 from suchus.visual.figures import captioned
 from suchus.visual.figures.style import COLOURS, panels, styled
@@ -64,18 +64,18 @@ class WorkingSpace(Experiment):
         """Return it with few configurations in coarse cells."""
         return replace(self, crawling=2**15, standing=2**13, cell=0.04)
 
-    def simulate(self, progress: Progress = silent) -> Simulated:
+    def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Draw configurations and keep those that can be."""
         record = xr.Dataset(attrs={"cell": self.cell}, coords={"xyz": ["x", "y", "z"], "leg": ["LF", "LH"]})
         for state, share in zip(STATES, (0.0, 0.6), strict=True):
             progress(state, share)
-            samples = reached(
+            samples = sample_configurations(
                 self.robot, self.gait, standing=state == "standing", count=getattr(self, state), seed=self.seed
             )
             record[f"snout_{state}"] = ((f"kept_{state}", "xyz"), samples.snout, {"units": "m"})
             record[f"tried_{state}"] = ((), samples.tried, {"units": "1"})
             record = record.merge(_highest_posture(self.robot, samples, state))
-        return Simulated(record=record)
+        return SimulationResult(record=record)
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return volumes, areas and heights of both states with what the counting leaves open."""
@@ -127,7 +127,7 @@ def _quotient(numerator: Extent, denominator: Extent) -> dict[str, float]:
     return {end: a / b if b > 0 else float("nan") for end, (a, b) in pairs.items()}
 
 
-def _highest_posture(robot: Robot, samples: Reached, state: str) -> xr.Dataset:
+def _highest_posture(robot: Robot, samples: Configurations, state: str) -> xr.Dataset:
     """Return midline and left legs of the posture in which the snout is highest [m].
 
     Args:

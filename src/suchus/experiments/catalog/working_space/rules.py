@@ -1,7 +1,7 @@
 """When the claim on the working space counts as what (section IV.D)."""
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule, Varied, between
+from suchus.article.verdict.rule import Clause, Rule, Variation, measure_with_interval
 
 RULES = (
     Rule(
@@ -20,7 +20,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(claims=("working_space",), designs=("robot",), samples=32)
+DESIGN_SWEEP = Variation(claims=("working_space",), designs=("robot",), samples=32)
 
 _SPACE_MEASURES = {
     "volume_ratio": 5.0,
@@ -35,9 +35,9 @@ EXAMPLES: Examples = {
     "working_space": [
         (_SPACE_MEASURES, "reproduced"),
         (_SPACE_MEASURES | {"volume_ratio_low": 1.98}, "undecided"),
-        (_SPACE_MEASURES | between("volume_ratio", 1.5, 1.98), "contradicted"),
+        (_SPACE_MEASURES | measure_with_interval("volume_ratio", 1.5, 1.98), "contradicted"),
         (_SPACE_MEASURES | {"area_ratio_low": 0.99}, "undecided"),
-        (_SPACE_MEASURES | between("area_ratio", 0.9, 0.99), "contradicted"),
+        (_SPACE_MEASURES | measure_with_interval("area_ratio", 0.9, 0.99), "contradicted"),
         (_SPACE_MEASURES | {"volume_ratio": float("nan")}, "not testable"),
     ],
 }

@@ -21,7 +21,7 @@ def pulls(cable: Cable) -> str:
     return "one servo turns a pulley" if cable.linear is None else "one linear actuator moves two cords"
 
 
-def filled(texts: Sequence[str], robot: Robot, **format_values: object) -> tuple[str, ...]:
+def fill_texts(texts: Sequence[str], robot: Robot, **format_values: object) -> tuple[str, ...]:
     """Return sentences with the robot's numbers in their braces; those about cables or springs only if it has some.
 
     Args:
@@ -110,7 +110,7 @@ def urdf(robot: Robot) -> str:
 
 def unsaid(robot: Robot) -> tuple[str, ...]:
     """Return what the URDF of a robot leaves out, and what to do about it."""
-    return filled(UNSAID, robot, faceted=100 * (1 - np.cos(np.pi / _SECTORS)))
+    return fill_texts(UNSAID, robot, faceted=100 * (1 - np.cos(np.pi / _SECTORS)))
 
 
 def ball() -> str:

@@ -11,7 +11,7 @@ from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.motion import Gait
 from suchus.sim.model.build import IMU, compile_model, sites, standing
 from suchus.sim.model.export.mjcf import home
-from suchus.sim.model.export.urdf import ball, filled
+from suchus.sim.model.export.urdf import ball, fill_texts
 
 LINK_MASS, LINK_INERTIA = 1e-6, 1e-9
 """Of the link between two joints in one point [kg], [kg m2]: in USD a mass of zero means that it is not known."""
@@ -127,7 +127,7 @@ def Xform "World"
 def unsaid_in_usd(robot: Robot) -> tuple[str, ...]:
     """Return what the USD of a robot leaves out, and what to do about it."""
     speeds = sorted({robot.servo(name).speed for name in layout(robot).servos})
-    return filled(UNSAID, robot, speeds=" or ".join(f"{v:g}" for v in speeds), link=LINK_MASS)
+    return fill_texts(UNSAID, robot, speeds=" or ".join(f"{v:g}" for v in speeds), link=LINK_MASS)
 
 
 def prim_name(robot: Robot) -> str:

@@ -14,9 +14,9 @@ from xml.parsers import expat
 from suchus.core.errors import UnreadableFile
 from suchus.core.files import read_text
 from suchus.sim.model.export.urdf import MUJOCO
-from suchus.sim.model.importing.meshes import Meshes, inside
+from suchus.sim.model.importing.meshes import Meshes, path_inside
 
-LARGEST = 16 * 2**20
+MAX_ROBOT_FILE_SIZE = 16 * 2**20
 """Size of a file of a robot [byte]."""
 _MAX_DEPTH, _MAX_ELEMENTS = 200, 200_000  # levels of nesting; elements
 
@@ -27,7 +27,7 @@ def parse(path: Path) -> ElementTree.Element:
     Raises:
         UnreadableFile: it is no ordinary file, too large, no XML, declares a document type, or nests too deeply.
     """
-    text = read_text(path, LARGEST)
+    text = read_text(path, MAX_ROBOT_FILE_SIZE)
     builder, parser = ElementTree.TreeBuilder(), expat.ParserCreate("utf-8")
     depth = count = 0
 
@@ -249,7 +249,7 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
             if child.tag != "include":
                 expand(child, depth + 1)
                 continue
-            included_file = inside(home, child.get("file", ""))
+            included_file = path_inside(home, child.get("file", ""))
             if included_file is None:
                 raise UnreadableFile(
                     f"the MJCF includes {child.get('file', '')[:100]!r}, which lies outside its folder and is not "

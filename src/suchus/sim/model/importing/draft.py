@@ -26,11 +26,11 @@ from suchus.sim.model.importing.making import (
     limb_names,
     limb_turn,
     making_of,
-    numbered,
+    numbered_names,
     point,
     turn_of,
 )
-from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, links_between, without
+from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, links_between, without_limbs
 from suchus.sim.model.importing.tree import JOINED, Joint, ShapePiece, TreePart
 
 _LEG = 0.03  # of the robot's length that a leg reaches below the axis, at least
@@ -154,7 +154,7 @@ def _legs(plan: BodyPlan, words: Words) -> tuple[BodyPlan, list[str]]:
                 f"{parts} reach {max(depth, 0.0):.3g} m below the axis, so they are arms or fins and were left out; "
                 "their masses went to the part that carries them."
             )
-            plan = without(plan, pair)
+            plan = without_limbs(plan, pair)
     return plan, remarks
 
 
@@ -253,7 +253,7 @@ def _joints(making: Making, i: int, root: int) -> list[AxisHinge]:
     for joint, is_outward in links_between(making.plan, inner_index, outer_index):
         turn, sense = turn_of(joint, making.turned(joint.axis), making.remarks)
         axis_offset = 0.0 if turn == "yaw" else abs(float(making.into(joint.anchor)[2]))
-        hinges.append((joint, turn, axial_sign(turn, sense, ahead=is_ahead, onward=is_outward), axis_offset))
+        hinges.append((joint, turn, axial_sign(turn, sense, is_ahead=is_ahead, is_outward=is_outward), axis_offset))
     return hinges
 
 
@@ -369,7 +369,7 @@ def draft_girdle(making: Making, number: int) -> Girdle:
         raise UnreadableFile(
             f"the limbs of {left_joints[0].name} and {right_joints[0].name} have their hinges in another order."
         )
-    labels = limb_names([j.name for j in left_joints], [j.name for j in right_joints], name) or numbered(
+    labels = limb_names([j.name for j in left_joints], [j.name for j in right_joints], name) or numbered_names(
         [t for t, _ in left_turns]
     )
     _tell_sides(making, (left_joints, right_joints), [s for _, s in left_turns], [s for _, s in right_turns])

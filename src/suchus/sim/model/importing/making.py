@@ -11,7 +11,7 @@ from suchus.robot.design import Crank, Hinge, Inertia, Servo, Spring
 from suchus.robot.design.hinge import Turn
 from suchus.robot.design.layout import LIMB_AXES
 from suchus.robot.design.scale import servo_for, spring_for
-from suchus.robot.design.segment import Point, together
+from suchus.robot.design.segment import Point, combine_inertias
 from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, links_between
 from suchus.sim.model.importing.tree import Joint, TreePart
 
@@ -77,17 +77,17 @@ def limb_turn(joint: Joint, axis: np.ndarray, side: float, remarks: list[str]) -
     return turn, sense * robot_sign * (side if turn != "roll" else 1.0)
 
 
-def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
+def axial_sign(turn: Turn, sense: float, *, is_ahead: bool, is_outward: bool) -> float:
     """Return 1 where the positive sense of an axis hinge is that of the robot's hinge, else -1.
 
     Args:
         turn: what it turns.
         sense: whether its axis points along that of the robot's frame.
-        ahead: whether it lies ahead of the root.
-        onward: whether a positive angle of the file moves the part farther from our root.
+        is_ahead: whether it lies ahead of the root.
+        is_outward: whether a positive angle of the file moves the part farther from our root.
     """
-    robot_sign = 1.0 if ahead or turn == "yaw" else -1.0
-    return sense * robot_sign * (1.0 if onward else -1.0)
+    robot_sign = 1.0 if is_ahead or turn == "yaw" else -1.0
+    return sense * robot_sign * (1.0 if is_outward else -1.0)
 
 
 def hinge_of(
@@ -150,7 +150,7 @@ def limb_names(left_names: Sequence[str], right_names: Sequence[str], girdle: st
     return suffixes if is_mirrored and all(suffixes) and len(set(suffixes)) == len(suffixes) else None
 
 
-def numbered(turns: Sequence[str]) -> list[str]:
+def numbered_names(turns: Sequence[str]) -> list[str]:
     """Return a name for each hinge of a limb: what it turns, with a number from the second one on."""
     names: list[str] = []
     for i, turn in enumerate(turns):
@@ -222,7 +222,7 @@ class Making:
         """
         if not parts or not all(np.any(tree_part.tensor) for tree_part in parts):
             return None
-        _, com, tensor = together([(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in parts])
+        _, com, tensor = combine_inertias([(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in parts])
         rotated_tensor = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
         self.notes[f"{note_path}.inertia.moments"] = "of the file, as its centre and its products"
         return Inertia(

@@ -69,12 +69,12 @@ class Meshes:
     def _locate(self, name: str) -> Path:
         """Return the file of a mesh, inside the folder of the robot's file or of a package."""
         for root, relative_path in self._places(name):
-            mesh_file = inside(root, relative_path)
+            mesh_file = path_inside(root, relative_path)
             if mesh_file is not None and mesh_file.is_file():
                 return mesh_file
         if name.startswith(_SCHEME):
             raise UnreadableFile(f"{name[:100]} is in none of the folders of packages")
-        if inside(self._home, name) is None:
+        if path_inside(self._home, name) is None:
             raise UnreadableFile(f"{name[:100]} lies outside the folder of the file")
         raise UnreadableFile(f"there is no file {name[:100]}")
 
@@ -102,7 +102,7 @@ class Meshes:
             raise UnreadableFile(f"{mesh_file.name} cannot be read: {error.strerror}") from error
 
 
-def inside(home: Path, name: str) -> Path | None:
+def path_inside(home: Path, name: str) -> Path | None:
     """Return the path of a file named in a robot's file; None where it would lie outside a folder."""
     try:
         path = (home / name).resolve()

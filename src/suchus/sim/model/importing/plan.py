@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from suchus.core.errors import UnknownName, UnreadableFile
-from suchus.robot.design.segment import together
+from suchus.robot.design.segment import combine_inertias
 from suchus.sim.model.importing.tree import Joint, Tree, TreePart
 
 
@@ -99,10 +99,10 @@ def find_plane(tree: Tree, *, front: str | None, heading: float | None) -> tuple
         UnknownName: there is no such body.
     """
     front_com = None if front is None else _body_com(tree, front)
-    scored_planes = [(mapped_share(tree, plane), plane) for plane in _candidates(tree, front_com, heading)]
-    fit = [(plane, split_by(tree, plane)) for mapped_fraction, plane in scored_planes if mapped_fraction >= _SHARE]
+    scored_planes = [(mapped_fraction(tree, plane), plane) for plane in _candidates(tree, front_com, heading)]
+    fit = [(plane, split_by(tree, plane)) for fraction, plane in scored_planes if fraction >= _SHARE]
     if not fit:
-        best_fraction = max((mapped_fraction for mapped_fraction, _ in scored_planes), default=0.0)
+        best_fraction = max((fraction for fraction, _ in scored_planes), default=0.0)
         raise UnreadableFile(
             f"no vertical plane mirrors its hinges onto each other (the best one {best_fraction:.0%} of them, "
             f"{_SHARE:.0%} are needed): draw it upright and straight at zero posture, or say --heading."
@@ -148,7 +148,7 @@ def _close(first_rank: tuple[bool, int, float], second_rank: tuple[bool, int, fl
     )
 
 
-def mapped_share(tree: Tree, plane: Plane) -> float:
+def mapped_fraction(tree: Tree, plane: Plane) -> float:
     """Return the share of the hinges whose mirror image is a hinge."""
     points, lines = _hinge_lines([joint for tree_part in tree.parts for joint in tree_part.joints], plane)
     return float(_meet(points * _FLIP, lines * _FLIP, points, lines, TOLERANCE * tree.size).any(axis=1).mean())
@@ -336,7 +336,7 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
     )
 
 
-def without(plan: BodyPlan, pair: tuple[LimbChain, LimbChain]) -> BodyPlan:
+def without_limbs(plan: BodyPlan, pair: tuple[LimbChain, LimbChain]) -> BodyPlan:
     """Return a plan without a pair of limbs, whose mass goes to the part that carries them."""
     pairs = tuple(limb_pair for limb_pair in plan.pairs if limb_pair is not pair)
     plan_parts = {*plan.axis, *(i for limb_pair in pairs for chain in limb_pair for i in chain.parts)}
@@ -459,6 +459,6 @@ def _lumped(tree: Tree, plan_parts: set[int]) -> Tree:
             masses[i] = []
     parts = []
     for tree_part, part_masses in zip(tree.parts, masses, strict=True):
-        mass, com, tensor = together(part_masses or [(0.0, tree_part.com, np.zeros((3, 3)))])
+        mass, com, tensor = combine_inertias(part_masses or [(0.0, tree_part.com, np.zeros((3, 3)))])
         parts.append(replace(tree_part, mass=mass, com=com, tensor=tensor))
     return replace(tree, parts=tuple(parts))

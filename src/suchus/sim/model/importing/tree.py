@@ -13,7 +13,7 @@ import numpy as np
 
 from suchus.core.checks import require
 from suchus.core.errors import UnreadableFile
-from suchus.robot.design.segment import together
+from suchus.robot.design.segment import combine_inertias
 from suchus.sim.model.importing.cleaning import Drive
 from suchus.sim.model.importing.loading import Loaded
 
@@ -301,7 +301,9 @@ def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
 
 def _fused(carrier: TreePart, child: TreePart) -> TreePart:
     """Return two parts that move as one."""
-    mass, com, tensor = together([(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in (carrier, child)])
+    mass, com, tensor = combine_inertias(
+        [(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in (carrier, child)]
+    )
     return replace(
         carrier,
         mass=mass,
