@@ -129,7 +129,7 @@ CALLS = {
         ),
         at("out"),
     ),
-    "blueprint.read": lambda at, _: blueprint.read_design(at("robot.toml"), type(ROBOT), ROBOTS),
+    "blueprint.read_design": lambda at, _: blueprint.read_design(at("robot.toml"), type(ROBOT), ROBOTS),
     "blueprint.read_gait": lambda at, _: blueprint.read_gait(at("gait.toml"), ROBOT, GAITS),
     "blueprint.read_motors": lambda at, _: blueprint.read_motors(at("text.toml")),
     "blueprint.read_correction": lambda at, _: blueprint.read_correction(at("text.toml")),

@@ -173,7 +173,7 @@ def test_side_by_side_an_error_ends_the_processes(tmp_path, monkeypatch):
     """What ``processes`` promises of its closed generator is tested there; here, that it is closed at once."""
     ended = []
 
-    def working(work, cases, jobs, *, tries, each):
+    def working(work, cases, jobs, *, tries, threads_per_process):
         try:
             yield 0, processes.PieceStarted()
             yield 0, processes.PieceProgress("computing", 0.5)

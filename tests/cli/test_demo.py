@@ -54,7 +54,7 @@ def test_without_a_browser_a_page_is_written_and_named(short, capsys, opener):
 
 def test_without_the_extra_the_page_is_opened_and_the_extra_is_named(short, capsys, opener, monkeypatch):
     monkeypatch.setattr(demo, "find_spec", lambda name: None)
-    monkeypatch.setattr(demo, "_drawn", lambda walks: "<!doctype html>" * walks.sizes["run"])
+    monkeypatch.setattr(demo, "_replay_html", lambda walks: "<!doctype html>" * walks.sizes["run"])
     monkeypatch.setattr(demo, "simulate", lambda runs, progress: simulate(runs, duration=5.0, timestep=0.005))
     assert main(["demo", "--out", "here.html"]) == 0
     assert opener.opened == [(short / "here.html").as_uri()]

@@ -23,7 +23,7 @@ def at(**versions):
 def well(monkeypatch):
     """A machine on which all trials succeed."""
     trials = {"walk": WALKED, "swim": Trial(found=COMPILED), "draw": Trial(found=None, failure="no EGL")}
-    monkeypatch.setattr(doctor, "tried", lambda *names: [trials[name] for name in names])
+    monkeypatch.setattr(doctor, "run_trials", lambda *names: [trials[name] for name in names])
     monkeypatch.setattr(doctor, "packages", lambda: Finding(heading="packages", lines=("numpy 2.4.6",)))
     return trials
 
@@ -121,7 +121,7 @@ def test_trials_that_answer_fail_die_and_hang(python, monkeypatch):
     python("import os; os.kill(os.getpid(), 11)")
     assert doctor.run_trials("walk") == [Trial(found=None, failure="the process died of signal 11")]
     python("import time; time.sleep(60)")
-    monkeypatch.setattr(doctor, "_PATIENCE", 0.2)
+    monkeypatch.setattr(doctor, "_TRIAL_TIMEOUT", 0.2)
     assert doctor.run_trials("walk") == [Trial(found=None, failure="no answer within 0.2 s")]
 
 

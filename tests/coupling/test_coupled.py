@@ -311,7 +311,7 @@ def test_a_push_acts_in_each_go_through_a_stretch():
 
 
 def test_a_step_that_does_not_come_to_terms_ends_with_its_numbers_and_the_record_so_far(monkeypatch):
-    monkeypatch.setattr(coupled, "LOST", 1e-9)
+    monkeypatch.setattr(coupled, "MAX_RESIDUAL", 1e-9)
     swim = Swim(swim_run(water=Slice(cells=40, reynolds=600.0)), 0.4)
     most = Slice().corrections
     with pytest.raises(

@@ -41,7 +41,7 @@ def room(tmp_path, monkeypatch):
     (here / "a.py").write_text("from suchus.flow.compiled import PAD, part\n\n@part\ndef f(x):\n    return x\n")
     (here / "b.py").write_text("from suchus.flow.compiled import compiled\nfrom a import f\n")
     (here / "c.py").write_text("from suchus.flow.compiled import PAD\n")
-    monkeypatch.setattr(compiled, "_HERE", here)
+    monkeypatch.setattr(compiled, "_SOURCE_FOLDER", here)
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "the user's"))
     return here
@@ -59,7 +59,7 @@ def test_an_edit_of_a_kernel_that_others_call_is_another_folder(room):
 
 def test_the_forces_of_water_have_such_a_folder_too(tmp_path, monkeypatch):
     (tmp_path / "table.py").write_text("AIR_FRACTION = 6\n")
-    monkeypatch.setattr(vectors, "_HERE", tmp_path)
+    monkeypatch.setattr(vectors, "_SOURCES", tmp_path)
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     before = vectors.folder()
     assert before.parent == tmp_path / "__pycache__"

@@ -87,7 +87,7 @@ def test_numba_has_the_names_that_linking_needs():
 
 
 def test_a_name_that_is_gone_is_missed(monkeypatch):
-    monkeypatch.setattr(linking, "_NEEDED", (*linking._REQUIRED_NAMES, "_no_such_name"))
+    monkeypatch.setattr(linking, "_REQUIRED_NAMES", (*linking._REQUIRED_NAMES, "_no_such_name"))
     assert linking.missing() == ["_no_such_name"]
     assert linking.options() == {}  # as numba does it
 

@@ -193,7 +193,7 @@ def test_coefficients_by_a_reference():
     assert (got.drag[0], got.lift[0]) == pytest.approx((3 / (pressure * 0.5), 4 / (pressure * 0.5)))
     assert (got.moment[0], got.power[0]) == pytest.approx((6 / (pressure * 0.25), 10 / (pressure * 2 * 0.5)))
     assert got.time[0] == 1.75
-    turned = record_of((3.0, 4.0), 0.0, 0.0).coefficients(length=1.0, speed=1.0, along=np.arctan2(4, 3))
+    turned = record_of((3.0, 4.0), 0.0, 0.0).coefficients(length=1.0, speed=1.0, stream_angle=np.arctan2(4, 3))
     assert (turned.drag[0], turned.lift[0]) == pytest.approx((10.0, 0.0))
 
 

@@ -48,7 +48,7 @@ def test_samples_that_are_not_kept_change_none_of_those_that_are(run, robots):
 
 
 def test_contact_forces_that_nobody_reads_are_not_averaged_and_nothing_else_differs(run):
-    felt, unread = (passed(Loop([run], COARSE, ticks=30), 20, felt=felt) for felt in (True, False))
+    felt, unread = (passed(Loop([run], COARSE, ticks=30), 20, need_forces=felt) for felt in (True, False))
     for name in ("servo", "imu_orientation", "centre_of_mass", "angular_momentum"):
         columns = felt.sensors.span(felt.sensors.layout.servos, "torque") if name == "servo" else None
         sides = (loop.sensors[name] if columns is None else loop.batch.readings[:, columns] for loop in (felt, unread))
@@ -58,7 +58,9 @@ def test_contact_forces_that_nobody_reads_are_not_averaged_and_nothing_else_diff
 
 
 def test_sensors_that_nobody_reads_are_not_worked_out_and_the_robots_go_the_same_way(run):
-    read, unread = (passed(Loop([run], COARSE, ticks=30), 20, felt=False, read=read) for read in (True, False))
+    read, unread = (
+        passed(Loop([run], COARSE, ticks=30), 20, need_forces=False, need_readings=read) for read in (True, False)
+    )
     np.testing.assert_array_equal(read.batch.qpos, unread.batch.qpos)
     np.testing.assert_array_equal(read.batch.angles(0), unread.batch.angles(0))
     assert not np.array_equal(read.sensors["centre_of_mass"], unread.sensors["centre_of_mass"])

@@ -7,7 +7,7 @@ from suchus.sim.land import Ground, Run
 from suchus.sim.land.push_search import smallest_pushes
 
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["limbs_only"]
-SLIDES = {"at": 0.4, "wait": 0.1, "levels": (1.0, 2.0, 4.0, 8.0), "timestep": 0.01}
+SLIDES = {"start_time": 0.4, "wait": 0.1, "levels": (1.0, 2.0, 4.0, 8.0), "timestep": 0.01}
 
 
 def moved(limit):

@@ -42,7 +42,7 @@ def test_surfaces_and_midlines_come_back_from_the_page():
 def test_a_page_stays_small_by_coarser_blocks(monkeypatch):
     record = ringed()
     fine = wake_replay(record)
-    monkeypatch.setattr(page, "LARGEST", 40_000)
+    monkeypatch.setattr(page, "MAX_ARRAY_BYTES", 40_000)
     coarse = wake_replay(record)
     assert [unpacked(page)[0]["coarse"] for page in (fine, coarse)] == [1, 2]
     assert len(coarse) < len(fine)

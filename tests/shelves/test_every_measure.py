@@ -58,7 +58,7 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
     "pattern_generator": {
         "_turn_measures: measures['turn_asymmetry'].value - measu ... traight'].value the other way round": _SIZE,
         "_TURNS: straight asymmetry the other way round": "Which walks are run, in whatever order.",
-        "_locked: cycle.dims[0] is the last": "A cycle's index is all that the error of a start is over.",
+        "_lock_measures: cycle.dims[0] is the last": "A cycle's index is all that the error of a start is over.",
     },
     "salamander": {
         "measure: stride[0] is the last": "The last ground's stride is the greatest there with or without the first's.",
@@ -70,7 +70,7 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "measure: other_strides.max() is min": _ONE_WATER,
         "measure: record.missed.max() is min": _ONE_SWIM,
         "measure: record.heel.max() is min": _ONE_SWIM,
-        "played: 1.0 / frequency the other way round": _ANY_PERIOD,
+        "animal_gait: 1.0 / frequency the other way round": _ANY_PERIOD,
         "trim_submerged: FREQUENCIES[0] is the last": _ANY_PERIOD,
     },
     "swimming": {
@@ -82,10 +82,12 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "_pushing: first - third * (1.0, -1.0) the other way round": _SIZE,
     },
     "joint_loops": {"measure: float(final_interval.sel(test='step')[-1]) - step the other way round": _SIZE},
-    "gallop_limits": {"_first: speeds[all_faster_pay][0] is the last": "In its quick form one speed pays at most."},
+    "gallop_limits": {
+        "_min_paying_speed: speeds[all_faster_pay][0] is the last": "In its quick form one speed pays at most."
+    },
     "joint_faults": {"_effects: change.sel({dim: a}) - change.sel({dim: b}) the other way round": _SIZE},
     "bipedal_reach": {
-        "least_lead: run=0 is the last": _ONE_RUN,
+        "min_lead: run=0 is the last": _ONE_RUN,
         "measure: run=0 is the last": _ONE_RUN,
     },
     "terrain": {

@@ -129,7 +129,7 @@ def test_a_table_of_tracks_is_read_by_the_command_line(walk, tracks, tmp_path, m
     view = pytest.importorskip("suchus.apps.cli.view")
     file = tmp_path / "lizard.csv"
     write_table(tracks, file)
-    options = view.Replaying(record=walk, animal=file)
+    options = view.ViewRecordOptions(record=walk, animal=file)
     (animal,) = view._animals(options, takes(walk))
     assert animal.pace == pytest.approx(5.0, rel=0.01)
-    assert view._animals(view.Replaying(record=walk), takes(walk)) == ()
+    assert view._animals(view.ViewRecordOptions(record=walk), takes(walk)) == ()

@@ -49,7 +49,7 @@ class Watched:
             self.sessions.append(Session(ROBOTS["caiman"], replace(GAITS["belly_crawl"], period=1.0)))
             return pages.LivePage(client, self.sessions[-1])
 
-        self.viewer = pages.Viewer(page, port=0, most=2)
+        self.viewer = pages.Viewer(page, port=0, max_browsers=2)
 
 
 @pytest.fixture(scope="module")

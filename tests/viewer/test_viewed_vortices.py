@@ -32,11 +32,11 @@ def test_a_value_outside_what_was_kept_is_set_to_the_nearest(asked, found):
 def test_large_surfaces_are_taken_of_blocks(monkeypatch):
     film = VortexFilm(ringed())
     fine = len(film.surfaces(2, 4.0).vertices)
-    monkeypatch.setattr(swim, "LARGEST", fine // 2)
+    monkeypatch.setattr(swim, "MAX_POINTS", fine // 2)
     assert film.blocks(4.0) == 1
-    monkeypatch.setattr(swim, "LARGEST", fine // 2 - 1)
+    monkeypatch.setattr(swim, "MAX_POINTS", fine // 2 - 1)
     assert film.blocks(4.0) == 2
-    monkeypatch.setattr(swim, "LARGEST", 1)
+    monkeypatch.setattr(swim, "MAX_POINTS", 1)
     assert film.blocks(4.0) == 4
 
 

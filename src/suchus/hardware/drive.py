@@ -186,7 +186,8 @@ def drive(
         progress: told the share that is done.
 
     Returns:
-        The log, a record of one run, see ``record.VARIABLES`` and ``record.DRIVEN``; ``cause`` says why it ended early.
+        The log, a record of one run, see ``record.VARIABLES`` and ``record.BUS_VARIABLES``; ``cause`` says why it
+        ended early.
 
     Raises:
         UnsuitedRobot: the control must sense what the robot cannot.

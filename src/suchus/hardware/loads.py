@@ -313,7 +313,7 @@ def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
 
     Args:
         robot: whose record it is.
-        record: of the time that counts, as ``metrics.between`` cuts it.
+        record: of the time that counts, as ``metrics.time_window`` cuts it.
     """
     full = xr.DataArray([full_from(robot.servo(str(name))) for name in record.servo.values], dims="servo")
     return (use_of_each(robot, record) >= full).mean("time")

@@ -34,7 +34,7 @@ class DriveLog:
 
         Args:
             time: at which it was planned, since the controller's beginning [s].
-            values: by the names of ``record.VARIABLES`` and ``record.DRIVEN``; those left out are not known.
+            values: by the names of ``record.VARIABLES`` and ``record.BUS_VARIABLES``; those left out are not known.
         """
         self._times.append(time)
         self._rows.append({name: np.array(value, dtype=float) for name, value in values.items()})

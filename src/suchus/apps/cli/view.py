@@ -204,7 +204,9 @@ def _serve(
         **settings: further settings of ``Viewer``.
     """
     pages = pages_of_viewer()
-    viewer = pages.Viewer(page, host=address.host, port=address.port, most=address.most, title=title, **settings)
+    viewer = pages.Viewer(
+        page, host=address.host, port=address.port, max_browsers=address.most, title=title, **settings
+    )
     try:
         print(f"{title}: open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
         if address.host not in _LOOPBACK:

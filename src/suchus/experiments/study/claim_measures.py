@@ -69,7 +69,7 @@ def swept_rules() -> tuple[Rule, ...]:
 
 
 def claims_varied() -> frozenset[str]:
-    """Return the claims that are answered by asking their experiment again, see ``verdict.Varied``."""
+    """Return the claims that are answered by asking their experiment again, see ``verdict.Variation``."""
     sweeps = (design_sweep_of(name) for name in {rule.experiment for rule in RULES.values()})
     return frozenset(claim for sweep in sweeps if sweep is not None for claim in sweep.claims)
 

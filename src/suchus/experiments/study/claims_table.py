@@ -127,7 +127,8 @@ def border_texts(rows: Sequence[Mapping[str, Any]]) -> dict[str, str]:
 
 
 def shares(rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]) -> dict[str, dict[str, Any]]:
-    """Return the rows in the form of ``verdict.Share``, by claim, or of ``verdict.TooFew`` where few could judge it.
+    """Return the rows in the form of ``verdict.Share``, by claim, or of ``verdict.SparseShare`` where few could
+    judge it.
 
     Args:
         rows: of ``claim_row``.

@@ -56,5 +56,5 @@ _REASONS = (
     Reason(r"^period$", 0.5, 2.0, "a slow walk; the measured cycle is given as shares of its duration"),
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.2, "read from the angles: a foot that goes forward swings"),
 )
-assumptions = assumptions_of(gait, _REASONS, PUBLISHED)
+chosen = assumptions_of(gait, _REASONS, PUBLISHED)
 """Every number that was not measured, with its plausible range and the reason."""

@@ -32,7 +32,7 @@ metres = GaitInMetres(
 """The crawl in metres."""
 gait = metres.gait(LIMBS)
 """Spine and tail take part."""
-robot_names = ("caiman", "floating_caiman", "long_tail")
+made_for = ("caiman", "floating_caiman", "long_tail")
 """Robots of the shelf whose gait it is."""
 
 _FIT_REASON = (
@@ -60,7 +60,7 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("tail_lag", 0.5, 1.0, _MISSING_FIGURE + "against the trunk, which keeps the heading best"),
     ("tail_pitch", 0.1, 0.3, "the tail drags without lifting the hind feet"),
 )
-assumptions = tuple(
+chosen = tuple(
     Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
     for field, lower_bound, upper_bound, reason in _ROWS
 )

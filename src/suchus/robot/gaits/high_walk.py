@@ -68,7 +68,7 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
         "the tail carries some weight: lifted, the body rolls more and loses speed",
     ),
 )
-assumptions = tuple(
+chosen = tuple(
     Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
     for field, lower_bound, upper_bound, reason in _ROWS
 )

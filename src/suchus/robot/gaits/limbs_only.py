@@ -11,4 +11,4 @@ from suchus.robot.gaits import belly_crawl
 
 gait = belly_crawl.gait.without("axis", name="limbs_only")
 """Legs alone."""
-assumptions = belly_crawl.assumptions
+chosen = belly_crawl.chosen

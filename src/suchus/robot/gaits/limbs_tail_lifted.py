@@ -6,4 +6,4 @@ LIFTED = -0.25  # [rad]; clear of the ground, and the passive end does not touch
 
 gait = limbs_only.gait.lifted(LIFTED, name="limbs_tail_lifted")
 """Legs alone, the tail in the air: the robot is then so heavy behind that its hind feet never leave the ground."""
-assumptions = belly_crawl.assumptions
+chosen = belly_crawl.chosen

@@ -19,11 +19,11 @@ _OWN_RANGES = {
         "the belly clears even ground and touches bumps: what a crocodile's crawl looks like",
     ),
 }
-assumptions = (
+chosen = (
     *(
         Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
         for field, (lower_bound, upper_bound, reason) in _OWN_RANGES.items()
     ),
-    *(entry for entry in belly_crawl.assumptions if entry.field not in _OWN_RANGES),
+    *(entry for entry in belly_crawl.chosen if entry.field not in _OWN_RANGES),
 )
 """Every number of the gait that the article does not give, with its plausible range and the reason."""

@@ -22,7 +22,7 @@ gait = Gait(
     ),
 )
 """The walk of the crank-legged robot."""
-robot_names = ("salamandra",)
+made_for = ("salamandra",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
@@ -33,5 +33,5 @@ _REASONS = (
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "opposite limbs in turn, a little more stance than swing"),
     Reason(r"^limbs|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
 )
-assumptions = assumptions_of(gait, _REASONS)
+chosen = assumptions_of(gait, _REASONS)
 """Every number with its plausible range and the reason."""

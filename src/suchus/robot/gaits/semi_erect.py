@@ -65,7 +65,7 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("tail_lag", 0.5, 1.0, "against the trunk, which keeps the heading best"),
     ("tail_pitch", 0.3, 0.4, "the tail carries some weight and keeps the body from rolling"),
 )
-assumptions = tuple(
+chosen = tuple(
     Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
     for field, lower_bound, upper_bound, reason in _ROWS
 )

@@ -5,4 +5,4 @@ from suchus.robot.gaits.limbs_tail_lifted import LIFTED
 
 gait = belly_crawl.gait.without("tail").lifted(LIFTED, name="spine_only")
 """Legs and trunk."""
-assumptions = belly_crawl.assumptions
+chosen = belly_crawl.chosen

@@ -4,4 +4,4 @@ from suchus.robot.gaits import belly_crawl
 
 gait = belly_crawl.gait.without("trunk", name="tail_drag")
 """Legs and tail."""
-assumptions = belly_crawl.assumptions
+chosen = belly_crawl.chosen

@@ -4,4 +4,4 @@ from suchus.robot.gaits import belly_crawl
 
 gait = belly_crawl.gait.without("tail", name="tail_still")
 """Legs and trunk, the tail on the ground."""
-assumptions = belly_crawl.assumptions
+chosen = belly_crawl.chosen

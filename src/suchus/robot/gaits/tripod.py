@@ -16,7 +16,7 @@ gait = Gait(
     axis=(Bend(part="trunk", amplitude=(radians(10),)),),
 )
 """The insects' gait."""
-robot_names = ("strider",)
+made_for = ("strider",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
@@ -25,5 +25,5 @@ _REASONS = (
     Reason(r"^(duty_factor|limb_phases)", 0.8, 1.3, "opposite limbs in turn, a little more stance than swing"),
     Reason(r"^limbs|^height$", 0.7, 1.4, "within what the limbs reach, the belly clear of the ground"),
 )
-assumptions = assumptions_of(gait, _REASONS)
+chosen = assumptions_of(gait, _REASONS)
 """Every number with its plausible range and the reason."""

@@ -14,7 +14,7 @@ gait = Gait(
 """At the places of ten hinges, one wavelength along the body, 15 degrees a hinge at the snout and 35 at the tip.
 
 For water; on even ground it hardly moves, since friction is the same along the body and across."""
-robot_names = ("swimmer",)
+made_for = ("swimmer",)
 """Robots of the shelf whose gait it is."""
 
 _REASONS = (
@@ -22,5 +22,5 @@ _REASONS = (
     Reason(r"^period$", 0.5, 2.0, "about the frequency at which its servos reach these angles"),
     Reason(r"^(duty_factor)", 0.8, 1.3, "it has no limbs: unused"),
 )
-assumptions = assumptions_of(gait, _REASONS)
+chosen = assumptions_of(gait, _REASONS)
 """Every number with its plausible range and the reason."""

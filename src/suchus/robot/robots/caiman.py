@@ -222,7 +222,7 @@ _ROWS: tuple[_Row, ...] = (
     ("contact.skin_friction", 0.2, 0.6, "plastic on a floor"),
     ("contact.time_constant", 0.01, 0.03, "a rubber sole; displacement within 1 % over the range"),
 )
-assumptions = tuple(
+chosen = tuple(
     Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
     for field, lower_bound, upper_bound, reason in _ROWS
 )

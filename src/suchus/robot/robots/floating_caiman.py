@@ -26,5 +26,5 @@ _REASONS = (
     Reason(r"^hull\.chambers\[\d+\]\.share$", 0.9, 1.1, "level at neutral buoyancy, its limbs back"),
     Reason(r"^hull\.air$", 0.5, 1.2, "a tenth of the volume let out brings the feet down on a steep shore"),
 )
-assumptions = (*caiman.assumptions, *assumptions_of(robot, _REASONS, (r"^(?!hull\.)",)))
+chosen = (*caiman.chosen, *assumptions_of(robot, _REASONS, (r"^(?!hull\.)",)))
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

@@ -18,8 +18,8 @@ _OWN_CHOICES = (
     Assumption(field="tail.fin_length", low=0.15, high=0.25, why="makes the tail 56 % of the body"),
     Assumption(field="tail.mass", low=0.45, high=0.80, why="the caiman's tail, longer in proportion"),
 )
-assumptions = (
-    *(entry for entry in caiman.assumptions if entry.field not in {choice.field for choice in _OWN_CHOICES}),
+chosen = (
+    *(entry for entry in caiman.chosen if entry.field not in {choice.field for choice in _OWN_CHOICES}),
     *_OWN_CHOICES,
 )
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

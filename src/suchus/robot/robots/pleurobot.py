@@ -68,5 +68,5 @@ _REASONS = (
     Reason(r"^girdles\[\d\]\.(at|aside|above)$", 0.7, 1.3, "hips beside the girdles' servos"),
 )
 _PUBLISHED = (r"^girdles.*\.end\[1\]$",)
-assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
+chosen = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the publication does not give, with its plausible range and the reason."""

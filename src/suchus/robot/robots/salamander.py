@@ -89,5 +89,5 @@ _PUBLISHED = (
     r"\.foot\.radius$",
     r"^girdles.*\.end\[",
 )
-assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
+chosen = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the model does not give, with its plausible range and the reason."""

@@ -74,5 +74,5 @@ _PUBLISHED = (
     r"\.foot\.radius$",
     r"^girdles.*\.end\[",
 )
-assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
+chosen = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the public model does not give, with its plausible range and the reason."""

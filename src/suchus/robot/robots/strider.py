@@ -43,5 +43,5 @@ _REASONS = (
     ),
     Reason(r"^girdles\[\d\]\.(at|aside|above)$", 0.7, 1.4, "hips beside the body, in the middle of each segment"),
 )
-assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE))
+chosen = assumptions_of(robot, (*_REASONS, *BY_SIZE))
 """Every number, with its plausible range and the reason: the robot is invented."""

@@ -80,5 +80,5 @@ _REASONS = (
     Reason(r"\.mass$", 0.9, 1.1, "together they float with a twentieth of their volume above the water, batteries low"),
 )
 _PUBLISHED = (r"^axis\[\d+\]\.(front|rear)$", r"\.half\[[12]\]$")
-assumptions = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
+chosen = assumptions_of(robot, (*_REASONS, *BY_SIZE), _PUBLISHED)
 """Every number that the public models do not give, with its plausible range and the reason."""

@@ -85,7 +85,7 @@ RULES = (
     ),
 )
 
-SWEEP = Variation(
+VARIED = Variation(
     claims=("height_crawl", "height_standing", "height_ratio", "height_from_spine_head_legs"),
     designs=("robot",),
     settings={"hold": 10.0, "torques": (3.0,), "forebodies": (0.6,), "leads": (), "pushes": (1.0,), "finer": 0},

@@ -122,7 +122,7 @@ RULES = (
     ),
 )
 
-SWEEP = Variation(claims=("tilt_limbs_only",), designs=("robot", "gait"), samples=128)
+VARIED = Variation(claims=("tilt_limbs_only",), designs=("robot", "gait"), samples=128)
 
 _HEIGHT = {
     "com_height_pp_change_tail_lifted": -0.1,

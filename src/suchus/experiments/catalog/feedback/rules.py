@@ -59,7 +59,7 @@ RULES = (
     ),
 )
 
-SWEEP = Variation(
+VARIED = Variation(
     claims=("feedback_rules", "shared_variables"), designs=("robot", "gait"), settings={"starts": 16}, samples=16
 )
 

@@ -140,7 +140,7 @@ RULES = (
     ),
 )
 
-SWEEP = Variation(claims=("fault_support",), designs=("robot", "gait"), settings={"holds": (0.5,)}, samples=16)
+VARIED = Variation(claims=("fault_support",), designs=("robot", "gait"), settings={"holds": (0.5,)}, samples=16)
 
 _READINGS = list(product(("limp", "locked"), ("one", "both")))
 

@@ -27,7 +27,7 @@ RULES = (
     ),
 )
 
-SWEEP = Variation(claims=("joint_pid",), designs=("robot",), samples=64)
+VARIED = Variation(claims=("joint_pid",), designs=("robot",), samples=64)
 
 _PID = {
     "load_error_pid": radians(0.396),

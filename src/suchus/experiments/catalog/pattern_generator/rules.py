@@ -32,7 +32,7 @@ RULES = (
     ),
 )
 
-DESIGN_SWEEP = Variation(
+VARIED = Variation(
     claims=("oscillators_direction",),
     designs=("robot", "gait"),
     settings={"drives": (1.0, 2.0, 4.0), "starts": 1, "shore_time": 3.0, "ramp": 1.0},

@@ -54,7 +54,7 @@ RULES = (
     ),
 )
 
-DESIGN_SWEEP = Variation(claims=tuple(rule.claim for rule in RULES), settings={"friction_scales": (0.7,), "cycles": 6})
+VARIED = Variation(claims=tuple(rule.claim for rule in RULES), settings={"friction_scales": (0.7,), "cycles": 6})
 
 _TIMES = {"foot_force_time_fore": 0.6, "foot_force_time_hind": 0.4}
 _PUSHES = {"foot_force_foreaft_hind": 0.01, "foot_force_foreaft_fore": -0.01}

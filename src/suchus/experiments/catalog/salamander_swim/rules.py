@@ -46,7 +46,7 @@ RULES = (
     ),
 )
 
-DESIGN_SWEEP = Variation(
+VARIED = Variation(
     claims=("salamander_swim_stride",),
     settings={"factors": (), "own_size": (), "settle": 6, "cycles": 4},
     samples=32,

@@ -48,7 +48,7 @@ RULES = (
     ),
 )
 
-DESIGN_SWEEP = Variation(
+VARIED = Variation(
     claims=("high_walk_speed_low", "high_walk_speed_high", "tail_on_ground_in_high_walk"),
     designs=("robot",),
     settings={"slower": (0.45, 0.6, 0.75, 1.0)},

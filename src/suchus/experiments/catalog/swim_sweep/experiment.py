@@ -43,7 +43,7 @@ _PEERS = (
 
 _HERTZ = 1.0  # [Hz]; frequency of the points
 _SWIM_UNITS = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
-"""Stored numbers of a swim by CFD, with units; see ``water.Swum``."""
+"""Stored numbers of a swim by CFD, with units; see ``water.SwimMeasures``."""
 
 
 def swim_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progress) -> xr.Dataset:

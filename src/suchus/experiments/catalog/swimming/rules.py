@@ -183,7 +183,7 @@ RULES = (
     ),
 )
 
-DESIGN_SWEEP = Variation(
+VARIED = Variation(
     claims=tuple(rule.claim for rule in RULES),
     over={
         "cells": (48, 96, "The article does not say how fine its grid is: from about half of ours to a fifth more."),

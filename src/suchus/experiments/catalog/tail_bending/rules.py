@@ -105,7 +105,7 @@ RULES = (
     ),
 )
 
-DESIGN_SWEEP = Variation(claims=("tail_quadratic_small",), designs=("robot",), settings={"steps": 91}, samples=128)
+VARIED = Variation(claims=("tail_quadratic_small",), designs=("robot",), settings={"steps": 91}, samples=128)
 
 _SMALL = {"error_of_eq_17_max": 0.0411, "error_of_eq_17_plausible": 0.063}
 _CORDS = {"cords_opposed_share": 1.0, "slack_max": 0.006}

@@ -49,7 +49,7 @@ RULES = (
     ),
 )
 
-DESIGN_SWEEP = Variation(
+VARIED = Variation(
     claims=("crawl_structure_flat", "erect_structure_rough", "switches_structure"), designs=("robot",), samples=16
 )
 

@@ -20,7 +20,7 @@ RULES = (
     ),
 )
 
-DESIGN_SWEEP = Variation(claims=("working_space",), designs=("robot",), samples=32)
+VARIED = Variation(claims=("working_space",), designs=("robot",), samples=32)
 
 _SPACE_MEASURES = {
     "volume_ratio": 5.0,
