@@ -93,7 +93,9 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
     },
     "feedback": {
         "_loop_measures: _last_seconds(pitch, gait.period).mean() ... .period).mean() the other way round": _SIZE,
-        "_undisturbed_measures: first_cycles.isel(time=-1) - first_cycles.isel(time=0) the other way round": "Both ends of a quotient.",
+        "_undisturbed_measures: first_cycles.isel(time=-1) - first_cycles.isel(time=0) the other way round": (
+            "Both ends of a quotient."
+        ),
     },
 }
 """By experiment the breaks that no measure of its quick form notices, and why that hides nothing."""
