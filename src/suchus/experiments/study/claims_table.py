@@ -127,8 +127,7 @@ def border_texts(rows: Sequence[Mapping[str, Any]]) -> dict[str, str]:
 
 
 def shares(rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dataset]) -> dict[str, dict[str, Any]]:
-    """Return the rows in the form of ``verdict.Share``, by claim, or of ``verdict.SparseShare`` where few could
-    judge it.
+    """Return the rows by claim, as ``verdict.Share``, or as ``verdict.SparseShare`` where few designs could be judged.
 
     Args:
         rows: of ``claim_row``.
