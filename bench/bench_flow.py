@@ -26,10 +26,14 @@ from suchus.swimming.water.setting import SwimSetting
 from suchus.swimming.water.swim_setup import ResolvedSwim
 
 PIECES = (
-    (water, "immerse collect dilatation_work contents mean_residual residual correct fastest fill fill_source"),
+    (
+        water,
+        "immerse add_immersion_impulse dilatation_work add_contents mean_residual residual correct fastest fill "
+        "fill_source",
+    ),
     (water.Fluid, "step place _measure _clear _advance"),
     (poisson, "solve"),
-    (multigrid, "coarsen spread"),
+    (multigrid, "coarsen copy_coefficients"),
     (midline, "paint sections"),
     (midline.Midline, "markers"),
     (farfield, "gather induce"),

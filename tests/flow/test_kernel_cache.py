@@ -16,7 +16,7 @@ from suchus.flow import compiled
 from suchus.sim.hydro import vectors
 
 ROOM = Path(compiled.__file__).parent
-MAKERS = {"compiled", "threaded", "part", "threaded_part"}
+MAKERS = {"compiled", "threaded", "kernel_part", "threaded_part"}
 
 
 def decorated(file):
@@ -38,7 +38,9 @@ def room(tmp_path, monkeypatch):
     """A room with two kernel files, of which one calls the other, and one without."""
     here = tmp_path / "a room"
     here.mkdir()
-    (here / "a.py").write_text("from suchus.flow.compiled import PAD, part\n\n@part\ndef f(x):\n    return x\n")
+    (here / "a.py").write_text(
+        "from suchus.flow.compiled import (\n    PAD,\n    kernel_part,\n)\n\n@kernel_part\ndef f(x):\n    return x\n"
+    )
     (here / "b.py").write_text("from suchus.flow.compiled import compiled\nfrom a import f\n")
     (here / "c.py").write_text("from suchus.flow.compiled import PAD\n")
     monkeypatch.setattr(compiled, "_SOURCE_FOLDER", here)
@@ -96,7 +98,7 @@ def test_the_latest_few_states_are_kept_and_nothing_else_is_touched(room):
     (room / "__pycache__" / "a.pyc").write_text("x")
     made = []
     for n in range(7):
-        (room / "a.py").write_text(f"from suchus.flow.compiled import part\nN = {n}\n")
+        (room / "a.py").write_text(f"from suchus.flow.compiled import kernel_part\nN = {n}\n")
         made.append(compiled.folder())
     kept = [one for one in made if one.is_dir()]
     assert len(kept) == kernel_cache.MAX_SOURCE_STATES

@@ -55,7 +55,9 @@ _OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_
 
 _SOURCE_FOLDER = Path(__file__).parent
 _MAKERS = re.compile(
-    r"^from suchus\.flow\.compiled import .*\b(?:compiled|threaded|kernel_part|ordered_part|threaded_part)\b", re.M
+    r"^from suchus\.flow\.compiled import (?:\([^)]*?|[^(\n]*?)"
+    r"\b(?:compiled|threaded|kernel_part|ordered_part|threaded_part)\b",
+    re.M,
 )
 _BASE_FILES = ("compiled.py", "linking.py")
 
