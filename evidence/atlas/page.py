@@ -158,9 +158,9 @@ def page(listed: Sequence[Entry]) -> str:
     costs = {one.flow: one.seconds for entry in listed for one in _every(entry)}
     lines = [
         "# Atlas of flows", "",
-        "Published data of flows around bodies, many of which move, beside the results of `suchus.flow`. `suchus "
-        "flow-atlas` computes the flows and `make atlas` writes this page from the results; nothing on it is typed in "
-        "by hand. Exact answers and budgets, which have no published data, are on the page "
+        "Published data of flows around bodies, many of which move, beside the results of `suchus.flow`. `python -m "
+        "evidence.atlas` computes the flows and `make atlas` writes this page from the results; nothing on it is typed "
+        "in by hand. Exact answers and budgets, which have no published data, are on the page "
         "[validation](validation.md); [limits](flow_limits.md) says what the differences mean.", "",
         f"{summary(listed)} {_so_far(listed)} took {sum(costs.values()) / 60:.0f} minutes of processor time.", "",
         "The difference of a row is the root mean square (rms) over the published points, divided by the largest "

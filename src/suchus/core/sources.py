@@ -379,6 +379,8 @@ def _opened(folder: Path) -> Project:
         if not folder.is_dir():
             raise UnreadableFile(f"there is no folder {folder}; a project is a folder with a {SETTINGS}.")
         stat = (folder / SETTINGS).stat()
+    except UnreadableFile:  # an OSError too
+        raise
     except FileNotFoundError:
         return Project(folder)
     except (OSError, ValueError) as error:

@@ -156,7 +156,7 @@ class ReproduceOptions:
         bool,
         tyro.conf.FlagCreatePairsOff,
         tyro.conf.arg(
-            help="Run every experiment again. Otherwise results of the same code and settings are reusable_result."
+            help="Run every experiment again. Otherwise results of the same code and settings are kept."
         ),
     ] = False
 
