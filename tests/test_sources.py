@@ -132,9 +132,9 @@ def test_settings_that_cannot_be_are_refused_in_a_sentence(lab, settings, words)
 
 
 def test_a_folder_that_is_not_there_is_refused(lab):
-    with pytest.raises(UnreadableFile, match="^there is no folder"):
+    with pytest.raises(UnreadableFile, match=r"^there is no folder"):
         suchus.project(lab / "none")
-    with pytest.raises(UnreadableFile, match="^there is no folder"):
+    with pytest.raises(UnreadableFile, match=r"^there is no folder"):
         suchus.project("a\0b")
 
 

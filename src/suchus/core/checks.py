@@ -141,7 +141,7 @@ class Checks:
         """Refuse a value that is neither a number within the bounds nor a table of increasing times and such numbers.
 
         Args:
-            field: holds a ``Course``.
+            field: holds a ``Schedule``.
             lower_bound: least number.
             upper_bound: greatest number.
             unit: of the number.

@@ -32,7 +32,7 @@ PORTABLE: Mapping[str, str] = {
     "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX,-AVX2,-FMA,-FMA4,-AVX512F,-AVX_Fast_Unaligned_Load",
 }
 """What the environment of a portable process says, on x86-64 with the GNU C library. Libraries read these when the
-process starts, and so a process that wants them is begun with them, see ``begun_portable``."""
+process starts, and so a process that wants them is begun with them, see ``portable_environment``."""
 _POINTS = 2048
 _mixing: ContextVar[bool] = ContextVar("mixing", default=False)
 

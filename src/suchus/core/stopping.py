@@ -34,7 +34,9 @@ class StopSignal(KeyboardInterrupt):
 
 @contextmanager
 def stopping() -> Iterator[None]:
-    """While the block runs, let SIGTERM and SIGHUP raise ``Stopped``; after ``SOON`` the process ends all the same.
+    """While the block runs, let SIGTERM and SIGHUP raise ``StopSignal``.
+
+    After ``STOP_TIMEOUT`` the process ends all the same.
 
     What compiled code does in between hears no signal. A signal that is ignored, as under nohup, or that somebody else
     handles, stays so.

@@ -149,7 +149,8 @@ class BendingMap:
             time: when [s].
 
         Raises:
-            InvalidDesign: the velocity changes by more than ``SMOOTH`` when it is taken over half the time.
+            InvalidDesign: the velocity changes by more than ``MAX_VELOCITY_CHANGE`` when it is taken over half the
+                time.
         """
         full_tick_velocity = self.velocity(places, time)
         half_tick_velocity = self.velocity(places, time, 0.5 * self.tick)
@@ -172,7 +173,7 @@ def _row(place: np.ndarray) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BentOutline(Shape):
-    """A plane shape that a map bends; see ``bent``."""
+    """A plane shape that a map bends; see ``bend_shape``."""
 
     still: Solid
     """The shape that it bends."""
@@ -254,7 +255,7 @@ class BentOutline(Shape):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BentMesh(SpaceShape):
-    """A closed mesh that a map bends; see ``bent``."""
+    """A closed mesh that a map bends; see ``bend_shape``."""
 
     still: TriangleMesh
     """The mesh that it bends."""

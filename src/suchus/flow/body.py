@@ -165,7 +165,7 @@ def rows_of(bodies: list[AnyBody]) -> list[range]:
     """Return the range of rows of each body in arrays that have one row for each part of every body.
 
     Raises:
-        InvalidDesign: there are more than ``MOST_ROWS`` parts.
+        InvalidDesign: there are more than ``MAX_ROWS`` parts.
     """
     ends = list(accumulate((getattr(body.shape, "parts", 1) for body in bodies), initial=0))
     if ends[-1] > MAX_ROWS:
@@ -241,7 +241,7 @@ def _closed(shape: Shape | SpaceShape, time: float) -> bool:
 
 
 def thin_fraction(body: AnyBody, grid: Grid, time: float) -> float:
-    """Return the fraction of the body's length that is thinner than ``THINNEST`` cells [-].
+    """Return the fraction of the body's length that is thinner than ``MIN_THICKNESS`` cells [-].
 
     Args:
         body: the body.

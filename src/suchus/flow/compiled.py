@@ -137,7 +137,7 @@ def replace_threaded_parts(kernel: Any, **parts: Any) -> Any:
 
 
 def replace_kernel_parts(kernel_part: "KernelPart[P, R]", **parts: Any) -> "KernelPart[P, R]":
-    """Return a part with other parts in place of those of its module; see ``threaded_with``."""
+    """Return a part with other parts in place of those of its module; see ``replace_threaded_parts``."""
     return KernelPart(_rewritten(kernel_part.py_func, parts))
 
 

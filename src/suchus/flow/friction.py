@@ -30,7 +30,7 @@ def blasius(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
 
 
 def ittc(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
-    """Return the local coefficient of friction of a turbulent layer, laminar below ``SLOWEST`` [-].
+    """Return the local coefficient of friction of a turbulent layer, laminar below ``MIN_TURBULENT_REYNOLDS`` [-].
 
     The line is one of totals, ``C = 0.075 / (log10 Re - 2)^2``; the local one is the rate of ``C Re``.
 

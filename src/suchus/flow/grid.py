@@ -37,9 +37,9 @@ def _coarsest(cells: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _fitting(cells: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the next sizes that can be halved until at most ``COARSEST`` cells are left along each side.
+    """Return the next sizes that can be halved until at most ``MAX_COARSEST_CELLS`` cells are left along each side.
 
-    A long channel may keep up to ``LONGEST`` cells along its length, so that it does not become wider.
+    A long channel may keep up to ``MAX_CHANNEL_CELLS`` cells along its length, so that it does not become wider.
     """
     halvings, min_side = 0, min(cells)
     while ceil(max(cells) / 2**halvings) > (MAX_COARSEST_CELLS if min_side > 4 * 2**halvings else MAX_CHANNEL_CELLS):

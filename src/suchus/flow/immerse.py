@@ -147,7 +147,7 @@ def close_faces(passage, x, y, x0, y0, h):
 
 @compiled
 def close_surface(passage, c, triangles, origin, h):
-    """Do in space what ``close`` does in the plane, with triangles in place of the pieces of a line.
+    """Do in space what ``close_faces`` does in the plane, with triangles in place of the pieces of a line.
 
     Args:
         passage: share of the pressure's gradient that acts on the faces across axis ``c`` of a window, shape (z, y, x);

@@ -213,13 +213,13 @@ def subtract_joint_pressure(sums, p, mu0, owners, layout, near_layout, inner, we
 
     Args:
         sums: shape (body, ``sums_of``), to change.
-        p: see ``pressed``.
-        mu0: see ``pressed``.
-        owners: see ``pressed``.
-        layout: see ``pressed``.
-        near_layout: see ``pressed``.
-        inner: see ``pressed``.
-        weight: see ``pressed``.
+        p: see ``add_internal_pressure``.
+        mu0: see ``add_internal_pressure``.
+        owners: see ``add_internal_pressure``.
+        layout: see ``add_internal_pressure``.
+        near_layout: see ``add_internal_pressure``.
+        inner: see ``add_internal_pressure``.
+        weight: see ``add_internal_pressure``.
     """
     w = len(inner) + 2
     row_cells, columns = signed(row_length(inner, p.shape[1])), near_layout[9] - near_layout[8] + 1
@@ -308,7 +308,9 @@ def add_contents(sums, b, mu0, owner, component, layout, near_layout, inner):
 def skin_contents(
     markers: Markers, offset: float, origin: tuple[float, ...], h: float, count: int
 ) -> np.ndarray:  # fmt: skip
-    """Return the contents of the skin of water, ``offset`` cells thick, that ``contents`` counts as body, part by part.
+    """Return the contents of the layer of water that ``add_contents`` counts as body, part by part.
+
+    The layer is ``offset`` cells thick.
 
     Args:
         markers: of one body.

@@ -326,7 +326,7 @@ def _relaxation_factors(cells, axes):
     """Return the relaxation factor of each step on the coarsest level, and the weight of its Jacobi steps.
 
     Chebyshev's semi-iteration for eigenvalues from that of the smoothest error along the longest side up to 2. It takes
-    as many steps, an even number, as leave the fraction ``LEFT`` of each error.
+    as many steps, an even number, as leave the fraction ``MAX_RESIDUAL_RATIO`` of each error.
 
     Args:
         cells: of the longest side.

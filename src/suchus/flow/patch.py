@@ -4,7 +4,8 @@
 
 The patch of a level is its window and ``RIM`` cells around it, as far as they lie in the domain. The cells of a patch
 lie contiguously in memory, so that a smoothing step is one long loop. Cells at the edge of a patch keep their value,
-because their inverse diagonal is 0. A row of ``rects`` describes a patch: its offset in the buffer, its padded cell
+because their inverse diagonal is 0. A row of ``patch_layouts`` describes a patch: its offset in the buffer, its
+padded cell
 indices (first and end along each axis, the last axis first), and the number of pairs of smoothing steps before and
 after the coarse-grid correction.
 """
@@ -61,7 +62,7 @@ def allocate_buffer(buffer: np.ndarray, patches: np.ndarray) -> np.ndarray:
 
     Args:
         buffer: the old buffer, shape (kind, cell).
-        patches: see ``rects``.
+        patches: see ``patch_layouts``.
     """
     ends = patches[-1, 1:-1].reshape(-1, 2)
     size = int(patches[-1, 0] + np.prod(ends[:, 1] - ends[:, 0]))
@@ -97,7 +98,7 @@ def _take(target, rect, a, inner):
 
     Args:
         target: values of the patch, shape (slab, cell).
-        rect: row of ``rects``.
+        rect: row of ``patch_layouts``.
         a: array of the level.
         inner: strides within a slab.
     """
@@ -116,7 +117,7 @@ def _close_sides(buffer, rect, level_layout, inner):
 
     Args:
         buffer: values of all patches.
-        rect: row of ``rects``.
+        rect: row of ``patch_layouts``.
         level_layout: row of the layout for the level; see ``slab``.
         inner: strides within a slab.
     """
@@ -141,7 +142,7 @@ def take_coefficients(buffer, rect, level_layout, faces, dinv, inner):
 
     Args:
         buffer: values of all patches.
-        rect: row of ``rects``.
+        rect: row of ``patch_layouts``.
         level_layout: row of the layout for the level; see ``slab``.
         faces: face coefficients of the level along each axis.
         dinv: inverse diagonal of the level.
@@ -170,7 +171,7 @@ def _relax(buffer, rect, inner, first_weight, second_weight):
 
     Args:
         buffer: values of all patches.
-        rect: row of ``rects``; its last number is the number of pairs.
+        rect: row of ``patch_layouts``; its last number is the number of pairs.
         inner: strides within a slab.
         first_weight: Jacobi weight of the first step of a pair [-].
         second_weight: Jacobi weight of the second step [-].
@@ -194,7 +195,7 @@ def start(buffer, rect, b, inner):
 
     Args:
         buffer: values of all patches.
-        rect: row of ``rects``.
+        rect: row of ``patch_layouts``.
         b: right side of the level.
         inner: strides within a slab.
     """
@@ -215,7 +216,7 @@ def end(buffer, rect, x, inner):
 
     Args:
         buffer: values of all patches.
-        rect: row of ``rects``.
+        rect: row of ``patch_layouts``.
         x: solution of the level, which is changed.
         inner: strides within a slab.
     """
@@ -237,7 +238,7 @@ def give_slab(output, o, solution, rect, slab, inner):
         output: the other array.
         o: slab of ``output``.
         solution: solution of the patch, shape (slab, cell).
-        rect: row of ``rects``.
+        rect: row of ``patch_layouts``.
         slab: slab of the level.
         inner: strides within a slab.
     """

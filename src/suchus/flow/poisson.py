@@ -23,7 +23,7 @@ MIN_ENERGY_RATIO = 1e-3
 
 MAX_RESIDUAL_GROWTH = 3.0
 """Ratio of the residual to the smallest so far above which a nearly converged solve drops the iteration [-]; see
-``NEARLY``."""
+``NEAR_CONVERGENCE_RATIO``."""
 
 MAX_STALLED_CYCLES = 3
 """Cycles without progress after which a nearly converged solve stops, because rounding prevents a smaller residual

@@ -239,7 +239,7 @@ def _paint_point(fields, indices, px, py, z, column, section, rows, h):
     """Write the fields of ``paint_sections`` at one point.
 
     Args:
-        fields: distance, normal, velocity, thickness, part, shape (``PAINTED``, z, y, x).
+        fields: distance, normal, velocity, thickness, part, shape (``PAINTED_FIELDS``, z, y, x).
         indices: indices of the point, z, y, x.
         px: position of the column.
         py: position of the column.
@@ -324,8 +324,8 @@ def paint_sections(fields, rows, tx, ty, cuts, x0, y0, z0, h, reach):
     """Write the fields of a trunk whose midline lies in a plane z = constant.
 
     Args:
-        fields: distance, normal, velocity, thickness, part, shape (``PAINTED``, z, y, x); beforehand all distances are
-            ``reach``.
+        fields: distance, normal, velocity, thickness, part, shape (``PAINTED_FIELDS``, z, y, x); beforehand all
+            distances are ``reach``.
         rows: the stations; see ``ARC``.
         tx: cosine of their heading.
         ty: sine of it.
@@ -353,7 +353,7 @@ def paint_turned_sections(fields, rows, tx, ty, cuts, x, y, z, turn, origin, rea
     """Write the fields of a trunk in any attitude, as ``paint_sections`` does; vectors are those of the body's frame.
 
     Args:
-        fields: distance, normal, velocity, thickness, part, shape (``PAINTED``, z, y, x).
+        fields: distance, normal, velocity, thickness, part, shape (``PAINTED_FIELDS``, z, y, x).
         rows: the stations; see ``ARC``.
         tx: cosine of their heading.
         ty: sine of it.

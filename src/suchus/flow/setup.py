@@ -269,7 +269,7 @@ class Setup:
             slack: factor by which the speed may exceed what the grid resolves [-].
 
         Raises:
-            InvalidDesign: the estimate is above ``REFUSED``; the message names a sufficient cell.
+            InvalidDesign: the estimate is above ``MAX_FORCE_ERROR``; the message names a sufficient cell.
         """
         extent = float(np.ptp(markers.points, axis=1).max())
         speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())

@@ -207,7 +207,7 @@ class Ellipsoid(SpaceShape):
 
     @property
     def blunt(self) -> bool:
-        """Whether no axis is more than ``_BLUNT`` times another."""
+        """Whether no axis is more than ``_MAX_BLUNT_RATIO`` times another."""
         return is_blunt(self.half)
 
     def volume(self, time: float) -> float:

@@ -131,7 +131,7 @@ def clear_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
 
 
 def face_differences(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -> np.ndarray:
-    """Return the difference of a field between the cells behind and before faces, shape (face,).
+    """Return the difference of a field across faces, the upper cell minus the lower one, shape (face,).
 
     Args:
         water: the water, for its window.

@@ -792,7 +792,7 @@ class Fluid:
             statistics of the solve, and the factors of the two arrays of the solution; see ``poisson.solve``.
 
         Raises:
-            NotConverged: the residual is above ``STUCK`` times its limit.
+            NotConverged: the residual is above ``MAX_FINAL_RESIDUAL`` times its limit.
         """
         *result, a, b = poisson.solve(
             self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.inner,

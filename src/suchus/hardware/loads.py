@@ -234,7 +234,7 @@ def measure_loads(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None
     Args:
         robot: whose record it is, with its windings.
         walk: the part that counts.
-        strong_walk: the same of ``strong`` servos; that of the robot itself if None.
+        strong_walk: the same of ``with_strong_servos`` servos; that of the robot itself if None.
     """
     use, elapsed_time = use_of_each(robot, walk), walk.time.values - START
     required_torque = np.abs((walk if strong_walk is None else strong_walk).servo_torque)

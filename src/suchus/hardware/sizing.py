@@ -379,7 +379,7 @@ def with_better(
     Args:
         robot: who.
         case: what it does.
-        loads: from ``loads_of_each``.
+        loads: from ``loads_of_cases``.
         motors: the servos that are sold; those that suchus knows if None.
     """
     replaceable = {name for names in places(robot) for name in names}

@@ -53,7 +53,7 @@ def comparison_lines(data: xr.Dataset, robot: str) -> list[str]:
     """Return the comparison as text, a line for each joint: amplitude, residual and reason.
 
     Args:
-        data: as ``beside`` returns it.
+        data: as ``compare_joints`` returns it.
         robot: its name.
     """
     name_width = max(len(str(name)) for name in data.joint.values)

@@ -101,8 +101,8 @@ def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: floa
 
     Args:
         time: by a clock on which every stride lasts about a period, shape (frame,) [s].
-        place: see ``middles``.
-        forward: see ``middles``.
+        place: see ``swing_midpoints``.
+        forward: see ``swing_midpoints``.
         period: of the cycle [s].
     """
     frames, parameters = _swing_frames(time / period, place, _turns(time / period, forward))

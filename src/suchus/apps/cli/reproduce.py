@@ -155,9 +155,7 @@ class ReproduceOptions:
     anew: Annotated[
         bool,
         tyro.conf.FlagCreatePairsOff,
-        tyro.conf.arg(
-            help="Run every experiment again. Otherwise results of the same code and settings are kept."
-        ),
+        tyro.conf.arg(help="Run every experiment again. Otherwise results of the same code and settings are kept."),
     ] = False
 
 

@@ -105,7 +105,8 @@ def answer(decides: str) -> str:
 def answer_rows(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
     """Return name, value and interval of the measures that carry an answer, in words.
 
-    A measure that a run has not, as one of another gait, or that is no finite number is left out; ``MOST`` are taken.
+    A measure that a run has not, as one of another gait, or that is no finite number is left out;
+    ``MAX_ANSWER_MEASURES`` are taken.
 
     Args:
         answers: names of these measures; where there are none, the first are taken.

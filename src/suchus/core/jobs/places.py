@@ -19,7 +19,7 @@ from suchus.core.progress import Progress, silent
 StartPiece = Callable[[int], Progress]
 """Called with the number of a piece when it starts; returns the callback for its progress."""
 Results = Generator[tuple[int, Any], None, None]
-"""Numbers of pieces and their results, ``Died`` where there is none, as they are finished, in any order."""
+"""Numbers of pieces and their results, ``PieceCrash`` where there is none, as they are finished, in any order."""
 _SWITCH = 5e-4  # [s]; Python's own 5 ms are two physics steps of a batch, for which another thread would wait each time
 
 

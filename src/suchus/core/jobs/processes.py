@@ -92,7 +92,7 @@ def side_by_side(
         threads_per_process: threads that each process takes [-]; an equal share of all if None.
 
     Yields:
-        The number of a piece, and what is heard of it: each ends with ``Done`` or ``Died``.
+        The number of a piece, and what is heard of it: each ends with ``PieceResult`` or ``PieceCrash``.
 
     Raises:
         SuchusError: what the work of a piece raised.
@@ -161,7 +161,7 @@ def dismiss(workers: Sequence[Worker]) -> None:
 
 
 def _receive(worker: Worker) -> PieceProgress | PieceResult | PieceCrash | _PieceError | _PieceWarning:
-    """Return the next message of a busy worker; ``Died`` where its process has ended."""
+    """Return the next message of a busy worker; ``PieceCrash`` where its process has ended."""
     try:
         message: PieceProgress | PieceResult | _PieceError | _PieceWarning = worker.pipe.recv()
     except _PIPE_ERRORS:

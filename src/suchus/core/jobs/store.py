@@ -45,7 +45,7 @@ class Store:
         folder: where they are, or shall be.
         study: whose they are, a dataclass.
         kind: what it is called in messages; also the name of the file that says what the store holds.
-        versions: returns what decides the bytes here, see ``makers.deciding``.
+        versions: returns what decides the bytes here, see ``made_by.source_versions``.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Store:
 
     @contextmanager
     def _alone(self) -> Iterator[None]:
-        """Make the folder and hold a lock on it; one that was made in vain is taken away."""
+        """Create the folder if it is missing, and hold a lock on it."""
         is_new = not path_exists(self.folder)
         if not is_new and not self.folder.is_dir():
             raise self._foreign_folder_error()

@@ -198,7 +198,7 @@ def renewed_table(shipped_text: str, rows: Sequence[Mapping[str, Any]], sweep_re
     """Return a table of shares with the rows of some experiments anew; all other rows that today's rules ask stay.
 
     Args:
-        shipped_text: the table, of ``shipped``.
+        shipped_text: the table, of ``shipped_table``.
         rows: of ``claim_row``, of the experiments.
         sweep_records: of ``varied.conduct_varied``, by experiment.
     """

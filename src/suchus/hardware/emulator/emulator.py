@@ -105,7 +105,7 @@ class Emulator:
         except Diverged as error:
             self.diverged = error
             return
-        self._happen()
+        self._age_servos()
         self._feel()
 
     # --- what is answered ---------------------------------------------------------------------------------------------
@@ -217,8 +217,8 @@ class Emulator:
         for servo in self.servos:
             self.body.power(servo.number, servo.share)
 
-    def _happen(self) -> None:
-        """Age the servos by a control period, with the faults of ``Trouble``."""
+    def _age_servos(self) -> None:
+        """Advance the servos by a control period: heat them and apply water, heat and voltage drop of ``Trouble``."""
         trouble, time, period = self.trouble, self.body.time, self.body.period
         has_trouble = time >= trouble.at
         if has_trouble:

@@ -164,5 +164,5 @@ def _field_names(kind: type) -> tuple[str, ...]:
 
 @cache
 def _has_numbers(kind: type) -> bool:
-    """Return whether the values of a class are ``Numbered``: to ask each value takes longer than to change it."""
+    """Return whether the values of a class are ``HasNumbers``: to ask each value takes longer than to change it."""
     return issubclass(kind, HasNumbers)

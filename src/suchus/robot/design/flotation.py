@@ -27,7 +27,8 @@ def float_hull(
         density: of the foam [kg/m3].
 
     Raises:
-        InvalidDesign: the share is not 0 to 0.9, the robot has a hull, or a body would swell beyond ``THICKEST``.
+        InvalidDesign: the share is not 0 to 0.9, the robot has a hull, or a body would swell beyond
+            ``MAX_VOLUME_RATIO``.
     """
     require("float_hull", "above", freeboard_fraction, 0.0, 0.9, "")
     require("float_hull", "density", density, 0.0, 0.9 * (1 - freeboard_fraction) * WATER_DENSITY, "kg/m3")

@@ -10,7 +10,7 @@ Protocol = Literal["dynamixel", "dynamixel1", "feetech", "pwm"]
 """How a servo is spoken to: Dynamixel protocol 2.0, protocol 1.0, Feetech STS, or pulses, which answer nothing."""
 
 COPPER = 0.0039
-"""How much more a copper winding resists for each kelvin, as a part of it at ``ROOM`` [1/K]."""
+"""How much more a copper winding resists for each kelvin, as a part of it at ``ROOM_TEMPERATURE`` [1/K]."""
 ROOM_TEMPERATURE = 25.0
 """Temperature at which data sheets hold, and of the air around a servo [degC]."""
 SPECIFIC_HEAT = 700.0
@@ -46,7 +46,7 @@ class Heat:
         """Return the steady temperature of a servo at a constant loss [degC]; infinite for thermal runaway.
 
         Args:
-            loss: what it would turn into heat with its winding at ``ROOM`` [W].
+            loss: what it would turn into heat with its winding at ``ROOM_TEMPERATURE`` [W].
         """
         cold = self.resistance * loss
         margin = 1.0 - COPPER * cold  # a warm winding resists more, which warms it further
@@ -58,7 +58,7 @@ class Heat:
         """Return the time in which a cold servo reaches its temperature limit [s]; infinite if it never does.
 
         Args:
-            loss: what it would turn into heat with its winding at ``ROOM`` [W].
+            loss: what it would turn into heat with its winding at ``ROOM_TEMPERATURE`` [W].
         """
         cold = loss * (1.0 + COPPER * (self.ambient - ROOM_TEMPERATURE))
         cools = (1.0 / self.resistance - COPPER * loss) * (
@@ -74,7 +74,8 @@ class Heat:
 class Winding:
     """The DC motor of a servo at a supply: what makes its torque fall with its speed, with the supply and with heat.
 
-    The servo's ``torque`` is that at standstill and its ``speed`` that without load, both at ``volts`` and ``ROOM``.
+    The servo's ``torque`` is that at standstill and its ``speed`` that without load, both at ``volts`` and
+    ``ROOM_TEMPERATURE``.
     """
 
     volts: float
@@ -96,7 +97,7 @@ class Winding:
 
     @property
     def resistance(self) -> float:
-        """Resistance of the winding at ``ROOM`` [Ohm]."""
+        """Resistance of the winding at ``ROOM_TEMPERATURE`` [Ohm]."""
         return self.volts / self.stall_current
 
 

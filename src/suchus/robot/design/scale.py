@@ -59,7 +59,7 @@ def physics_step(robot: Robot) -> float:
 def coarse_step(robot: Robot) -> float:
     """Return the time step for many runs of a robot, half of its control period [s].
 
-    The article's robot gets as far with it within 0.1 %; see ``COARSEST`` for others.
+    The article's robot gets as far with it within 0.1 %; see ``MIN_STEPS_PER_GRAVITY_TIME`` for others.
     """
     return control_period(robot) / 2
 
@@ -116,8 +116,9 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
 
     A servo in proportion to weight, as that of ``servo_for``, resonates with the inertia of body and water near the
     frequency of a swim. Here the stiffness follows from the moved inertia: half of the body and its water,
-    ``_WATER m / 2 (L / 2)^2 / 3``, has a natural frequency of ``SWIM`` times the beat. Damping delays a joint by
-    ``kd / kp`` times its rate; it follows from ``BEHIND`` and is far below the critical damping of half of the body,
+    ``_WATER m / 2 (L / 2)^2 / 3``, has a natural frequency of ``JOINT_FREQUENCY_RATIO`` times the beat. Damping
+    delays a joint by
+    ``kd / kp`` times its rate; it follows from ``JOINT_LAG`` and is far below the critical damping of half of the body,
     whose motion the water damps. More damping would not help: on a single segment it decays within a step of explicit
     physics (``model.longest_step``), and a servo at its limit would chatter. Torque and speed limits are never reached;
     the record has the torque that the water demands.
@@ -148,7 +149,7 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
 
 
 def spring_for(mass: float, length: float, mass_ratio: float) -> Spring:
-    """Return a passive joint that suits a body of a size.
+    """Return a passive joint whose spring and damper are scaled to the mass and length of a body.
 
     Args:
         mass: of the whole body [kg].

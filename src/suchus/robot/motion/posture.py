@@ -171,7 +171,10 @@ def upright(robot: Robot) -> Upright:
 
 
 def belly(robot: Robot) -> float:
-    """Return how far the root and the trunk ahead of it, to the front girdle, reach below the hips [m]."""
+    """Return the depth of the lowest point of the trunk below the hips [m].
+
+    The trunk is what lies behind the front girdle's segment, up to the root and with it.
+    """
     names = [segment.name for segment in robot.axis]
     trunk = robot.axis[names.index(robot.girdles[0].segment) + 1 : robot.root_place + 1] or (
         robot.axis[robot.root_place],

@@ -210,7 +210,7 @@ def outline(
     Args:
         robot: the design.
         angles: of every hinge [rad].
-        pelvis: x, z and pitch, see ``Reached``.
+        pelvis: x, z and pitch, see ``Configurations``.
     """
     place, body_frames, marks = layout(robot), frames(robot, angles), landmarks(robot, angles)
     names = [body.name for body in place.bodies]

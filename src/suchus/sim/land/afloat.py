@@ -67,7 +67,7 @@ def check_floats(robot: Robot, lake: Lake) -> None:
     """
     volume, weight = capacity(robot, lake)
     if volume < weight:
-        raise InvalidDesign(_sinks(robot, lake.water.density, (weight - volume) * lake.water.density))
+        raise InvalidDesign(_sinking_message(robot, lake.water.density, (weight - volume) * lake.water.density))
 
 
 def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"]) -> None:
@@ -92,7 +92,7 @@ def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[flo
     """Return a warning about a swimmer at rest as a sentence; empty if it floats upright and deep enough."""
     equilibrium = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heels=3)
     if equilibrium.surplus > HEAVIER * equilibrium.mass:
-        return _sinks(robot, density, equilibrium.surplus)
+        return _sinking_message(robot, density, equilibrium.surplus)
     emerged_fraction = 1.0 - equilibrium.mass / (density * equilibrium.volume)
     lever = -equilibrium.metacentric_height
     if isnan(lever):
@@ -117,14 +117,15 @@ def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[flo
     return ""
 
 
-def _sinks(robot: Robot, density: float, surplus: float) -> str:
-    """Return the sentence on a robot that is too heavy by a mass [kg]."""
-    foam = (robot.hull or Hull(foam=())).density
-    foam_text = f"{_litres(surplus / (density - foam))} of foam" if foam < density else "lighter foam"
+def _sinking_message(robot: Robot, density: float, excess_mass: float) -> str:
+    """Return the sentence on a robot that is too heavy by a mass [kg], in water of a density [kg/m3]."""
+    foam_density = (robot.hull or Hull(foam=())).density
+    foam_text = f"{_litres(excess_mass / (density - foam_density))} of foam" if foam_density < density else "lighter "
+    "foam"
     return (
-        f"robot {robot.name!r} sinks: it is {_grams(surplus)} heavier than the water that it displaces; at least "
-        f"{foam_text} more, as design.flotation.float_hull makes, {_litres(surplus / density)} more air, or "
-        f"{_grams(surplus)} less mass would carry it."
+        f"robot {robot.name!r} sinks: it is {_grams(excess_mass)} heavier than the water that it displaces; at least "
+        f"{foam_text} more, as design.flotation.float_hull makes, {_litres(excess_mass / density)} more air, or "
+        f"{_grams(excess_mass)} less mass would carry it."
     )
 
 

@@ -200,12 +200,14 @@ class Disturbances:
         zeros = (0.0,) * servos
         self._zero_error = np.array([runs[sim].zero_error or zeros for sim in self._inexact_sims])
         self._half_play = np.array([runs[sim].play or zeros for sim in self._inexact_sims]) / 2
-        self._reached_angles = np.full((len(runs), servos), np.nan)  # the angle that each servo turned to last
+        self._reached_angles = np.full(
+            (len(runs), servos), np.nan
+        )  # angle that each servo with play reached last [rad]
         for sim, run in enumerate(runs):
             self.schedule(sim, run.faults, run.pushes)
 
     def schedule(self, sim: int, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:
-        """Replace the future faults and pushes of a run, whose clock is at 0; its present faults end.
+        """Replace the future faults and pushes of a run, whose clock is at 0; faults that act already are repaired.
 
         Args:
             sim: the run.
@@ -217,12 +219,12 @@ class Disturbances:
         self._faults[sim], self._pushes[sim] = {}, list(pushes)
         for fault in faults:
             self._faults[sim].setdefault(int(np.ceil(fault.at / self._period - 1e-9)), []).append(fault)
-        self._await(sim, -1)
+        self._update_next_tick(sim, -1)
 
     def push(self, sim: int, push: Push) -> None:
         """Add a push to the future ones of a run."""
         self._pushes[sim].append(push)
-        self._await(sim, -1)
+        self._update_next_tick(sim, -1)
 
     def happen(self, clocks: np.ndarray, going: np.ndarray) -> None:
         """Let the faults of this control period begin, and push.
@@ -233,7 +235,7 @@ class Disturbances:
         """
         if self._has_pending:
             for sim in np.flatnonzero((self._next_ticks <= clocks) & going):
-                self._happen(int(sim), int(clocks[sim]))
+                self._apply_events(int(sim), int(clocks[sim]))
 
     def disturb(self, clocks: np.ndarray, tick: int, targets: np.ndarray) -> np.ndarray:
         """Return the angles that the servos are commanded in the end, a new array of shape (run, servo) [rad].
@@ -258,7 +260,7 @@ class Disturbances:
             targets[self._inexact_sims] = self._reached_angles[self._inexact_sims] = answer
         return self.injector.command(tick, targets)
 
-    def _happen(self, sim: int, tick: int) -> None:
+    def _apply_events(self, sim: int, tick: int) -> None:
         """Apply the mean pushes of a control period to a run, and begin the faults that are due in it."""
         start, end = tick * self._period, (tick + 1) * self._period
         forces: dict[str, np.ndarray] = {}
@@ -270,10 +272,10 @@ class Disturbances:
         self._pushes[sim] = [push for push in self._pushes[sim] if push.at + push.duration > start]
         for fault in self._faults[sim].pop(tick, ()):
             self.injector.begin(sim, fault)
-        self._await(sim, tick)
+        self._update_next_tick(sim, tick)
 
-    def _await(self, sim: int, tick: int) -> None:
-        """Note the next control period after ``tick`` in which something may happen to a run."""
+    def _update_next_tick(self, sim: int, tick: int) -> None:
+        """Store the next control period after ``tick`` in which a fault or a push of a run may begin."""
         begins = [floor(push.at / self._period - _TICK_TOLERANCE) for push in self._pushes[sim]]
         self._next_ticks[sim] = max(min([*self._faults[sim], *begins], default=_NO_TICK), tick + 1)
         self._has_pending = bool((self._next_ticks < _NO_TICK).any())

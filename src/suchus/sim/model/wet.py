@@ -93,7 +93,7 @@ def with_pieces(
         length: for the Reynolds number of friction [m].
         max_pieces: pieces that the table has room for; as many as there are if None.
         acting: see ``wet_model``.
-        extra_numbers: see ``carrying``.
+        extra_numbers: see ``compile_with_pieces``.
     """
     data = pack_table(table, length, max_pieces)
     numeric = spec.add_numeric(name=NUMERIC, size=len(data))

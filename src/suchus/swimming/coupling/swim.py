@@ -169,8 +169,8 @@ def update_added_mass(
 ) -> Float[np.ndarray, "coordinate coordinate"]:  # fmt: skip
     """Return the added mass after a BFGS update with the observed response of the water.
 
-    It is symmetric, and positive definite with the robot's own mass. An update that leaves less than ``LEAST`` of the
-    inertia along the acceleration is rejected.
+    It is symmetric, and positive definite with the robot's own mass. An update that leaves less than
+    ``MIN_EFFECTIVE_INERTIA`` of the inertia along the acceleration is rejected.
 
     Args:
         added_mass: symmetric.
@@ -212,7 +212,7 @@ class Swim:
     Args:
         run: with a ``Slice`` or a ``Space``.
         duration: [s]; infinity keeps no samples of the robot.
-        timestep: of the physics [s]; None for the largest that the robot's size and ``FINER`` allow.
+        timestep: of the physics [s]; None for the largest that the robot's size and ``MIN_PHYSICS_STEPS`` allow.
         thread_count: of the flow.
         controller: what decides instead of the run's; None for that one.
         begin: state of the robot at the beginning; None for the controller's first posture.

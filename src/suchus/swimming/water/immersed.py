@@ -117,7 +117,7 @@ def trunk(
         motion: how it swims.
         grow: time over which the motion grows from nothing [s].
         tail_height: see ``half_heights`` [m].
-        limbs: whether it has its limbs, see ``folded``; without them otherwise.
+        limbs: whether it has its limbs, see ``folded_limbs``; without them otherwise.
         sway: harmonic of the snout's displacement to the right [m]; zero for a free body, which finds it by itself.
         turn: harmonic of the head's direction [rad].
     """

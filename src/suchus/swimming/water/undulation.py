@@ -4,7 +4,7 @@ Both are tangent angles along the body, each a sum of harmonics in time. Positio
 from the snout. So the midline has a constant length, and velocities are exact derivatives.
 
 A cable fixes only the sum of its joints, and the water bends a passive end. A gait cannot describe that. So a motion
-can also be taken from the angles of every lateral joint of a run (``taken``).
+can also be taken from the angles of every lateral joint of a run (``motion_of_record``).
 """
 
 from dataclasses import dataclass, replace

@@ -81,7 +81,7 @@ def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frame
     """Return the frames of one run.
 
     Args:
-        record: of one run, as ``checked`` returns it.
+        record: of one run, as ``check_record`` returns it.
         robot: whose it is.
         rate: frames in a second [1/s]; by default the nearest to ``RATE`` that the samples give, fewer of a long run.
     """

@@ -42,7 +42,7 @@ def skin_with_ankles(robot: Robot) -> Skin:
 
 
 def ankles(robot: Robot, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:
-    """Return the bones of ``footed``: those of the bodies, and one more for each foot.
+    """Return the bones of ``skin_with_ankles``: those of the bodies, and one more for each foot.
 
     Args:
         robot: the robot.

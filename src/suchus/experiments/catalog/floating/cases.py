@@ -39,8 +39,8 @@ BALLAST_MASS = 3.0
 _GYRATION = 0.1
 """Square of the keeled hull's radius of gyration [m2]: an ellipsoid 1 m wide and high, of even mass.
 
-The issue gives the acceleration but not the hull. Any submerged hull with the centre of mass of ``keeled`` has this
-acceleration.
+The issue gives the acceleration but not the hull. Any submerged hull with the centre of mass of ``keeled_hull`` has
+this acceleration.
 """
 
 

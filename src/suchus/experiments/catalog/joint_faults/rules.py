@@ -90,7 +90,7 @@ def _limbs_only_explanation(joint: str) -> str:
 
 
 def _tolerance_explanation() -> str:
-    """Return the explanation of the losses of each group against its own intact robot, joint by joint."""
+    """Return the explanation: what each group loses against its own intact robot, joint by joint, as fractions."""
     rows = "; ".join(
         f"{joint.replace('_', ' ')} {{loss_{joint}_limp_one_coordinated:+.0%}} and "
         f"{{own_loss_{joint}_limp_one_limbs_only:+.0%}}, a gain of {{gain_{joint}_limp_one_low:+.0%}} to "

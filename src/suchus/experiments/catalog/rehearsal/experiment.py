@@ -104,7 +104,9 @@ def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
 
 
 def exceeds_tolerance(displacement_change: float, heading_difference: float) -> bool:
-    """Return whether a wire changes a walk by more than ``LOSES`` or ``TURNS``; NaN counts as more.
+    """Return whether a wire changes a walk too much: displacement or heading; NaN counts as too much.
+
+    The limits are ``MAX_DISPLACEMENT_CHANGE`` and ``MAX_HEADING_CHANGE``.
 
     Args:
         displacement_change: change of the displacement, as a share of that without the wire [-].

@@ -180,7 +180,7 @@ _QUANTITY_UNITS = {
 
 
 def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) -> dict[str, float]:
-    """Return size, stability and swim of one animal by quantity, each in its unit of ``_KEPT``.
+    """Return size, stability and swim of one animal by quantity, each in its unit of ``_QUANTITY_UNITS``.
 
     The swim is measured over the last ``cycles``. The speed is negative where the animal moves tail first.
 

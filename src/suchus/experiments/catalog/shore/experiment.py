@@ -416,12 +416,12 @@ def _ground_share(record: xr.Dataset, ups: np.ndarray) -> np.ndarray:
 
 
 def find_fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases tilted by more than ``FALLEN``, or diverged."""
+    """Return which cases tilted by more than ``MAX_TILT``, or diverged."""
     return np.asarray(~(record.tilt < MAX_TILT).all("moment").values)
 
 
 def find_capsized(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases first tilted by more than ``FALLEN`` while they swam and were afloat."""
+    """Return which cases first tilted by more than ``MAX_TILT`` while they swam and were afloat."""
     is_over_tilt = ~(record.tilt < MAX_TILT)
     free = (record.walks == 0.0) & (record.ground < MAX_AFLOAT_LOAD)
     first_index = is_over_tilt.argmax("moment")
@@ -457,7 +457,7 @@ def ending(record: xr.Dataset) -> str:
 
 
 def in_water(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases are afloat and swim on the water's side of the line for the last ``LAST`` seconds."""
+    """Return which cases swim afloat on the water's side of the line for the last ``FINAL_DURATION`` seconds."""
     end = record.sel(moment=slice(float(record.moment[-1]) - FINAL_DURATION, None))
     free = (end.ground.mean("moment") < MAX_AFLOAT_LOAD) & (end.walks.max("moment") == 0.0)
     return np.asarray((free & (end.ahead < 0).all("moment")).values) & ~find_fallen(record)

@@ -397,7 +397,7 @@ def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = 
 
     Args:
         record: of the experiment.
-        judgement: see ``InFlow``; empty for none.
+        judgement: see ``FlowSwims``; empty for none.
         is_earned: whether a correction is written beside it.
     """
     correction_text = (

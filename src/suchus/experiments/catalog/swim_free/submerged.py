@@ -90,7 +90,7 @@ def _hovering(run: Run) -> float:
 def measures(record: xr.Dataset) -> Measures:
     """Return of each swim below the surface its trim and mean pitch, its speed, and the greatest error of its depth.
 
-    Beside them: how long each dive takes until it stays within ``NEAR`` of the depth; NaN if it never does.
+    Beside them: how long each dive takes until it stays within ``DEPTH_TOLERANCE`` of the depth; NaN if it never does.
     """
     if "dive" not in record:
         return Measures()

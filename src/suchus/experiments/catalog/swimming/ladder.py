@@ -44,7 +44,7 @@ from suchus.swimming.water.samples import checkpoint_path
 MOTIONS = ("trunk and tail", "tail only", "trunk only")
 """Motions that swim on every rung."""
 SWIMS = (*MOTIONS, "held")
-"""The swims of a rung that resolves the water: each motion free, and the first held at its snout."""
+"""The swims of a rung that resolves the water: each motion swims freely, and the first also with its snout fixed."""
 _SWIMS_OF_MEASURE: Mapping[str, tuple[str, ...]] = {
     "gain_tail": (MOTIONS[0], MOTIONS[2]), "gain_spine": MOTIONS[:2], "track": MOTIONS[:1], "wave": MOTIONS[:1],
     "tail_sine": MOTIONS[:1], "pressure": ("held",), "force": ("held",), "thrust": ("held",),
@@ -318,14 +318,14 @@ def swims(
     frames: int = 0,
     swim_names: Collection[str] = SWIMS,
 ) -> Swims:
-    """Return the free swims of a rung by motion, and the first held at its snout.
+    """Return the free swims of a rung by motion, and the first motion with its snout fixed.
 
     Args:
         climb: what is asked.
         rung: which; ``space`` is in three dimensions, the others are slices.
         rung_motions: the motions by name.
         progress: told the share that is done.
-        frames: pictures of the first that are kept [-].
+        frames: number of flow fields of the first swim that are stored [-].
         swim_names: names of the swims, the others are left out.
     """
     records: dict[str, xr.Dataset] = {}
@@ -430,7 +430,9 @@ class SettledNumber(NamedTuple):
 
 
 def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 1.0) -> SettledNumber:
-    """Return a number over the most cycles whose two halves agree within ``SETTLED``; the first cycle is left out.
+    """Return a number over the most cycles whose two halves agree within ``MAX_SETTLED_SPREAD``.
+
+    The first cycle is left out.
 
     Args:
         half: returns the number between two cycles, once for each side to which the swim may start.
@@ -457,7 +459,7 @@ def measures(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]
     """Return every rung's numbers, ``_low``, ``_high`` and ``_apart``, and its speeds.
 
     Args:
-        record: with what ``climbed`` returned.
+        record: with what ``run_ladder`` returned.
         length: of the robot [m].
     """
     yield from _of_rungs(record, length)
@@ -473,7 +475,7 @@ def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]
     In three dimensions the bounds include those of the stored study of grids.
 
     Args:
-        record: of ``climbed``.
+        record: of ``run_ladder``.
         length: of the robot [m].
     """
     grids = json.loads(record.attrs["grids"])

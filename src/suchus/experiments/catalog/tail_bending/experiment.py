@@ -309,7 +309,7 @@ def _facts(robot: Robot) -> dict[str, float]:
 
 
 def _spreads(record: xr.Dataset) -> Measures:
-    """Return how far the joints differ at most in each crawl [rad], and how often by more than ``ALIKE`` [-]."""
+    """Return the largest spread of the tail joints in each crawl [rad], and how often it is above its tolerance [-]."""
     spread = tail_joint_spread(record.crawl_angle, [str(name) for name in record.joint.values])
     measures = Measures()
     for crawl, end in (("gait", ""), ("straight", "_straight")):

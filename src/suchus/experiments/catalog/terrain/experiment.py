@@ -483,7 +483,7 @@ def _rough_measures(rough_record: xr.Dataset) -> Measures:
 
 
 def _rough_grounds(record: xr.Dataset) -> xr.Dataset:
-    """Return the part of a record on grounds of at least ``ROUGH`` height."""
+    """Return the part of a record on grounds of at least ``MIN_ROUGH_HEIGHT`` height."""
     return record.isel(
         ground=np.flatnonzero(
             record.height.values >= MIN_ROUGH_HEIGHT * float(record.size_of_robot) - _HEIGHT_TOLERANCE

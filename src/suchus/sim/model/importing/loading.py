@@ -39,7 +39,7 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
     Args:
         path: the file.
         packages: folders in which packages lie that meshes name by ``package://``.
-        without_meshes: whether a body whose mesh is not read does without.
+        without_meshes: whether bodies whose meshes cannot be read are loaded without a shape.
 
     Raises:
         UnreadableFile: it cannot be read, is no tree of hinges, or the shape of a body is a mesh that is not read.
