@@ -133,7 +133,7 @@ class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
         self._write(name, data)
 
     def _read(self, name: str) -> Any:
-        """Return what a file holds; None where there is none, it is not as we wrote it, or what it names is gone."""
+        """Return what a file holds; None if it is missing, its digest is wrong, or its classes cannot be imported."""
         try:
             data = Path(self._cache_path, name).read_bytes()
         except OSError:

@@ -139,7 +139,7 @@ def _digest(chunks: Iterator[bytes]) -> str:
 
 
 def _points() -> list[float]:
-    """Return numbers in -1..1 that are the same everywhere: exact ratios of whole numbers to a power of two."""
+    """Return pseudo-random numbers in -1..1 that are the same bits on every machine."""
     points, state = [], 12345
     for _ in range(_POINTS):
         state = (state * 1103515245 + 12345) % 2**31

@@ -259,7 +259,7 @@ def _check_hollow(place: Layout, body: str, air: float, volume: float) -> None:
 
 
 def foam_centres(robot: Robot) -> dict[str, tuple[float, float, float]]:
-    """Return where the centre of the foam of each body is that has some, in the frame of that body [m]."""
+    """Return the centre of the foam of each body that has some, in the frame of the body [m]."""
     place, table = layout(robot), pieces(robot)
     number = {body.name: i for i, body in enumerate(place.bodies)}
     centers = {}

@@ -32,7 +32,7 @@ _EMERGED_FRACTION, _BALLAST_FRACTION = 0.05, 0.1
 
 
 def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
-    """Return the volume that a robot displaces fully submerged, and the volume of water that weighs as much [m3].
+    """Return the volume that a robot displaces fully submerged, and the volume of water that weighs as much as it [m3].
 
     Args:
         robot: the design; it floats if the first volume is greater than the second.

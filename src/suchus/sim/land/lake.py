@@ -111,7 +111,7 @@ class Lake:
         return not isinstance(self.level, (int, float)) or not isinstance(self.air_fraction, (int, float))
 
     def numbers(self, up_axis: Float[np.ndarray, "3"], time: float = 0.0) -> Float[np.ndarray, " n"]:
-        """Return the row of numbers that the physics reads, see ``hydro``.
+        """Return the parameters of the lake as one array, indexed by the constants of ``hydro``.
 
         Args:
             up_axis: unit vector against gravity.

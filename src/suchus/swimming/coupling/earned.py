@@ -83,7 +83,7 @@ def judge_link(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgeme
 
 
 def _gain(swim: ForceParts, added_factor: float, drag_factor: float) -> float:
-    """Return the lower end of the 95 % interval of the reduction of the mean square residual in a swim [N2]."""
+    """Return by how much the factors reduce the mean square residual: lower bound of its 95 % interval [N2]."""
     shipped_residual, corrected_residual = (
         swim.flow - swim.added - swim.drag,
         swim.flow - added_factor * swim.added - drag_factor * swim.drag,

@@ -176,7 +176,7 @@ def surface(
         record: of the experiment ``swim_3d``.
         frame: which.
         coarse: cells along each side of a block over which the fields are averaged [-].
-        level: second invariant Q on them, above 0 [1/s2]; the record's own if None.
+        level: value of Q, the second invariant, on the surfaces, above 0 [1/s2]; the record's own if None.
     """
     q, spin = (_blocks(record[name].values[frame].astype(float), coarse) for name in ("vortices", "spin"))
     h = coarse * float(record.x[1] - record.x[0])

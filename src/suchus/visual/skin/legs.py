@@ -104,7 +104,7 @@ def _toe(root: np.ndarray, angle: float, reach: float, radius: float) -> list[Me
 
     Args:
         root: where the toe begins, (3,) [m].
-        angle: angle from forward, positive to the outside of a standing foot [rad].
+        angle: angle from the foot's forward axis, positive to the outside of a standing foot [rad].
         reach: length of the toe [m].
         radius: radius at its root [m].
     """
