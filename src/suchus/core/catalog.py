@@ -34,8 +34,8 @@ class Catalog(Mapping[str, T], Generic[T]):
         classes: whether each module declares a class derived from that type, rather than a value of it.
         scattered: whether a module may declare several, as ``measures = (speed, slip)``, each with a name of its own,
             and modules that declare none stand beside them.
-        named: returns the name that a thing has by itself, which must be that on the shelf.
-        read: returns what a TOML file describes, where this shelf has such files.
+        name_of: returns the name that a thing has by itself, which must be that on the shelf.
+        read_file: returns what a TOML file describes, where this shelf has such files.
     """
 
     def __init__(

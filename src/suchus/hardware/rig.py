@@ -78,7 +78,7 @@ def senses(robot: Robot, boards: Sequence[BoardPlace]) -> tuple[str, ...]:
     """Return the quantities that a robot with some boards senses: fields of ``control.Sensed``."""
     place = layout(robot)
     quantities = [*_OF_SERVOS, *(name for board in boards for name in _SENSES[board.kind])]
-    if not place.limbs:
+    if not place.limbs:  # there is nothing to measure, so that it counts as sensed
         quantities.append("foot_pressure")
     if not place.tail:
         quantities.append("tail_pressure")
@@ -92,11 +92,11 @@ class Rig:
         robot: the robot.
         wiring: what hangs where.
         ports: to its buses, in their order; by default those that it names are opened.
-        clocked: whether an emulator's clock is told the time.
+        has_clock: whether an emulator's clock is told the time.
         rate: of ticks [Hz]; that of the robot's control period if None.
-        without: names of servos that do without: they are not asked, and stay limp.
-        needed: fields of ``control.Sensed`` that must be known at every tick; all if None. Boards that feel nothing of
-            them are asked by turns, one in a tick.
+        limp_servos: names of servos that do without: they are not asked, and stay limp.
+        required_senses: fields of ``control.Sensed`` that must be known at every tick; all if None. Boards that feel
+            nothing of them are asked by turns, one in a tick.
 
     Raises:
         BusFailure: a port cannot be opened.

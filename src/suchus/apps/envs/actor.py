@@ -10,7 +10,7 @@ class Actor:
     """The controller of a pack: commanded angles go in a straight line from those of one action to those of the next.
 
     Args:
-        first: angles in which the robots begin, shape (run, servo) [rad]; written by ``aim``.
+        initial_target: angles in which the robots begin, shape (run, servo) [rad]; written by ``aim``.
         periods: control periods from one action to the next.
         limbs: of a robot.
     """

@@ -24,7 +24,7 @@ class History:
 
     Args:
         limbs: names of the limbs.
-        every: between two rows [s].
+        interval: between two rows [s].
     """
 
     def __init__(self, limbs: Sequence[str], interval: float = 0.02) -> None:

@@ -80,7 +80,7 @@ class Chart:
         gui: viser's interface of one browser.
         plan: what it shows.
         uplot: viser's module of chart settings.
-        compared: whether there is a second run, drawn pale.
+        has_ghost: whether there is a second run, drawn pale.
     """
 
     def __init__(self, gui: Any, plan: PlotLayout, uplot: Any, *, has_ghost: bool = False) -> None:
@@ -203,7 +203,7 @@ class Plots:
         gui: viser's interface of one browser.
         uplot: viser's module of chart settings.
         robot: who walks.
-        compared: whether there is a second run, drawn pale.
+        has_ghost: whether there is a second run, drawn pale.
     """
 
     def __init__(self, gui: Any, uplot: Any, robot: Robot, *, has_ghost: bool = False) -> None:

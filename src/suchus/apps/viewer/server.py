@@ -227,7 +227,7 @@ class Viewer:
         open_page: makes the page of a browser, given viser's handle of it.
         host: name or address to listen on.
         port: to listen on; 0 for any that is free.
-        most: how many browsers are served at once.
+        max_browsers: how many browsers are served at once.
         title: of the panel of controls.
         camera: where the camera is at first and where it looks [m].
 

@@ -36,7 +36,7 @@ class WatchPage(BrowserPage):
     Args:
         client: viser's handle of the browser.
         robot: the robot.
-        look: returns what is seen now; called from a thread of the browser's.
+        get_robot: returns what is seen now; called from a thread of the browser's.
     """
 
     def __init__(self, client: Any, robot: Robot, get_robot: Callable[[], WatchedRobot]) -> None:

@@ -99,7 +99,7 @@ class Tally:
         unit: name of a unit, as ``runs``.
         progress: called when the count changes, with the count, the rate and the remaining time as a stage, and with
             the finished fraction of the total.
-        done: units that earlier starts finished [-].
+        done_units: units that earlier starts finished [-].
         failed: number of those units that failed [-].
     """
 

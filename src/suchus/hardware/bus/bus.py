@@ -41,7 +41,7 @@ class Bus:
         port: to it.
         framing: what is spoken.
         wait: for replies [s].
-        clocked: whether an emulator's clock says when all have answered, so that nothing needs to be waited for.
+        has_clock: whether an emulator's clock says when all have answered, so that nothing needs to be waited for.
     """
 
     def __init__(self, port: Port, framing: Framing, *, wait: float = WAIT, has_clock: bool = False) -> None:

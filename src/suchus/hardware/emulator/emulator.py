@@ -36,7 +36,7 @@ class Emulator:
         wiring: how it is built; a host that believes something else finds out.
         body: the robot behind it.
         trouble: what goes wrong.
-        clocked: whether its time passes when its clock is told to, and not by itself.
+        has_clock: whether its time passes when its clock is told to, and not by itself.
     """
 
     def __init__(

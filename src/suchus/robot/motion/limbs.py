@@ -46,7 +46,7 @@ class LimbMotion:
     Args:
         robot: the design.
         gaits: of each run; ``structure`` of ``suchus.robot.motion.movement`` must be the same for all.
-        among: the limbs, in the order of the robot's.
+        limb_indices: the limbs, in the order of the robot's.
     """
 
     def __init__(self, robot: Robot, gaits: Sequence[Gait], limb_indices: Sequence[int]) -> None:

@@ -220,7 +220,7 @@ class Deduplication:
 
     Args:
         runs: the runs.
-        first: the servo angles at the start, shape (run, servo) [rad].
+        initial_angles: the servo angles at the start, shape (run, servo) [rad].
         period: of control [s].
     """
 
