@@ -75,11 +75,11 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
     },
     "swimming": {
         **{
-            f"_SAID: {colour} {sign} the other way round": "Colours and signs of a figure, and no measure."
+            f"_VOICE_STYLES: {colour} {sign} the other way round": "Colours and signs of a figure, and no measure."
             for colour, sign in (("#cfe8d5", "✓"), ("#f3d0c9", "×"), ("#f6e8b8", "?"), ("#ececec", ""))
         },
-        "_waving: swing(one, 1).share[0] is the last": "What is read there is the tip's place alone.",
-        "_pushing: first - third * (1.0, -1.0) the other way round": _SIZE,
+        "_waving: swing(cycle_course, 1).share[0] is the last": "What is read there is the tip's place alone.",
+        "_pushing: first_quarter - third_quarter * (1.0, -1.0) the other way round": _SIZE,
     },
     "joint_loops": {"measure: float(final_interval.sel(test='step')[-1]) - step the other way round": _SIZE},
     "gallop_limits": {

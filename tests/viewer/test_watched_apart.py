@@ -21,11 +21,11 @@ def test_it_takes_pictures_while_the_robot_moves_and_ends_with_it():
         taken.append(body.time)
         return pages.WatchedRobot(body.time, body.now, None, "with its torque on")
 
-    page = pages.WatchedApart(ROBOT, picture, port=0, title="watched")
+    page = pages.WatchProcess(ROBOT, picture, port=0, title="watched")
     try:
         port = int(page.url.split(":")[2].split("/")[0])
         with pytest.raises(pages.CannotServe, match=str(port)):
-            pages.WatchedApart(ROBOT, picture, port=port, title="another")
+            pages.WatchProcess(ROBOT, picture, port=port, title="another")
         with urlopen(page.url, timeout=30.0) as answer:
             assert answer.status == 200
         begun, end = len(taken), monotonic() + 30.0

@@ -160,7 +160,7 @@ def _watching_page(options: EmulateOptions, server: Server, body: EmulatedBody) 
         torque = "with its torque on" if (body.powered > 0.0).any() else "limp: nobody drives it"
         return pages.WatchedRobot(body.time, body.now, options.lake, f"{ports}, {torque}")
 
-    return pages.WatchedApart(options.robot, picture, port=options.port, title=f"{options.robot.name}, emulated")
+    return pages.WatchProcess(options.robot, picture, port=options.port, title=f"{options.robot.name}, emulated")
 
 
 def _robot_first(words: Sequence[str]) -> list[str]:
