@@ -1,4 +1,4 @@
-"""What the command line takes from the viewer's pages is there: it is imported late, so that no type checker sees it."""
+"""What commands take from the viewer's pages is there: they are imported late, so that no type checker sees it."""
 
 import ast
 from pathlib import Path
