@@ -5,15 +5,21 @@ from tests.swims import crocodile_swim
 from suchus.core.errors import InvalidDesign
 from suchus.robot.motion import as_table
 from suchus.robot.robots import ROBOTS
-from suchus.swimming.water import EelWave, ExactWave, Outline, cycle, fit, printed_wave, undulation
+from suchus.swimming.water import ExactWave, FilmedWave, Outline, cycle, fit, printed_wave, undulation
 
 TIME = np.linspace(0.0, 1.0, 17)
+
+
+def filmed_wave(robot, frequency):
+    return FilmedWave(length=robot.length, frequency=frequency, wavelength=0.9, head=0.02, tail=0.1)
+
+
 WAVES = {
     "I": printed_wave,
     "I as printed": lambda robot: printed_wave(robot, sign=1),
     "A": lambda robot: printed_wave(robot, "A"),
     "G": lambda robot: printed_wave(robot, "G"),
-    "eel": lambda robot: EelWave(length=robot.length, frequency=1.0),
+    "filmed": lambda robot: filmed_wave(robot, 1.0),
 }
 
 
@@ -73,4 +79,4 @@ def test_a_head_that_is_turned_turns_every_section(robot):
 
 def test_a_wave_without_a_period_is_refused(robot):
     with pytest.raises(InvalidDesign, match="period"):
-        ExactWave(name="slow", wave=EelWave(length=robot.length, frequency=-1.0))
+        ExactWave(name="slow", wave=filmed_wave(robot, -1.0))
