@@ -137,8 +137,8 @@ class BendingMap:
         worst_index = int(np.abs(residual).max(axis=0).argmax())
         raise InvalidDesign(
             f"at t = {time:.4g} s no place was found that the map takes to "
-            f"{point_text(still_points[:, worst_index])} m of the still shape; it says of each place in the body's frame "
-            "where that is in the still shape. Bend it less."
+            f"{point_text(still_points[:, worst_index])} m of the still shape; it says of each place in the body's "
+            "frame where that is in the still shape. Bend it less."
         )
 
     def check(self, places: np.ndarray, time: float) -> np.ndarray:

@@ -56,7 +56,7 @@ def versions() -> dict[str, str]:
 
 @cache
 def code_digest(*paths: str) -> str:
-    """Return the SHA-256 of the syntax trees of some rooms or modules of suchus, and of their data.
+    """Return the SHA-256 of the syntax trees of some packages or modules of suchus, and of their data.
 
     Comments, docstrings and line breaks change nothing.
 
