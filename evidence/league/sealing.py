@@ -24,7 +24,7 @@ from suchus.core.files.provenance import plain
 from suchus.core.jobs import conduct_sweep
 from suchus.core.progress import Progress, silent
 
-PREDICTION, SEAL, VERDICTS = "prediction.json", "seal.json", "verdicts.json"
+PREDICTION, SEAL = "prediction.json", "seal.json"
 """Files of a contestant's folder."""
 _ANSWERS = "answers"
 """Folder beside them of what the rungs answered, from which an interrupted prediction goes on."""
