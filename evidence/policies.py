@@ -31,7 +31,7 @@ NAME = "policies"
 EPISODES, SEED = 32, 1000
 SHORE_EPISODES = 3
 SLOPES = (8, 12, 15)
-"""Slopes of the shores on which the controller of the shelf is tried [deg], the first that of the task."""
+"""Slopes of the shores on which the controller of the catalog is tried [deg], the first that of the task."""
 OFFSHORE = 1.6
 """Distance of the water line from the beginning [m]."""
 BODY_STEPS, BODY_EPISODES = 80, 2
@@ -58,7 +58,7 @@ def swim_to_goal(task: Task) -> Policy:
 
 
 def amphibious(task: Task) -> Policy:
-    """Return the controller of the shelf that swims to the shore and walks on."""
+    """Return the controller of the catalog that swims to the shore and walks on."""
     control = Amphibious(swim=task.swum, swimming=Swimming(heading=HeadingHold()), heading=HeadingRule())
     return ControllerPolicy(task, centre(task), control, steps=MAX_STEPS_BY_TASK["Shore"])
 
@@ -105,7 +105,7 @@ def summary(played: EpisodeResults, longest: float) -> dict[str, float]:
 
 
 def shore_results(slope: float) -> dict[str, float]:
-    """Return what the controller of the shelf gave on a shore of a slope [deg], see ``summary``."""
+    """Return what the controller of the catalog gave on a shore of a slope [deg], see ``summary``."""
     angle, steps = radians(slope), MAX_STEPS_BY_TASK["Shore"]
     task = replace(TASKS["Shore"], ground=Ground(uphill=angle), lake=Lake(level=OFFSHORE * sin(angle)))
     episodes = SHORE_EPISODES if slope == SLOPES[0] else 1

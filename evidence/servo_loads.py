@@ -1,4 +1,4 @@
-"""What the servos of a robot bear in each gait of the shelf, and whether the servos that are named would do."""
+"""What the servos of a robot bear in each gait of the catalog, and whether the servos that are named would do."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

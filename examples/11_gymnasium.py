@@ -36,7 +36,7 @@ centre = tuple(robots.unwrapped.pack.centre)
 policies = {
     "holding still": envs.HoldStill(task),
     "anything": envs.RandomActions(task, np.random.default_rng(0)),
-    "the shelf's crawl": envs.GaitFollower(task=task, centre=centre, gait=task.gait),
+    "the built-in crawl": envs.GaitFollower(task=task, centre=centre, gait=task.gait),
 }
 for name, policy in policies.items():
     played = envs.play(task, policy, episodes=4, seed=0)

@@ -103,7 +103,7 @@ def main() -> None:
     shown = {
         "standing still": (task, envs.HoldStill(task)),
         "anything": (task, envs.RandomActions(task, np.random.default_rng(SEED))),
-        "the shelf's gait": (task, envs.GaitFollower(task=task, centre=centre, gait=task.gait)),
+        "the built-in gait": (task, envs.GaitFollower(task=task, centre=centre, gait=task.gait)),
         name: (task, learned),
         f"{name}, physics of 2 ms": (replace(task, timestep=0.002), learned),
         f"{name}, full torque at any speed": (replace(task, speed_lines=False), learned),

@@ -1,4 +1,4 @@
-"""Eight bodies as files, such as users bring: what a name on the shelf answers to, a file must answer to as well."""
+"""Eight bodies as files, such as users bring: what a name in the catalog answers to, a file must answer to as well."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Try every experiment and tool on every body of the shelf and of files, for the tables in docs/robots_from_files.md.
+"""Try every experiment and tool on every body of the catalog and of files, for the tables in docs/robots_from_files.md.
 
 Usage: python tools/body_table.py [--only ROW ...] [--bodies BODY ...] [--anew] [--table]
 
@@ -206,7 +206,7 @@ def write(found: dict[str, dict[str, str]]) -> None:
 
 
 def tables(found: dict[str, dict[str, str]]) -> str:
-    """Return the table of the bodies of the shelf, and that of files."""
+    """Return the table of the bodies of the catalog, and that of files."""
     return f"{table(found, ROBOTS)}\n{table(found, FILES)}"
 
 

@@ -74,7 +74,7 @@ def policies() -> Figure:
     players = {
         "holding still": envs.HoldStill(task),
         "random actions": envs.RandomActions(task, np.random.default_rng(0)),
-        "the shelf's crawl": envs.GaitFollower(task=task, centre=centre, gait=task.gait),
+        "the built-in crawl": envs.GaitFollower(task=task, centre=centre, gait=task.gait),
     }
     return _bars({name: envs.play(task, player, episodes=8).forward.tolist() for name, player in players.items()})
 

@@ -240,7 +240,7 @@ def _count(rows: Sequence[Row]) -> str:
 
 
 _SMALL = {"fontsize": 10}
-_LINE, _OTHER, _DATA = COLOURS["coordinated"], COLOURS["limbs_only"], COLOURS["printed"]
+_LINE, _OTHER = COLOURS["coordinated"], COLOURS["limbs_only"]
 
 
 def _curves(rows: list[dict[str, Any]], case: str, part: str) -> dict[str, Any] | None:

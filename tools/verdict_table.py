@@ -1,4 +1,4 @@
-"""Put what a full ``suchus reproduce`` found, and the shelf's questions, into the documentation.
+"""Put what a full ``suchus reproduce`` found, and the catalog's questions, into the documentation.
 
 Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, keeps the result
 ``verdicts``, and writes the summary into the README. With ``--part`` OUT may hold some experiments only: of the others

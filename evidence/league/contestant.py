@@ -137,10 +137,10 @@ class Contestant:
 
 
 class Entrant(ABC):
-    """What stands on the shelf of contestants: one, or a family of them as an animal at several speeds."""
+    """What stands in the catalog of contestants: one, or a family of them as an animal at several speeds."""
 
     name: str
-    """Name on the shelf."""
+    """Name in the catalog."""
 
     @abstractmethod
     def names(self) -> tuple[str, ...]:
@@ -148,7 +148,7 @@ class Entrant(ABC):
 
     @abstractmethod
     def called(self, name: str) -> Contestant:
-        """Return the one of a name that begins with that of the shelf.
+        """Return the one of a name that begins with that of the catalog.
 
         Raises:
             UnknownName: there is none.
@@ -183,7 +183,7 @@ class ContestantFamily(Entrant):
     """Contestants that differ in one number, which stands in their names: ``catshark_2.5``."""
 
     name: str
-    """Name on the shelf, with which all of their names begin."""
+    """Name in the catalog, with which all of their names begin."""
     asked: tuple[float, ...]
     """Numbers of those that are predicted unless others are asked for."""
     low: float
@@ -218,7 +218,7 @@ class ContestantFamily(Entrant):
 
 
 def find(shelf: Mapping[str, Entrant], name: str) -> Contestant:
-    """Return a contestant by its name; that of a family's member begins with the name on the shelf.
+    """Return a contestant by its name; that of a family's member begins with the name in the catalog.
 
     Raises:
         UnknownName: there is none.

@@ -1,13 +1,12 @@
 """What became of a prediction when the measurement was opened, by rules that were there before."""
 
-from collections.abc import Mapping
 from math import inf
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
 from evidence.league.contestant import Interval
-from evidence.league.sealing import Measured, Prediction
+from evidence.league.sealing import Measured
 from suchus.article.verdict import Clause
 
 Word = Literal["within", "within, wide", "missed"]
@@ -58,12 +57,3 @@ def _width(low: float, high: float) -> float:
     """Return the ratio of the ends of an interval; without a bound where they differ in sign [-]."""
     ends = sorted((abs(low), abs(high)))
     return float(ends[1] / ends[0]) if low * high > 0.0 else 1e300
-
-
-def verdicts(prediction: Prediction, measured: Mapping[str, Measured]) -> dict[str, dict[str, Judgement]]:
-    """Return what became of each rung's prediction of every quantity that was measured."""
-    return {
-        quantity: {rung: judged(one, measured[quantity]) for rung, one in rungs.items()}
-        for quantity, rungs in prediction.items()
-        if quantity in measured
-    }

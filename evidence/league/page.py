@@ -13,7 +13,7 @@ from matplotlib import colormaps
 
 from evidence.league.contestant import Contestant, Interval, Value
 from evidence.league.judging import WIDEST, WORDS, Judgement, Word, judged
-from evidence.league.sealing import SEAL, Measured, Prediction, Seal, opened, read_prediction, read_seal
+from evidence.league.sealing import SEAL, Measured, Prediction, Seal, bound_value, opened, read_prediction, read_seal
 from evidence.league.spread import COVERED
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
 from suchus.core.files import path_exists, read_json, write
@@ -112,16 +112,14 @@ def standings_of(path: str | Path) -> list[LeagueEntry]:
 
 def standing_of(data: Any) -> LeagueEntry:
     """Return a standing from the plain values that ``standing_text`` makes of it."""
-
-    def value(number: Any) -> Value:
-        return tuple(number) if isinstance(number, list) else float(number)
-
     prediction = {
-        quantity: {rung: Interval(*(value(at[end]) for end in ("value", "low", "high"))) for rung, at in rungs.items()}
+        quantity: {
+            rung: Interval(*(bound_value(at[end]) for end in ("value", "low", "high"))) for rung, at in rungs.items()
+        }
         for quantity, rungs in data["prediction"].items()
     }
     measured = {
-        name: Measured(**(one | {end: value(one[end]) for end in ("value", "low", "high")}))
+        name: Measured(**(one | {end: bound_value(one[end]) for end in ("value", "low", "high")}))
         for name, one in data["measured"].items()
     }
     return LeagueEntry(**(data | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))

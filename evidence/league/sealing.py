@@ -24,7 +24,7 @@ from suchus.core.files.provenance import plain
 from suchus.core.jobs import conduct_sweep
 from suchus.core.progress import Progress, silent
 
-PREDICTION, SEAL, VERDICTS = "prediction.json", "seal.json", "verdicts.json"
+PREDICTION, SEAL = "prediction.json", "seal.json"
 """Files of a contestant's folder."""
 _ANSWERS = "answers"
 """Folder beside them of what the rungs answered, from which an interrupted prediction goes on."""
@@ -227,13 +227,14 @@ def read_prediction(folder: Path) -> dict[str, dict[str, Interval]]:
     read_seal(folder)
     return {
         quantity: {
-            rung: Interval(*(_value(one[end]) for end in ("value", "low", "high"))) for rung, one in rungs.items()
+            rung: Interval(*(bound_value(one[end]) for end in ("value", "low", "high"))) for rung, one in rungs.items()
         }
         for quantity, rungs in read_json(folder / PREDICTION).items()
     }
 
 
-def _value(number: float | list[float]) -> Value:
+def bound_value(number: float | list[float]) -> Value:
+    """Return a number of a JSON file, a list as a tuple."""
     return tuple(number) if isinstance(number, list) else float(number)
 
 
@@ -266,7 +267,7 @@ def opened(folder: Path, predicts: Mapping[str, Quantity], measured: Path) -> di
             raise UnreadableFile(
                 f"{measured} has {name} in {data['unit']}, and it is predicted in {predicts[name].unit}: convert it."
             )
-        ends = {end: _value(data[end]) for end in ("value", "low", "high")}
+        ends = {end: bound_value(data[end]) for end in ("value", "low", "high")}
         found[name] = Measured(**ends, unit=data["unit"], source=data["source"])
     return found
 

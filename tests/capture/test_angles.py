@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from tests.joint_sums import to_joint_sums
 
 from suchus.animals.capture import Camera
 from suchus.animals.capture.angles import bend_angles
 from suchus.animals.capture.film import keypoints, tracked
 from suchus.animals.capture.retarget import driven_fraction
-from suchus.article.paper import BendAngles, to_joint_sums
+from suchus.article.paper import BendAngles
 from suchus.robot.design import joint_names
 
 

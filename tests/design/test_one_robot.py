@@ -20,7 +20,6 @@ from suchus.robot.design import (
     Robot,
     Servo,
     cable_joints,
-    fin_joints,
     lacking,
     tables_of,
     value_at,
@@ -81,8 +80,8 @@ def test_what_closed_forms_read_of_the_chain_is_what_the_tables_say(joints, segm
 
 def test_the_caimans_published_numbers_are_the_printed_ones():
     leg, spine = CAIMAN.hind_leg, CAIMAN.spine
-    assert (leg.hip_offset, leg.femur, leg.tibia) == (paper.HIP_OFFSET, paper.FEMUR, paper.TIBIA)
-    assert (spine.base, spine.link, CAIMAN.tail.joints) == (paper.SPINE_BASE, paper.SPINE_LINK, paper.TAIL_JOINTS)
+    assert (leg.hip_offset, leg.femur, leg.tibia) == (paper.LEG_CHAIN.a[0], paper.FEMUR, paper.TIBIA)
+    assert (spine.base, spine.link, CAIMAN.tail.joints) == (*paper.SPINE_CHAIN.a[:2], paper.TAIL_JOINTS)
 
 
 @pytest.mark.parametrize("part", ["hind_leg", "spine", "tail", "pelvis", "thorax", "head"])
@@ -120,7 +119,7 @@ def test_tables_change_in_either_form_and_what_follows_from_them_follows():
 def test_springs_under_a_cable_are_those_of_the_tables():
     assert with_spring(CAIMAN, cable_joints(CAIMAN), 0.9) == with_values(CAIMAN, {"tail.joint_stiffness": 0.9})
     assert with_spring(CAIMAN, ("LF_yaw",), 0.9) == CAIMAN
-    assert len(fin_joints(CAIMAN)) == 2 * CAIMAN.tail.fin_segments
+    assert len(CAIMAN.tail.passive) == 2 * CAIMAN.tail.fin_segments
 
 
 def _annotations(tree: ast.Module) -> list[str]:

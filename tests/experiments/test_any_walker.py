@@ -141,7 +141,7 @@ def test_a_robot_that_no_gait_of_the_shelf_suits_gets_one_drafted_and_that_is_sa
     words = ["run", "gait_diagram", "--quick", "--cycles", "2", "--out", str(tmp_path / "out")]
     if not lacking(body, EXPERIMENTS["gait_diagram"].needs):
         assert main([*words, "--robot", str(tmp_path / "body.toml")]) == 0
-        assert f"No gait on the shelf suits {body.name}: it moves in one that was drafted" in capsys.readouterr().out
+        assert f"No gait in the catalog suits {body.name}: it moves in one that was drafted" in capsys.readouterr().out
 
 
 def test_of_a_robot_that_a_gait_of_the_shelf_suits_none_is_said_to_be_drafted(tmp_path, capsys):
@@ -154,7 +154,7 @@ def test_which_gaits_another_robot_moves_in_is_said_with_their_period_in_its_siz
     assert gait_sentence(asked) == gait_sentence(asked.on(ROBOTS["caiman"])) == []
     assert gait_sentence(asked.on(ROBOTS["strider"])) == ["strider moves in the gait tripod."]
     (told,) = gait_sentence(asked.on(hatchling()))
-    assert told == "hatchling moves in the gait belly_crawl (a cycle in 2.18 s; 4 s on the shelf)."
+    assert told == "hatchling moves in the gait belly_crawl (a cycle in 2.18 s; 4 s in the catalog)."
     (told,) = gait_sentence(EXPERIMENTS["turning"].on(hatchling()))
     assert told.startswith("hatchling moves in the gaits ")
     assert " and " in told
@@ -192,7 +192,7 @@ def test_a_robot_that_no_gait_suits_is_refused_in_a_sentence():
         for link in short.links
     )
     girdles = tuple(replace(girdle, limb=replace(short, links=stiff)) for girdle in body.girdles)
-    with pytest.raises(UnsuitedRobot, match="no gait on the shelf suits robot 'stiff', which has LF, RF, LM"):
+    with pytest.raises(UnsuitedRobot, match="no gait in the catalog suits robot 'stiff', which has LF, RF, LM"):
         default_gait(replace(body, name="stiff", girdles=girdles))
 
 

@@ -25,11 +25,6 @@ IMPLICIT = 0.55
 """Weight of the new time in the diffusion [-]."""
 
 
-def two_terms(reynolds, t):
-    """Return the drag coefficient for small times after Bar-Lev and Yang."""
-    return 4 * np.sqrt(2 * np.pi / (reynolds * t)) + 2 * np.pi / reynolds * (9 - 15 / np.sqrt(np.pi))
-
-
 def graded(count, end, stretch=4.0):
     """Return ``count + 1`` rising points from 0 to ``end``, and the weights of the second difference at each."""
     xi = end * np.expm1(stretch * np.linspace(0, 1, count + 1)) / np.expm1(stretch)

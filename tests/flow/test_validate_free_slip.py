@@ -14,10 +14,10 @@ from free_slip import sampled, slipping
 from test_friction import lamb, meridian
 from validation_rows import note
 
+from evidence.friction import FrictionBand, along_stations
 from suchus import flow
 from suchus.flow import simulation
 from suchus.flow.compiled import PAD
-from suchus.flow.friction import FrictionBand, along_stations
 from suchus.robot.design.water import Water
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water import Outline, cycle, fit, printed_wave, recoil, resolved

@@ -5,8 +5,8 @@ import pytest
 from flow_cases import off_potential_flow
 from wall_stress import LEAST, PUBLISHED, LayeredFluid, cylinder, front, judged, layered, layers
 
+from evidence.friction import along_stations
 from suchus import flow
-from suchus.flow import friction
 
 COUNT = 720
 ANGLES = 2 * np.pi * np.arange(COUNT) / COUNT
@@ -22,13 +22,11 @@ def test_a_laminar_layer_in_ideal_water_leaves_the_cylinder_where_thwaites_says(
         assert front(stress, ANGLES) == pytest.approx([103.1, 103.1], abs=1.0)
 
 
-def test_its_friction_is_that_of_the_law_that_is_shipped():
+def test_its_friction_is_that_of_the_law_along_stations():
     share, stress = layers(AROUND, SPACING, 1e-5, 0.05)
     under = slice(COUNT // 2, COUNT // 2 + COUNT // 4)  # a quarter of the way around from the foremost point
     arc = RADIUS * (ANGLES[under] - np.pi)
-    band = friction.along_stations(
-        arc, np.ones_like(arc), np.abs(AROUND[0, under]), viscosity=1e-5, density=1.0
-    )  # fmt: skip
+    band = along_stations(arc, np.ones_like(arc), np.abs(AROUND[0, under]), viscosity=1e-5, density=1.0)
     assert np.trapezoid(stress[0, under], arc) == pytest.approx(band.laminar, rel=0.02)
     assert 0.9 < share[0, under][1:].min() < share.max() < 1
 

@@ -4,7 +4,7 @@ At the robot's own Reynolds number the layer is a fraction of a cell thin. The i
 layer of its own, a cell thick, whatever the viscosity. Here the wall that is handed to the immersion slips: along the
 skin it moves as fast as makes the water between it and ``GAP`` cells off it lack the momentum that the law's layer
 lacks, so that by von Karman's balance the water feels the law's stress; and across itself as the water outside moves
-on towards it. The law is that of ``suchus.flow.friction``, Blasius's plate with the length of Thwaites: quasi-steady,
+on towards it. The law is that of ``evidence.friction``, Blasius's plate with the length of Thwaites: quasi-steady,
 from each place where the water divides, as the speed ``GAP`` cells off the skin says. From where Thwaites's laminar
 layer separates (and, of a body with edges, from the edge on), and wherever the water runs against the run that began
 ahead, the wall does not slip at all: there the layer leaves the skin. Where the grid carries the layer, no wall slips.

@@ -136,7 +136,6 @@ def test_a_share_of_one_and_a_lag_of_nothing_change_nothing(gait):
     assert gait.strode(1.0) == gait
     assert gait.bent(1.0) == gait
     assert gait.lagged(0.0) == gait
-    assert gait.scaled(1.0) == gait
 
 
 @pytest.mark.parametrize("name", BODIES[1:-1])
@@ -217,14 +216,6 @@ def test_a_bound_is_mirrored_though_its_limbs_are_not_in_turn():
     assert there[:, list(place.trunk_yaw)] == pytest.approx(-back[:, list(place.trunk_yaw)], abs=1e-12)
     with pytest.raises(OutsideLimits, match="cannot be mirrored"):
         FILMED.mirrored()
-
-
-def test_a_scaled_gait_takes_the_root_of_the_length_longer_and_nothing_else_changes():
-    crawl = GAITS["belly_crawl"]
-    assert replace(crawl.scaled(0.25), period=crawl.period) == crawl
-    assert crawl.scaled(0.25).period == pytest.approx(0.5 * crawl.period)
-    with pytest.raises(InvalidDesign, match=r"gait\.length is 0"):
-        crawl.scaled(0.0)
 
 
 # named numbers

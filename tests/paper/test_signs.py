@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.joint_sums import to_joint_sums
 
-from suchus.article.paper import BendAngles, JointSums, to_bend_angles, to_joint_sums
+from suchus.article.paper import BendAngles, JointSums, to_bend_angles
 from suchus.robot.design import joint_names
 from suchus.robot.kinematics import landmarks
 from suchus.robot.robots import ROBOTS

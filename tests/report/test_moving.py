@@ -181,5 +181,5 @@ def test_only_what_is_on_the_shelf_is_said_to_be_run_by_its_name(make):
     for said in ("suchus run displacement --help", "suchus.EXPERIMENTS[&#34;displacement&#34;]"):
         assert said in shelf or said.replace("&#34;", '"') in shelf
     assert "Run it again" in other
-    for said in ("--help", "suchus.EXPERIMENTS", "on the shelf"):
+    for said in ("--help", "suchus.EXPERIMENTS", "in the catalog"):
         assert said not in other

@@ -25,7 +25,6 @@ from suchus.robot.control import (
 )
 from suchus.sim.land import Run, simulate
 
-DEAF = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
 SHORT = 1.3
 """Duration of a walk, of which 1 s is settling [s]."""
 

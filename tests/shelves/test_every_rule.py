@@ -8,11 +8,12 @@ from dataclasses import replace
 from typing import get_args
 
 import pytest
+from tests.rule_examples import examples_of
 
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict import Clause, ControlGroup, Kind, Rule, judge, judging
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.claims import examples_of, rules_of
+from suchus.experiments.claims import rules_of
 
 ALL = {rule.claim: (name, rule) for name in EXPERIMENTS for rule in rules_of(name)}
 ROWS = [(claim, measures, word) for name in EXPERIMENTS for claim, rows in examples_of(name).items()

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from tests.rule_examples import examples_of
 
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict import Clause, Rule
 from suchus.core.errors import IncompatibleRecord
-from suchus.experiments.claims import RULES, examples_of
+from suchus.experiments.claims import RULES
 from suchus.experiments.study import Claims, Plan
 from suchus.experiments.study.claim_measures import RUNS, judge_samples, measures_of, swept_rules
 from suchus.robot.gaits import CONDITIONS, conditions_of

@@ -8,13 +8,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
+from tests.rule_examples import examples_of
 
 from suchus.article.verdict import SparseShare, Variation
 from suchus.article.verdict.judging import digest
 from suchus.core.errors import IncompatibleRecord, InvalidDesign, OutsideLimits
 from suchus.core.files import read_json
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.claims import RULES, design_sweep_of, examples_of
+from suchus.experiments.claims import RULES, design_sweep_of
 from suchus.experiments.study.answers import share_interval
 from suchus.experiments.study.claim_measures import claims_varied, judge_samples, swept_rules, words
 from suchus.experiments.study.claims_table import claim_row, renewed_table, shares

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.rule_examples import examples_of
 
 import suchus.experiments.catalog
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict import Clause, Share, SparseShare, judge, measure_with_interval
 from suchus.article.verdict.judging import ROBUST, fragile
 from suchus.core.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiments.claims import RULES, UNRULED, examples_of, rules_of
+from suchus.experiments.claims import RULES, UNRULED, rules_of
 from suchus.experiments.experiment import estimated
 
 SWINGS = examples_of("displacement")["tail_swing"]

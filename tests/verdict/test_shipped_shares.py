@@ -5,10 +5,11 @@ from dataclasses import replace
 from importlib import resources
 
 import pytest
+from tests.rule_examples import examples_of
 
 from suchus.article.verdict import SHARES, SPARSE_SHARES, Share, judge
 from suchus.article.verdict.judging import digest
-from suchus.experiments.claims import RULES, examples_of
+from suchus.experiments.claims import RULES
 from suchus.experiments.study.claim_measures import claims_varied
 from suchus.experiments.study.varied import MIN_POINTS
 from suchus.robot.design import value_at

@@ -1,4 +1,4 @@
-"""The API reference: a page per room, filled from docstrings by mkdocstrings."""
+"""The API reference: a page per package, filled from docstrings by mkdocstrings."""
 
 import suchus
 from pages.code import BY_MODULE, about, exported, folder_of, home, modules, public, rooms
@@ -25,15 +25,14 @@ def _index() -> str:
         "# API reference",
         "",
         "Everything public, from docstrings. Lengths are in metres, angles in radians; see",
-        "[conventions](../conventions.md). Rooms stand in the order of the alphabet; which may import which is stated "
-        "in",
+        "[conventions](../conventions.md). Packages stand in alphabetical order; which may import which is stated in",
         "[architecture](../architecture.md).",
         "",
-        "| room | what it is good for |",
+        "| package | what it is good for |",
         "|---|---|",
     ]
     lines += [f"| [`suchus.{room}`]({room}.md) | {about(room)} |" for room in rooms()]
-    lines += ["", "## From `import suchus`", "", "These names need no room; they are loaded when first asked for.", ""]
+    lines += ["", "## From `import suchus`", "", "These names need no package; they are loaded at their first use.", ""]
     lines += ["| name | from |", "|---|---|"]
     lines += [f"| [`suchus.{name}`][{home}] | `{home}` |" for name, home in top().items()]
     return "\n".join([*lines, ""])

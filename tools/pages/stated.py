@@ -162,7 +162,7 @@ def elsewhere() -> dict[str, Verdict]:
 
 
 def page(name: str, **content: Any) -> str:
-    """Return a whole page that is made of what the shelves hold, its words in ``docs/stated/pages``."""
+    """Return a whole page that is made of what the catalogs hold, its words in ``docs/stated/pages``."""
     verdicts = kept("verdicts")
     known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": SPARSE_SHARES,
              "verdicts": verdicts, "elsewhere": elsewhere(), "unruled": UNRULED,

@@ -1,4 +1,4 @@
-"""The shelf of contestants: one file, one machine or animal whose runs are predicted before anyone looks.
+"""The catalog of contestants: one file, one machine or animal whose runs are predicted before anyone looks.
 
 What was measured of them stands in ``measured``; nothing but ``league.sealing`` reads it, once a prediction is sealed.
 """

@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 
 class Catalog(Mapping[str, T], Generic[T]):
-    """A lazy mapping from names to what stands on a shelf, see ``suchus.core.sources``.
+    """A lazy mapping from names to what stands in a catalog, see ``suchus.core.sources``.
 
     Listing the names reads file names only; a module is imported when its name is asked for. A folder declares its
     thing in its module of that name, ``displacement/experiment.py``, or itself. Things of the user's that cannot be
@@ -29,13 +29,13 @@ class Catalog(Mapping[str, T], Generic[T]):
 
     Args:
         kind: the singular noun, also the name each module must declare (``robot``, ``gait``, ``experiment``).
-        package: dotted name of the package whose modules stand on this shelf.
+        package: dotted name of the package whose modules stand in this catalog.
         declares: dotted name of the type of what is declared, as ``module:Class``.
         classes: whether each module declares a class derived from that type, rather than a value of it.
         scattered: whether a module may declare several, as ``measures = (speed, slip)``, each with a name of its own,
             and modules that declare none stand beside them.
-        name_of: returns the name that a thing has by itself, which must be that on the shelf.
-        read_file: returns what a TOML file describes, where this shelf has such files.
+        name_of: returns the name that a thing has by itself, which must be that in the catalog.
+        read_file: returns what a TOML file describes, where this catalog has such files.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Catalog(Mapping[str, T], Generic[T]):
         self._loading = _LoadingFiles()
 
     def sources(self) -> dict[str, Source]:
-        """Return where each thing on the shelf comes from, by name; nothing is imported.
+        """Return where each thing in the catalog comes from, by name; nothing is imported.
 
         Raises:
             AmbiguousName: two things have the same name.
@@ -81,7 +81,7 @@ class Catalog(Mapping[str, T], Generic[T]):
         return self._load(sources[name])
 
     def values(self) -> ValuesView[T]:
-        """Return what stands on the shelf and can be loaded."""
+        """Return what stands in the catalog and can be loaded."""
         return _SoundValues(self)
 
     def items(self) -> ItemsView[str, T]:
@@ -102,14 +102,14 @@ class Catalog(Mapping[str, T], Generic[T]):
 
         Raises:
             BrokenFile: it is the user's, and loading it fails.
-            InvalidDesign: it declares something else than stands on this shelf.
+            InvalidDesign: it declares something else than stands in this catalog.
         """
         thing = self._load_file(source) if not source.module else self._load_module(source)
         name = self._name_of(thing) if self._name_of else source.name
         if name != source.name:
             raise InvalidDesign(
-                f"{source.place} declares the {self.kind} {name!r}, which must have the name by which it stands on the "
-                f"shelf, {source.name!r}."
+                f"{source.place} declares the {self.kind} {name!r}, which must have the name by which it stands in the "
+                f"catalog, {source.name!r}."
             )
         return thing
 
@@ -148,14 +148,14 @@ class Catalog(Mapping[str, T], Generic[T]):
             actual_text = "nothing" if thing is None else f"a {type(thing).__name__}"
             raise InvalidDesign(
                 f"{source.place} must declare `{source.attribute or self.kind}`, a {type_text}, "
-                f"but declares {actual_text}; add it or move the file off the shelf."
+                f"but declares {actual_text}; add it or move the file out of the folder."
             )
         return thing
 
     def file(self, value: Any, folder: str | Path = Path()) -> Path | None:
         """Return the file that a value names, None where it names none.
 
-        A path does, and a text that is not on the shelf, if it ends in .toml or a file has that name.
+        A path does, and a text that is not in the catalog, if it ends in .toml or a file has that name.
 
         Args:
             value: as a user gives it.
@@ -167,17 +167,17 @@ class Catalog(Mapping[str, T], Generic[T]):
         return path if path.suffix == ".toml" or path_exists(path) else None
 
     def resolve(self, value: Any, folder: str | Path = Path()) -> T:
-        """Return what a value stands for: itself, what carries its name on the shelf, or what a TOML file describes.
+        """Return what a value stands for: itself, what carries its name in the catalog, or what a TOML file describes.
 
         Args:
             value: the thing, its name, or the path of its file.
             folder: the folder from which paths are read.
 
         Raises:
-            UnknownName: a name that is not on the shelf.
+            UnknownName: a name that is not in the catalog.
             UnreadableFile: there is no such file, or it is no TOML.
             MistakenFile: the file describes nothing that can be.
-            InvalidDesign: neither a name nor what stands on this shelf.
+            InvalidDesign: neither a name nor what stands in this catalog.
         """
         path = self.file(value, folder)
         if path is not None and self._read_file is not None:
@@ -198,13 +198,13 @@ class Catalog(Mapping[str, T], Generic[T]):
         A TOML file declares nothing else, nor does a module of the user's that cannot be loaded.
 
         Args:
-            name: on the shelf.
+            name: in the catalog.
             attribute: by which it is declared.
             default: what is returned where nothing is declared.
             module: of a folder in which it is looked for, if there is one; the others are then not imported.
 
         Raises:
-            UnknownName: a name that is not on the shelf.
+            UnknownName: a name that is not in the catalog.
         """
         sources = self.sources()
         if name not in sources:
@@ -225,7 +225,7 @@ class Catalog(Mapping[str, T], Generic[T]):
 
 
 class _SoundValues(ValuesView[T]):
-    """The things on a shelf that can be loaded, one after the other."""
+    """The things in a catalog that can be loaded, one after the other."""
 
     def __init__(self, shelf: Catalog[T]) -> None:
         super().__init__(shelf)
@@ -236,7 +236,7 @@ class _SoundValues(ValuesView[T]):
 
 
 class _SoundItems(ItemsView[str, T]):
-    """Names and things on a shelf that can be loaded, one after the other."""
+    """Names and things in a catalog that can be loaded, one after the other."""
 
     def __init__(self, shelf: Catalog[T]) -> None:
         super().__init__(shelf)

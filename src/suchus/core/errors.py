@@ -101,7 +101,7 @@ class NotConverged(SuchusError, RuntimeError):
 
 
 class UnknownName(SuchusError, KeyError):
-    """A name that is not on the shelf.
+    """A name that is not in the catalog.
 
     Attributes:
         name: the name asked for.
@@ -118,7 +118,7 @@ class UnknownName(SuchusError, KeyError):
 
 
 class AmbiguousName(SuchusError, ValueError):
-    """Two things of one name on a shelf."""
+    """Two things of one name in a catalog."""
 
     def __init__(self, kind: str, name: str, first_place: str, second_place: str) -> None:
         super().__init__(
@@ -127,7 +127,7 @@ class AmbiguousName(SuchusError, ValueError):
 
 
 class BrokenFile(SuchusError, ImportError):
-    """A module or a file of the user's on a shelf that cannot be loaded; the message says where and why."""
+    """A module or a file of the user's in a catalog that cannot be loaded; the message says where and why."""
 
 
 class Doubtful(UserWarning):

@@ -38,9 +38,9 @@ _mixing: ContextVar[bool] = ContextVar("mixing", default=False)
 
 
 @contextmanager
-def mixing(is_mixed: bool = True) -> Iterator[None]:
+def mixing() -> Iterator[None]:
     """While the block runs, let stores be continued that a machine with another arithmetic began; they say so then."""
-    token = _mixing.set(is_mixed)
+    token = _mixing.set(True)
     try:
         yield
     finally:

@@ -1,10 +1,10 @@
-"""Where things on the shelves come from: the package, a project folder of the user's, other packages of the user's.
+"""Where things in the catalogs come from: the package, a project folder of the user's, other packages of the user's.
 
 A project is a folder with a ``suchus.toml``. Its sub-folders ``robots``, ``gaits``, ``faults``, ``experiments``,
-``controllers`` and ``measures`` hold files as the shelves of the package do; ``suchus.toml`` names files
+``controllers`` and ``measures`` hold files as the catalogs of the package do; ``suchus.toml`` names files
 that stand elsewhere in the folder. A file is read, or a module run, when its name is asked for.
 
-Modules of a project are imported as modules of the shelf, ``suchus.sim.faults.tired``, so that values travel between
+Modules of a project are imported as modules of the catalog, ``suchus.sim.faults.tired``, so that values travel between
 processes as pickles, and a file means the same in the package and in a project.
 """
 
@@ -40,23 +40,23 @@ SHELVES: Mapping[str, str] = {
     "controllers": "suchus.robot.control",
     "measures": "suchus.sim.metrics",
 }
-"""The package of each shelf by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
+"""Package of each catalog by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
 AS_TOML = ("robots", "gaits")
-"""Shelves on which a TOML file can stand."""
+"""Catalogs in which a TOML file can stand."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
-    """Where one thing on a shelf comes from."""
+    """Where one thing in a catalog comes from."""
 
     name: str
-    """On the shelf."""
+    """In the catalog."""
     place: str
     """The file or the entry point, as messages name it."""
     module: str = ""
     """Dotted name of the module that declares it; empty for a TOML file."""
     attribute: str = ""
-    """Name in the module; empty for what the shelf's modules declare."""
+    """Name in the module; empty for what the catalog's modules declare."""
     file: Path | None = None
     """The file, where there is one that is known."""
     shipped: bool = False
@@ -70,10 +70,10 @@ class Project:
     folder: Path
     """The folder, absolute."""
     named: Mapping[str, tuple[Path, ...]] = field(default_factory=dict)
-    """Files that ``suchus.toml`` names, by shelf."""
+    """Files that ``suchus.toml`` names, by catalog."""
 
     def files(self, shelf: str) -> Iterator[tuple[str, Path]]:
-        """Yield name and file of all that stands on a shelf, the files of modules that begin with ``_`` included.
+        """Yield name and file of all that stands in a catalog, the files of modules that begin with ``_`` included.
 
         Args:
             shelf: one of ``SHELVES``.
@@ -91,7 +91,7 @@ class Project:
         return path.relative_to(self.folder).as_posix() if path.is_relative_to(self.folder) else str(path)
 
     def digest(self) -> str:
-        """Return the first 12 digits of the SHA-256 of all its shelves' files."""
+        """Return the first 12 digits of the SHA-256 of all its catalogs' files."""
         text = hashlib.sha256()
         for shelf in SHELVES:
             for name, file in self.files(shelf):
@@ -192,11 +192,11 @@ def _arrived(_: None, value: Any) -> Any:
 
 
 def gather(kind: str, package: str, *, scattered: bool = False) -> dict[str, Source]:
-    """Return all that stands on a shelf by name, sorted by name; nothing is imported.
+    """Return all that stands in a catalog by name, sorted by name; nothing is imported.
 
     Args:
-        kind: what each module declares, as ``robot``; the shelf's folder in a project is ``robots``.
-        package: dotted name of the shelf's package.
+        kind: what each module declares, as ``robot``; the catalog's folder in a project is ``robots``.
+        package: dotted name of the catalog's package.
         scattered: whether things have names of their own, and modules that declare none stand beside them.
 
     Raises:
@@ -212,7 +212,7 @@ def gather(kind: str, package: str, *, scattered: bool = False) -> dict[str, Sou
 
 
 def _shipped(package: str, kind: str, scattered: bool) -> Iterator[Source]:
-    """Yield what the package itself has on a shelf."""
+    """Yield what the package itself has in a catalog."""
     if not scattered:
         yield from _module_sources(package, kind, _stamped(package))
         return
@@ -252,7 +252,7 @@ def _stamped(package: str) -> _Stamped:
         folders = list(spec.submodule_search_locations or ()) if spec else []
     stamps = []
     for folder in folders:
-        modified_ns = os.stat(folder).st_mtime_ns  # noqa: PTH116  a shelf is asked some thousand times a minute
+        modified_ns = os.stat(folder).st_mtime_ns  # noqa: PTH116  a catalog is asked some thousand times a minute
         subfolder_times = (
             os.stat(f"{folder}/{name}").st_mtime_ns  # noqa: PTH116
             for name, is_folder in _listed(folder, modified_ns)
@@ -290,7 +290,7 @@ def _is_folder(name: str, file: Path) -> bool:
 
 
 def _of_project(package: str, kind: str, scattered: bool) -> Iterator[Source]:
-    """Yield what the project has on a shelf.
+    """Yield what the project has in a catalog.
 
     Raises:
         AmbiguousName: a module has the name of one of the package, which would be imported in its place.
@@ -311,7 +311,7 @@ def _of_project(package: str, kind: str, scattered: bool) -> Iterator[Source]:
 
 
 def _plugged(kind: str) -> Iterator[Source]:
-    """Yield what other installed packages put on a shelf by their entry points."""
+    """Yield what other installed packages put in a catalog by their entry points."""
     for point in _entry_points().get(f"suchus.{kind}s", ()):
         owner = point.dist.name if point.dist else "an installed package"
         location = f"the entry point {point.name} = {point.value!r} of {owner}"
@@ -320,20 +320,20 @@ def _plugged(kind: str) -> Iterator[Source]:
 
 @cache
 def _entry_points() -> Mapping[str, Sequence[Any]]:
-    """Return the entry points of the shelves by group; reading those of all packages takes 20 ms."""
-    from importlib.metadata import entry_points  # noqa: PLC0415  half of the start of a program that has no shelf
+    """Return the entry points of the catalogs by group; reading those of all packages takes 20 ms."""
+    from importlib.metadata import entry_points  # noqa: PLC0415  half of the start of a program that has no catalog
 
     all_points = entry_points()
     return {group: tuple(all_points.select(group=group)) for group in (f"suchus.{shelf}" for shelf in SHELVES)}
 
 
 def snake(name: str) -> str:
-    """Return the name on a shelf of a class or a function: ``lost_foot`` for ``LostFoot``."""
+    """Return the name in a catalog of a class or a function: ``lost_foot`` for ``LostFoot``."""
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
 def _names(file: Path, kind: str) -> tuple[tuple[str, str], ...]:
-    """Return what a module of a scattered shelf declares: names on the shelf, and names in the module.
+    """Return what a module of a scattered catalog declares: names in the catalog, and names in the module.
 
     A project's file that cannot be read stands under its own name, so that its mistake is told when it is asked for.
     """
@@ -405,7 +405,7 @@ def _read_project(folder: Path, *_: int) -> Project:
 
 
 def _listed_files(folder: Path, shelf: str, files: Any) -> Iterator[Path]:
-    """Yield the files that ``suchus.toml`` names for a shelf.
+    """Yield the files that ``suchus.toml`` names for a catalog.
 
     Raises:
         UnreadableFile: they are no list of files in the folder.

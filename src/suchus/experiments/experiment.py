@@ -216,7 +216,7 @@ class Experiment(ABC):
     follows_gait: ClassVar[bool] = True
     """Whether the joints must be able to follow the gait; False where whether they can is a part of the question."""
     judged_with: ClassVar[tuple[str, ...]] = ("robot",)
-    """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
+    """Fields that must be as in the catalog for a verdict: another robot is not judged by the article's metres."""
     judged_from: ClassVar[Mapping[str, float]] = {}
     """Fields, and the least number (of a tuple: the least length) with which a run can answer what is judged."""
 

@@ -58,11 +58,9 @@ def precompile(axes: int, dtype: type) -> None:
         (folder / f"begun-{axes}-{dtype.__name__}").touch(exist_ok=False)
     except OSError:  # most often the file exists: another process compiles
         return
-    command = [
-        sys.executable,
-        "-c",
-        f"from {__name__} import compile_solver; compile_solver({axes}, '{dtype.__name__}')",
-    ]
+    function = compile_solver.__name__
+    script = f"from {__name__} import {function}; {function}({axes}, '{dtype.__name__}')"
+    command = [sys.executable, "-c", script]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as solver_process:
         try:
             _step(_NoPressureWater(*_domain(axes), dtype))

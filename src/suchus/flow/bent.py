@@ -18,7 +18,7 @@ import numpy as np
 from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, SpaceMass, of_outline
-from suchus.flow.mesh import TriangleMesh, face_centres, mass_of_mesh, paint_mesh, pseudo_normals
+from suchus.flow.mesh import TriangleMesh, face_centres, mass_of_mesh, paint_mesh, point_text, pseudo_normals
 from suchus.flow.paint import paint_outline
 from suchus.flow.pose import Pose, rotate_vectors
 from suchus.flow.shape import Field, Shape, Solid
@@ -127,7 +127,7 @@ class BendingMap:
                 if is_inverted.any():
                     raise InvalidDesign(
                         f"at t = {time:.4g} s the map folds the body or turns it inside out, at "
-                        f"{_row(places[:, is_inverted][:, 0])} m; bend it less."
+                        f"{point_text(places[:, is_inverted][:, 0])} m; bend it less."
                     )
                 return places
             slope[is_inverted] = np.eye(self.axes)
@@ -136,9 +136,9 @@ class BendingMap:
             places -= step * np.minimum(1.0, _MAX_STEP * self.size / np.maximum(size, 1e-300))
         worst_index = int(np.abs(residual).max(axis=0).argmax())
         raise InvalidDesign(
-            f"at t = {time:.4g} s no place was found that the map takes to {_row(still_points[:, worst_index])} m of "
-            f"the still shape; it says of each place in the body's frame where that is in the still shape. Bend it "
-            "less."
+            f"at t = {time:.4g} s no place was found that the map takes to "
+            f"{point_text(still_points[:, worst_index])} m of the still shape; it says of each place in the body's "
+            "frame where that is in the still shape. Bend it less."
         )
 
     def check(self, places: np.ndarray, time: float) -> np.ndarray:
@@ -165,10 +165,6 @@ class BendingMap:
                 f"it. Give a smooth map, or a shorter tick."
             )
         return full_tick_velocity
-
-
-def _row(place: np.ndarray) -> str:
-    return f"({', '.join(f'{x:.4g}' for x in place)})"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -68,7 +68,7 @@ def folder() -> Path | None:
 
 
 def kernel_files() -> list[Path]:
-    """Return the files of this room that hold kernels or parts of them, and those that say how they are compiled."""
+    """Return the files of this package that hold kernels or parts of them, and those that say how they are compiled."""
     files = sorted(_SOURCE_FOLDER.glob("*.py"))
     return [file for file in files if file.name in _BASE_FILES or _MAKERS.search(file.read_text(encoding="utf-8"))]
 

@@ -72,7 +72,10 @@ class Fields:
         Raises:
             InvalidDesign: in space, where ``vorticity_at_centres`` has it.
         """
-        self._plane_only("the vorticity at corners", "vorticity_at_centres")
+        if self.water.axes == 3:
+            raise InvalidDesign(
+                "the vorticity at corners is for plane grids, and this one has three axes; take vorticity_at_centres."
+            )
         u, v = self.water.u, self.water.v
         a, b = PAD + 1, -PAD
         return ((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b])) / self.water.grid.cell
@@ -103,10 +106,6 @@ class Fields:
         sums = (spin[1:, 1:] + spin[1:, :-1]) + (spin[:-1, 1:] + spin[:-1, :-1])
         values: np.ndarray = np.moveaxis(sums, (0, 1), (axes - 1 - e, axes - 1 - d)) / (4 * self.water.grid.cell)
         return values
-
-    def _plane_only(self, quantity: str, instead: str) -> None:
-        if self.water.axes == 3:
-            raise InvalidDesign(f"{quantity} is for plane grids, and this one has three axes; take {instead}.")
 
     @property
     def fluid_share(self) -> np.ndarray:

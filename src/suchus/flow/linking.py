@@ -7,7 +7,7 @@ differs from the second. Here the copies belong to their kernel alone, so that a
 file, however it came to be. And since what a kernel calls is never run by itself, it is neither optimised nor emitted
 by itself, which saves a quarter of the time that compiling takes.
 
-numba itself stays as it is: ``KernelCompiler`` is handed to ``numba.njit`` as the ``pipeline_class`` of this room's
+numba itself stays as it is: ``KernelCompiler`` is handed to ``numba.njit`` as the ``pipeline_class`` of this package's
 functions, and compiles them with a ``Codegen`` of its own. What ``Library`` overrides is not public and may change with
 any release. ``missing`` says which names are gone; then kernels are compiled as numba does it, and
 ``tests/flow/test_linking.py`` fails.

@@ -265,8 +265,8 @@ def _refuse_open(vertices: np.ndarray, faces: np.ndarray) -> None:
     if (count > 1).any():
         start_vertex, end_vertex = divmod(int(unique_keys[count > 1][0]), len(vertices))
         raise InvalidDesign(
-            f"two faces of the mesh go the same way along the edge from {_point_text(vertices[start_vertex])} to "
-            f"{_point_text(vertices[end_vertex])} m: they look to different sides, or more than two meet there. "
+            f"two faces of the mesh go the same way along the edge from {point_text(vertices[start_vertex])} to "
+            f"{point_text(vertices[end_vertex])} m: they look to different sides, or more than two meet there. "
             "Wind them evenly, as trimesh.repair.fix_winding does, and keep one surface."
         )
     open_edges = np.flatnonzero(~np.isin(reverse_keys, unique_keys))
@@ -274,12 +274,13 @@ def _refuse_open(vertices: np.ndarray, faces: np.ndarray) -> None:
         start_vertex, end_vertex = int(start[open_edges[0]]), int(end[open_edges[0]])
         raise InvalidDesign(
             f"the mesh is open: it has {open_edges.size} edges with one face, the first from "
-            f"{_point_text(vertices[start_vertex])} to {_point_text(vertices[end_vertex])} m. Close it, as "
+            f"{point_text(vertices[start_vertex])} to {point_text(vertices[end_vertex])} m. Close it, as "
             "trimesh.repair.fill_holes or Blender does."
         )
 
 
-def _point_text(point: np.ndarray) -> str:
+def point_text(point: np.ndarray) -> str:
+    """Return the coordinates of a point in brackets, to four digits."""
     return f"({', '.join(f'{coordinate:.4g}' for coordinate in point)})"
 
 

@@ -15,6 +15,7 @@ from suchus.hardware.rig import Rig
 NUDGE = radians(5.0)
 """By how much a servo is moved so that people see which one it is [rad]."""
 _PACE = radians(20.0)  # [rad/s]; how fast
+_READINGS = 10  # of each servo in a known posture; their median counts
 _MIN_SAMPLES = 50  # samples from which a servo is judged
 _Z_95 = 1.96  # standard deviations on either side that hold 95 %
 
@@ -89,13 +90,12 @@ def _move_through(rig: Rig, clock: TickClock, tick: int, i: int, steps: list[int
     return tick
 
 
-def find_zeros(rig: Rig, posture: np.ndarray, *, times: int = 10) -> tuple[Wiring, np.ndarray]:
+def find_zeros(rig: Rig, posture: np.ndarray) -> tuple[Wiring, np.ndarray]:
     """Return the wiring with new zeros, and the change of each zero [rad]: the robot is limp in a known posture.
 
     Args:
         rig: the open robot, which somebody holds in a posture.
         posture: that it is held in, shape (servo,) [rad].
-        times: how often each is asked; the median counts.
 
     Raises:
         BusFailure: a servo does not answer.
@@ -104,7 +104,7 @@ def find_zeros(rig: Rig, posture: np.ndarray, *, times: int = 10) -> tuple[Wirin
     for _ in range(3):
         rig.torque(False)
     samples = []
-    for _ in range(times):
+    for _ in range(_READINGS):
         rig.read()
         samples.append(np.where(rig.now.heard, rig.now.angle, np.nan))
     has_answered = np.isfinite(samples).any(axis=0) | ~rig.asked

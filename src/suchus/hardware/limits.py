@@ -15,7 +15,7 @@ from suchus.robot.motion import Gait
 TRACKING = 0.35
 """How far a servo at its limit may be from its commanded angle for all but 2 % of a walk [rad], 20 degrees.
 
-Chosen with the shelf's gaits in view: the crawl and ``spine_only`` leave 14 and 16 degrees at the first yaw joint and
+Chosen with the built-in gaits in view: the crawl and ``spine_only`` leave 14 and 16 degrees at the first yaw joint and
 lose 1 and 3 % of their distance against servos that reach their angles. A joint farther off makes another gait.
 """
 

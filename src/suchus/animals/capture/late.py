@@ -176,14 +176,16 @@ class _Lags:
         sways = float(mean[self._zero_index]) * np.hypot(_SKIN, mean_square_bend / 8)
         noise = sum(float(np.nanvar(series)) for series in residual) / 2 + sways**2
         chord = float((mean[self._zero_index] * mean_square_bend / 16) ** 2 / noise)
-        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, _GAIN, _EXPLAINS)[0])
+        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord)[0])
 
-    def _surely(self, varies: np.ndarray, chord: float, gain: float, explains: float) -> tuple[float, float]:
+    def _surely(self, varies: np.ndarray, chord: float) -> tuple[float, float]:
         """Return the lag at which a distance varies least [s], 0 if it is not significant, and the gain."""
         best = int(np.argmin(varies))
         variance_drop = float(varies[self._zero_index] - varies[best])
         gained = len(self._tracks.time) * variance_drop
-        is_significant = gained > gain and variance_drop > chord and varies[best] < explains * varies[self._zero_index]
+        is_significant = (
+            gained > _GAIN and variance_drop > chord and varies[best] < _EXPLAINS * varies[self._zero_index]
+        )
         lag = float(self.lags[best])
         return (lag if is_significant and abs(lag) > _MIN_LAG * self._clock.period else 0.0), gained
 

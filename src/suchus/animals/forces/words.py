@@ -20,15 +20,15 @@ def summary_lines(data: xr.Dataset) -> list[str]:
     return _on_land(data) if data.attrs["medium"] == "land" else _in_water(data)
 
 
-def _interval(data: xr.Dataset, name: str, digits: int = 3) -> str:
+def _interval(data: xr.Dataset, name: str) -> str:
     row = data.sel(quantity=name)
     unit = str(row.unit.values)
-    return _interval_text(float(row.value), float(row.low), float(row.high), "" if unit == "-" else unit, digits)
+    return _interval_text(float(row.value), float(row.low), float(row.high), "" if unit == "-" else unit)
 
 
-def _interval_text(value: float, lower_bound: float, upper_bound: float, unit: str, digits: int = 3) -> str:
-    ends = f" ({lower_bound:.{digits}g} to {upper_bound:.{digits}g})" if upper_bound > lower_bound else ""
-    return f"{value:.{digits}g}{ends}{unit and ' '}{unit}"
+def _interval_text(value: float, lower_bound: float, upper_bound: float, unit: str) -> str:
+    ends = f" ({lower_bound:.3g} to {upper_bound:.3g})" if upper_bound > lower_bound else ""
+    return f"{value:.3g}{ends}{unit and ' '}{unit}"
 
 
 def _on_land(data: xr.Dataset) -> list[str]:

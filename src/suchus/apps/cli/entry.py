@@ -205,7 +205,7 @@ COMMANDS = (
     ),
     Subcommand("doctor", "", "say whether suchus can run here, and what is missing", "suchus.apps.cli.doctor:doctor"),
     Subcommand(
-        "list", "", "show what stands on the shelves: robots, gaits, faults and so on", "suchus.apps.cli.shelves:show"
+        "list", "", "show what stands in the catalogs: robots, gaits, faults and so on", "suchus.apps.cli.shelves:show"
     ),
 )
 """Every command, in the order of the help."""

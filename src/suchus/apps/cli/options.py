@@ -219,7 +219,7 @@ def _first_word(words: Any) -> str:
 
 
 def _resolve_word(word: str, resolve: Callable[[str], Any]) -> Any:
-    """Return the object that a word names, by a name on the shelf or a file."""
+    """Return the object that a word names, by a name in the catalog or a file."""
     try:
         return resolve(word)
     except UnknownName as error:

@@ -32,7 +32,7 @@ class ExperimentTask:
     """An experiment that is to be run again."""
 
     name: str
-    """Name of the experiment on the shelf."""
+    """Name of the experiment in the catalog."""
     out: Path
     """The folder for results."""
     quick: bool
@@ -176,7 +176,7 @@ def reproduce(words: Sequence[str]) -> int:
         if name not in sound or sound[name].reproduces
     ]
     if not tasks:
-        raise BadCommand("there is no experiment on the shelf.")
+        raise BadCommand("there is no experiment in the catalog.")
     if options.jobs is not None and options.jobs < 1:
         raise BadCommand(f"--jobs is {options.jobs}; at least 1 experiment at a time is needed.")
     check_writable(options.out)
@@ -251,7 +251,7 @@ class _Results:
 
 
 def _attempt_with_shelf(task: ExperimentTask, progress: Progress, shelf: list[str]) -> TaskResult:
-    """Attempt an experiment, also in a process of its own, which knows the same shelf."""
+    """Attempt an experiment, also in a process of its own, which knows the same catalog."""
     suchus.experiments.catalog.__path__[:] = shelf
     return attempt(task, progress)
 

@@ -57,7 +57,7 @@ def perform(experiment: Experiment, name: str, results_folder: Path, progress: P
 
     Args:
         experiment: the question.
-        name: its name on the shelf.
+        name: its name in the catalog.
         results_folder: the folder for results.
         progress: called with the share that is done, 0 to 1.
         command: what makes the same result again.
@@ -141,11 +141,11 @@ def gait_sentence(question: Experiment) -> list[str]:
     if not gaits or robot is None or robot == getattr(type(question)(), "robot", None):
         return []
     if gaits[0].name == DRAFTED:
-        return [f"No gait on the shelf suits {robot.name}: it moves in one that was drafted for it."]
+        return [f"No gait in the catalog suits {robot.name}: it moves in one that was drafted for it."]
     gait_texts = []
     for gait in gaits:
         shelf = GAITS.get(gait.name, gait)
-        period_note = f" (a cycle in {gait.period:.3g} s; {shelf.period:.3g} s on the shelf)"
+        period_note = f" (a cycle in {gait.period:.3g} s; {shelf.period:.3g} s in the catalog)"
         gait_texts.append(gait.name + (period_note if gait.period != shelf.period else ""))
     return [f"{robot.name} moves in the gait{'s' * (len(gait_texts) > 1)} {listed(gait_texts)}."]
 
@@ -154,7 +154,7 @@ def run(words: Sequence[str]) -> int:
     """Run one experiment and return 0.
 
     Args:
-        words: the name of the experiment, which ``word_checks`` found on the shelf, and options.
+        words: the name of the experiment, which ``word_checks`` found in the catalog, and options.
 
     Raises:
         SuchusError: the words make no sense, or the run failed.
@@ -182,7 +182,7 @@ def run_command_lines(robot: Robot, robot_word: str, gait: Path, experiment_name
 
     Args:
         robot: the robot.
-        robot_word: its name or its file; empty for the robot of the shelf that is taken where none is named.
+        robot_word: its name or its file; empty for the robot of the catalog that is taken where none is named.
         gait: the file of the gait.
         experiment_name: the question to ask where the robot suits it, before how far it walks and how fast.
     """

@@ -1,4 +1,4 @@
-"""``suchus list``: what stands on the shelves; of suchus' own nothing is imported."""
+"""``suchus list``: what stands in the catalogs; of suchus' own nothing is imported."""
 
 import ast
 import tokenize
@@ -20,17 +20,17 @@ _LISTED = {
     "controllers": "suchus.robot.control:CONTROLLERS",
     "measures": "suchus.experiments.study:MEASURES",
 }
-"""Module and object of each shelf, by the shelf's name."""
+"""Module and object of each catalog, by the catalog's name."""
 _SCATTERED = ("controllers", "measures")
-"""Shelves whose modules declare things with names of their own."""
+"""Catalogs whose modules declare things with names of their own."""
 _USAGE = f"""usage: suchus list [{PROJECT} DIR]
 
-Show what stands on the shelves, each with its title. What a project folder or another package puts there is marked with
-where it comes from; it is loaded, and shown as broken where that fails."""
+Show what stands in the catalogs, each with its title. What a project folder or another package puts there is marked
+with where it comes from; it is loaded, and shown as broken where that fails."""
 
 
 def show(words: Sequence[str]) -> int:
-    """Print every shelf and return 0."""
+    """Print every catalog and return 0."""
     if any(word in ("-h", "--help") for word in words):
         print(_USAGE)
         return 0

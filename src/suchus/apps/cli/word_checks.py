@@ -1,6 +1,6 @@
 """What a command line says wrong that is known before the command's libraries are loaded, which takes seconds.
 
-Only names on shelves, input files and ``--out`` are looked at: the parser of each command reads all words, and
+Only names in catalogs, input files and ``--out`` are looked at: the parser of each command reads all words, and
 everything else is refused there.
 """
 
@@ -69,7 +69,7 @@ def check_toml(path: Path, content: str) -> None:
 
 
 def _check_first(command: Subcommand, words: Sequence[str]) -> None:
-    """Refuse a first word that is no name on the shelf or no input file of the command."""
+    """Refuse a first word that is no name in the catalog or no input file of the command."""
     word = words[0] if words else ""
     if not word or word.startswith("-"):
         if command.first_word == "experiment":
@@ -87,7 +87,7 @@ def _check_first(command: Subcommand, words: Sequence[str]) -> None:
 
 
 def _check_name(kind: str, name: str) -> None:
-    """Refuse a name that is not on the shelf, and no file that could stand in its place."""
+    """Refuse a name that is not in the catalog, and no file that could stand in its place."""
     shelf = _shelf(kind)
     if name in shelf or name.startswith("-"):
         return

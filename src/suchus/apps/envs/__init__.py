@@ -1,4 +1,4 @@
-"""Robots as Gymnasium environments; importing this room registers them. The extra ``gym`` installs gymnasium."""
+"""Robots as Gymnasium environments; importing this package registers them. The extra ``gym`` installs gymnasium."""
 
 from suchus.apps.envs.shelf import IDS, MAX_STEPS_BY_TASK, MAX_STEPS, TASKS, register  # isort: skip  # says what is missing, if it is
 from suchus.apps.envs.policies import (

@@ -1,4 +1,4 @@
-"""Policies to compare with what is learned: holding still, random actions, and the shelf's gait by actions."""
+"""Policies to compare with what is learned: holding still, random actions, and the built-in gait by actions."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -98,7 +98,7 @@ class SwimToGoal:
 
 
 class ControllerPolicy:
-    """A controller of the shelf that reads the observations; it has state, so use one for each ``play``.
+    """A controller of the catalog that reads the observations; it has state, so use one for each ``play``.
 
     It is called in every control period with the observation of the present step; its commands for air are ignored.
 

@@ -118,7 +118,7 @@ def reading_columns(
     Args:
         observations: as an environment returns them.
         name: of the reading, as ``clock``.
-        robot: the robot that they belong to, or its name on the shelf.
+        robot: the robot that they belong to, or its name in the catalog.
 
     Raises:
         UnknownName: there is no such reading.

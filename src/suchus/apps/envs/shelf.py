@@ -76,7 +76,7 @@ TASKS: Mapping[str, Task] = MappingProxyType(
 def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
     """Return a task, given itself or by its name, with some fields changed.
 
-    A robot or a gait may be given by its name on the shelf or the path of its file; a robot brings its gait and its
+    A robot or a gait may be given by its name in the catalog or the path of its file; a robot brings its gait and its
     size, see ``Task.on``. With ``water`` a flow takes the place of the lake.
 
     Raises:

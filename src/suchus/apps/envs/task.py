@@ -157,7 +157,7 @@ def remaining(goal: AnyGoal, offset: Float[np.ndarray, "run 2"]) -> Float[np.nda
 class Rewards:
     """Weights of the terms of the reward; each term is a quantity of one step in SI units, see ``Terms``.
 
-    None of them is from the article. They were chosen so that a whole episode of the shelf's own motion is worth about
+    None of them is from the article. They were chosen so that a whole episode of the built-in motion is worth about
     ten, almost all of it from the one term that the task is about.
     """
 
@@ -242,7 +242,7 @@ class Breaks:
     """Servos among which it is drawn; None: those of the limbs, since the article breaks no others, or all of a robot
     without limbs."""
     kinds: tuple[str, ...] = ("limp", "locked")
-    """How it breaks, by names of faults of servos, each as it is on the shelf: ``limp``: without torque; ``locked``:
+    """How it breaks, by names of faults of servos, each as it is in the catalog: ``limp``: without torque; ``locked``:
     holding the angle that it has at that time."""
     faults: tuple[Fault, ...] = ()
     """Faults one of which is drawn instead, with all their numbers but the time; ``joints`` and ``kinds`` then do
@@ -343,7 +343,7 @@ class Task:
     """Definition of a reinforcement learning task.
 
     An action is one number from -1 to 1 for each servo: its commanded angle is ``centre + span * action``, within its
-    range. The actions are servo angles rather than changes to a gait, because with changes the shelf's gait would be
+    range. The actions are servo angles rather than changes to a gait, because with changes the built-in gait would be
     the action zero, and nothing would be left to learn; ``span`` keeps even random actions near a posture that carries
     the robot. An action turns a crank further, at most at its servo's no-load speed.
     """
@@ -361,10 +361,10 @@ class Task:
     ground: Ground = field(default_factory=Ground)
     """The ground: its slope, friction and surface."""
     start: Start = "lying"
-    """How an episode begins: in the gait's mid-stance, standing as the shelf's way up leaves the robot, or floating at
+    """How an episode begins: in the gait's mid-stance, standing as the built-in way up leaves the robot, or floating at
     the surface, straight and with its limbs back along the body."""
     span: float = 0.8
-    """How far an action of one turns a servo from its centre [rad]; the shelf's crawl asks for 0.78 at its pulley."""
+    """How far an action of one turns a servo from its centre [rad]; the built-in crawl asks for 0.78 at its pulley."""
     decision: float = 0.05
     """Time from one action to the next [s]; a tenth of a fast walk's stance, and ten times what a servo's bus takes.
 
@@ -438,7 +438,7 @@ class Task:
             gait: another gait; its own if None and it cannot follow that of now.
 
         Raises:
-            UnsuitedRobot: the robot lacks what the beginning needs, or no gait on the shelf suits it.
+            UnsuitedRobot: the robot lacks what the beginning needs, or no gait in the catalog suits it.
         """
         check_needs(robot, START_NEEDS[self.start], f"a task that begins {self.start}")
         length_factor, mass_factor = robot.length / self.robot.length, robot.mass / self.robot.mass

@@ -85,7 +85,7 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
 
 
 def changed_settings(experiment: Experiment) -> list[dict[str, str]]:
-    """Return the fields in which a question differs from the one on the shelf, with both values in words."""
+    """Return the fields in which a question differs from the one in the catalog, with both values in words."""
     shelf, rows = type(experiment)(), []
     for name in experiment.settings():
         setting, default = getattr(experiment, name), getattr(shelf, name)

@@ -30,7 +30,7 @@ class SavedFile(NamedTuple):
 
 
 def gait_file(robot: Robot, settings: Settings) -> SavedFile:
-    """Return the gait that is walked; one that differs from the shelf's gait of its name is called ``NAME_tuned``.
+    """Return the gait that is walked; one that differs from the built-in gait of its name is called ``NAME_tuned``.
 
     Args:
         robot: the robot that walks.
@@ -155,12 +155,12 @@ class Controls:
         self._switches[name] = box
 
     def _gaits(self) -> None:
-        """Add a menu of the gaits on the shelf that have the same sliders as the present gait."""
+        """Add a menu of the gaits in the catalog that have the same sliders as the present gait."""
         current_gait = self._session.settings.gait
         shelf: dict[str, Gait] = {name: gait for name, gait in GAITS.items() if self._fits(gait)}
         if shelf.get(current_gait.name) != current_gait:
             shelf = {current_gait.name: current_gait, **shelf}
-        menu = self._gui.add_dropdown("from the shelf", tuple(shelf), initial_value=current_gait.name)
+        menu = self._gui.add_dropdown("from the catalog", tuple(shelf), initial_value=current_gait.name)
 
         def act(gait_name: Any) -> str:
             notice = self._session.adopt(shelf[gait_name])
@@ -180,7 +180,7 @@ class Controls:
             self._connect(robot, lambda _: save(robot_file(session.robot)))
 
     def _fits(self, gait: Gait) -> bool:
-        """Return whether a gait of the shelf has the same sliders, and the robot can follow it."""
+        """Return whether a gait of the catalog has the same sliders, and the robot can follow it."""
         robot, current_gait = self._session.robot, self._session.settings.gait
         return set(knobs_of(robot, gait)) == set(knobs_of(robot, current_gait)) and suits(robot, gait)
 
@@ -232,7 +232,7 @@ class Controls:
             self._other_faults()
 
     def _other_faults(self) -> None:
-        """Offer every fault of the shelf, with its part and, where it has one, its number."""
+        """Offer every fault of the catalog, with its part and, where it has one, its number."""
         gui, session = self._gui, self._session
         kinds = tuple(name for name, _ in FAULTS.items() if name not in ("limp", "locked"))
         kind = gui.add_dropdown("fault", kinds, initial_value=kinds[0])

@@ -13,6 +13,7 @@ from suchus.visual.figures import COLOURS
 from suchus.visual.figures.style import limb_colours
 
 _MAX_POINTS = 400  # points of a line; more cannot be distinguished
+_BARS_WIDTH = 330  # [pixel]; of the picture of stances
 _MIN_NEWTON_MASS = 0.1  # [kg]; the loads of lighter bodies are shown in millinewtons
 PLOTS = 370
 """Width of the plots to the left of the scene [pixel]."""
@@ -147,19 +148,18 @@ def series(uplot: Any, line: Line) -> Any:
     return uplot.Series(label=line.label, stroke=line.colour, width=1.6, **dashes)
 
 
-def gait_bars(robot: Robot, table: Mapping[str, np.ndarray], *, cursor: float | None = None, width: int = 330) -> str:
+def gait_bars(robot: Robot, table: Mapping[str, np.ndarray], *, cursor: float | None = None) -> str:
     """Return the gait as an SVG picture: a bar for every stance of every foot; empty for a robot without limbs.
 
     Args:
         robot: who walks.
         table: columns by name, see ``history.columns``.
         cursor: where to draw a cursor [s]; None for none.
-        width: of the picture [pixel].
     """
     time, limbs, load_threshold = table["time"], limb_colours(robot), LOADED_SHARE * robot.mass * GRAVITY
     if not limbs:
         return ""
-    x_start, x_end, row, top = 30, width - 12, 19, 20
+    x_start, x_end, row, top = 30, _BARS_WIDTH - 12, 19, 20
     start, end = float(time[0]), max(float(time[-1]), float(time[0]) + 1.0)
     pixels = (x_end - x_start) / (end - start)
     elements = [f'<text x="{x_start}" y="12" class="t">feet that stand (more than {load_threshold:.1g} N)</text>']
@@ -184,7 +184,7 @@ def gait_bars(robot: Robot, table: Mapping[str, np.ndarray], *, cursor: float | 
         )
     style = "text{font:11px sans-serif;fill:#444}.t{font-weight:600;fill:#222}"
     return (
-        f'<svg viewBox="0 0 {width} {bottom + 16}" width="100%" role="img" '
+        f'<svg viewBox="0 0 {_BARS_WIDTH} {bottom + 16}" width="100%" role="img" '
         f'aria-label="When each foot stands"><style>{style}</style>{"".join(elements)}</svg>'
     )
 

@@ -75,7 +75,7 @@ def takes(path: Path, robot: Robot | None = None) -> tuple[Take, ...]:
 
     Args:
         path: of the file.
-        robot: who walks in it; by default the robot of the shelf that the record names.
+        robot: who walks in it; by default the robot of the catalog that the record names.
 
     Raises:
         UnreadableFile: there is no such file.
@@ -130,12 +130,12 @@ def _take(path: Path, run: xr.Dataset, number: int, robot: Robot | None) -> Take
 
 
 def _robot(path: Path, name: str) -> Robot:
-    """Return the robot of the shelf that a record names."""
+    """Return the robot of the catalog that a record names."""
     try:
         robot: Robot = ROBOTS[name]
     except UnknownName as error:
         raise IncompatibleRecord(
-            f"{path} was walked by robot {name!r}, which is not on the shelf: give its file with --robot FILE.toml."
+            f"{path} was walked by robot {name!r}, which is not in the catalog: give its file with --robot FILE.toml."
         ) from error
     return robot
 

@@ -36,7 +36,7 @@ from suchus.sim.land import Ground, Lake, Live, Push, Run
 Switch = Literal["spine", "tail", "coordination", "heading", "swims"]
 
 _OPEN = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
-_CORRELATION = 0.06  # [m]; of the bumps, as on the shelf of arenas
+_CORRELATION = 0.06  # [m]; of the bumps, as in the catalog of arenas
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -230,8 +230,8 @@ class Session:
 
         Args:
             part_name: a joint, a leg or a group of sensors.
-            kind: name of a fault on the shelf.
-            **parameters: of that fault; those left out are as on the shelf.
+            kind: name of a fault in the catalog.
+            **parameters: of that fault; those left out are as in the catalog.
         """
         with self._lock:
             try:

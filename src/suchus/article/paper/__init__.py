@@ -3,20 +3,17 @@
 from suchus.article.paper.claim import Claim
 from suchus.article.paper.claims import CLAIMS
 from suchus.article.paper.errata import ERRATA, Misprint
-from suchus.article.paper.signs import BendAngles, JointSums, to_bend_angles, to_joint_sums
+from suchus.article.paper.signs import BendAngles, JointSums, to_bend_angles
 from suchus.article.paper.tables import (
     CRAWL_END,
     CRAWL_START,
     CYCLE_PERIOD,
     CYCLES,
     FEMUR,
-    HIP_OFFSET,
     LEG_CHAIN,
     LIMB_REACH,
     SNAPSHOT_TIMES,
-    SPINE_BASE,
     SPINE_CHAIN,
-    SPINE_LINK,
     TABLE_I,
     TABLE_II,
     TAIL_JOINTS,
@@ -35,13 +32,10 @@ __all__ = [
     "CYCLE_PERIOD",
     "ERRATA",
     "FEMUR",
-    "HIP_OFFSET",
     "LEG_CHAIN",
     "LIMB_REACH",
     "SNAPSHOT_TIMES",
-    "SPINE_BASE",
     "SPINE_CHAIN",
-    "SPINE_LINK",
     "TABLE_I",
     "TABLE_II",
     "TAIL_JOINTS",
@@ -52,5 +46,4 @@ __all__ = [
     "JointSums",
     "Misprint",
     "to_bend_angles",
-    "to_joint_sums",
 ]

@@ -54,16 +54,6 @@ def spine_lateral(yaw_sum: Angle) -> Angle:
     return -yaw_sum
 
 
-def to_joint_sums(bends: BendAngles) -> JointSums:
-    """Return the sums of joint angles [rad] for bend angles in the article's signs [rad]."""
-    return JointSums(
-        spine_yaw=spine_lateral(bends.spine_lateral),
-        spine_pitch=bends.spine_vertical,
-        tail_yaw=bends.tail_lateral,
-        tail_pitch=bends.tail_vertical,
-    )
-
-
 def to_bend_angles(sums: JointSums) -> BendAngles:
     """Return the bend angles in the article's signs [rad] for sums of joint angles [rad]."""
     return BendAngles(

@@ -27,9 +27,6 @@ C2 = 0.30
 K = 0.023
 """Wave number, printed without a unit."""
 
-COLUMNS = ("i", "theta_i /rad", "d_i /mm", "a_i /mm", "alpha_i /rad")
-"""The heads of the columns, as printed."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PrintedRow:
@@ -91,17 +88,11 @@ LEG_CHAIN = in_si(TABLE_I)
 SPINE_CHAIN = in_si(TABLE_II)
 """The torso in SI: ``a[0]`` to ``a[4]``."""
 
-HIP_OFFSET = LEG_CHAIN.a[0]
-"""From the midline to the hip's yaw axis, a0 [m]."""
 FEMUR = LEG_CHAIN.a[2]
 """From hip to knee, a2 [m]."""
 TIBIA = LEG_CHAIN.a[3]
 """From knee to the end of the shank, a3 [m]."""
 LIMB_REACH = FEMUR + TIBIA
 """From hip to the end of the shank of a stretched hind leg [m]."""
-SPINE_BASE = SPINE_CHAIN.a[0]
-"""From the hind girdle's axis to the first spine joint, a0 [m]."""
-SPINE_LINK = SPINE_CHAIN.a[1]
-"""From each spine joint to the next, a1 to a4 [m]."""
 TAIL_JOINTS = 6
 """Number of joints of the tail's cable section, N [-] (III.C)."""

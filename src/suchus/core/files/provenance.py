@@ -56,7 +56,7 @@ def versions() -> dict[str, str]:
 
 @cache
 def code_digest(*paths: str) -> str:
-    """Return the SHA-256 of the syntax trees of some rooms or modules of suchus, and of their data.
+    """Return the SHA-256 of the syntax trees of some packages or modules of suchus, and of their data.
 
     Comments, docstrings and line breaks change nothing.
 
@@ -89,13 +89,13 @@ def syntax_of(source: bytes) -> bytes:
     tree = ast.parse(source)
     for node in ast.walk(tree):
         if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
-            node.body = [statement for statement in node.body if not _is_text(statement)]
+            node.body = [statement for statement in node.body if not is_docstring(statement)]
     text: list[str] = []
     _write(tree, text.append)
     return "".join(text).encode()
 
 
-def _is_text(statement: ast.stmt) -> bool:
+def is_docstring(statement: ast.stmt) -> bool:
     """Return whether a statement is a text alone: a docstring of a module, class, function or field."""
     return (
         isinstance(statement, ast.Expr)

@@ -84,7 +84,6 @@ def spread(
     name: str,
     versions: Versions = source_versions,
     retries: int = 3,
-    patience: float = _WORKER_TIMEOUT,
 ) -> Generator[tuple[int, Any], None, None]:
     """Do one piece of work for each item on a cluster, and yield the results as they are finished, in any order.
 
@@ -97,7 +96,6 @@ def spread(
         name: what the pieces are called on Dask's own pages.
         versions: returns what decides the bytes; it must return the same on a worker as here.
         retries: how often a piece is begun again whose worker is lost [-].
-        patience: how long to wait for a first worker [s].
 
     Yields:
         The index of an item, and its result.
@@ -109,7 +107,7 @@ def spread(
     from distributed import CancelledError, KilledWorker, as_completed  # noqa: PLC0415  whoever has a client has it
 
     try:
-        client.wait_for_workers(1, timeout=patience)
+        client.wait_for_workers(1, timeout=_WORKER_TIMEOUT)
         _check_versions(client)
         futures = client.map(
             _piece,

@@ -61,7 +61,7 @@ def conduct_sweep(
             it stands in a module that the workers can import, or in the script that is run.
         items: settings: numbers, arrays, frozen values, tuples of them.
         folder: the store.
-        rooms: of suchus whose source decides the results, see ``record.code_digest``.
+        rooms: packages of suchus whose source decides the results, see ``record.code_digest``.
         progress: told how much of the sweep is done.
         client: a ``distributed.Client``, whose workers then calculate; this machine if None. The bytes are the same.
         jobs: processes of this machine that calculate side by side and share its threads; 1 is this one [-].

@@ -15,7 +15,7 @@ SAMPLES = {
 
 ``lizard`` and ``crawl`` are tracked keypoints as a camera above sees them, with noise and lost points, in pixels of
 unknown size: of a made-up lizard in a lateral-sequence walk (duty factor 0.7, its tail a third of a cycle behind the
-trunk), and of the caiman of the shelf in its belly crawl. ``quadruped`` is a made-up URDF of a robot with a rigid trunk
+trunk), and of the built-in caiman in its belly crawl. ``quadruped`` is a made-up URDF of a robot with a rigid trunk
 and four legs of three joints. The eighth example makes the keypoints.
 """
 

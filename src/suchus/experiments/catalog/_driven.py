@@ -1,4 +1,4 @@
-"""What is said of a robot that was driven over its bus; it needs servos, so that it is not on the shelf."""
+"""What is said of a robot that was driven over its bus; it needs servos, so that it is not in the catalog."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from types import MappingProxyType
 
-from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import Rule, Variation
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog import EXPERIMENTS
@@ -24,12 +23,6 @@ def rules_of(experiment: str) -> tuple[Rule, ...]:
         if not isinstance(rule, Rule) or rule.experiment != experiment:
             raise InvalidDesign(f"RULES of {experiment} hold {rule!r}, which is no Rule of this experiment.")
     return tuple(rules)
-
-
-def examples_of(experiment: str) -> Examples:
-    """Return measures by which the rules of an experiment are tested, from the ``EXAMPLES`` beside its rules."""
-    examples: Examples = EXPERIMENTS.beside(experiment, "EXAMPLES", {}, module="rules")
-    return examples
 
 
 def design_sweep_of(experiment: str) -> Variation | None:

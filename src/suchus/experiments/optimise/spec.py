@@ -223,9 +223,9 @@ class SearchFile(Search):
     """The contents of the file of a search."""
 
     robot: str = "caiman"
-    """Name on the shelf, or path of a TOML file beside this one."""
+    """Name in the catalog, or path of a TOML file beside this one."""
     gait: str | None = None
-    """Name on the shelf, or path of a TOML file beside this one; by default the robot's own."""
+    """Name in the catalog, or path of a TOML file beside this one; by default the robot's own."""
     task: Task = "crawl"
     """Task: ``crawl``, ``turn`` or ``stand``."""
     ground: Ground = field(default_factory=Ground)

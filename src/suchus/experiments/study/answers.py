@@ -65,7 +65,7 @@ def answer_claims(results: Mapping[str, tuple[np.ndarray, np.ndarray]], paramete
     )
 
 
-def first_order(parameters: np.ndarray, quantity: np.ndarray, *, seed: int = 0) -> Index:
+def first_order(parameters: np.ndarray, quantity: np.ndarray) -> Index:
     """Return how much of a quantity each parameter decides alone, whether it rises with it or not.
 
     The first-order index of Sobol, estimated from any sample: the share of the variance that lies between the means of
@@ -75,7 +75,6 @@ def first_order(parameters: np.ndarray, quantity: np.ndarray, *, seed: int = 0) 
     Args:
         parameters: shape (sample, parameter).
         quantity: shape (sample,); samples without it (NaN) are left out.
-        seed: of the resampling.
 
     Source: A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, for the index; the correction for chance is
     that of the adjusted coefficient of determination.
@@ -86,7 +85,7 @@ def first_order(parameters: np.ndarray, quantity: np.ndarray, *, seed: int = 0) 
     if count < 4 * _BINS or np.ptp(quantity[is_finite]) == 0.0:
         return Index(zeros, zeros, zeros)
     ranks = stats.rankdata(quantity[is_finite])
-    resampled_counts = np.random.default_rng(seed).multinomial(count, np.full(count, 1 / count), size=_RESAMPLED)
+    resampled_counts = np.random.default_rng(0).multinomial(count, np.full(count, 1 / count), size=_RESAMPLED)
     weights = np.vstack([np.ones(count), resampled_counts.astype(float)])
     indices = np.array(
         [_between_bins_fraction(column, ranks, weights) for column in parameters[is_finite].T]

@@ -35,8 +35,8 @@ _TRUNK = ("trunk_bend", "tail_bend", "tail_pitch")  # what the conditions differ
 class Claims:
     """Every number that the article does not give, drawn from its plausible range, all at once.
 
-    The numbers are those of ``chosen`` beside the robot and the gait on the shelf, but for the limits of the joints: a
-    limit only forbids, and whether a gait is forbidden is counted apart. Each sample is a robot and a gait, run in
+    The numbers are those of ``chosen`` beside the built-in robot and gait, but for the limits of the joints: a limit
+    only forbids, and whether a gait is forbidden is counted apart. Each sample is a robot and a gait, run in
     every condition of spine and tail, see ``claim_measures.RUNS``.
     """
 

@@ -30,15 +30,15 @@ class StudyFile:
     measure: tuple[str, ...]
     """Names of ``suchus.sim.metrics``."""
     robot: str = "caiman"
-    """Name on the shelf, or path of a TOML file beside this one."""
+    """Name in the catalog, or path of a TOML file beside this one."""
     gait: str | None = None
-    """Name on the shelf, or path of a TOML file beside this one; by default the robot's own."""
+    """Name in the catalog, or path of a TOML file beside this one; by default the robot's own."""
     ground: Ground = field(default_factory=Ground)
     """Ground: its friction scale, slopes and relief."""
     faults: tuple[dict[str, Any], ...] = ()
     """Faults as tables, see ``faults.from_table``."""
     control: dict[str, Any] = field(default_factory=lambda: {"kind": "open_loop"})
-    """Controller as a table: its kind, a name on the shelf of controllers, and its fields."""
+    """Controller as a table: its kind, a name in the catalog of controllers, and its fields."""
     noise: float = 0.0
     """Standard deviation of noise on every servo angle commanded [rad]."""
     design: Design = "factorial"

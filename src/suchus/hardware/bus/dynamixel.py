@@ -86,7 +86,20 @@ class _DynamixelFrames(Decoder):
         return len(frame), packet
 
 
-class Dynamixel(Framing):
+class NumberedErrors(Framing):
+    """Framing whose errors have a bit for an alert and a number for the reason of a refusal."""
+
+    def alert(self, code: int) -> bool:
+        """Return whether the alert bit is set."""
+        return bool(code & ALERT)
+
+    def refusal(self, code: int) -> str:
+        """Return what the number in the error says."""
+        number = code & ~ALERT
+        return REFUSALS.get(number, f"error {number}") if number else ""
+
+
+class Dynamixel(NumberedErrors):
     """The protocol of ROBOTIS's X series."""
 
     name = "dynamixel"
@@ -99,15 +112,6 @@ class Dynamixel(Framing):
     def reply(self, packet: Packet) -> bytes:
         """Return the bytes of a reply."""
         return _framed(packet.id, bytes([_STATUS, packet.code]) + packet.data)
-
-    def alert(self, code: int) -> bool:
-        """Return whether the alert bit is set."""
-        return bool(code & ALERT)
-
-    def refusal(self, code: int) -> str:
-        """Return what the number in the error says."""
-        number = code & ~ALERT
-        return REFUSALS.get(number, f"error {number}") if number else ""
 
     def requests(self) -> Decoder:
         """Return a decoder of what the host says."""

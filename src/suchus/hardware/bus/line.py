@@ -16,8 +16,8 @@ a line whose CRC is wrong is dropped by either side, and the next one counts.
 
 from collections.abc import Iterator, Sequence
 
-from suchus.hardware.bus.dynamixel import ALERT, REFUSALS, crc
-from suchus.hardware.bus.packets import BROADCAST, Decoder, Framing, Instruction, Packet
+from suchus.hardware.bus.dynamixel import NumberedErrors, crc
+from suchus.hardware.bus.packets import BROADCAST, Decoder, Instruction, Packet
 
 _MAX_LINE_LENGTH = 4096  # bytes of a line; what is longer is noise
 _TAIL = 5  # bytes of the star and the CRC
@@ -130,7 +130,7 @@ class _Lines(Decoder):
             return length, None
 
 
-class PlainLine(Framing):
+class PlainLine(NumberedErrors):
     """Lines of text, for boards of one's own."""
 
     name = "line"
@@ -143,15 +143,6 @@ class PlainLine(Framing):
     def reply(self, packet: Packet) -> bytes:
         """Return the bytes of a reply."""
         return _line(" ".join(str(number) for number in (packet.id, packet.code, *_numbers(packet.data))))
-
-    def alert(self, code: int) -> bool:
-        """Return whether the error says that there is an alert."""
-        return bool(code & ALERT)
-
-    def refusal(self, code: int) -> str:
-        """Return what the error says."""
-        number = code & ~ALERT
-        return REFUSALS.get(number, f"error {number}") if number else ""
 
     def requests(self) -> Decoder:
         """Return a decoder of what the host says."""

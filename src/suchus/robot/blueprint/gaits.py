@@ -29,7 +29,7 @@ def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait
 
     The keys of the file decide its form: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places
     along the body, ``girdles`` and ``wave``. A curve without a part gets the part of its servo. With ``base =
-    "belly_crawl"`` at the top the file changes numbers of that gait of the shelf. A gait without a ``name`` is named
+    "belly_crawl"`` at the top the file changes numbers of that gait of the catalog. A gait without a ``name`` is named
     after the file.
 
     Args:

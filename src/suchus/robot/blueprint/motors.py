@@ -1,4 +1,4 @@
-"""A user's own servos as they are bought, from TOML files as the shelf's."""
+"""A user's own servos as they are bought, from TOML files as the catalog's."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""From a TOML file to a frozen value; what the file does not say can come from a shelf.
+"""From a TOML file to a frozen value; what the file does not say can come from a catalog.
 
 A file of a robot describes it part by part, or gives the article's tables, of which ``design.crocodile`` makes one.
 """
@@ -32,9 +32,9 @@ def read_design(path: str | Path, kind: UnionType, shelf: Mapping[str, Any]) -> 
 def read_design(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     """Read a robot or a gait from a TOML file.
 
-    With ``base = "caiman"`` at the top the file changes numbers of that entry of the shelf. A design without a ``name``
-    is named after the file. If ``kind`` is a union, a file without ``base`` is of the kind that has most of its
-    top-level keys.
+    With ``base = "caiman"`` at the top the file changes numbers of that entry of the catalog. A design without a
+    ``name`` is named after the file. If ``kind`` is a union, a file without ``base`` is of the kind that has most of
+    its top-level keys.
 
     Args:
         path: the file.

@@ -165,10 +165,6 @@ class Walker:
         self._previous_command = current
         return Command(current.targets.copy(), current.phase.copy())
 
-    def gait_of(self, run: int) -> Gait:
-        """Return the gait in which a run walks, or to which it is changing."""
-        return self._gaits[run]
-
     def _requested_gaits(self, time: float, sensed: Sensed | None, phase: np.ndarray) -> list[tuple[int, Gait]]:
         """Return the runs that begin another gait now, with that gait.
 

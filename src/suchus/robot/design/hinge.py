@@ -64,16 +64,15 @@ class Servo:
         """Speed at which its motor gives nothing, above ``speed``, at which it turns its gear alone [rad/s]."""
         return self.speed / (1.0 - self._idle / self.torque)
 
-    def given(self, speed: Float[np.ndarray, "..."], supply: float = 1.0) -> Float[np.ndarray, "..."]:
+    def given(self, speed: Float[np.ndarray, "..."]) -> Float[np.ndarray, "..."]:
         """Return the greatest torque of the motor at a speed, in the direction of that torque [N m].
 
         Args:
             speed: of the shaft in that direction; negative where it is driven backwards [rad/s].
-            supply: share of its supply [-].
         """
         if self.winding is None:
             return np.full(np.shape(speed), self.torque)
-        return np.clip(self.torque * (supply - np.asarray(speed) / self.ideal_speed), 0.0, self.torque)
+        return np.clip(self.torque * (1.0 - np.asarray(speed) / self.ideal_speed), 0.0, self.torque)
 
     @staticmethod
     def of(motor: Motor, volts: float | None = None, *, template: Optional["Servo"] = None) -> "Servo":

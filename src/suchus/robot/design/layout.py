@@ -402,11 +402,6 @@ def cable_joints(robot: Robot) -> tuple[str, ...]:
     return robot.tail.driven
 
 
-def fin_joints(robot: Robot) -> tuple[str, ...]:
-    """Return the passive joints of the tail from root to tip, yaw before pitch in each."""
-    return robot.tail.passive
-
-
 def servo_names(robot: Robot | None = None) -> tuple[str, ...]:
     """Return the servos of a robot; without one, those of the article's."""
     if robot is not None:

@@ -7,6 +7,8 @@ import textwrap
 from functools import cache
 from itertools import pairwise
 
+from suchus.core.files.provenance import is_docstring
+
 
 def meanings(kind: type) -> dict[str, str]:
     """Return the docstring of each field by name, inherited ones first; empty where the source is not at hand."""
@@ -22,10 +24,6 @@ def unit(meaning: str) -> str:
     return str(units[-1]) if units else ""
 
 
-def _is_text(node: ast.stmt) -> bool:
-    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
-
-
 @cache
 def _own_meanings(kind: type) -> dict[str, str]:
     """Return the docstrings of the fields that a class itself defines; cached, since parsing takes 10 ms."""
@@ -37,6 +35,6 @@ def _own_meanings(kind: type) -> dict[str, str]:
     body = definition.body if isinstance(definition, ast.ClassDef) else []
     docstrings = {}
     for field, text in pairwise(body):
-        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and _is_text(text):
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and is_docstring(text):
             docstrings[field.target.id] = inspect.cleandoc(ast.literal_eval(text.value))  # type: ignore[attr-defined]
     return docstrings

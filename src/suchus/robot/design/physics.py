@@ -1,4 +1,4 @@
-"""Constants of nature that every room shares."""
+"""Constants of nature that every wing shares."""
 
 GRAVITY = 9.81
 """Acceleration of free fall [m/s2]."""

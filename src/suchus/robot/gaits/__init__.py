@@ -1,4 +1,4 @@
-"""The shelf of gaits: one file, one gait, declared as ``gait`` with its ``chosen`` numbers."""
+"""The catalog of gaits: one file, one gait, declared as ``gait`` with its ``chosen`` numbers."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -39,7 +39,7 @@ def _read_gait(path: Path) -> Gait:
 GAITS: Catalog[Gait] = Catalog(
     "gait", "suchus.robot.gaits", "suchus.robot.motion:Gait", name_of=attrgetter("name"), read_file=_read_gait
 )
-"""The gaits of the shelf."""
+"""The gaits of the catalog."""
 
 CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "spine_only", "tail_drag")
 """With spine and tail; with limbs only, the tail lying still; with limbs only, the tail in the air; with the trunk and
@@ -47,7 +47,7 @@ a tail dragged still; with the trunk and the tail in the air; with a straight tr
 
 
 DRAFTED = "drafted_gait"
-"""Name of the gait of a robot that none of the shelf suits."""
+"""Name of the gait of a robot that none of the catalog suits."""
 MAX_LENGTH_RATIO = 1.5
 """Lengths of two robots whose ratio is below this are about the same: the shorter one takes no quicker gait [-]."""
 
@@ -62,10 +62,10 @@ def default_gait(robot: Robot) -> Gait:
     steps, or a wave along a body without limbs.
 
     Args:
-        robot: on the shelf or not.
+        robot: in the catalog or not.
 
     Raises:
-        UnsuitedRobot: no gait of the shelf suits it, and none can be drafted.
+        UnsuitedRobot: no gait of the catalog suits it, and none can be drafted.
     """
     robots_by_gait = {name: tuple(GAITS.beside(name, "made_for", ())) for name in GAITS}
     own_names = [name for name, robots in robots_by_gait.items() if robot.name in robots]
@@ -82,7 +82,7 @@ def default_gait(robot: Robot) -> Gait:
     except SuchusError as error:
         limbs = ", ".join(layout(robot).limb_names) or "no limbs"
         raise UnsuitedRobot(
-            f"no gait on the shelf suits robot {robot.name!r}, which has {limbs}, and none can be drafted: {error} "
+            f"no gait in the catalog suits robot {robot.name!r}, which has {limbs}, and none can be drafted: {error} "
             "Give one of its own, as a TOML file."
         ) from error
 
@@ -118,10 +118,10 @@ def gait_of(robot: Robot, gait: Gait | str | Path | None, place: str | Path = Pa
         place: the folder from which paths are read.
 
     Raises:
-        UnknownName: a name that is not on the shelf.
+        UnknownName: a name that is not in the catalog.
         UnreadableFile: there is no such file, or it is no TOML.
         MistakenFile: the file describes no gait that can be.
-        UnsuitedRobot: none is given, no gait of the shelf suits the robot, and none can be drafted.
+        UnsuitedRobot: none is given, no gait of the catalog suits the robot, and none can be drafted.
     """
     if gait is None:
         return default_gait(robot)

@@ -33,7 +33,7 @@ metres = GaitInMetres(
 gait = metres.gait(LIMBS)
 """Spine and tail take part."""
 made_for = ("caiman", "floating_caiman", "long_tail")
-"""Robots of the shelf whose gait it is."""
+"""Robots of the catalog whose gait it is."""
 
 _FIT_REASON = (
     "leg stroke and trunk bend are the two numbers chosen so that both displacements come out as printed, "

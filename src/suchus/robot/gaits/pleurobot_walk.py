@@ -25,7 +25,7 @@ gait = Gait(
 )
 """The walk of the robot with four joints a limb."""
 made_for = ("pleurobot",)
-"""Robots of the shelf whose gait it is."""
+"""Robots of the catalog whose gait it is."""
 
 _REASONS = (
     Reason(r"^axis", 0.5, 1.5, "the standing wave of the walking animal, a dozen degrees a joint"),

@@ -21,7 +21,7 @@ gait = Gait(
 )
 """Diagonal limbs and a standing wave, as the animal walks."""
 made_for = ("salamander",)
-"""Robots of the shelf whose gait it is."""
+"""Robots of the catalog whose gait it is."""
 
 _REASONS = (
     Reason(

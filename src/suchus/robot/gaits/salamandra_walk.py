@@ -23,7 +23,7 @@ gait = Gait(
 )
 """The walk of the crank-legged robot."""
 made_for = ("salamandra",)
-"""Robots of the shelf whose gait it is."""
+"""Robots of the catalog whose gait it is."""
 
 _REASONS = (
     Reason(

@@ -17,7 +17,7 @@ gait = Gait(
 )
 """The insects' gait."""
 made_for = ("strider",)
-"""Robots of the shelf whose gait it is."""
+"""Robots of the catalog whose gait it is."""
 
 _REASONS = (
     Reason(r"^axis", 0.5, 1.5, "a little bend with the legs, to show that the axis takes part"),

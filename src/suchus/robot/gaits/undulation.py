@@ -15,7 +15,7 @@ gait = Gait(
 
 For water; on even ground it hardly moves, since friction is the same along the body and across."""
 made_for = ("swimmer",)
-"""Robots of the shelf whose gait it is."""
+"""Robots of the catalog whose gait it is."""
 
 _REASONS = (
     Reason(r"^axis", 0.5, 1.5, "an eel-like wave: one wavelength on the body, growing toward the tail"),

@@ -40,7 +40,7 @@ _MIN_OUTWARD = 0.3  # [limb reach]; limbs that hang down stand at least so far o
 _OUTWARD = (0.55, 0.45, 0.35, 0.25, 0.15, 0.05, 0.65, 0.75, 0.0)
 _FORWARD_OFFSETS = (0.0, 0.1, -0.1, 0.2, -0.2)
 _DUTY = 0.6
-_PERIOD = 6.0  # in gravity times; the shelf's walks take 4 to 10
+_PERIOD = 6.0  # in gravity times; the built-in walks take 4 to 10
 _STANCE = radians(80)  # angle that a crank turns through in stance
 _BEND, _SHARE = radians(10), 0.3  # amplitude of a trunk joint [rad]; its greatest fraction of the joint's range [-]
 # random postures that sample a limb's reach [-]; greatest distance of a path from them [limb reach]

@@ -1,6 +1,6 @@
 """Other ways to write a gait down: in metres for the article's robot, by places along the body, and as a roll.
 
-Files hold the first two, and the shelf's crawls are written in the first; each becomes a ``Gait`` for a robot, and
+Files hold the first two, and the built-in crawls are written in the first; each becomes a ``Gait`` for a robot, and
 nothing that simulates, draws or measures knows them.
 """
 

@@ -7,11 +7,11 @@ its period is in seconds.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from math import pi, sqrt
+from math import pi
 from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
-from suchus.core.checks import Checks, require
+from suchus.core.checks import Checks
 from suchus.core.errors import OutsideLimits, UnknownName
 from suchus.robot.motion.parts import AxisRegion, Bend, Curve, FixedLimbs, FootPath, Limbs, Sweep, Turn
 
@@ -105,11 +105,6 @@ class Gait:
                 f"{consumer} needs a gait of foot paths and bends; gait {self.name!r} has measured curves: choose a "
                 "gait without, or an experiment that walks it in open loop."
             )
-
-    def scaled(self, length: float) -> "Gait":
-        """Return the gait for a body so many times as long: its period grows with the root, nothing else has a size."""
-        require("gait", "length", length, 1e-4, 1e4, "")
-        return replace(self, period=sqrt(length) * self.period)
 
     def straightened(self, *parts: AxisRegion, name: str = "") -> "Gait":
         """Return the gait with regions of the axis held straight, all of them if none is named; a steady bend stays.

@@ -48,8 +48,6 @@ def size_of(robot: Robot) -> float:
 def stand_up(
     robot: Robot,
     *,
-    pelvis_pitch: float = PELVIS_PITCH,
-    stretch: float = STRETCH,
     lead: float | None = None,
     slower: float = 1.0,
     size: float | None = None,
@@ -64,8 +62,6 @@ def stand_up(
 
     Args:
         robot: who stands up.
-        pelvis_pitch: of the pelvis when standing [rad].
-        stretch: height of the hips over the feet when standing, as a share of the hind leg's length [-].
         lead: where the centre of mass is commanded behind the feet when standing [m]; ``LEAD`` in its size if None.
         slower: factor on all times [-].
         size: factor on clearances and on how far apart the feet stand, 1 for the article's [-]; ``size_of`` if None.
@@ -101,8 +97,8 @@ def stand_up(
             **raised_fields,
         ),
         Posture(
-            hip_height=leg.foot_radius + stretch * length,
-            pelvis_pitch=pelvis_pitch,
+            hip_height=leg.foot_radius + STRETCH * length,
+            pelvis_pitch=PELVIS_PITCH,
             lead=LEAD * size if lead is None else lead,
             trunk_first=TRUNK_FIRST,
             trunk_second=TRUNK_SECOND,
@@ -148,9 +144,7 @@ def cantilever_torque(robot: Robot) -> float:
     return float(GRAVITY * np.sum((masses * forward + moments[:, 0])[is_lifted]))
 
 
-def max_snout_height(
-    robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float | None = None
-) -> Float[np.ndarray, "*batch"]:
+def max_snout_height(robot: Robot, lead: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
     """Return how high the snout can be while the centre of mass lies ``lead`` behind the feet [m].
 
     Joint ranges and the length of the legs hold; torques, droop and the last millimetre of a straight knee do not
@@ -159,10 +153,9 @@ def max_snout_height(
     Args:
         robot: the design.
         lead: how far the centre of mass lies behind the feet [m].
-        stance: how far a hind foot stands outside its hip [m]; that of ``stand_up`` if None.
     """
     chains = upright(robot)
-    leg, stance = chains.leg, _STANCE * size_of(robot) if stance is None else stance
+    leg, stance = chains.leg, _STANCE * size_of(robot)
     pitch, first_angles, second_angles = (
         g.ravel()
         for g in np.meshgrid(*(np.radians(np.arange(a, b, c)) for a, b, c in ((46, 91, 2), (-15, 46, 5), (-15, 46, 5))))

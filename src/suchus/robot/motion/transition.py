@@ -52,7 +52,7 @@ class Transition(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def transition(robot: Robot, old_gait: Gait, new_gait: Gait, *, slower: float = 1.0) -> Transition:
+def transition(robot: Robot, old_gait: Gait, new_gait: Gait) -> Transition:
     """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
 
     The robot stops and goes to a height at which both postures can stand. Then the limbs that swing in the first half
@@ -63,7 +63,6 @@ def transition(robot: Robot, old_gait: Gait, new_gait: Gait, *, slower: float = 
         robot: the design.
         old_gait: the gait that it leaves.
         new_gait: the gait that it begins.
-        slower: factor on all times [-].
     """
     place = layout(robot)
     is_first_pair = np.array(
@@ -98,5 +97,5 @@ def transition(robot: Robot, old_gait: Gait, new_gait: Gait, *, slower: float = 
         next_mask = previous_mask | pair
         keys += [mixed(previous_mask, pair), mixed(next_mask, pair), mixed(next_mask, no_limb)]
     lower_bound, upper_bound = servo_ranges(robot).T
-    times = slower * gravity_time(robot.length) / gravity_time(_LENGTH) * np.cumsum(_TIMES)
+    times = gravity_time(robot.length) / gravity_time(_LENGTH) * np.cumsum(_TIMES)
     return Transition(times, np.clip(np.array([*keys, standing(new_gait, no_limb)]), lower_bound, upper_bound))

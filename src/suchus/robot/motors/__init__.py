@@ -1,4 +1,4 @@
-"""The shelf of servos as they are bought, in one TOML file in which each number has its source beside it."""
+"""The catalog of servos as they are bought, in one TOML file in which each number has its source beside it."""
 
 from collections.abc import Mapping
 from dataclasses import fields

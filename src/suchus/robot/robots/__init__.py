@@ -1,4 +1,4 @@
-"""The shelf of robots: one file, one robot, declared as ``robot`` with its ``chosen`` numbers."""
+"""The catalog of robots: one file, one robot, declared as ``robot`` with its ``chosen`` numbers."""
 
 from operator import attrgetter
 from pathlib import Path

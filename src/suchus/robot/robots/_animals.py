@@ -1,6 +1,6 @@
 """Animals at their own length, mass and volume, whose lungs make them lighter than their water or nearly so.
 
-None of them is a robot of the shelf: they are built from a few numbers, each of which has a range of its own.
+None of them is a robot of the catalog: they are built from a few numbers, each of which has a range of its own.
 """
 
 from dataclasses import replace
@@ -17,7 +17,7 @@ _EEL_JOINTS = tuple(0.06 + 0.88 * i / 14 for i in range(15))
 
 
 def pleurodeles(length: float, mass: float, density: float, keel: float, *, beat: float) -> Robot:
-    """Return the salamander of the shelf at an animal's length, mass and volume.
+    """Return the salamander of the catalog at an animal's length, mass and volume.
 
     Each part of the axis has the volume of its mass, so that each floats as the whole does; limbs keep their
     proportions. A part of the mass lies low, as that of flesh and bones below the lungs does.

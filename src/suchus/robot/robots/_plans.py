@@ -1,4 +1,4 @@
-"""Body plans that robots of the shelf share: axes of hinges in a row, and their limbs."""
+"""Body plans that robots of the catalog share: axes of hinges in a row, and their limbs."""
 
 from collections.abc import Sequence
 

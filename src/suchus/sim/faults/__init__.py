@@ -1,4 +1,4 @@
-"""The shelf of faults: one file, one kind of fault, declared as ``fault``."""
+"""The catalog of faults: one file, one kind of fault, declared as ``fault``."""
 
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields

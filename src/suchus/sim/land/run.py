@@ -75,7 +75,7 @@ class Push:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """One run of a batch; robot and gait may be given by their names on the shelves or the paths of their files."""
+    """One run of a batch; robot and gait may be given by their names in the catalogs or the paths of their files."""
 
     robot: Robot
     """The robot that walks: a body of any kind, as ``suchus.ROBOTS`` names them."""

@@ -188,8 +188,8 @@ def crawl(
     """Let a robot walk.
 
     Args:
-        robot: the robot that walks, or its name on the shelf.
-        gait: the gait, its name on the shelf, or the path of its file.
+        robot: the robot that walks, or its name in the catalog.
+        gait: the gait, its name in the catalog, or the path of its file.
         duration: including the first second, in which the robot settles [s]; 9 s where ``cycles`` is not given.
         cycles: cycles of the gait after that second, in the place of ``duration``, above 0 [-]: gaits of other cycle
             times are compared over equal cycles, and by their speed.

@@ -14,7 +14,6 @@ from suchus.sim.metrics.bends import (
     tail_joint_spread_max,
     tail_swing_least,
     tail_swings,
-    vertical_bend,
 )
 from suchus.sim.metrics.energy import cost_of_transport, peak_torque, work
 from suchus.sim.metrics.gait import (
@@ -109,6 +108,5 @@ __all__ = [
     "time_window",
     "two_feet_alone_share",
     "two_feet_share",
-    "vertical_bend",
     "work",
 ]

@@ -42,15 +42,6 @@ def lateral_bend(record: xr.Dataset, region: BendRegion) -> xr.DataArray:
     return (spine_lateral(bend) if region == "spine" else bend).assign_attrs(units="rad")
 
 
-def vertical_bend(record: xr.Dataset, region: BendRegion) -> xr.DataArray:
-    """Return the vertical bend of the spine, the sum of its pitch joints, or the angle of the tail's pitch joint [rad].
-
-    The signs of the joints and of the article agree here, see ``suchus.article.paper.signs``.
-    """
-    names = [str(name) for name in record.joint.values if str(name).startswith(f"{region}_pitch")]
-    return record.joint_angle.sel(joint=names).sum("joint").assign_attrs(units="rad")
-
-
 def spine_amplitude(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return half of the range of the spine's lateral bend [rad]."""
     return _amplitude(_window(record, "spine", start, end))

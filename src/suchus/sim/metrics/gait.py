@@ -9,8 +9,6 @@ from suchus.sim.metrics.window import time_window
 
 LOADED_SHARE = 0.0145
 """Least normal force of a foot that counts as standing [weight of the robot]."""
-LOADED = 0.5
-"""The same for the article's robot [N]; about a sixteenth of a foot's share of its weight."""
 
 
 def loaded(record: xr.Dataset, threshold: float | None = None) -> xr.DataArray:

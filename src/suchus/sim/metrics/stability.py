@@ -61,7 +61,7 @@ def support_polygon(record: xr.Dataset, time: float, threshold: float | None = N
         return points
 
 
-def support_distance(record: xr.Dataset, time: float, threshold: float | None = None) -> float:
+def support_distance(record: xr.Dataset, time: float) -> float:
     """Return how far the projected centre of mass lies outside the support by feet and tail [m].
 
     With two points the support is the line between them; inside a polygon the distance is negative, to the nearest
@@ -70,9 +70,8 @@ def support_distance(record: xr.Dataset, time: float, threshold: float | None = 
     Args:
         record: of one run.
         time: [s].
-        threshold: least normal force of what carries [N]; a share of the weight if None.
     """
-    corners = support_polygon(record, time, threshold)
+    corners = support_polygon(record, time)
     com = record.centre_of_mass.sel(time=time, method="nearest").sel(xyz=["x", "y"]).values.astype(float)
     if len(corners) == 0:
         return float("nan")

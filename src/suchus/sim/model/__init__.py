@@ -1,4 +1,4 @@
-"""From a design to a MuJoCo model: the only room that writes MJCF."""
+"""From a design to a MuJoCo model: the only package that writes MJCF."""
 
 from suchus.sim.model.actuators import SUPPLY, activations, ambient, slew_column, supplies, warming
 from suchus.sim.model.build import (

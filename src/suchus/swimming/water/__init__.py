@@ -20,7 +20,7 @@ from suchus.swimming.water.passive import with_passive_end
 from suchus.swimming.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
 from suchus.swimming.water.swimming import MODELS, displaced_mass, max_amplitude_factor, survey, swim, wave_speed
 from suchus.swimming.water.undulation import ExactWave, Motion, Undulation, motion_of_record, undulation, unevenness
-from suchus.swimming.water.waves import BodyWave, EelWave, FilmedWave, PrintedWave, printed_wave
+from suchus.swimming.water.waves import BodyWave, FilmedWave, PrintedWave, printed_wave
 
 __all__ = [
     "MODELS",
@@ -28,7 +28,6 @@ __all__ = [
     "BodySilhouette",
     "BodyWave",
     "Cruise",
-    "EelWave",
     "Effort",
     "ExactWave",
     "FilmedWave",

@@ -193,17 +193,16 @@ class Attempt(NamedTuple):
     """Why not: the joint and by how much."""
 
 
-def attempts(robot: Robot, *, frequency: float, sign: int = -1) -> list[Attempt]:
+def attempts(robot: Robot, *, frequency: float) -> list[Attempt]:
     """Return the fit of a robot's joints to (20) in each of its readings.
 
     Args:
         robot: whose joints.
         frequency: which the article does not give [Hz].
-        sign: -1 runs from head to tail; 1 as printed.
     """
     results = []
     for letter in READINGS:
-        wave = printed_wave(robot, letter, frequency=frequency, sign=sign)
+        wave = printed_wave(robot, letter, frequency=frequency)
         try:
             results.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
         except OutsideLimits as refused:

@@ -185,11 +185,6 @@ class Outline:
         share[rigid] = 0.5
         return np.asarray(share * self.spacings)
 
-    @cached_property
-    def bending(self) -> Float[np.ndarray, "middle servo"]:
-        """Derivative of the heading halfway between stations with respect to the bend of each of ``servos`` [-]."""
-        return self.bending_at(0.5 * (self.s[1:] + self.s[:-1]))
-
     def bending_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point servo"]:
         """Return the derivative of the heading at points with respect to the bend of each of ``servos`` [-]."""
         joint_bends = self.joints_at(s)

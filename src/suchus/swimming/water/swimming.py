@@ -30,7 +30,7 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
     mass of the water that it displaces. Limbs have no effect.
 
     Args:
-        robot: who swims, or its name on the shelf.
+        robot: who swims, or its name in the catalog.
         motion: a gait; or a wave that the midline follows exactly, joints or not.
         water: density, viscosity and coefficients; fresh water if None.
         stations: points along the midline.

@@ -1,4 +1,4 @@
-"""Waves given as curves: (20) in each of its readings, and the eel of the flow literature."""
+"""Waves given as curves: (20) in each of its readings, and waves of which a film gave the ends."""
 
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
@@ -54,37 +54,6 @@ class PrintedWave:
         """Return dy/dx [-]."""
         wave_slope = wave_kinematics.slope(self.wave, np.maximum(x - self.origin, 0.0), time)
         return np.where(x >= self.origin, wave_slope, 0.0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EelWave:
-    """The eel of the flow literature: ``0.125 (x + 0.03125) / 1.03125 sin 2 pi (x - t)`` in lengths and periods.
-
-    Source: IBAMR examples, ConstraintIB eel2d; Carling, Williams and Bowtell 1998, J. Exp. Biol. 201, 3143.
-    """
-
-    length: float
-    """Length of the body [m]."""
-    frequency: float
-    """[Hz]."""
-
-    @property
-    def period(self) -> float:
-        """Of one cycle [s]."""
-        return 1.0 / self.frequency
-
-    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return how far the midline lies off the axis [m]."""
-        position = x / self.length
-        phase = 2 * np.pi * (position - self.frequency * time)
-        return np.asarray(self.length * 0.125 * (position + 0.03125) / 1.03125 * np.sin(phase))
-
-    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return dy/dx [-]."""
-        position = x / self.length
-        phase = 2 * np.pi * (position - self.frequency * time)
-        envelope_term = 2 * np.pi * (position + 0.03125) * np.cos(phase)
-        return np.asarray(0.125 / 1.03125 * (np.sin(phase) + envelope_term))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

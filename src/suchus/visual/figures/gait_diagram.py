@@ -102,18 +102,15 @@ class GaitTrack:
         return tuple(region for region in _BENDS if getattr(self, region) is not None)
 
 
-def gait_diagram(
-    tracks: Sequence[GaitTrack], *, cycles: Sequence[float] = (), unit: str = "s", bends: bool = True
-) -> Figure:
+def gait_diagram(tracks: Sequence[GaitTrack], *, cycles: Sequence[float] = (), unit: str = "s") -> Figure:
     """Return the diagram of one or two walks: bars on top, the lateral angles below, then the vertical ones if given.
 
     Args:
         tracks: the first in black, the second in grey and dashed.
         cycles: where cycles begin and end, in the unit of time.
         unit: of time, ``s`` or ``cycle``.
-        bends: whether to draw the angles below the bars.
     """
-    bends = bends and any(track.bends for track in tracks)
+    bends = any(track.bends for track in tracks)
     vertical = bends and any(t.spine_vertical is not None or t.tail_vertical is not None for t in tracks)
     ratios = [2.1, *([1.5] if bends else []), *([1.2] if vertical else [])]
     with styled():

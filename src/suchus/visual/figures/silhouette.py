@@ -47,7 +47,7 @@ def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Sil
     names = _owners(surface, starts)
     for points, owner in zip(part_points, names, strict=True):
         if owner >= 0:
-            legs[owner] += [_hull(points)] if legs[owner] else _bands(points, LEG_AROUND, skip_root=axes == (0, 2))
+            legs[owner] += [_hull(points)] if legs[owner] else _bands(points, skip_root=axes == (0, 2))
     axial = [points for points, owner in zip(part_points, names, strict=True) if owner < 0]
     spikes = [points for points in axial[2:] if len(points) == _SCUTE]
     eyes = [axial[i] for i in np.flatnonzero(sizes[: len(axial)] == _EYE)[:2]]
@@ -101,15 +101,14 @@ def _sides(points: np.ndarray, ring_size: int) -> np.ndarray:
     return np.concatenate([start_point[None], left_side, end_point[None], right_side[::-1]])
 
 
-def _bands(points: np.ndarray, ring_size: int, *, skip_root: bool) -> list[np.ndarray]:
+def _bands(points: np.ndarray, *, skip_root: bool) -> list[np.ndarray]:
     """Return the pieces of a limb, which may point at the viewer: hulls of neighbouring rings.
 
     Args:
         points: the limb.
-        ring_size: points of a ring.
         skip_root: whether to leave out its root, which is inside the body.
     """
-    rings = points[:-2].reshape(-1, ring_size, 2)[:, ::2]
+    rings = points[:-2].reshape(-1, LEG_AROUND, 2)[:, ::2]
     used_rings = rings[np.unique(np.linspace(len(rings) // 4 if skip_root else 0, len(rings) - 1, 11).astype(int))]
     return [_hull(np.concatenate(pair)) for pair in pairwise(used_rings)]
 

@@ -23,18 +23,16 @@ def draw_lines(ax: Axes, values: xr.DataArray, roles: Sequence[str], *, scale: f
     ax.set_xlim(float(values.time[0]), float(values.time[-1]))
 
 
-def draw_band(ax: Axes, values: xr.DataArray, role: str, *, scale: float = 1.0, label: str | None = None) -> None:
+def draw_band(ax: Axes, values: xr.DataArray, role: str) -> None:
     """Shade the range of all runs over time in the colour of a role.
 
     Args:
         ax: to draw on.
         values: with the dimensions ``run`` and ``time``.
         role: of ``style.LINES``.
-        scale: factor on the values.
-        label: in the legend; None: none.
     """
-    lower_bound, upper_bound = scale * values.min("run"), scale * values.max("run")
-    ax.fill_between(values.time, lower_bound, upper_bound, color=COLOURS[role], alpha=0.22, linewidth=0, label=label)
+    lower_bound, upper_bound = values.min("run"), values.max("run")
+    ax.fill_between(values.time, lower_bound, upper_bound, color=COLOURS[role], alpha=0.22, linewidth=0)
 
 
 def mark_cycles(ax: Axes, times: Sequence[float]) -> None:
@@ -43,15 +41,14 @@ def mark_cycles(ax: Axes, times: Sequence[float]) -> None:
         ax.axvline(time, color=COLOURS["neutral"], linewidth=0.9, linestyle=(0, (1, 2)), zorder=0)
 
 
-def mark_printed(ax: Axes, values: Mapping[str, float], time: float, *, scale: float = 1.0) -> None:
+def mark_printed(ax: Axes, values: Mapping[str, float], time: float) -> None:
     """Mark the article's values with diamonds; the first has an entry in the legend.
 
     Args:
         ax: to draw on.
         values: by role, whose colour the bar takes.
         time: position along the axis of time [s].
-        scale: factor on the values.
     """
     for i, (role, value) in enumerate(values.items()):
-        ax.plot([time], [scale * value], "D", color=COLOURS[role], markeredgecolor="black", markersize=8, zorder=5,
+        ax.plot([time], [value], "D", color=COLOURS[role], markeredgecolor="black", markersize=8, zorder=5,
                 clip_on=False, label=None if i else "article")  # fmt: skip

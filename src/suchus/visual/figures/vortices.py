@@ -22,6 +22,7 @@ from suchus.visual.figures.style import captioned, panels, styled
 from suchus.visual.skin.mesh import Mesh, join_meshes, loft, normals
 
 _LIGHT = np.array([-0.35, 0.75, 0.56])  # to the right, up, towards the camera; of length 1
+_CLEAR_FRACTION = 0.8  # of the light that comes from the clear surfaces
 _SUPERSAMPLING = 2  # computed pixels along each side of a shown pixel
 
 
@@ -59,9 +60,7 @@ class Viewpoint(NamedTuple):
         ), self.distance - toward_camera
 
 
-def picture(
-    solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int], *, clear_fraction: float = 0.8
-) -> np.ndarray:
+def picture(solid: Mesh, clear: Mesh, camera: Viewpoint, size: tuple[int, int]) -> np.ndarray:
     """Return a picture on white of a solid and of surfaces that it is seen through, (row, column, 3) uint8.
 
     Args:
@@ -69,10 +68,9 @@ def picture(
         clear: surfaces of which the nearest lets through what is solid behind it.
         camera: where it is taken from.
         size: columns and rows [pixel].
-        clear_fraction: of the light that comes from the clear surfaces [-].
     """
     solid_only, combined = (_render(meshes, camera, size) for meshes in ([solid], [solid, clear]))
-    return np.round(clear_fraction * combined + (1.0 - clear_fraction) * solid_only).astype(np.uint8)
+    return np.round(_CLEAR_FRACTION * combined + (1.0 - _CLEAR_FRACTION) * solid_only).astype(np.uint8)
 
 
 def _render(meshes: Sequence[Mesh], camera: Viewpoint, size: tuple[int, int]) -> np.ndarray:

@@ -101,7 +101,7 @@ def render_template(
     meta, data = scene(robot, moving, labels, grounds[0], overlaid=overlaid)
     still_picture, still_time = _still_picture(robot, runs[0])
     return environment().get_template(template).render(
-        title=title or f"{robot.name}: {_text(record, 'gait', 'a run on land').replace('_', ' ')}",
+        title=title or f"{robot.name}: {_gait_text(record).replace('_', ' ')}",
         caption=" ".join(f"{caption} {_ground_text(grounds)}".split()),
         alt=_in_words(robot, moving, labels),
         still=Markup(still_picture),
@@ -191,8 +191,8 @@ def _still_picture(robot: Robot, record: xr.Dataset) -> tuple[str, str]:
     return label + svg[svg.index("<svg") + 5 :], f"{time:.1f} s"
 
 
-def _text(record: xr.Dataset, name: str, default: str) -> str:
-    return str(record[name].values.ravel()[0]) if name in record.coords else default
+def _gait_text(record: xr.Dataset) -> str:
+    return str(record.gait.values.ravel()[0]) if "gait" in record.coords else "a run on land"
 
 
 MAX_ARRAY_BYTES = 3_500_000

@@ -28,4 +28,4 @@ class Proportions:
 
 
 SKIN = Proportions()
-"""The look of every robot on the shelf."""
+"""The look of every robot in the catalog."""

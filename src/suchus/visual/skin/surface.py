@@ -75,16 +75,15 @@ class Skin:
 
 
 @lru_cache(maxsize=16)
-def skin(robot: Robot, proportions: Proportions = SKIN) -> Skin:
+def skin(robot: Robot) -> Skin:
     """Return the skin of a robot; the same robot gives the same skin again.
 
     Args:
         robot: any robot; one with the chains of ``design.MEASURED`` is a crocodile, any other a plain hide with
             rods for limbs.
-        proportions: proportions of the animal where the robot has none.
     """
     plain = bool(lacking(robot, MEASURED))
-    parts = _plain(layout(robot)) if plain else _crocodile(robot, proportions)
+    parts = _plain(layout(robot)) if plain else _crocodile(robot, SKIN)
     hung = [_attach(robot, mesh.vertices, attachment) for mesh, attachment in parts]
     full_mesh = join_meshes([mesh for mesh, _ in parts])
     surface = Skin(

@@ -3,9 +3,6 @@
 from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, Rule, Variation, measure_with_interval
 
-_ONE_ROBOT = "Lengths and torques of other robots are varied on the maps of the experiment, one or two at a time."
-
-
 RULES = (
     Rule(
         claim="height_crawl",

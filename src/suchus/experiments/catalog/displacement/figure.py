@@ -190,7 +190,7 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         ax = axes[0, 0]
         if min(ratio.shape) > 1:
             label = "ratio of displacements [-]"
-            draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed_ratio, form="%.3g")
+            draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed_ratio)
             ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_REFERENCE_LABEL)
         else:  # the body can vary only its strokes or only its bends
             dimension = "stroke" if ratio.sizes["stroke"] > 1 else "bend"
@@ -242,7 +242,6 @@ def draw_map(
     levels: Sequence[float],
     label: str,
     emphasised: float | None = None,
-    form: str = "%g",
 ) -> None:
     """Draw filled contours of a positive quantity on a logarithmic scale, with labelled lines.
 
@@ -252,7 +251,6 @@ def draw_map(
         levels: of the lines, increasing; doubled on from the last until none of the values lies above them.
         label: of the colour bar.
         emphasised: level to draw thick.
-        form: how a level is written.
     """
     vertical, horizontal = (values[d] for d in values.dims)
     quantity = values.values.astype(float)
@@ -272,13 +270,13 @@ def draw_map(
     )
     carry(contours, values.values, horizontal.values, vertical.values)
     lines = ax.contour(horizontal, vertical, data, levels=list(levels[1:-1]), colors="white", linewidths=1.1)
-    ax.clabel(lines, fmt=form, fontsize=11)
+    ax.clabel(lines, fmt="%.3g", fontsize=11)
     if emphasised is not None:
         emphasised_line = ax.contour(horizontal, vertical, data, levels=[emphasised], colors="#D55E00", linewidths=2.6)
-        ax.clabel(emphasised_line, fmt=form, fontsize=12)
+        ax.clabel(emphasised_line, fmt="%.3g", fontsize=12)
     for axis, coordinate in ((ax.set_xlabel, horizontal), (ax.set_ylabel, vertical)):
         axis(f"{coordinate.attrs['long_name']} [{coordinate.attrs['units']}]")
     assert ax.figure is not None
-    bar = ax.figure.colorbar(contours, ax=ax, ticks=list(levels), format=form)
+    bar = ax.figure.colorbar(contours, ax=ax, ticks=list(levels), format="%.3g")
     bar.set_label(label)
     bar.minorticks_off()

@@ -92,18 +92,17 @@ def draw_fans(error: xr.DataArray, tolerance: float) -> Figure:
     )
 
 
-def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
-    """Draw which feet are commanded to stand from one random start, without and with feedback.
+def draw_onset(phase: xr.DataArray, gait: Gait) -> Figure:
+    """Draw which feet are commanded to stand from the first random start, without and with feedback.
 
     Args:
         phase: phase of the limbs over ``law``, ``start``, ``start_time`` (in cycles) and ``leg`` [cycle].
         gait: gait that the robot walks.
-        start: index of the start.
     """
     with styled(axes__grid=False):
         figure, axes = panels(3, 1, height=5.4, sharex=True)
         for ax, law in zip(axes.flat, ("off", "own_load", "cross_load"), strict=True):
-            phases = phase.sel(law=law).isel(start=start).transpose("start_time", "leg")
+            phases = phase.sel(law=law).isel(start=0).transpose("start_time", "leg")
             stands = np.mod(phases.values, 1.0) >= 1.0 - gait.duty_factor
             _bars(ax, phases.start_time.values, stands, [str(leg) for leg in phases.leg.values])
             ax.set_title(_LAWS[law][0])

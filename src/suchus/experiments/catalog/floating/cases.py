@@ -150,18 +150,17 @@ def relative_energy_gain(motion: xr.Dataset) -> float:
     return float((energy.max() - energy[0]) / (energy[0] - rest_tank.energy()))
 
 
-def simulate_drift(integrator: Integrator, timestep: float, duration: float = 2.0) -> xr.Dataset:
+def simulate_drift(integrator: Integrator, timestep: float) -> xr.Dataset:
     """Return the motion of a spheroid in ideal water without gravity, with velocity and spin about all axes.
 
     Args:
         integrator: MuJoCo's integrator.
         timestep: time step of the physics [s].
-        duration: duration of the motion [s].
     """
     tank = FloatTank(SPHEROID, DEEP_LAKE, timestep=timestep, integrator=integrator)
     tank.model.opt.gravity[:] = 0.0
     tank.place((0.0, 0.0, 0.0), velocity=(0.5, 0.2, 0.1), spin=(0.8, 0.5, -1.0))
-    return tank.watch(duration, 0.1)
+    return tank.watch(2.0, 0.1)
 
 
 def relative_momentum_drift(motion: xr.Dataset) -> float:

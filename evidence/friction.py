@@ -20,28 +20,6 @@ MIN_TURBULENT_REYNOLDS = 2e4
 """Reynolds number below which no layer is turbulent; the friction of the turbulent end is laminar up to there [-]."""
 
 
-def blasius(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
-    """Return the local coefficient of friction of a laminar layer on a flat plate [-].
-
-    Args:
-        reynolds: speed times distance from the edge over the viscosity, above 0 [-].
-    """
-    return np.asarray(0.664 / np.sqrt(reynolds))
-
-
-def ittc(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
-    """Return the local coefficient of friction of a turbulent layer, laminar below ``MIN_TURBULENT_REYNOLDS`` [-].
-
-    The line is one of totals, ``C = 0.075 / (log10 Re - 2)^2``; the local one is the rate of ``C Re``.
-
-    Args:
-        reynolds: speed times distance from the nose over the viscosity, above 0 [-].
-    """
-    decades = np.log10(np.maximum(reynolds, MIN_TURBULENT_REYNOLDS)) - 2.0
-    line = 0.075 / decades**2 * (1.0 - 2.0 / (np.log(10.0) * decades))
-    return np.where(reynolds < MIN_TURBULENT_REYNOLDS, blasius(reynolds), line)
-
-
 class FrictionBand(NamedTuple):
     """A quantity at the two ends of the law."""
 
@@ -117,12 +95,12 @@ def _plate(
 
 
 def _laminar_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
-    """Return the integral of ``blasius`` over the Reynolds number from 0 on."""
+    """Return the integral of a laminar plate's local coefficient over the Reynolds number from 0 on."""
     return 1.328 * np.sqrt(reynolds)
 
 
 def _turbulent_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
-    """Return the integral of ``ittc`` over the Reynolds number, up to a constant."""
+    """Return the integral of a turbulent plate's local coefficient over the Reynolds number, up to a constant."""
 
     def line(number: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
         return np.asarray(0.075 * number / (np.log10(number) - 2.0) ** 2)
