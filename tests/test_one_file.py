@@ -174,13 +174,13 @@ COMMAND = '''"""Say how heavy a robot is."""
 
 from dataclasses import dataclass, field
 
-from suchus.apps.cli.command import Command
+from suchus.apps.cli.command import UserCommand
 from suchus.robot.design import Robot
 from suchus.robot.robots import ROBOTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Weigh(Command):
+class Weigh(UserCommand):
     """Say how heavy a robot is."""
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])

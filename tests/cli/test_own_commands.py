@@ -14,12 +14,12 @@ GREET = '''"""Greet a robot."""
 
 from dataclasses import dataclass
 
-from suchus.apps.cli.command import Command
+from suchus.apps.cli.command import UserCommand
 from suchus.core.errors import InvalidDesign
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Greet(Command):
+class Greet(UserCommand):
     """Greet a robot by its name."""
 
     name: str = "caiman"
@@ -137,7 +137,7 @@ def test_the_list_shows_each_and_what_is_wrong_with_it(lab, capsys, monkeypatch)
     assert "greet Greet a robot. [commands/greet.py]" in listed
     assert "list_of_robots Greet a robot. [commands/list_of_robots.py]" in listed
     assert "[broken: commands/torn.py, line 1, cannot be loaded: SyntaxError: invalid syntax.]" in listed
-    assert "[broken: commands/bare.py must declare `command`, a subclass of Command, but declares a int" in listed
+    assert "[broken: commands/bare.py must declare `command`, a subclass of UserCommand, but declares a int" in listed
     assert "[refused, since suchus itself has a command of this name: commands/view.py]" in listed
 
 
@@ -147,7 +147,7 @@ def test_the_list_shows_each_and_what_is_wrong_with_it(lab, capsys, monkeypatch)
         ("def (\n", "commands/torn.py, line 1, cannot be loaded: SyntaxError: invalid syntax."),
         ("\nimport no_such_library\n", "commands/torn.py, line 2, cannot be loaded: ModuleNotFoundError: No module"),
         ('"""Exit."""\nraise SystemExit(3)\n', "commands/torn.py, line 2, cannot be loaded: SystemExit: 3."),
-        ("", "commands/torn.py must declare `command`, a subclass of Command, but declares nothing"),
+        ("", "commands/torn.py must declare `command`, a subclass of UserCommand, but declares nothing"),
         (GREET.replace("def run(", "def walk("), "the command torn cannot be run: Greet has no method run; write one."),
         (GREET.replace("@dataclass(frozen=True, slots=True, kw_only=True)\n", ""), "Greet is no dataclass"),
     ],

@@ -9,7 +9,7 @@ from dataclasses import FrozenInstanceError, fields, is_dataclass
 import pytest
 
 from suchus.apps.cli import main
-from suchus.apps.cli.command import Command
+from suchus.apps.cli.command import UserCommand
 from suchus.apps.cli.entry import reserved_names
 from suchus.apps.commands import COMMANDS
 from suchus.robot.design.meaning import meanings
@@ -33,7 +33,7 @@ def printed(*words):
 
 def test_it_is_a_class_of_frozen_values(name):
     command = COMMANDS[name]
-    assert issubclass(command, Command)
+    assert issubclass(command, UserCommand)
     assert is_dataclass(command)
     for field in fields(command)[:1]:
         with pytest.raises(FrozenInstanceError):

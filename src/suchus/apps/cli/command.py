@@ -16,7 +16,7 @@ REFUSAL = "refused, since suchus itself has a command of this name"
 _MAX_EXIT_CODE = 255
 
 
-class Command(ABC):
+class UserCommand(ABC):
     """A command of a user's own. Subclasses are frozen dataclasses; their fields are the options.
 
     The docstring under each field is the help text of the option, and that of the class the head of the help. The
@@ -100,7 +100,7 @@ def carry_out(name: str, words: Sequence[str]) -> int:
         raise InvalidDesign(f"the command {name} cannot be run: {class_name} has no method run; write one.")
     if not is_dataclass(command_class):
         raise InvalidDesign(f"the command {name} has no options: {class_name} is no dataclass; decorate it as one.")
-    parse: Callable[..., Command] = resolve_name("suchus.apps.cli.options:parse")
+    parse: Callable[..., UserCommand] = resolve_name("suchus.apps.cli.options:parse")
     code: Any = parse(command_class, f"suchus {name}", words, cleandoc(command_class.__doc__ or "")).run()
     if code is None:
         return 0
