@@ -17,17 +17,18 @@ from pages.blocks import blocks
 from suchus.core.sources import SHELVES
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "extending")
+PAGES = ("own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "own_command", "extending")
 BATTERIES = {
-    "robots": "tests/shelves/test_robots.py",
-    "gaits": "tests/shelves/test_gaits.py",
-    "faults": "tests/faults/test_shelf.py",
-    "experiments": "tests/shelves/test_experiments.py",
-    "controllers": "tests/shelves/test_controllers.py",
-    "measures": "tests/shelves/test_measures.py",
+    "robots": ("tests/shelves/test_robots.py",),
+    "gaits": ("tests/shelves/test_gaits.py",),
+    "faults": ("tests/faults/test_shelf.py",),
+    "experiments": ("tests/shelves/test_experiments.py", "tests/shelves/test_every_rule.py"),
+    "controllers": ("tests/shelves/test_controllers.py",),
+    "measures": ("tests/shelves/test_measures.py",),
+    "commands": ("tests/shelves/test_commands.py",),
 }
 KINDS = {"robots": "robot", "gaits": "gait", "experiments": "experiment"}
-LEAST = {"robots": 8, "gaits": 4, "faults": 8, "experiments": 7, "controllers": 3, "measures": 4}
+LEAST = {"robots": 8, "gaits": 4, "faults": 8, "experiments": 12, "controllers": 3, "measures": 4, "commands": 5}
 """Tests of a battery in `make test` that name an entry, at least."""
 
 
@@ -66,8 +67,9 @@ def tried(names, folder, paths=(), left_out="not validate", **surroundings):
     chosen = " or ".join(f"[{name}] or [{name}-" for name in names.values())
     plain = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
     path = os.pathsep.join([*map(str, paths), plain.get("PYTHONPATH", str(ROOT / "src"))])
+    files = [file for shelf in names for file in BATTERIES[shelf]]
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", *options, *(BATTERIES[shelf] for shelf in names), "-k", chosen],
+        [sys.executable, "-m", "pytest", *options, *files, "-k", chosen],
         cwd=ROOT, env={**plain, "PYTHONPATH": path, **surroundings}, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-500:]
@@ -77,7 +79,8 @@ def tried(names, folder, paths=(), left_out="not validate", **surroundings):
         if case.find("skipped") is None
     )
     return {
-        shelf: passed[BATTERIES[shelf].removesuffix(".py").replace("/", "."), name] for shelf, name in names.items()
+        shelf: sum(passed[file.removesuffix(".py").replace("/", "."), name] for file in BATTERIES[shelf])
+        for shelf, name in names.items()
     }
 
 

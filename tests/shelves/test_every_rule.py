@@ -10,14 +10,17 @@ from typing import get_args
 import pytest
 from tests.rule_examples import examples_of
 
-from suchus.article.paper import CLAIMS
-from suchus.article.verdict import Clause, ControlGroup, Kind, Rule, judge, judging
+from suchus.article.verdict import Clause, ControlGroup, Kind, Rule, judge
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.claims import rules_of
+from suchus.experiments.claims import claims_of, known_claims, rules_of
 
 ALL = {rule.claim: (name, rule) for name in EXPERIMENTS for rule in rules_of(name)}
-ROWS = [(claim, measures, word) for name in EXPERIMENTS for claim, rows in examples_of(name).items()
-        for measures, word in rows]  # fmt: skip
+CLAIMS = {key: claim for name in EXPERIMENTS for key, claim in known_claims(name).items()}
+ROWS = [pytest.param(claim, measures, word, id=f"{name}-{claim}-{i}") for name in EXPERIMENTS
+        for claim, rows in examples_of(name).items() for i, (measures, word) in enumerate(rows)]  # fmt: skip
+EACH_RULE = pytest.mark.parametrize("claim", [pytest.param(claim, id=f"{name}-{claim}")
+                                              for claim, (name, _) in ALL.items()])  # fmt: skip
+"""Every rule, under the name of its experiment, so that ``-k NAME`` finds those of one."""
 _REVERSED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _OFF = 0.05
 """How far a bound is moved [-]."""
@@ -26,7 +29,7 @@ _KINDS: tuple[Kind, ...] = get_args(Kind)
 
 @pytest.mark.parametrize(("claim", "measures", "word"), ROWS)
 def test_a_rule_says_of_measures_what_they_mean(claim, measures, word):
-    verdict = judge(ALL[claim][1], measures)
+    verdict = judge(ALL[claim][1], measures, claims=CLAIMS)
     assert verdict.verdict == word
     assert len(verdict.why) > 20
 
@@ -39,7 +42,7 @@ def test_its_rules_have_examples_of_two_words_at_least(name):
         assert len({word for _, word in rows}) > 1, claim
 
 
-@pytest.mark.parametrize("claim", ALL)
+@EACH_RULE
 def test_a_rule_is_of_a_claim_and_of_the_experiment_beside_which_it_stands(claim):
     name, rule = ALL[claim]
     assert rule.experiment == name
@@ -61,16 +64,21 @@ def test_no_claim_has_two_rules():
     assert len(ALL) == sum(len(rules_of(name)) for name in EXPERIMENTS)
 
 
-@pytest.mark.parametrize("claim", ALL)
-def test_every_way_to_break_a_rule_changes_a_word(claim, monkeypatch):
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_an_experiment_judges_each_claim_that_it_states(name):
+    assert set(claims_of(name)) <= {rule.claim for rule in rules_of(name)}
+
+
+@EACH_RULE
+def test_every_way_to_break_a_rule_changes_a_word(claim):
     survived = []
     (name, rule), printed = ALL[claim], CLAIMS[claim]
     rows = examples_of(name)[claim]
     for what, broken, rounding in mutated(rule, numeric=printed.value is not None):
         if rounding != 1.0 and printed.rounding == 0.0:
             continue  # a count has no rounding
-        monkeypatch.setattr(judging, "CLAIMS", {claim: replace(printed, rounding=rounding * printed.rounding)})
-        if all(judging.judge(broken, measures, {}).verdict == word for measures, word in rows):
+        claims = {claim: replace(printed, rounding=rounding * printed.rounding)}
+        if all(judge(broken, measures, {}, claims=claims).verdict == word for measures, word in rows):
             survived.append(what)
     assert survived == []
 

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from evidence import store, tolerance
-from suchus.article.paper import CLAIMS
 from suchus.article.verdict import judge
 from suchus.core.sources import current
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.claims import known_claims
 from suchus.experiments.experiment import Measures
 from suchus.visual.figures import caption
 from suchus.visual.figures.data import field_of
@@ -106,9 +106,10 @@ def test_a_rule_decides_by_the_intervals_that_there_are(quick):
 def test_every_claim_can_be_judged_by_its_measures_and_a_run_cut_short_is_not(quick):
     experiment, outcome = quick
     measures = {name: float(measure.value) for name, measure in outcome.measures.items()}
+    claims = known_claims(experiment.name())
     for rule in experiment.rules():
-        verdict = judge(rule, measures)  # each measure that the rule and its sentence name is there
-        assert verdict.claim == CLAIMS[rule.claim]
+        verdict = judge(rule, measures, claims=claims)  # each measure that the rule and its sentence name is there
+        assert verdict.claim == claims[rule.claim]
         assert len(verdict.why) > 10
         assert verdict.measured is None or isfinite(verdict.measured)
     if experiment == type(experiment)():

@@ -25,7 +25,7 @@ SHARE = Share(claim="tail_swing", share=0.95, low=0.9, high=0.97, designs=100, t
 
 def test_a_measure_that_is_missing_is_named():
     with pytest.raises(IncompatibleRecord, match="needs gain_tail_swing_low, which displacement did not measure"):
-        judge(RULES["tail_swing"], {"gain_tail_swing": 0.1, "gain_tail_swing_high": 0.2})
+        judge(RULES["tail_swing"], {"gain_tail_swing": 0.1, "gain_tail_swing_high": 0.2, "gain_tail_contact": 0.1})
 
 
 def test_a_number_that_is_none_holds_nothing():

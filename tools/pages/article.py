@@ -84,7 +84,8 @@ def questions_of(shelf: Mapping[str, Experiment]) -> dict[str, list[str]]:
     """Return the experiments that answer for an item: those that say so, and those that judge a claim made there."""
     found: dict[str, list[str]] = {key: [] for key in items()}
     for name, experiment in shelf.items():
-        where = [experiment.shows, *(CLAIMS[key].where for key in experiment.claims if not CLAIMS[key].of)]
+        judged = [CLAIMS[key] for key in experiment.claims if key in CLAIMS]
+        where = [experiment.shows, *(claim.where for claim in judged if not claim.of)]
         for key in dict.fromkeys(key for text in where for key in named(text)):
             found[key].append(name)
     return found

@@ -1,7 +1,7 @@
 """Where things in the catalogs come from: the package, a project folder of the user's, other packages of the user's.
 
 A project is a folder with a ``suchus.toml``. Its sub-folders ``robots``, ``gaits``, ``faults``, ``experiments``,
-``controllers`` and ``measures`` hold files as the catalogs of the package do; ``suchus.toml`` names files
+``controllers``, ``measures`` and ``commands`` hold files as the catalogs of the package do; ``suchus.toml`` names files
 that stand elsewhere in the folder. A file is read, or a module run, when its name is asked for.
 
 Modules of a project are imported as modules of the catalog, ``suchus.sim.faults.tired``, so that values travel between
@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache, lru_cache
-from importlib.machinery import ModuleSpec
+from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import find_spec, spec_from_file_location
 from pathlib import Path
 from pkgutil import iter_modules
@@ -39,10 +39,13 @@ SHELVES: Mapping[str, str] = {
     "experiments": "suchus.experiments.catalog",
     "controllers": "suchus.robot.control",
     "measures": "suchus.sim.metrics",
+    "commands": "suchus.apps.commands",
 }
 """Package of each catalog by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
 AS_TOML = ("robots", "gaits")
 """Catalogs in which a TOML file can stand."""
+WITHOUT_RESULTS = ("commands",)
+"""Catalogs of which no result is made, so that results stay valid when their files change."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,7 +68,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """A folder of the user's own robots, gaits, faults, experiments, controllers and measures."""
+    """A folder of the user's own robots, gaits, faults, experiments, controllers, measures and commands."""
 
     folder: Path
     """The folder, absolute."""
@@ -91,9 +94,9 @@ class Project:
         return path.relative_to(self.folder).as_posix() if path.is_relative_to(self.folder) else str(path)
 
     def digest(self) -> str:
-        """Return the first 12 digits of the SHA-256 of all its catalogs' files."""
+        """Return the first 12 digits of the SHA-256 of the files of all catalogs of which results are made."""
         text = hashlib.sha256()
-        for shelf in SHELVES:
+        for shelf in (shelf for shelf in SHELVES if shelf not in WITHOUT_RESULTS):
             for name, file in self.files(shelf):
                 for path in sorted(file.parent.rglob("*.py")) if _is_folder(name, file) else [file]:
                     text.update(self.shown(path).encode() + b"\0" + path.read_bytes() + b"\0")
@@ -320,11 +323,43 @@ def _plugged(kind: str) -> Iterator[Source]:
 
 @cache
 def _entry_points() -> Mapping[str, Sequence[Any]]:
-    """Return the entry points of the catalogs by group; reading those of all packages takes 20 ms."""
-    from importlib.metadata import entry_points  # noqa: PLC0415  half of the start of a program that has no catalog
+    """Return the entry points of the catalogs by group."""
+    if not _has_plug_ins():
+        return {}
+    from importlib.metadata import entry_points  # noqa: PLC0415  takes half as long as everything else at the start
 
     all_points = entry_points()
     return {group: tuple(all_points.select(group=group)) for group in (f"suchus.{shelf}" for shelf in SHELVES)}
+
+
+def _has_plug_ins() -> bool:
+    """Return whether an installed package may have entry points of suchus.
+
+    The files that declare them are searched for the names of the groups, since the library that reads entry points
+    takes ten times as long to import. Packages in archives, and those of other import systems, are left to the library.
+    """
+    if any(hasattr(finder, "find_distributions") and finder is not PathFinder for finder in sys.meta_path):
+        return True
+    for folder in sys.path:
+        try:
+            with os.scandir(folder or ".") as folder_entries:
+                names = [entry.name for entry in folder_entries if entry.name.endswith((".dist-info", ".egg-info"))]
+        except NotADirectoryError:
+            return True
+        except OSError:
+            continue
+        if folder.endswith(".egg") or any(_declares_plug_ins(f"{folder or '.'}/{name}") for name in names):
+            return True
+    return False
+
+
+def _declares_plug_ins(metadata_folder: str) -> bool:
+    """Return whether the metadata of an installed package names a group of entry points of suchus."""
+    try:
+        with open(f"{metadata_folder}/entry_points.txt", encoding="utf-8", errors="replace") as file:  # noqa: PTH123  as fast as can be
+            return re.search(r"^\s*\[\s*suchus\.", file.read(), re.M) is not None
+    except OSError:
+        return False
 
 
 def snake(name: str) -> str:

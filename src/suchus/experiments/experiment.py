@@ -1,4 +1,4 @@
-"""The contract of an experiment: a frozen question, its outcome, and verdicts on the article's claims."""
+"""The contract of an experiment: a frozen question, its outcome, and verdicts on claims."""
 
 import re
 import sys
@@ -20,7 +20,7 @@ from jinja2.ext import Extension
 from suchus.article.verdict import Reading, Rule, Verdict, comparison_word, judge, listed
 from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
 from suchus.core.progress import Progress, silent, staged
-from suchus.experiments.claims import rules_of
+from suchus.experiments.claims import check_claims, known_claims, rules_of
 from suchus.robot.design import Robot, check_needs
 from suchus.robot.design.scale import coarse_step, control_period, rescale_fields
 from suchus.robot.gaits import default_gait, in_size
@@ -195,7 +195,7 @@ not stored in it."""
 class Experiment(ABC):
     """A question with parameters. Subclasses are frozen dataclasses; their fields are the parameters.
 
-    A run simulates, measures what was recorded, judges the article's claims by the rules of
+    A run simulates, measures what was recorded, judges claims, the article's or its own, by the rules of
     ``suchus.article.verdict``, and says what decided. Subclasses fill in ``simulate``, ``measure`` and ``draw``,
     and say what decided in ``explanation.md`` beside them, or in ``explain``.
     """
@@ -222,7 +222,7 @@ class Experiment(ABC):
 
     @property
     def claims(self) -> tuple[str, ...]:
-        """Keys of the article's claims that get a verdict."""
+        """Keys of the claims that get a verdict, the article's and its own."""
         return tuple(rule.claim for rule in self.rules())
 
     @classmethod
@@ -236,9 +236,10 @@ class Experiment(ABC):
         Raises:
             UnsuitedRobot: the robot lacks what the experiment needs.
             OutsideLimits: the gait is for other limbs, or exceeds the limits of the joints.
-            InvalidDesign: a field holds two entries of the same name.
+            InvalidDesign: a field holds two entries of the same name, or a rule judges a claim that nobody states.
         """
         self._check_names()
+        check_claims(self.name(), self.rules())
         if hasattr(self, "robot"):
             check_needs(self.robot, self.needs, self.name())
             gaits = (*_gaits(getattr(self, "gait", None)), *_gaits(getattr(self, "gaits", None)))
@@ -284,8 +285,8 @@ class Experiment(ABC):
         """Simulate the experiment and return its record."""
 
     def _judge_claims(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
-        unable = self.unable(record)
-        return tuple(judge(rule, numbers, unable=unable) for rule in self.rules())
+        unable, claims = self.unable(record), known_claims(self.name())
+        return tuple(judge(rule, numbers, unable=unable, claims=claims) for rule in self.rules())
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
         """Return the reasons why models could not run, by the names of rungs; none by default."""

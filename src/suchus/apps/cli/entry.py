@@ -10,6 +10,7 @@ from pkgutil import resolve_name
 from shutil import get_terminal_size
 from unicodedata import category
 
+from suchus.apps.cli.command import carry_out, check_single, help_lines, own_commands
 from suchus.core import large
 from suchus.core.errors import (
     BusFailure,
@@ -208,7 +209,8 @@ COMMANDS = (
         "list", "", "show what stands in the catalogs: robots, gaits, faults and so on", "suchus.apps.cli.shelves:show"
     ),
 )
-"""Every command, in the order of the help."""
+"""Every command that suchus comes with, in the order of the help."""
+_HELP_WORDS = ("-h", "--help", "help")
 
 
 _NARROWEST, _WIDEST = 40, 500  # columns of a terminal that a help is set for
@@ -221,7 +223,7 @@ _EXAMPLES = (
 )
 
 
-def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] = COMMANDS) -> int:
+def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] | None = None) -> int:
     """Carry out a command line and return the exit code.
 
     0: sound, whatever the verdicts. 1: an experiment failed. 2: bad input, reported in one sentence on standard
@@ -230,7 +232,8 @@ def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] = CO
 
     Args:
         words: what follows ``suchus``; by default those of this process.
-        commands: that the first word may name; programs of ``evidence`` have commands of their own.
+        commands: that the first word may name; programs of ``evidence`` have commands of their own. By default those
+            of suchus, of the project folder and of other packages.
     """
     of_this_process = words is None
     words = list(sys.argv[1:] if words is None else words)
@@ -337,7 +340,7 @@ def _split_project(words: list[str]) -> tuple[list[str], str | None]:
     return command_words, folders[0] if folders else None
 
 
-def _dispatch_and_flush(words: list[str], commands: Sequence[Subcommand]) -> int:
+def _dispatch_and_flush(words: list[str], commands: Sequence[Subcommand] | None) -> int:
     """Carry out a command line and flush standard output.
 
     Raises:
@@ -358,8 +361,17 @@ def _dispatch_and_flush(words: list[str], commands: Sequence[Subcommand]) -> int
         raise Unwritable(f"{problem}: {(error.strerror or str(error)).lower()}.") from error
 
 
-def _dispatch(words: list[str], commands: Sequence[Subcommand]) -> int:
-    """Carry out the command that the first word names, or print version or help, and return the exit code."""
+def _dispatch(words: list[str], commands: Sequence[Subcommand] | None) -> int:
+    """Carry out the command that the first word names, or print version or help, and return the exit code.
+
+    Args:
+        words: what follows ``suchus``.
+        commands: that the first word may name; None for those of suchus, of the project folder and of other packages.
+
+    Raises:
+        UnknownName: there is no such command.
+        AmbiguousName: there are two of this name.
+    """
     if words and words[0] in ("--version", "-V"):
         if words[1:]:
             raise BadCommand(f"{words[0]} stands alone; leave out {' '.join(words[1:])!r}.")
@@ -367,17 +379,28 @@ def _dispatch(words: list[str], commands: Sequence[Subcommand]) -> int:
 
         print(f"suchus {version('suchus')}")
         return 0
-    if not words or words[0] in ("-h", "--help", "help"):
+    if not words or words[0] in _HELP_WORDS:
         print(_help())
         return 0
-    for command in commands:
-        if command.name == words[0]:
-            return command(words[1:])
-    raise UnknownName("command", words[0], [command.name for command in commands])
+    name, *options = words
+    known_commands = {command.name: command for command in (COMMANDS if commands is None else commands)}
+    if name in known_commands:
+        if commands is None:
+            check_single(name)
+        return known_commands[name](options)
+    others = own_commands() if commands is None else {}
+    if name in others:
+        return carry_out(name, options)
+    raise UnknownName("command", name, [*known_commands, *others])
+
+
+def reserved_names() -> set[str]:
+    """Return the words after ``suchus`` that mean something by themselves, which no command of a user may be named."""
+    return {*(command.name for command in COMMANDS), *_HELP_WORDS}
 
 
 def _help() -> str:
-    """Return the help: every command with its usage and summary, then examples."""
+    """Return the help: every command with its usage and summary, those of a user's own, then examples."""
     command_width = max(len(f"{c.name} {c.usage}") for c in COMMANDS)
     example_width = max(len(example) for example, _ in _EXAMPLES)
     return "\n".join(
@@ -387,6 +410,7 @@ def _help() -> str:
             "usage: suchus COMMAND ...",
             "",
             *(f"  {f'{c.name} {c.usage}':<{command_width}}  {c.summary}" for c in COMMANDS),
+            *help_lines(reserved_names(), command_width),
             "",
             "examples:",
             *(f"  {example:<{example_width}}  {text}" for example, text in _EXAMPLES),

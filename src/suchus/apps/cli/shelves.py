@@ -8,7 +8,8 @@ from pkgutil import resolve_name
 from shutil import get_terminal_size
 from textwrap import fill
 
-from suchus.apps.cli.entry import PROJECT, BadCommand
+from suchus.apps.cli.command import REFUSAL
+from suchus.apps.cli.entry import PROJECT, BadCommand, reserved_names
 from suchus.core.errors import SuchusError
 from suchus.core.sources import SHELVES, Source, gather
 
@@ -19,6 +20,7 @@ _LISTED = {
     "experiments": "suchus.experiments.catalog:EXPERIMENTS",
     "controllers": "suchus.robot.control:CONTROLLERS",
     "measures": "suchus.experiments.study:MEASURES",
+    "commands": "suchus.apps.commands:COMMANDS",
 }
 """Module and object of each catalog, by the catalog's name."""
 _SCATTERED = ("controllers", "measures")
@@ -40,7 +42,7 @@ def show(words: Sequence[str]) -> int:
         shelf: gather(shelf.removesuffix("s"), SHELVES[shelf], scattered=shelf in _SCATTERED) for shelf in _LISTED
     }
     width = max((len(name) for sources in shelves.values() for name in sources), default=0)
-    for i, (shelf, sources) in enumerate(shelves.items()):
+    for i, (shelf, sources) in enumerate((shelf, sources) for shelf, sources in shelves.items() if sources):
         print("\n" * bool(i) + shelf)
         for name, source in sources.items():
             print(entry(name, title(source) + _needs(source) + _origin(source, shelf), width))
@@ -79,14 +81,28 @@ def _needs(source: Source) -> str:
 
 
 def _origin(source: Source, shelf: str) -> str:
-    """Return the source of a user's entry, and the error if it cannot be loaded."""
+    """Return the source of a user's entry, the claims that it states, and the error if it cannot be loaded."""
     if source.shipped:
         return ""
+    if shelf == "commands" and source.name in reserved_names():
+        return f" [{REFUSAL}: {source.place}]"
     try:
         resolve_name(_LISTED[shelf])[source.name]
+        claims = _own_claims(source.name) if shelf == "experiments" else ""
     except SuchusError as error:
         return f" [broken: {error}]"
-    return f" [{source.place}]"
+    return f"{claims} [{source.place}]"
+
+
+def _own_claims(experiment: str) -> str:
+    """Return the claims that an experiment itself states, as the list shows them; empty without any.
+
+    Raises:
+        InvalidDesign: its claims or rules cannot be used.
+    """
+    resolve_name("suchus.experiments.claims:rules_of")(experiment)
+    claims = resolve_name("suchus.experiments.claims:claims_of")(experiment)
+    return f" (claims {', '.join(claims)})" if claims else ""
 
 
 def _assigned_texts(source: Source, name: str) -> tuple[str, ...]:

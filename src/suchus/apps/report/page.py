@@ -3,7 +3,7 @@
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -88,7 +88,9 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     results = sorted(results, key=lambda result: _place(result, order))
     robot, robot_counts = robot_of(results)
     is_article_robot = robot.name == ARTICLES  # the article's claims hold for the article's robot only
-    verdicts = [verdict for result in results for verdict in verdict_rows(result) if is_article_robot]
+    all_verdicts = [verdict for result in results for verdict in verdict_rows(result)]
+    verdicts = [verdict for verdict in all_verdicts if is_article_robot and verdict["claim"] in CLAIMS]
+    own_verdicts = [verdict for verdict in all_verdicts if verdict["claim"] not in CLAIMS]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     verdict_by_claim = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
     worth = standings(verdict_by_claim)
@@ -104,13 +106,14 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "verdicts": verdicts,
         "headline": [verdict for verdict in verdicts if verdict["claim"] in HEADLINE],
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
-        "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
+        "own_verdicts": own_verdicts,
+        "stating": {verdict["experiment"] for verdict in own_verdicts},
         "marks": MARKS,
         "count": count_evidence(
             verdict_by_claim, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]
         ),
         "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _INPUT_STANDINGS},
-        "tally": {result.name: _counts(result.outcome["verdicts"] if is_article_robot else ()) for result in results},
+        "tally": {result.name: _counts(v for v in verdicts if v["experiment"] == result.name) for result in results},
         "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in verdict_by_claim],
         "beside": compare_with_animals(robot, {result.name: result for result in results}),
         "metres": metres({result.name: result for result in results}),
@@ -127,7 +130,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     }
 
 
-def _counts(verdicts: Sequence[Mapping[str, Any]]) -> dict[str, int]:
+def _counts(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, int]:
+    """Return the number of verdicts by word, zero included."""
     count = Counter(str(verdict["verdict"]) for verdict in verdicts)
     return {word: count[word] for word in MARKS}
 

@@ -1,30 +1,31 @@
-"""One statement of the article, or of another publication."""
+"""One statement of the article, of another publication, or of a user's own."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """A number that a publication states, or a statement that can be tested."""
+    """A number that a publication or a hypothesis states, or a statement that can be tested."""
 
     key: str
     """Its name here."""
     of: str = ""
-    """Publication that states it; empty for the article."""
+    """Source: the publication or the hypothesis that states it; empty for the article alone."""
     where: str
     """Section and figure or equation; of other publications what was read of them."""
     quantity: str
     """Name of the claimed quantity."""
-    value: float | None
+    value: float | None = None
     """The number in SI units; None where no number is stated."""
-    unit: str
+    unit: str = "-"
     """SI unit, ``-`` for none."""
-    rounding: float
+    rounding: float = 0.0
     """Half of the last printed digit, in ``unit``; zero for whole numbers and for statements."""
     sense: str
     """The statement in one plain sentence; it can hold where the number does not."""
-    quote: str
-    """The publication's own words, shortened with dots; in brackets ours, where it states a thing without words."""
+    quote: str = ""
+    """The source's own words, shortened with dots; in brackets ours, where it states a thing without words. Empty
+    where the statement itself is the source, as in a hypothesis of one's own."""
 
     def __str__(self) -> str:
         if self.value is None:

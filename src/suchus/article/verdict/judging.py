@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeVar, get_args
 from suchus.article.paper import CLAIMS, Claim
 from suchus.article.verdict import ladder
 from suchus.article.verdict.rule import Rule, interval, listed
-from suchus.core.errors import IncompatibleRecord
+from suchus.core.errors import IncompatibleRecord, UnknownName
 
 ROBUST = 0.9
 """A verdict is fragile if fewer plausible designs than this share agree with it [-].
@@ -190,6 +190,7 @@ def judge(
     measures: Mapping[str, float],
     shares: Mapping[str, Share] = SHARES,
     unable: Mapping[str, str] = ladder.NO_REASONS,
+    claims: Mapping[str, Claim] = CLAIMS,
 ) -> Verdict:
     """Return the verdict of a rule on measures.
 
@@ -198,12 +199,17 @@ def judge(
         measures: of its experiment, by name, in SI units.
         shares: in how many plausible designs each claim holds, by claim.
         unable: why models of the rule could not be run, in a sentence, by the names of its rungs.
+        claims: those that rules may judge, by key: the article's, or with them an experiment's own, see
+            ``suchus.experiments.claims.known_claims``.
 
     Raises:
-        IncompatibleRecord: a measure that the rule names is not there.
+        UnknownName: the rule judges a claim that is not among ``claims``.
+        IncompatibleRecord: a measure that the rule or its sentence names is not there.
     """
-    claim = CLAIMS[rule.claim]
-    missing = sorted(rule.needs - set(measures))
+    if rule.claim not in claims:
+        raise UnknownName("claim", rule.claim, claims)
+    claim = claims[rule.claim]
+    missing = sorted((rule.needs | rule.named_in_reason) - set(measures))
     if missing:
         raise IncompatibleRecord(
             f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."

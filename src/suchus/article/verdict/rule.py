@@ -1,4 +1,4 @@
-"""A rule: when a claim of the article counts as reproduced, as data that can be read, tested and mutated.
+"""A rule: when a claim counts as reproduced, as data that can be read, tested and mutated.
 
 What decided it is a sentence whose numbers know how to be written in the unit that a reader expects.
 """
@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
 from math import degrees, isfinite
+from string import Formatter
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -153,7 +154,7 @@ class Rule:
     """When a claim counts as what; it is applied by ``judge``."""
 
     claim: str
-    """Key of the claim in ``paper.CLAIMS``; also the rule's name."""
+    """Key of the claim in ``paper.CLAIMS``, or in the ``CLAIMS`` beside the rule; also the rule's name."""
     experiment: str
     """Name of the experiment whose measures it reads."""
     measure: str
@@ -201,6 +202,11 @@ class Rule:
             spread = {f"{name}_{rung}{end}" for name in measures for rung in carrying for end in ends}
             return spread | {f"{name}_{rung}" for name in bounds for rung in carrying}
         return measures | bounds | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
+
+    @property
+    def named_in_reason(self) -> set[str]:
+        """Names of the measures whose values the sentence ``why`` states."""
+        return {name for _, name, _, _ in Formatter().parse(self.why) if name}
 
     def reason(self, measures: Mapping[str, float]) -> str:
         """Return what decided it, with its numbers."""

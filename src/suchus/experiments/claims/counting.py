@@ -71,7 +71,7 @@ def count_evidence(
     """Return the number of verdicts on the article by standing and word, and those on other publications by word.
 
     Args:
-        verdicts: the word of each claim.
+        verdicts: the word of each claim, none of which is an experiment's own.
         fragile: claims whose word other plausible designs reverse.
         rules: by claim; a claim without one counts as measured.
     """
