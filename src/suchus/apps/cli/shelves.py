@@ -19,6 +19,7 @@ _LISTED = {
     "experiments": "suchus.experiments.catalog:EXPERIMENTS",
     "controllers": "suchus.robot.control:CONTROLLERS",
     "measures": "suchus.experiments.study:MEASURES",
+    "protocols": "suchus.hardware.protocols:PROTOCOLS",
 }
 """Module and object of each shelf, by the shelf's name."""
 _SCATTERED = ("controllers", "measures")
