@@ -22,6 +22,7 @@ ROOT = Path(__file__).parents[2]
         "own_experiment",
         "own_fault",
         "own_controller",
+        "own_protocol",
         "own_shape",
         "own_side",
         "own_scheme",

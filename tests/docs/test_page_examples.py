@@ -17,7 +17,7 @@ from pages.blocks import blocks
 from suchus.core.sources import SHELVES
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "extending")
+PAGES = ("own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "own_protocol", "extending")
 BATTERIES = {
     "robots": "tests/shelves/test_robots.py",
     "gaits": "tests/shelves/test_gaits.py",
@@ -25,9 +25,10 @@ BATTERIES = {
     "experiments": "tests/shelves/test_experiments.py",
     "controllers": "tests/shelves/test_controllers.py",
     "measures": "tests/shelves/test_measures.py",
+    "protocols": "tests/shelves/test_protocols.py",
 }
-KINDS = {"robots": "robot", "gaits": "gait", "experiments": "experiment"}
-LEAST = {"robots": 8, "gaits": 4, "faults": 8, "experiments": 7, "controllers": 3, "measures": 4}
+KINDS = {"robots": "robot", "gaits": "gait", "experiments": "experiment", "protocols": "protocol"}
+LEAST = {"robots": 8, "gaits": 4, "faults": 8, "experiments": 7, "controllers": 3, "measures": 4, "protocols": 7}
 """Tests of a battery in `make test` that name an entry, at least."""
 
 

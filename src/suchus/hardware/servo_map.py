@@ -114,8 +114,8 @@ class ServoMap:
 def straight(robot: Robot) -> ServoMap:
     """Return a map to start from: servos that turn 270 degrees over 500 to 2500 us, mounted in the middle.
 
-    They hang on PCA9685 boards of 16 channels in the order of the robot's layout. A linear actuator goes through its stroke
-    over 1000 to 2000 us, as Actuonix says of its L16-R.
+    They hang on PCA9685 boards of 16 channels in the order of the robot's layout. A linear actuator goes through its
+    stroke over 1000 to 2000 us, as Actuonix says of its L16-R.
     """
     channels = channel_protocol(DEFAULT_PROTOCOL).channels
     half, reach = (dict.fromkeys(layout(robot).servos, value) for value in (1000.0, 0.75 * pi))

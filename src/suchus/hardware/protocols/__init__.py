@@ -118,9 +118,8 @@ def _tables(protocol: BusProtocol) -> Mapping[str, Table]:
     """
     spoken = protocol.board_of or protocol.name
     known = [motor for motor in motors().values() if motor.protocol == spoken]
-    tables = [
-        protocol.table(motor) for motor in (*known, *protocol.motors) if motor.family.startswith(protocol.families)
-    ]
+    of_families = [motor for motor in (*known, *protocol.motors) if motor.family.startswith(protocol.families)]
+    tables = map(protocol.table, of_families)
     by_model = {table.model: table for table in tables}
     if protocol.default_model not in by_model:
         raise InvalidDesign(

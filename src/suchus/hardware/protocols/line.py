@@ -1,7 +1,7 @@
 """A plain line protocol for boards of one's own: lines of text with whole numbers, which a terminal can type and read.
 
-A board holds, for each of its servos, a row of 16-bit registers, as ``PlainLine.table`` lists them. A line is what it says, a
-star, the CRC-16 of what stands before the star (as of Dynamixel 2.0, four hexadecimal digits), and a line feed:
+A board holds, for each of its servos, a row of 16-bit registers, as ``PlainLine.table`` lists them. A line is what it
+says, a star, the CRC-16 of what stands before the star (as of Dynamixel 2.0, four hexadecimal digits), and a line feed:
 
 * ``p 3``: is number 3 there? It answers ``3 0``: its number, and its error.
 * ``r 3 15 2``: read two registers of it from register 15 on; it answers ``3 0 2048 -12``. With several numbers, as in
@@ -175,7 +175,7 @@ class PlainLine(BusProtocol):
         return refusal | (ALERT if alerts else 0)
 
     def table(self, motor: Motor) -> Table:
-        """Return the table of a hobby servo behind a board of one's own, which speaks in lines; register n is at 2 n."""
+        """Return the table of a hobby servo behind a board of one's own; register n is at 2 n."""
         hottest = round(motor.temperature_limit)
         min_voltage = round(100 * motor.volts_range[0])
         two: Sign = "two"
@@ -208,9 +208,7 @@ class PlainLine(BusProtocol):
             registers=rows,
             motor=motor,
             felt=("present_position", "hardware_error"),
-            bauds=MappingProxyType(
-                dict(enumerate((1_000_000, 500_000, 250_000, 115_200, 57_600, 2_000_000, 3_000_000)))
-            ),
+            bauds=self.bauds,
             alerts=((0, "input voltage"), (2, "overheated"), (3, "encoder"), (4, "electrical shock"), (5, "overload")),
         )
 
