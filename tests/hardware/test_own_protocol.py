@@ -202,7 +202,7 @@ def test_names_and_models_stand_once(lab, capsys):
         PROTOCOLS["other"]
     sys.modules.pop("suchus.hardware.protocols.other")
     (lab / "protocols/other.py").write_text(COBS.replace('"cobs"', '"other"'))
-    with pytest.raises(InvalidDesign, match="the protocols 'cobs' and 'other' both have .* of the model 'LAB-1'; give"):
+    with pytest.raises(InvalidDesign, match=r"'cobs' and 'other' both have a .* of the model 'LAB-1'; give"):
         servo_tables()
     sys.modules.pop("suchus.hardware.protocols.other")
     (lab / "protocols/other.py").unlink()
