@@ -120,7 +120,7 @@ def test_its_tables_hold_every_number_that_their_registers_take(name):
     assert protocol.default_baud in protocol.bauds.values()
     for table in tables:
         assert table.motor.family.startswith(protocol.families)
-        assert table.motor.protocol == (protocol.board_of or name)
+        assert table.motor.protocol == (protocol.servo_protocol or name)
         assert table.bauds == protocol.bauds
         for register in table.registers:
             lowest, highest = register.span or (0, 1)

@@ -35,7 +35,7 @@ class BusProtocol(ServoProtocol, ABC):
 
     word: int
     """Width of addresses and of lengths in the data of a ``Packet`` [byte]."""
-    board_of: str = ""
+    servo_protocol: str = ""
     """Protocol of the servos behind a board that speaks this one; empty where the servos speak it themselves."""
     bauds: Mapping[int, int] = MappingProxyType({})
     """Bit rates by the value of the register ``baud_rate`` [1/s]."""

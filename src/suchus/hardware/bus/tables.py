@@ -127,11 +127,13 @@ class Table:
         """Return what is wrong with the block that is read at every tick, and with the goal's step."""
         problems = []
         values = self.unpack(self.felt, bytes(self.block(self.felt)[1]))
-        absent = [name for name in ("present_position", "present_velocity") if name not in values]
+        absent_registers = [name for name in ("present_position", "present_velocity") if name not in values]
         if not {"present_current", "present_load"} & set(values):
-            absent.append("present_current or present_load")
-        if absent:
-            problems.append(f"the block {' to '.join(self.felt)}, read at every tick, holds no {', '.join(absent)}")
+            absent_registers.append("present_current or present_load")
+        if absent_registers:
+            problems.append(
+                f"the block {' to '.join(self.felt)}, read at every tick, holds no {', '.join(absent_registers)}"
+            )
         if self["goal_position"].unit != self["present_position"].unit or not 0.0 < self.step < pi:
             problems.append("goal_position and present_position need the same unit, the angle of a step [rad]")
         return problems

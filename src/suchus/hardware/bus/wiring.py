@@ -215,7 +215,9 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
             f"robot {robot.name!r} has {share} servos for each bus; up to 199 are allowed: use more buses."
         )
     ranges, table = servo_ranges(robot), servo_table(model)
-    low, high = ((table[name].initial - table.center) * table.step for name in ("position_low", "position_high"))
+    min_angle, max_angle = (
+        (table[name].initial - table.center) * table.step for name in ("position_low", "position_high")
+    )
     servo = tuple(
         ServoPlace(
             name=name,
@@ -223,8 +225,8 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
             model=model,
             bus=i // share,
             zero=table.center,
-            low=float(max(ranges[i, 0], low)),
-            high=float(min(ranges[i, 1], high)),
+            low=float(max(ranges[i, 0], min_angle)),
+            high=float(min(ranges[i, 1], max_angle)),
         )
         for i, name in enumerate(place.servos)
     )

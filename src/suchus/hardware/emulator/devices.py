@@ -185,8 +185,8 @@ class EmulatedServo(Device):
 
     def soak(self) -> None:
         """Raise the alert of a servo in water: a shock where the servo knows one, else an overload."""
-        known = [text for _, text in self.table.alerts]
-        self.fail("electrical shock" if "electrical shock" in known else "overload")
+        alert_names = [name for _, name in self.table.alerts]
+        self.fail("electrical shock" if "electrical shock" in alert_names else "overload")
 
     def fail(self, alert: str) -> None:
         """Raise an alert, and switch the servo off if its maker has it so."""

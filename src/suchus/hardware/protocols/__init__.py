@@ -73,7 +73,7 @@ def servo_tables() -> Mapping[str, Table]:
     Raises:
         InvalidDesign: two protocols have a table of one model.
     """
-    return _merged(tuple(bus_protocols().values()))
+    return _tables_of_all(tuple(bus_protocols().values()))
 
 
 def servo_table(model: str) -> Table:
@@ -89,24 +89,24 @@ def servo_table(model: str) -> Table:
 
 
 @lru_cache(maxsize=8)
-def _merged(protocols: tuple[BusProtocol, ...]) -> Mapping[str, Table]:
+def _tables_of_all(protocols: tuple[BusProtocol, ...]) -> Mapping[str, Table]:
     """Return the tables of several protocols by model."""
-    merged: dict[str, Table] = {}
+    tables_by_model: dict[str, Table] = {}
     for protocol in protocols:
         for model, table in _tables(protocol).items():
-            if model in merged:
+            if model in tables_by_model:
                 raise InvalidDesign(
-                    f"the protocols {merged[model].protocol!r} and {protocol.name!r} both have a register table of the "
+                    f"the protocols {tables_by_model[model].protocol!r} and {protocol.name!r} both have a register table of the "
                     f"model {model!r}; give one of them other families, or its table another model."
                 )
-            merged[model] = table
-    return MappingProxyType({model: merged[model] for model in _in_order_of_motors(merged)})
+            tables_by_model[model] = table
+    return MappingProxyType({model: tables_by_model[model] for model in _in_order_of_motors(tables_by_model)})
 
 
 def _in_order_of_motors(tables: Mapping[str, Table]) -> list[str]:
     """Return the models in the order of the motors that suchus knows, then the others."""
-    known = [name for name in motors() if name in tables]
-    return [*known, *(model for model in tables if model not in known)]
+    shipped_models = [name for name in motors() if name in tables]
+    return [*shipped_models, *(model for model in tables if model not in shipped_models)]
 
 
 @lru_cache(maxsize=64)
@@ -116,9 +116,9 @@ def _tables(protocol: BusProtocol) -> Mapping[str, Table]:
     Raises:
         InvalidDesign: a table lacks what a drive needs, or there is none of the default model.
     """
-    spoken = protocol.board_of or protocol.name
-    known = [motor for motor in motors().values() if motor.protocol == spoken]
-    of_families = [motor for motor in (*known, *protocol.motors) if motor.family.startswith(protocol.families)]
+    motor_protocol = protocol.servo_protocol or protocol.name
+    shipped_motors = [motor for motor in motors().values() if motor.protocol == motor_protocol]
+    of_families = [motor for motor in (*shipped_motors, *protocol.motors) if motor.family.startswith(protocol.families)]
     tables = map(protocol.table, of_families)
     by_model = {table.model: table for table in tables}
     if protocol.default_model not in by_model:

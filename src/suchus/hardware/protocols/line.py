@@ -140,7 +140,7 @@ class PlainLine(BusProtocol):
     name = "line"
     families = ("hobby servos",)
     word = 2
-    board_of = "pwm"
+    servo_protocol = "pwm"
     bauds = MappingProxyType(dict(enumerate((1_000_000, 500_000, 250_000, 115_200, 57_600, 2_000_000, 3_000_000))))
     default_model = "DS3225"
     default_baud = 2_000_000  # numbers that are written out are longer
