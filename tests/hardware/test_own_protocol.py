@@ -2,6 +2,7 @@
 
 import os
 import re
+import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -194,6 +195,15 @@ def test_a_damaged_protocol_is_refused_in_a_sentence_and_the_rest_works(lab, cha
     assert list(bus_protocols()) == ["dynamixel", "feetech", "line"]
     assert "LAB-1" not in servo_tables()
     assert straight(ROBOT, [BusPlace(port="x")], "XM430-W350").servo[0].table.model == "XM430-W350"
+
+
+def test_the_design_of_a_motor_reads_names_of_protocols_and_imports_none():
+    code = (
+        "import sys\nfrom suchus.robot.motors import motors\n"
+        "print(len(motors()) > 10, [name for name in sys.modules if name.startswith('suchus.hardware')])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "True []\n"
 
 
 def test_names_and_models_stand_once(lab, capsys):

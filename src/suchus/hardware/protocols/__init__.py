@@ -96,8 +96,8 @@ def _tables_of_all(protocols: tuple[BusProtocol, ...]) -> Mapping[str, Table]:
         for model, table in _tables(protocol).items():
             if model in tables_by_model:
                 raise InvalidDesign(
-                    f"the protocols {tables_by_model[model].protocol!r} and {protocol.name!r} both have a register table of the "
-                    f"model {model!r}; give one of them other families, or its table another model."
+                    f"the protocols {tables_by_model[model].protocol!r} and {protocol.name!r} both have a register "
+                    f"table of the model {model!r}; give one of them other families, or its table another model."
                 )
             tables_by_model[model] = table
     return MappingProxyType({model: tables_by_model[model] for model in _in_order_of_motors(tables_by_model)})
