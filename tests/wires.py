@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 from tests.felt import felt
 
-from suchus.hardware.bus import FRAMINGS, Bus, BusPlace, straight
-from suchus.hardware.emulator import DEFAULT_MODELS, Emulator, MemoryPort, Trouble
+from suchus.hardware.bus import Bus, BusPlace, straight
+from suchus.hardware.emulator import Emulator, MemoryPort, Trouble
+from suchus.hardware.protocols import bus_protocol
 from suchus.robot.design import layout
 from suchus.robot.design.scale import control_period
 from suchus.robot.robots import ROBOTS
@@ -48,11 +49,11 @@ class Obedient:
 
 def wiring(protocol="dynamixel", robot=ROBOTS["caiman"], buses=1, boards=False):
     places = [BusPlace(port=f"bus{i}", protocol=protocol) for i in range(buses)]
-    return straight(robot, places, DEFAULT_MODELS[protocol], boards=boards)
+    return straight(robot, places, bus_protocol(protocol).default_model, boards=boards)
 
 
 def emulated(protocol="dynamixel", trouble=None, **of_body):
     """Return an emulator without physics, and a bus to it."""
     made = wiring(protocol)
     emulator = Emulator(made, Obedient(**of_body), trouble or Trouble(), has_clock=True)
-    return emulator, Bus(MemoryPort(emulator), FRAMINGS[protocol], has_clock=True)
+    return emulator, Bus(MemoryPort(emulator), bus_protocol(protocol), has_clock=True)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from suchus.experiments.experiment import Experiment as Experiment
     from suchus.experiments.experiment import Outcome as Outcome
     from suchus.experiments.study import MEASURES as MEASURES
+    from suchus.hardware.protocols import PROTOCOLS as PROTOCOLS
     from suchus.robot.control import CONTROLLERS as CONTROLLERS
     from suchus.robot.control import Coordinated as Coordinated
     from suchus.robot.control import HeadingRule as HeadingRule
@@ -55,6 +56,7 @@ _HOMES = {
     "Catalog": "suchus.core.catalog",
     **dict.fromkeys(("CONTROLLERS", "Coordinated", "HeadingRule"), "suchus.robot.control"),
     "MEASURES": "suchus.experiments.study",
+    "PROTOCOLS": "suchus.hardware.protocols",
     "Robot": "suchus.robot.design",
     **dict.fromkeys(
         (

@@ -7,11 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.hardware.bus import BROADCAST, FRAMINGS, Instruction, Packet
-from suchus.hardware.bus.dynamixel import crc
-from suchus.hardware.bus.feetech import checksum
+from suchus.hardware.bus import BROADCAST, Instruction, Packet
+from suchus.hardware.protocols import PROTOCOLS
+from suchus.hardware.protocols.dynamixel import crc
+from suchus.hardware.protocols.feetech import checksum
 
-DYNAMIXEL, FEETECH, LINE = FRAMINGS["dynamixel"], FRAMINGS["feetech"], FRAMINGS["line"]
+SPOKEN = ("dynamixel", "feetech", "line")
+DYNAMIXEL, FEETECH, LINE = (PROTOCOLS[name] for name in SPOKEN)
 PACKETS = st.builds(
     Packet,
     st.integers(0, 252),
@@ -124,10 +126,10 @@ def test_the_checksum_of_feetech_is_the_complement_of_the_sum():
     assert (sum(b"\x01\x02\x01") + checksum(b"\x01\x02\x01")) & 0xFF == 0xFF
 
 
-@pytest.mark.parametrize("name", FRAMINGS)
+@pytest.mark.parametrize("name", SPOKEN)
 @given(data=st.data(), cut=st.integers(1, 40))
 def test_packets_come_back_whatever_portions_they_arrive_in(name, data, cut):
-    framing = FRAMINGS[name]
+    framing = PROTOCOLS[name]
     for encode, decoder, kind in (
         (framing.request, framing.requests(), REQUESTS), (framing.reply, framing.replies(), REPLIES)
     ):  # fmt: skip
@@ -139,10 +141,10 @@ def test_packets_come_back_whatever_portions_they_arrive_in(name, data, cut):
         assert (decoder.dropped, decoder.broken) == (0, 0)
 
 
-@pytest.mark.parametrize("name", FRAMINGS)
+@pytest.mark.parametrize("name", SPOKEN)
 @given(noise=st.binary(max_size=30).filter(lambda b: not b.endswith(b"\xff")), data=st.data())
 def test_noise_before_a_packet_costs_no_more_than_itself(name, noise, data):
-    framing, packet = FRAMINGS[name], data.draw(REPLIES.get(name, PACKETS))
+    framing, packet = PROTOCOLS[name], data.draw(REPLIES.get(name, PACKETS))
     decoder = framing.replies()
     # noise that looks like the head of a long packet swallows what follows until it is complete, not for ever
     found = decoder.feed(noise + 150 * framing.reply(packet))
@@ -150,19 +152,19 @@ def test_noise_before_a_packet_costs_no_more_than_itself(name, noise, data):
     assert found.count(packet) > 20
 
 
-@pytest.mark.parametrize("name", FRAMINGS)
+@pytest.mark.parametrize("name", SPOKEN)
 @given(drawn=st.data(), place=st.integers(0, 200), bit=st.integers(0, 7))
 def test_a_flipped_bit_gives_no_other_packet(name, drawn, place, bit):
-    framing, packet = FRAMINGS[name], drawn.draw(REPLIES.get(name, PACKETS))
+    framing, packet = PROTOCOLS[name], drawn.draw(REPLIES.get(name, PACKETS))
     data = bytearray(framing.reply(packet))
     data[place % len(data)] ^= 1 << bit
     found = framing.replies().feed(bytes(data))
     assert all(p == packet for p in found)  # where the flip made the same packet appear again inside
 
 
-@pytest.mark.parametrize("name", FRAMINGS)
+@pytest.mark.parametrize("name", SPOKEN)
 def test_a_broken_frame_is_counted_and_the_next_is_read(name):
-    framing = FRAMINGS[name]
+    framing = PROTOCOLS[name]
     good, decoder = framing.reply(Packet(3, 0, b"\x11\x22")), framing.replies()
     bad = bytearray(good)
     bad[-1] ^= 1

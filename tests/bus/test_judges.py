@@ -5,7 +5,7 @@
 import pytest
 from tests.wires import emulated
 
-from suchus.hardware.bus import TABLES
+from suchus.hardware.protocols import servo_table
 
 dynamixel = pytest.importorskip("dynamixel_sdk", reason="the maker's software, a judge only, is not installed")
 feetech = pytest.importorskip("scservo_sdk", reason="the maker's software, a judge only, is not installed")
@@ -79,7 +79,7 @@ def test_the_makers_software_pings_reads_and_writes(protocol):
 @pytest.mark.parametrize("protocol", ["dynamixel", "feetech"])
 def test_requests_of_the_makers_software_are_ours_byte_for_byte(protocol):
     emulator, bus, port, handler, sdk = judge(protocol)
-    table, framing = emulator.servos[0].table, bus.framing
+    table, framing = emulator.servos[0].table, bus.protocol
     goal, felt = table["goal_position"], table.block(table.felt)
     handler.ping(port, 3)
     assert port.sent[0] == framing.ping(3)
@@ -109,7 +109,7 @@ def test_what_we_stuff_the_makers_software_unstuffs():
 
 def test_the_alert_and_the_refusals_of_an_emulated_servo_are_read_by_the_makers_software():
     emulator, bus, port, handler, sdk = judge("dynamixel")
-    table = TABLES["XM430-W350"]
+    table = servo_table("XM430-W350")
     handler.write1ByteTxRx(port, 1, 64, 1)
     assert handler.write1ByteTxRx(port, 1, table["return_delay"].address, 0)[1] == sdk.ERRNUM_ACCESS
     assert handler.write4ByteTxRx(port, 1, 116, 5000)[1] == sdk.ERRNUM_DATA_LIMIT
@@ -123,7 +123,7 @@ def test_the_alert_and_the_refusals_of_an_emulated_servo_are_read_by_the_makers_
 
 def test_feetech_refuses_its_memory_until_it_is_unlocked():
     _, bus, port, handler, _ = judge("feetech")
-    table = TABLES["STS3250"]
+    table = servo_table("STS3250")
     handler.write1ByteTxRx(port, 1, table["return_delay"].address, 9)
     assert bus.read(1, table["return_delay"]) == 0
     handler.write1ByteTxRx(port, 1, table["lock"].address, 0)

@@ -4,9 +4,10 @@ from time import sleep
 
 import pytest
 
-from suchus.hardware.bus import FRAMINGS, Bus, Packet
+from suchus.hardware.bus import Bus, Packet
+from suchus.hardware.protocols import PROTOCOLS
 
-FRAMING = FRAMINGS["dynamixel"]
+FRAMING = PROTOCOLS["dynamixel"]
 SERVOS, ADDRESS, LENGTH = (1, 2, 3), 126, 4
 WAIT = 0.01
 

@@ -23,6 +23,7 @@ ROOT = Path(__file__).parents[2]
         "own_fault",
         "own_controller",
         "own_command",
+        "own_protocol",
         "own_shape",
         "own_side",
         "own_scheme",

@@ -17,7 +17,9 @@ from pages.blocks import blocks
 from suchus.core.sources import SHELVES
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "own_command", "extending")
+PAGES = (
+    "own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "own_command", "own_protocol", "extending",
+)  # fmt: skip
 BATTERIES = {
     "robots": ("tests/shelves/test_robots.py",),
     "gaits": ("tests/shelves/test_gaits.py",),
@@ -26,9 +28,13 @@ BATTERIES = {
     "controllers": ("tests/shelves/test_controllers.py",),
     "measures": ("tests/shelves/test_measures.py",),
     "commands": ("tests/shelves/test_commands.py",),
+    "protocols": ("tests/shelves/test_protocols.py",),
 }
-KINDS = {"robots": "robot", "gaits": "gait", "experiments": "experiment"}
-LEAST = {"robots": 8, "gaits": 4, "faults": 8, "experiments": 12, "controllers": 3, "measures": 4, "commands": 5}
+KINDS = {"robots": "robot", "gaits": "gait", "experiments": "experiment", "protocols": "protocol"}
+LEAST = {
+    "robots": 8, "gaits": 4, "faults": 8, "experiments": 12, "controllers": 3, "measures": 4, "commands": 5,
+    "protocols": 7,
+}  # fmt: skip
 """Tests of a battery in `make test` that name an entry, at least."""
 
 

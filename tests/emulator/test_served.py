@@ -14,8 +14,9 @@ from tests.wires import Obedient, wiring
 
 from suchus.core.errors import BusFailure, InvalidDesign, Unwritable
 from suchus.hardware import BusClock, DriveSettings, Rig, drive
-from suchus.hardware.bus import FRAMINGS, Bus, BusGone, FilePort, open_port
+from suchus.hardware.bus import Bus, BusGone, FilePort, open_port
 from suchus.hardware.emulator import Emulator, Server, Trouble
+from suchus.hardware.protocols import PROTOCOLS
 
 pytest.importorskip("serial", reason="the extra hardware is not installed")
 SOON = 2.0
@@ -39,7 +40,7 @@ def served(links=(), *, clocked=True, sockets=False, trouble=None, made=None):
 
 
 def bus_to(server, baud=1_000_000):
-    return Bus(open_port(server.ports[0], baud), FRAMINGS["dynamixel"], wait=SOON, has_clock=True)
+    return Bus(open_port(server.ports[0], baud), PROTOCOLS["dynamixel"], wait=SOON, has_clock=True)
 
 
 @pytest.mark.parametrize(("protocol", "sockets"), [("dynamixel", False), ("dynamixel", True), ("line", False)])
@@ -64,7 +65,6 @@ def test_servos_hear_nothing_at_another_bit_rate_and_the_one_that_answers_is_nam
         made = replace(made, bus=(replace(made.bus[0], port=server.ports[0], baud=2_000_000),))
         rig = Rig(ROBOT, made, rate=20.0)
         monkeypatch.setattr("suchus.hardware.rig.Bus", lambda port, framing: Bus(port, framing, wait=SOON))
-        monkeypatch.setattr("suchus.hardware.rig.BAUD_RATES", (57_600, 1_000_000))
         with pytest.raises(BusFailure, match=r"nobody answers .* at 2000000 baud, but at 1000000 baud number 1 does"):
             rig.check()
 

@@ -8,7 +8,7 @@ import pytest
 from suchus.core.errors import BusFailure, InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog._driven import Driven
 from suchus.hardware import BlindRig, DriveSettings, drive, fix_in_place, straight
-from suchus.hardware.bus.pca9685 import Pulses, open_wires
+from suchus.hardware.protocols.pca9685 import Pulses, open_wires
 from suchus.robot.control import Coordinated
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import intended

@@ -11,7 +11,8 @@ import pytest
 from tests.wires import wiring
 
 from suchus.core.files import load
-from suchus.hardware.bus import FRAMINGS, Bus, open_port
+from suchus.hardware.bus import Bus, open_port
+from suchus.hardware.protocols import PROTOCOLS
 
 pytest.importorskip("serial", reason="the extra hardware is not installed")
 PATIENCE = 240.0
@@ -57,7 +58,7 @@ def test_a_terminal_that_closes_a_signal_and_an_emulator_that_ends_leave_a_log_a
         log = load(tmp_path / "log" / "record.nc")
         assert log.sizes["time"] > 1
         if how != "emulator":
-            end = Bus(open_port(bus, 1_000_000), FRAMINGS["dynamixel"], wait=PATIENCE / 20)
+            end = Bus(open_port(bus, 1_000_000), PROTOCOLS["dynamixel"], wait=PATIENCE / 20)
             assert [end.read(one.id, DYNAMIXEL["torque_enable"]) for one in wiring().servo] == [0] * 19
             end.close()
     finally:

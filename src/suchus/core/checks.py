@@ -1,6 +1,6 @@
 """Range checks of designs: all invalid fields of one part are reported in one error."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, isfinite
@@ -165,6 +165,12 @@ class Checks:
                 f"{abscissa}s rising{start_text}",
             )
         return None
+
+    def choice(self, field: str, names: Collection[str]) -> None:
+        """Refuse a text that is none of some names."""
+        value = getattr(self._design, field)
+        if isinstance(value, str) and value not in names:
+            self._complain(field, f"is {_show(value)}; {', '.join(names)} is allowed")
 
     def that(self, holds: bool, text: str) -> None:
         """Refuse a combination of fields that does not hold, with a clause that says why."""

@@ -1,7 +1,7 @@
 """Where things in the catalogs come from: the package, a project folder of the user's, other packages of the user's.
 
 A project is a folder with a ``suchus.toml``. Its sub-folders ``robots``, ``gaits``, ``faults``, ``experiments``,
-``controllers``, ``measures`` and ``commands`` hold files as the catalogs of the package do; ``suchus.toml`` names files
+``controllers``, ``measures``, ``protocols`` and ``commands`` hold files as the catalogs of the package do. ``suchus.toml`` names files
 that stand elsewhere in the folder. A file is read, or a module run, when its name is asked for.
 
 Modules of a project are imported as modules of the catalog, ``suchus.sim.faults.tired``, so that values travel between
@@ -40,6 +40,7 @@ SHELVES: Mapping[str, str] = {
     "controllers": "suchus.robot.control",
     "measures": "suchus.sim.metrics",
     "commands": "suchus.apps.commands",
+    "protocols": "suchus.hardware.protocols",
 }
 """Package of each catalog by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
 AS_TOML = ("robots", "gaits")
@@ -68,7 +69,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """A folder of the user's own robots, gaits, faults, experiments, controllers, measures and commands."""
+    """A folder of the user's own: robots, gaits, faults, experiments, controllers, measures, protocols and commands."""
 
     folder: Path
     """The folder, absolute."""
@@ -248,11 +249,7 @@ _Stamped = tuple[tuple[str, int, tuple[int, ...]], ...]
 
 def _stamped(package: str) -> _Stamped:
     """Return the folders of a package with the times at which they and their subfolders were modified."""
-    if package in sys.modules:
-        folders = list(sys.modules[package].__path__)
-    else:
-        spec = find_spec(package)
-        folders = list(spec.submodule_search_locations or ()) if spec else []
+    folders = list(sys.modules[package].__path__) if package in sys.modules else _folders(package)
     stamps = []
     for folder in folders:
         modified_ns = os.stat(folder).st_mtime_ns  # noqa: PTH116  a catalog is asked some thousand times a minute
@@ -263,6 +260,15 @@ def _stamped(package: str) -> _Stamped:
         )
         stamps.append((folder, modified_ns, tuple(subfolder_times)))
     return tuple(stamps)
+
+
+def _folders(package: str) -> list[str]:
+    """Return the folders of a package; neither it nor the packages around it are imported."""
+    top_package, *inner_names = package.split(".")
+    spec = find_spec(top_package)
+    top_folders = (spec.submodule_search_locations or ()) if spec else ()
+    folders = [Path(top_folder).joinpath(*inner_names) for top_folder in top_folders]
+    return [str(folder) for folder in folders if folder.is_dir()]
 
 
 @lru_cache(maxsize=64)

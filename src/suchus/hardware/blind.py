@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from suchus.hardware.bus import Bus, ServoPlace
-from suchus.hardware.bus.pca9685 import Pulses
+from suchus.hardware.bus import Bus, PulseBoards, ServoPlace
 from suchus.hardware.rig import RigReading
 from suchus.hardware.servo_map import ServoMap
 from suchus.robot.control import Sensed
@@ -28,7 +27,7 @@ class BlindRig:
     servos: tuple[ServoPlace, ...] = ()
     """None that tell their heat."""
 
-    def __init__(self, robot: Robot, servo_map: ServoMap, pulses: Pulses) -> None:
+    def __init__(self, robot: Robot, servo_map: ServoMap, pulses: PulseBoards) -> None:
         """Take pulse widths, directions and angle limits of all servos from the servo map."""
         self.robot, self._pulses = robot, pulses
         self.names = layout(robot).servos
@@ -46,7 +45,7 @@ class BlindRig:
         self.speed = np.array([robot.servo(name).speed for name in self.names])
         self.period = 1.0 / servo_map.rate
         self.asked = np.zeros(len(self.names), dtype=bool)
-        self.step = float((1e6 / pulses.rate / 4096 / self._slope).max())
+        self.step = float((pulses.step / self._slope).max())
         self.text = f"servo map {servo_map.name}"
         count = len(self.names)
         unknown = np.full((6, count), np.nan)
@@ -90,7 +89,7 @@ class BlindRig:
     def aim(self, angles: np.ndarray) -> np.ndarray:
         """Send all servos to angles, and return the angles of the rounded pulses, shape (servo,) [rad]."""
         widths = self._centre + self._slope * (self._sign * angles + self._offset)
-        step = 1e6 / self._pulses.rate / 4096
+        step = self._pulses.step
         rounded_widths = np.rint(widths / step) * step
         self._pulses.send(dict(zip(self._places, rounded_widths.tolist(), strict=True)))
         sent_angles: np.ndarray = self._sign * ((rounded_widths - self._centre) / self._slope - self._offset)

@@ -57,7 +57,7 @@ def find_wiring(rig: Rig, clock: TickClock, answer: Answer) -> Wiring:
             rig.surely("goal_position", {i: steps})
             rig.surely("torque_limit", {i: servo.table.full})
             rig.surely("torque_enable", {i: 1})
-            nudge_steps = round(NUDGE / rig.steps.unit)
+            nudge_steps = round(NUDGE / servo.table.step)
             count = max(1, round(NUDGE / _PACE / rig.period))
             trajectory = [steps + round(nudge_steps * (k + 1) / count) for k in range(count)]
             tick = _move_through(rig, clock, tick, i, [*trajectory, *count * [trajectory[-1]]])
@@ -114,7 +114,7 @@ def find_zeros(rig: Rig, posture: np.ndarray) -> tuple[Wiring, np.ndarray]:
     angles = np.where(rig.asked, np.nanmedian(np.where(rig.asked, samples, 0.0), axis=0), posture)
     zero_errors = angles - posture
     servo = tuple(
-        replace(servo_place, zero=servo_place.zero + servo_place.sign * round(zero_errors[i] / rig.steps.unit))
+        replace(servo_place, zero=servo_place.zero + servo_place.sign * round(zero_errors[i] / servo_place.table.step))
         for i, servo_place in enumerate(rig.servos)
     )
     return replace(rig.wiring, servo=servo), zero_errors

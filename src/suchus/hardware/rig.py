@@ -9,7 +9,6 @@ import numpy as np
 
 from suchus.core.errors import BusFailure, InvalidDesign, SuchusError
 from suchus.hardware.bus import (
-    FRAMINGS,
     STEPS,
     WAIT,
     BoardPlace,
@@ -23,6 +22,7 @@ from suchus.hardware.bus import (
     latency_timer,
     open_port,
 )
+from suchus.hardware.protocols import bus_protocol
 from suchus.hardware.wiring import wiring_text
 from suchus.robot.control import Sensed
 from suchus.robot.design import Robot, layout
@@ -32,8 +32,6 @@ BITS = 10
 """Bits that a byte takes on the wire, start and stop bit included [-]."""
 FULLEST = 0.9
 """Share of a tick that the bytes of a bus may take [-]; what is left is for the adapter and the computer."""
-BAUD_RATES = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
-"""Bit rates at which servos are looked for that do not answer at the one that the file names [1/s]."""
 PATIENT = 0.1
 """How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
 _MAX_ATTEMPTS = 8  # attempts of a request before the robot moves: a tenth of all packets may be lost
@@ -153,7 +151,7 @@ class Rig:
         try:
             for number, place in enumerate(wiring.bus):
                 port = ports[number] if ports else open_port(place.port, place.baud)
-                self.buses.append(Bus(port, FRAMINGS[place.protocol], wait=self._wait, has_clock=has_clock))
+                self.buses.append(Bus(port, bus_protocol(place.protocol), wait=self._wait, has_clock=has_clock))
         except BaseException:
             self.close()
             raise
@@ -187,8 +185,8 @@ class Rig:
 
     @property
     def step(self) -> float:
-        """Step of its angles [rad]."""
-        return self.steps.unit
+        """Greatest step of its servos' angles [rad]."""
+        return float(self.steps.unit.max(initial=0.0))
 
     @property
     def text(self) -> str:
@@ -199,16 +197,15 @@ class Rig:
 
     def bytes_per_tick(self, number: int) -> tuple[int, int]:
         """Return the bytes and the number of replies on a bus in a tick."""
-        place = self.wiring.bus[number]
-        framing, members = FRAMINGS[place.protocol], self._members[number]
+        protocol, members = bus_protocol(self.wiring.bus[number].protocol), self._members[number]
         total = answers = 0
         if members:
             table = self.servos[members[0]].table
             length = table.block(table.felt)[1]
             goal = table["goal_position"]
             ids = [self.servos[i].id for i in members]
-            total += len(framing.sync_read(ids, 0, length)) + len(members) * len(framing.reply(_typical(length)))
-            total += len(framing.sync_write(goal.address, {servo_id: _typical(goal.size).data for servo_id in ids}))
+            total += len(protocol.sync_read(ids, 0, length)) + len(members) * len(protocol.reply(_typical(length)))
+            total += len(protocol.sync_write(goal.address, {servo_id: _typical(goal.size).data for servo_id in ids}))
             answers += len(members)
         extra = [self._bytes_of(number, device) for device in self._turns[number]]
         request_bytes = [self._bytes_of(number, device) for device in self._always[number]] + (
@@ -218,13 +215,14 @@ class Rig:
 
     def _bytes_of(self, number: int, device: int | BoardPlace) -> int:
         """Return the bytes for reading the state of a servo, or the sensors of a board."""
-        framing = FRAMINGS[self.wiring.bus[number].protocol]
+        protocol = bus_protocol(self.wiring.bus[number].protocol)
         if isinstance(device, BoardPlace):
             table = self.wiring.tables(device, self.robot)
-            return len(framing.sync_read((device.id,), 0, 2)) + len(framing.reply(_typical(table.block(table.felt)[1])))
+            reply = protocol.reply(_typical(table.block(table.felt)[1]))
+            return len(protocol.sync_read((device.id,), 0, 2)) + len(reply)
         health = self.servos[device].table.health
         assert health is not None
-        return len(framing.read(1, 0, 2)) + len(framing.reply(_typical(self.servos[device].table.block(health)[1])))
+        return len(protocol.read(1, 0, 2)) + len(protocol.reply(_typical(self.servos[device].table.block(health)[1])))
 
     def _check_time(self) -> None:
         """Refuse buses that carry more bytes in a tick than their bit rate allows."""
@@ -308,11 +306,11 @@ class Rig:
         place = self.wiring.bus[number]
         if not place.port.startswith("socket://") and not self.clocked:
             bus.close()
-            for baud in BAUD_RATES:
+            for baud in sorted(set(bus.protocol.bauds.values())):
                 if baud == place.baud:
                     continue
                 with suppress(SuchusError):
-                    trial_bus = Bus(open_port(place.port, baud), bus.framing)
+                    trial_bus = Bus(open_port(place.port, baud), bus.protocol)
                     reply = trial_bus.ping(servo)
                     trial_bus.close()
                     if reply is not None:
@@ -340,9 +338,11 @@ class Rig:
                     f"{servo.table.number}: its "
                     "registers may stand elsewhere. Correct the model in the file."
                 )
-            pause = self._read_register(bus, i, "return_delay") * servo.table["return_delay"].unit
-            delay += pause
-            if self._read_register(bus, i, "operating_mode") != servo.table["operating_mode"].initial:
+            if "return_delay" in servo.table:
+                delay += self._read_register(bus, i, "return_delay") * servo.table["return_delay"].unit
+            if "operating_mode" in servo.table and (
+                self._read_register(bus, i, "operating_mode") != servo.table["operating_mode"].initial
+            ):
                 raise BusFailure(
                     f"{servo.name}, number {servo.id}, is not in its mode for positions: set its operating mode to "
                     f"{servo.table['operating_mode'].initial} with its maker's program."
@@ -361,8 +361,7 @@ class Rig:
                 f"the servos on {bus.port.name} wait {1e6 * delay_per_servo:.0f} us each before they answer, which "
                 "makes a tick of "
                 f"{answers} replies {1e3 * seconds:.1f} ms long, and it may last {1e3 * self.period:g} ms: set their "
-                f"return_delay to 0 (address {self.servos[self._members[number][0]].table['return_delay'].address}), "
-                "or "
+                f"return_delay to 0 (address {self._delay_address(number)}), or "
                 f"drive at --rate {FULLEST / seconds:.0f}."
             )
         if unwatched_names:
@@ -374,13 +373,19 @@ class Rig:
             ]
         return []
 
+    def _delay_address(self, number: int) -> int:
+        """Return the address at which the servos of a bus keep how long they wait before they answer."""
+        tables = [self.servos[i].table for i in self._members[number]]
+        return next(table["return_delay"].address for table in tables if "return_delay" in table)
+
     def _check_range(self, bus: Bus, i: int) -> None:
         """Refuse a servo whose own limits are narrower than those of the file."""
         servo = self.servos[i]
         lower_bound, upper_bound = (self._read_register(bus, i, name) for name in ("position_low", "position_high"))
         if lower_bound == upper_bound == 0:  # how Feetech says that there are none
             return
-        ends = sorted(servo.zero + servo.sign * round(angle / self.steps.unit) for angle in (servo.low, servo.high))
+        step = servo.table.step
+        ends = sorted(servo.zero + servo.sign * round(angle / step) for angle in (servo.low, servo.high))
         if ends[0] < lower_bound or ends[1] > upper_bound:
             raise BusFailure(
                 f"{servo.name}, number {servo.id}, takes goals from {lower_bound} to {upper_bound} steps, and the "
@@ -415,7 +420,7 @@ class Rig:
                 for i in members:
                     if self.servos[i].id in replies:
                         reply = replies[self.servos[i].id]
-                        self._take(i, self.servos[i].table, reply.data, alert=bus.framing.alert(reply.code))
+                        self._take(i, self.servos[i].table, reply.data, alert=bus.protocol.alert(reply.code))
                         reading.age[i] += int(self.servos[i].id in bus.late)
         for number, bus in enumerate(self.buses):
             for board in self._always[number]:
@@ -433,8 +438,8 @@ class Rig:
         """Store position, speed and torque of servo i from a reply; an impossible position counts as a jump."""
         reading, servo = self.now, self.servos[i]
         values = table.unpack(table.felt, data)
-        angle = servo.sign * (values["present_position"] - servo.zero) * self.steps.unit
-        max_step = 3.0 * self.speed[i] * self.period * reading.age[i] + 2 * np.pi / STEPS
+        angle = servo.sign * (values["present_position"] - servo.zero) * table.step
+        max_step = 3.0 * self.speed[i] * self.period * reading.age[i] + table.step
         if np.isfinite(reading.angle[i]) and abs(angle - reading.angle[i]) > max_step and self.jumps[i] < JUMPS:
             self.jumps[i] += 1
             return
@@ -480,7 +485,7 @@ class Rig:
             address, length = table.block(table.health)
             with suppress(NoAnswer):
                 reply = bus.ask(
-                    bus.framing.read(self.servos[device].id, address, length), self.servos[device].id, length
+                    bus.protocol.read(self.servos[device].id, address, length), self.servos[device].id, length
                 )
                 self._health(device, table, table.unpack(table.health, reply.data))
 

@@ -7,12 +7,13 @@ from pathlib import Path
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
 from suchus.core.files import write
+from suchus.hardware.protocols import PROTOCOLS, channel_protocol
 from suchus.robot import blueprint
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.meaning import meanings
 
-CHANNELS = 16
-"""Of the usual servo board [-]; 19 servos need two of them."""
+DEFAULT_PROTOCOL = "pca9685"
+"""What the boards of a servo map speak that says nothing else."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,11 +67,15 @@ class ServoMap:
     """Rate of commands [Hz]."""
     servos: tuple[ServoLine, ...]
     """One for each of the robot's servos, in any order."""
+    protocol: str = DEFAULT_PROTOCOL
+    """What its boards speak: a name of ``suchus.hardware.protocols``."""
 
     def __post_init__(self) -> None:
-        """Refuse a rate out of range, and two servos on one channel."""
+        """Refuse a rate out of range, boards without channels, and two servos on one channel."""
         with Checks("servo map", self) as check:
             check.number("rate", 1.0, 1000.0, "Hz")
+            check.choice("protocol", PROTOCOLS)
+        channel_protocol(self.protocol)
         places = [(line.board, line.channel) for line in self.servos]
         for line in self.servos:
             if places.count((line.board, line.channel)) > 1:
@@ -109,9 +114,10 @@ class ServoMap:
 def straight(robot: Robot) -> ServoMap:
     """Return a map to start from: servos that turn 270 degrees over 500 to 2500 us, mounted in the middle.
 
-    They hang on boards of 16 channels in the order of the robot's layout. A linear actuator goes through its stroke
-    over 1000 to 2000 us, as Actuonix says of its L16-R.
+    They hang on PCA9685 boards of 16 channels in the order of the robot's layout. A linear actuator goes through its
+    stroke over 1000 to 2000 us, as Actuonix says of its L16-R.
     """
+    channels = channel_protocol(DEFAULT_PROTOCOL).channels
     half, reach = (dict.fromkeys(layout(robot).servos, value) for value in (1000.0, 0.75 * pi))
     for cable in robot.cables:
         if cable.linear is not None:
@@ -122,14 +128,14 @@ def straight(robot: Robot) -> ServoMap:
         servos=tuple(
             ServoLine(
                 name=name,
-                channel=place % CHANNELS,
+                channel=place % channels,
                 direction=1,
                 offset=0.0,
                 pulse_centre=1500.0,
                 pulse_per_radian=round(half[name] / reach[name], 3),
                 pulse_min=1500.0 - half[name],
                 pulse_max=1500.0 + half[name],
-                board=place // CHANNELS,
+                board=place // channels,
             )
             for place, name in enumerate(layout(robot).servos)
         ),
@@ -162,6 +168,7 @@ def write_map(servo_map: ServoMap, path: str | Path) -> Path:
         f"# A servo's pulse is pulse_centre + pulse_per_radian (direction angle + offset).\n{chr(10).join(notes)}\n",
         f"name = {_value(servo_map.name)}",
         f"rate = {servo_map.rate!r}  # {meanings(ServoMap)['rate']}",
+        f"protocol = {_value(servo_map.protocol)}  # {meanings(ServoMap)['protocol']}",
         "servos = [",
     ]
     for line in servo_map.servos:

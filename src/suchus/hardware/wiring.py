@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from suchus.core.files import read_toml, write
-from suchus.hardware.bus import BoardPlace, BusPlace, ServoPlace, Wiring
+from suchus.hardware.bus import STEP, BoardPlace, BusPlace, ServoPlace, Wiring
 from suchus.robot.blueprint import parse_table
 from suchus.robot.design import Robot
 from suchus.robot.design.meaning import meanings
@@ -39,7 +39,7 @@ def write_wiring(wiring: Wiring, path: str | Path) -> Path:
 def wiring_text(wiring: Wiring) -> str:
     """Return a wiring as TOML: the meaning of each value once, then a line for each bus, servo and board."""
     lines = [
-        "# The angle of a joint is sign (steps - zero) 2 pi / 4096.",
+        f"# The angle of a joint is sign (steps - zero) {_step_text(wiring)}.",
         f"robot = {_value(wiring.robot)}",
         f"fingerprint = {_value(wiring.fingerprint)}",
     ]
@@ -53,6 +53,15 @@ def wiring_text(wiring: Wiring) -> str:
                 lines.append(f"  {{{items}}},")
             lines.append("]")
     return "\n".join(lines) + "\n"
+
+
+def _step_text(wiring: Wiring) -> str:
+    """Return the angle of a step in words: one for all servos, or that of each model."""
+    steps_by_model = {servo.model: servo.table.step for servo in wiring.servo}
+    if all(step == STEP for step in steps_by_model.values()):
+        return "2 pi / 4096"
+    steps = ", ".join(f"{step:.9g} rad for {model}" for model, step in steps_by_model.items())
+    return f"times the model's step: {steps}"
 
 
 def _resolve_port(port: str, path: Path) -> str:

@@ -13,11 +13,11 @@ from rich.table import Table
 
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
-from suchus.core.errors import UnknownName
 from suchus.core.files import check_replaceable, check_writable, load, write
 from suchus.hardware import BusClock, Rig, WallClock, read_wiring, write_wiring
-from suchus.hardware.bus import TABLES, BusPlace, Wiring, straight
+from suchus.hardware.bus import BusPlace, Wiring, straight
 from suchus.hardware.calibrate import find_wiring, find_zeros, fit_log, fits_text
+from suchus.hardware.protocols import servo_table
 from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import gait_of
 from suchus.robot.motion import intended
@@ -98,9 +98,7 @@ def _initial_wiring(options: CalibrateOptions) -> Wiring:
         return wiring
     if options.port is None:
         raise BadCommand(f"there is no {options.hardware}: say --port PORT and --model MODEL of the servos instead.")
-    if options.model not in TABLES:
-        raise UnknownName("model", options.model, TABLES)
-    bus = BusPlace(port=options.port, baud=options.baud, protocol=TABLES[options.model].protocol)
+    bus = BusPlace(port=options.port, baud=options.baud, protocol=servo_table(options.model).protocol)
     return straight(options.robot, [bus], options.model)
 
 

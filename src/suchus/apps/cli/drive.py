@@ -27,10 +27,9 @@ from suchus.core.files import check_writable, path_exists, save
 from suchus.core.stopping import StopSignal, finishing
 from suchus.experiments.catalog._driven import Driven
 from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
-from suchus.hardware.bus import FRAMINGS, Instruction, Packet, Port, Wiring
-from suchus.hardware.bus.packets import Framing
-from suchus.hardware.bus.pca9685 import Pulses, open_wires
+from suchus.hardware.bus import BusProtocol, Instruction, Packet, Port, Wiring
 from suchus.hardware.emulator import EmulatedBody, Emulator, MemoryPort
+from suchus.hardware.protocols import bus_protocol, channel_protocol
 from suchus.robot.control import (
     Control,
     Coordinated,
@@ -66,8 +65,8 @@ class DriveOptions:
     hardware: Path = Path("hardware.toml")
     """Which servo hangs where, as suchus calibrate or suchus emulate write it."""
     map: Path | None = None
-    """Servo map of hobby servos on PCA9685 boards, which tell nothing, in the place of --hardware; --port names their
-    I2C bus."""
+    """Servo map of hobby servos on boards that give pulses, as PCA9685, in the place of --hardware; the servos tell
+    nothing, and --port names the boards' bus."""
     port: str | None = None
     """Port of its only bus, in the place of the file's; /dev/i2c-1 for --map."""
     clock: Literal["wall", "bus"] = "wall"
@@ -168,29 +167,18 @@ def _open_blind_rig(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
     if options.clock == "bus":
         raise BadCommand("hobby servos have no bus whose emulator could be told the time: leave out --clock bus.")
     servo_map = read_map(options.map, options.robot)
-    wires = PrintingBus() if options.dry_run else open_wires(options.port or "/dev/i2c-1")
-    pulses = Pulses(wires, sorted({line.board for line in servo_map.servos}), servo_map.rate)
+    protocol = channel_protocol(servo_map.protocol)
+    boards = sorted({line.board for line in servo_map.servos})
+    pulses = (
+        protocol.open_printing(print, boards, servo_map.rate)
+        if options.dry_run
+        else protocol.open(options.port or protocol.default_port, boards, servo_map.rate)
+    )
     rig = BlindRig(options.robot, servo_map, pulses)
     try:
         yield rig, WallClock(rig.period)
     finally:
         rig.close()
-
-
-class PrintingBus:
-    """A stand-in for an I2C bus; it prints the first writes."""
-
-    def __init__(self) -> None:
-        self._remaining_writes = 24
-
-    def write_i2c_block_data(self, i2c_addr: int, register: int, data: Sequence[int]) -> None:
-        """Print what would be written."""
-        self._remaining_writes -= 1
-        if self._remaining_writes >= 0:
-            print(f"write {i2c_addr:#04x} {register:#04x}  {bytes(data).hex(' ')}")
-
-    def close(self) -> None:
-        """Do nothing."""
 
 
 def _movement(options: DriveOptions) -> tuple[Gait, Control]:
@@ -233,7 +221,7 @@ def _open_rig(options: DriveOptions, wiring: Wiring, gait: Gait, control: Contro
     if options.dry_run:
         emulator = Emulator(wiring, EmulatedBody(options.robot, gait), has_clock=True)
         ports = [
-            PrintingPort(MemoryPort(emulator, number), FRAMINGS[bus.protocol], wiring)
+            PrintingPort(MemoryPort(emulator, number), bus_protocol(bus.protocol), wiring)
             for number, bus in enumerate(wiring.bus)
         ]
     rig = Rig(
@@ -317,14 +305,14 @@ class PrintingPort:
 
     Args:
         port: carries the packets.
-        framing: packet format of the protocol.
+        protocol: what is spoken.
         wiring: gives the names of the servos.
     """
 
-    def __init__(self, port: Port, framing: Framing, wiring: Wiring) -> None:
+    def __init__(self, port: Port, protocol: BusProtocol, wiring: Wiring) -> None:
         self.name = port.name
-        self._port, self._decoder, self._printed_ticks = port, framing.requests(), 0
-        self._word = framing.word
+        self._port, self._decoder, self._printed_ticks = port, protocol.requests(), 0
+        self._word = protocol.word
         self._names = {servo.id: servo.name for servo in wiring.servo}
         self._tables = {servo.id: servo.table for servo in wiring.servo}
 

@@ -15,8 +15,9 @@ from suchus.apps.cli.view import pages_of_viewer
 from suchus.core.files import check_replaceable, check_writable, write
 from suchus.core.files.store import packed
 from suchus.hardware import read_wiring, write_wiring
-from suchus.hardware.bus import BusPlace, BusProtocol, Wiring, straight
-from suchus.hardware.emulator import DEFAULT_MODELS, EmulatedBody, Emulator, Server, Trouble
+from suchus.hardware.bus import BusPlace, Wiring, straight
+from suchus.hardware.emulator import EmulatedBody, Emulator, Server, Trouble
+from suchus.hardware.protocols import bus_protocol
 from suchus.robot.design import Robot
 from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
@@ -24,11 +25,6 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.faults import FAULTS, from_table
 from suchus.sim.land import Ground, Lake
 
-_BAUD = {
-    "dynamixel": 1_000_000,
-    "feetech": 1_000_000,
-    "line": 2_000_000,
-}  # [1/s]; numbers that are written out are longer
 _PLACE = Path("hardware.toml")
 
 
@@ -40,8 +36,9 @@ class EmulateOptions:
     """The robot that is emulated."""
     hardware: Path = _PLACE
     """Which servo hangs where, with the paths of the ports; written for this robot where there is no such file."""
-    protocol: BusProtocol = "dynamixel"
-    """What servos speak, where the file is written; line: hobby servos behind a board of your own."""
+    protocol: str = "dynamixel"
+    """What servos speak, where the file is written: dynamixel, feetech, line (hobby servos behind a board of your
+    own), or a protocol of your own; suchus list shows them."""
     clock: Literal["wall", "bus"] = "wall"
     """wall: time passes by itself; bus: the robot moves when it is told to, by suchus drive --clock bus."""
     gait: Gait | None = None
@@ -133,10 +130,10 @@ def _wiring_and_links(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
         return wiring, ports if len(ports) == len(wiring.bus) and not options.socket else []
     check_writable(options.hardware.parent)
     link = options.hardware.parent / f"{options.hardware.stem}.port"
-    bus_place = BusPlace(port=link.name, protocol=options.protocol, baud=_BAUD[options.protocol])
-    return straight(
-        options.robot, [bus_place], DEFAULT_MODELS[options.protocol], boards=True
-    ), [] if options.socket else [link]
+    protocol = bus_protocol(options.protocol)
+    bus_place = BusPlace(port=link.name, protocol=protocol.name, baud=protocol.default_baud)
+    wiring = straight(options.robot, [bus_place], protocol.default_model, boards=True)
+    return wiring, [] if options.socket else [link]
 
 
 def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:

@@ -60,7 +60,7 @@ class Subcommand:
     other_words: tuple[str, ...] = ()
     """Words that may stand in the place of that name."""
     shelf_options: tuple[str, ...] = ()
-    """Kinds of what an option of that name names: robot, gait."""
+    """Kinds of what an option of that name names: robot, gait, protocol."""
     output: str = ""
     """What ``--out`` names: a folder, a page, or a file for a gait or a robot; empty where it is not checked early."""
 
@@ -187,7 +187,7 @@ COMMANDS = (
         "emulate a robot's servos on a bus",
         "suchus.apps.cli.emulate:emulate",
         first_word="robot",
-        shelf_options=("robot", "gait"),
+        shelf_options=("robot", "gait", "protocol"),
     ),
     Subcommand(
         "drive",

@@ -21,6 +21,7 @@ _LISTED = {
     "controllers": "suchus.robot.control:CONTROLLERS",
     "measures": "suchus.experiments.study:MEASURES",
     "commands": "suchus.apps.commands:COMMANDS",
+    "protocols": "suchus.hardware.protocols:PROTOCOLS",
 }
 """Module and object of each catalog, by the catalog's name."""
 _SCATTERED = ("controllers", "measures")

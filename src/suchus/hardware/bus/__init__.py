@@ -1,12 +1,12 @@
-"""Servo buses: packets, control tables, ports, and the wiring of servos."""
+"""Servo buses: packets, register tables, ports, and the wiring of servos."""
 
 from suchus.hardware.bus.bus import WAIT, Bus, Counts, NoAnswer
-from suchus.hardware.bus.packets import BROADCAST, Decoder, Framing, Instruction, Packet
+from suchus.hardware.bus.packets import BROADCAST, Decoder, Instruction, Packet, Refusal
 from suchus.hardware.bus.ports import BusGone, FilePort, Port, bit_rate, latency_timer, open_port
-from suchus.hardware.bus.tables import STEPS, TABLES, BusProtocol, Register, Table
+from suchus.hardware.bus.protocol import BusProtocol, ChannelProtocol, PulseBoards, ServoProtocol
+from suchus.hardware.bus.tables import STEP, STEPS, Register, Sign, Table
 from suchus.hardware.bus.wiring import (
     CLOCK,
-    FRAMINGS,
     BoardPlace,
     BusPlace,
     ServoPlace,
@@ -22,25 +22,28 @@ from suchus.hardware.bus.wiring import (
 __all__ = [
     "BROADCAST",
     "CLOCK",
-    "FRAMINGS",
+    "STEP",
     "STEPS",
-    "TABLES",
     "WAIT",
     "BoardPlace",
     "Bus",
     "BusGone",
     "BusPlace",
     "BusProtocol",
+    "ChannelProtocol",
     "Counts",
     "Decoder",
     "FilePort",
-    "Framing",
     "Instruction",
     "NoAnswer",
     "Packet",
     "Port",
+    "PulseBoards",
+    "Refusal",
     "Register",
     "ServoPlace",
+    "ServoProtocol",
+    "Sign",
     "Steps",
     "Table",
     "Wiring",

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from time import monotonic
 
 from suchus.core.errors import BusFailure
-from suchus.hardware.bus.packets import Framing, Packet
+from suchus.hardware.bus.packets import Packet
 from suchus.hardware.bus.ports import Port
+from suchus.hardware.bus.protocol import BusProtocol
 from suchus.hardware.bus.tables import Register
 from suchus.hardware.bus.wiring import CLOCK
 
@@ -33,22 +34,22 @@ class Counts:
 class Bus:
     """One bus.
 
-    Neither protocol numbers its packets: a reply that comes late looks like one to the next question. So after a reply
+    No protocol numbers its packets: a reply that comes late looks like one to the next question. So after a reply
     is missing, nothing else is asked (``settled``) until the bus has been silent for twice the wait. The same question
     may be asked again: a late reply to it is at worst older.
 
     Args:
         port: to it.
-        framing: what is spoken.
+        protocol: what is spoken.
         wait: for replies [s].
         has_clock: whether an emulator's clock says when all have answered, so that nothing needs to be waited for.
     """
 
-    def __init__(self, port: Port, framing: Framing, *, wait: float = WAIT, has_clock: bool = False) -> None:
+    def __init__(self, port: Port, protocol: BusProtocol, *, wait: float = WAIT, has_clock: bool = False) -> None:
         """Take an open port and the protocol that is spoken on it."""
-        self.port, self.framing, self.wait, self.clocked = port, framing, wait, has_clock
+        self.port, self.protocol, self.wait, self.clocked = port, protocol, wait, has_clock
         self.counts = Counts()
-        self._decoder = framing.replies()
+        self._decoder = protocol.replies()
         self._quiet_from = 0.0
         self._requested_lengths: dict[int, int] = {}  # whom ``begin`` asked for how many bytes
         self._late_replies: dict[int, Packet] = {}  # replies to that which came too late
@@ -108,7 +109,7 @@ class Bus:
                 self._keep(packet)
         self._requested_lengths |= dict.fromkeys(servos, length)
         servo_ids = [*servos, CLOCK] if self.clocked else [*servos]
-        self.send(self.framing.sync_read(servo_ids, address, length))
+        self.send(self.protocol.sync_read(servo_ids, address, length))
 
     def end(self, servos: Collection[int], length: int, wait: float | None = None) -> dict[int, Packet]:
         """Return the replies to ``begin`` that come in time, by servo.
@@ -166,7 +167,7 @@ class Bus:
     def ping(self, servo: int) -> Packet | None:
         """Return the reply of a servo to the question whether it is there; None if none comes."""
         try:
-            return self.ask(self.framing.ping(servo), servo)
+            return self.ask(self.protocol.ping(servo), servo)
         except NoAnswer:
             return None
 
@@ -176,7 +177,7 @@ class Bus:
         Raises:
             NoAnswer: it did not come in time.
         """
-        request = self.framing.read(servo, register.address, register.size)
+        request = self.protocol.read(servo, register.address, register.size)
         return register.decode(self.ask(request, servo, register.size).data)
 
     def write(self, servo: int, register: Register, value: int) -> Packet:
@@ -186,8 +187,8 @@ class Bus:
             NoAnswer: the reply did not come in time.
             BusFailure: the servo refused it.
         """
-        reply = self.ask(self.framing.write(servo, register.address, register.encode(value)), servo)
-        refusal = self.framing.refusal(reply.code)
+        reply = self.ask(self.protocol.write(servo, register.address, register.encode(value)), servo)
+        refusal = self.protocol.refusal(reply.code)
         if refusal:
             raise BusFailure(f"number {servo} on {self.port.name} refused {register.name} = {value}: {refusal}.")
         return reply
@@ -196,7 +197,7 @@ class Bus:
         """Write a register of several servos at once; none answers."""
         if values:
             self.send(
-                self.framing.sync_write(register.address, {servo: register.encode(v) for servo, v in values.items()})
+                self.protocol.sync_write(register.address, {servo: register.encode(v) for servo, v in values.items()})
             )
 
     def pass_until(self, tick: int) -> None:
@@ -205,7 +206,7 @@ class Bus:
         Raises:
             NoAnswer: there is no such clock on the bus, or the robot cannot go on.
         """
-        request = self.framing.write(CLOCK, 0, tick.to_bytes(4, "little"))
+        request = self.protocol.write(CLOCK, 0, tick.to_bytes(4, "little"))
         try:
             reply = self.ask(request, CLOCK, wait=_STEPPING)
         except NoAnswer as error:
@@ -219,7 +220,7 @@ class Bus:
     def clock(self) -> int | None:
         """Return the tick of an emulator's clock; None where there is none."""
         try:
-            reply = self.ask(self.framing.read(CLOCK, 0, 4), CLOCK, 4)
+            reply = self.ask(self.protocol.read(CLOCK, 0, 4), CLOCK, 4)
         except NoAnswer:
             return None
         return int.from_bytes(reply.data, "little")

@@ -1,12 +1,10 @@
 """What the packets of servo buses have in common: a request or a reply, and a decoder that survives what a wire does.
 
-Three protocols are spoken: Dynamixel 2.0 (``dynamixel``), Feetech's for STS servos (``feetech``), and lines of text for
-boards of one's own (``line``). They share their instructions and differ in their frames, checksums and the width of
-addresses and lengths.
+All protocols of ``suchus.hardware.protocols`` share these instructions. They differ in their frames, their checksums
+and the width of addresses and lengths.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -17,7 +15,7 @@ LAST_ID = 252
 
 
 class Instruction(IntEnum):
-    """What a request asks for; the numbers are those of both protocols."""
+    """What a request asks for; the numbers are those of Dynamixel and Feetech."""
 
     PING = 0x01
     READ = 0x02
@@ -25,6 +23,16 @@ class Instruction(IntEnum):
     REBOOT = 0x08
     SYNC_READ = 0x82
     SYNC_WRITE = 0x83
+
+
+class Refusal(IntEnum):
+    """Why an emulated device refuses a request; the numbers are those of Dynamixel 2.0."""
+
+    NONE = 0
+    INSTRUCTION = 2
+    RANGE = 4
+    LIMIT = 6
+    ACCESS = 7
 
 
 class Packet(NamedTuple):
@@ -70,74 +78,3 @@ class Decoder(ABC):
     @abstractmethod
     def _next_packet(self, data: bytes) -> tuple[int, Packet | None] | None:
         """Return the number of bytes used and their packet, None for noise; None if more bytes must come."""
-
-
-class Framing(ABC):
-    """One protocol: how a packet becomes bytes."""
-
-    name: str
-    """As ``hardware.toml`` calls it."""
-    word: int
-    """Width of addresses and of lengths in parameters [byte]."""
-
-    @abstractmethod
-    def request(self, packet: Packet) -> bytes:
-        """Return the bytes of a request."""
-
-    @abstractmethod
-    def reply(self, packet: Packet) -> bytes:
-        """Return the bytes of a reply."""
-
-    @abstractmethod
-    def requests(self) -> Decoder:
-        """Return a decoder of what the host says."""
-
-    @abstractmethod
-    def replies(self) -> Decoder:
-        """Return a decoder of what the servos say."""
-
-    @abstractmethod
-    def alert(self, code: int) -> bool:
-        """Return whether the error of a reply contains an alert."""
-
-    @abstractmethod
-    def refusal(self, code: int) -> str:
-        """Return why a servo refused a request, by the error of its reply; empty if it did not."""
-
-    def number(self, value: int) -> bytes:
-        """Return an address or a length as it stands in parameters."""
-        return value.to_bytes(self.word, "little")
-
-    def read(self, servo: int, address: int, length: int) -> bytes:
-        """Return the request for bytes of one servo from an address on."""
-        return self.request(Packet(servo, Instruction.READ, self.number(address) + self.number(length)))
-
-    def write(self, servo: int, address: int, data: bytes) -> bytes:
-        """Return the request that writes bytes from an address on."""
-        return self.request(Packet(servo, Instruction.WRITE, self.number(address) + data))
-
-    def ping(self, servo: int) -> bytes:
-        """Return the request to which a servo answers that it is there."""
-        return self.request(Packet(servo, Instruction.PING))
-
-    def reboot(self, servo: int) -> bytes:
-        """Return the request that reboots a servo, which ends an alert."""
-        return self.request(Packet(servo, Instruction.REBOOT))
-
-    def sync_read(self, servos: Sequence[int], address: int, length: int) -> bytes:
-        """Return the request that asks several servos for the same bytes; they answer in the order asked."""
-        data = self.number(address) + self.number(length) + bytes(servos)
-        return self.request(Packet(BROADCAST, Instruction.SYNC_READ, data))
-
-    def sync_write(self, address: int, values: Mapping[int, bytes]) -> bytes:
-        """Return the request that writes to several servos at once; none answers.
-
-        Args:
-            address: of the first byte.
-            values: bytes by servo, all of one length.
-        """
-        length = len(next(iter(values.values())))
-        data = b"".join(bytes([servo]) + value for servo, value in values.items())
-        return self.request(
-            Packet(BROADCAST, Instruction.SYNC_WRITE, self.number(address) + self.number(length) + data)
-        )

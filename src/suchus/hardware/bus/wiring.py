@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import pi
 from typing import Literal, TypeVar
 
@@ -11,19 +12,15 @@ import numpy as np
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.core.files import digest
-from suchus.hardware.bus.dynamixel import Dynamixel
-from suchus.hardware.bus.feetech import Feetech
-from suchus.hardware.bus.line import PlainLine
-from suchus.hardware.bus.packets import LAST_ID, Framing
-from suchus.hardware.bus.tables import STEPS, TABLES, BusProtocol, Table, imu_board, load_board
+from suchus.hardware.bus.packets import LAST_ID
+from suchus.hardware.bus.tables import STEPS, Table, imu_board, load_board
+from suchus.hardware.protocols import PROTOCOLS, bus_protocol, servo_table, servo_tables
 from suchus.robot.design import Crank, Robot, layout, servo_ranges
 
 T = TypeVar("T")
 CLOCK = 250
 """Identifier of the emulator's clock, which no real bus has: written with an absolute tick it lets the robot move until
 then; asked with the servos it answers last, so that the end of the answers is known [-]."""
-FRAMINGS: dict[str, Framing] = {"dynamixel": Dynamixel(), "feetech": Feetech(), "line": PlainLine()}
-"""The protocols by name."""
 Kind = Literal["imu", "feet", "belly", "tail"]
 FORCE_STEPS = 20000
 """Steps in which a board tells the weight of the robot, so that a tenth of a per mille is seen [-]."""
@@ -35,20 +32,26 @@ class BusPlace:
 
     port: str
     """Path of a serial port, as /dev/serial/by-id/..., or ``socket://127.0.0.1:PORT`` of an emulator."""
-    protocol: BusProtocol = "dynamixel"
-    """What its servos speak."""
+    protocol: str = "dynamixel"
+    """What its servos speak, as ``dynamixel``, ``feetech`` or ``line``: a name of ``suchus.hardware.protocols``."""
     baud: int = 1_000_000
     """Bit rate [1/s]."""
 
     def __post_init__(self) -> None:
+        """Refuse rates out of range, and protocols that are unknown or have no packets."""
         with Checks("bus", self) as check:
             check.whole("baud", 9600, 4_500_000)
             check.that(bool(self.port.strip()), "port is empty; name a serial port or a socket")
+            check.choice("protocol", PROTOCOLS)
+        bus_protocol(self.protocol)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ServoPlace:
-    """One servo: at ``steps`` of its own the joint's angle is ``sign (steps - zero) 2 pi / 4096``."""
+    """One servo: at ``steps`` of its own the joint's angle is ``sign (steps - zero)`` steps of its model.
+
+    A step is ``2 pi / 4096`` for all models that suchus ships.
+    """
 
     name: str
     """Name of the servo, as ``LF_yaw``; the angle of ``tail_cable`` is that of its pulley."""
@@ -74,16 +77,18 @@ class ServoPlace:
             check.that(self.id != CLOCK, f"id is {CLOCK}, which stands for the emulator's clock; take another one")
             check.whole("bus", 0, 15)
             check.that(self.sign in (-1, 1), f"sign is {self.sign!r}; 1 or -1 is allowed")
-            check.whole("zero", -STEPS, 2 * STEPS)
-            check.that(self.model in TABLES, f"model is {self.model!r}; there is {', '.join(TABLES)}")
+            models = servo_tables()
+            check.that(self.model in models, f"model is {self.model!r}; there is {', '.join(models)}")
+            turn = round(2 * pi / self.table.step) if self.model in models else STEPS
+            check.whole("zero", -turn, 2 * turn)
             check.number("low", -2 * pi, 2 * pi, "rad")
             check.number("high", -2 * pi, 2 * pi, "rad")
             check.that(self.low < self.high, f"low is {self.low:g} rad and high {self.high:g} rad; they must increase")
 
-    @property
+    @cached_property
     def table(self) -> Table:
-        """Its control table."""
-        return TABLES[self.model]
+        """Its register table."""
+        return servo_table(self.model)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -170,7 +175,7 @@ class Wiring:
         return board_table(board, self.bus[board.bus].protocol, robot)
 
 
-def board_table(board: BoardPlace, protocol: BusProtocol, robot: Robot) -> Table:
+def board_table(board: BoardPlace, protocol: str, robot: Robot) -> Table:
     """Return the table of a board of a robot that speaks a protocol."""
     if board.kind == "imu":
         return imu_board(protocol)
@@ -197,6 +202,7 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
         boards: whether it has a board for each kind of sensor, on the first bus.
 
     Raises:
+        UnknownName: no protocol has a register table of the model.
         UnsuitedRobot: a servo turns all round, which these do not follow, or a linear actuator moves a cable.
         InvalidDesign: more servos than one bus can number.
     """
@@ -208,15 +214,19 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
         raise InvalidDesign(
             f"robot {robot.name!r} has {share} servos for each bus; up to 199 are allowed: use more buses."
         )
-    ranges = servo_ranges(robot)
+    ranges, table = servo_ranges(robot), servo_table(model)
+    min_angle, max_angle = (
+        (table[name].initial - table.center) * table.step for name in ("position_low", "position_high")
+    )
     servo = tuple(
         ServoPlace(
             name=name,
             id=1 + i % share,
             model=model,
             bus=i // share,
-            low=float(max(ranges[i, 0], -pi)),
-            high=float(min(ranges[i, 1], pi * (1 - 2 / STEPS))),
+            zero=table.center,
+            low=float(max(ranges[i, 0], min_angle)),
+            high=float(min(ranges[i, 1], max_angle)),
         )
         for i, name in enumerate(place.servos)
     )
@@ -294,7 +304,8 @@ class Steps:
     def __init__(self, servos: Sequence[ServoPlace]) -> None:
         self._sign = np.array([servo.sign for servo in servos])
         self._zero = np.array([servo.zero for servo in servos])
-        self.unit = 2 * pi / STEPS
+        self.unit = np.array([servo.table.step for servo in servos])
+        """Angle of a step of each servo, shape (servo,) [rad]."""
 
     def of(self, angles: np.ndarray) -> np.ndarray:
         """Return the nearest steps of angles, shape (servo,)."""

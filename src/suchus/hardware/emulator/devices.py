@@ -1,18 +1,12 @@
 """Devices on an emulated bus: servos with their control tables, and sensor boards."""
 
-from math import pi
-
 import numpy as np
 
-from suchus.hardware.bus import STEPS, Register, ServoPlace, Table
-from suchus.hardware.bus.dynamixel import ALERT
+from suchus.hardware.bus import Refusal, Register, ServoPlace, Table
 from suchus.robot.control import Sensed
 
-OK, RANGE, LIMIT, ACCESS = 0, 4, 6, 7  # errors of Dynamixel 2.0
 AMBIENT = 25.0
 """Temperature of the air, at which servos begin [degrees Celsius]."""
-DEFAULT_MODELS = {"dynamixel": "XM430-W350", "feetech": "STS3250", "line": "DS3225"}
-"""Servos of an emulated robot for which no hardware is written, by protocol."""
 SWITCHES_OFF = {"input voltage": False, "overheated": True, "encoder": False, "electrical shock": True,
                 "current": True, "overload": True}  # fmt: skip
 """Which alerts take the torque away, as the makers set them."""
@@ -45,14 +39,14 @@ class Device:
         """Return bytes as they are."""
         return bytes(self.memory[address : address + length]).ljust(length, b"\0")
 
-    def write(self, address: int, data: bytes) -> int:
-        """Take bytes, and return the error: 0 if all of them were taken."""
+    def write(self, address: int, data: bytes) -> Refusal:
+        """Take bytes, and return why they are refused; ``NONE`` if all of them were taken."""
         del address, data
-        return ACCESS
+        return Refusal.ACCESS
 
     @property
-    def alert(self) -> int:
-        """What an alert adds to the error of every reply."""
+    def alerts(self) -> int:
+        """Bits of its alerts."""
         return 0
 
 
@@ -72,7 +66,7 @@ class EmulatedServo(Device):
         codes = {rate: code for code, rate in self.table.bauds.items()}
         self.put("id", place.id)
         self.put("baud_rate", codes.get(baud, 0))
-        self.put("return_delay", 0)
+        self._tell("return_delay", 0.0)
         self.supply = place.table.motor.volts if place.table.motor is not None else 0.0
         """Voltage of the battery at the beginning [V]."""
         self.temperature, self.voltage, self.torque = AMBIENT, self.supply, 0.0
@@ -95,51 +89,50 @@ class EmulatedServo(Device):
     @property
     def goal(self) -> float:
         """Angle of the joint that it aims at [rad]."""
-        return self.place.sign * (self.get("goal_position") - self.place.zero) * 2 * pi / STEPS
+        return self.place.sign * (self.get("goal_position") - self.place.zero) * self.table.step
 
     @property
-    def alert(self) -> int:
-        """What an alert adds to the error of every reply."""
-        error = self.get("hardware_error")
-        return error if self.table.protocol == "feetech" else (ALERT if error else 0)
+    def alerts(self) -> int:
+        """Bits of its alerts."""
+        return self.get("hardware_error")
 
-    def write(self, address: int, data: bytes) -> int:
-        """Write bytes by the rules of the servo, and return the error code."""
+    def write(self, address: int, data: bytes) -> Refusal:
+        """Write bytes by the rules of the servo, and return why they are refused."""
         registers = [
             r for r in self.table.registers if address < r.address + r.size and r.address < address + len(data)
         ]
         if not registers or any(self._partly(r, address, data) for r in registers):
-            return ACCESS
+            return Refusal.ACCESS
         for register in registers:
-            error = self._write_error(register, register.decode(data[register.address - address :][: register.size]))
-            if error:
-                return OK if self.table.protocol == "feetech" else error
+            refusal = self._refusal(register, register.decode(data[register.address - address :][: register.size]))
+            if refusal:
+                return refusal
         self.memory[address : address + len(data)] = data
         if any(register.name == "bus_watchdog" for register in registers):
             self.put("bus_watchdog", max(self.get("bus_watchdog"), 0))
-        return OK
+        return Refusal.NONE
 
     @staticmethod
     def _partly(register: Register, address: int, data: bytes) -> bool:
         return register.address < address or register.address + register.size > address + len(data)
 
-    def _write_error(self, register: Register, value: int) -> int:
-        """Return the error code for a write of a value to a register; ``OK`` if it is allowed."""
+    def _refusal(self, register: Register, value: int) -> Refusal:
+        """Return why a value cannot be written to a register; ``NONE`` if it can."""
         if not register.writable:
-            return ACCESS
+            return Refusal.ACCESS
         if register.address < self.table.persistent and (
             self.get("torque_enable") if "lock" not in self.table else self.get("lock")
         ):
-            return ACCESS
+            return Refusal.ACCESS
         if register.name == "bus_watchdog" and self.get("firmware") < self.table.watches_from:
-            return ACCESS
+            return Refusal.ACCESS
         if register.name.startswith("goal_") and "bus_watchdog" in self.table and self.get("bus_watchdog") < 0:
-            return ACCESS
+            return Refusal.ACCESS
         if register.span is not None and not register.span[0] <= value <= register.span[1]:
-            return RANGE
+            return Refusal.RANGE
         if register.name == "goal_position" and not self.get("position_low") <= value <= self.get("position_high"):
-            return LIMIT
-        return OK
+            return Refusal.LIMIT
+        return Refusal.NONE
 
     def feel(self, angle: float, speed: float, torque: float) -> None:
         """Tell what the joint does.
@@ -150,7 +143,7 @@ class EmulatedServo(Device):
             torque: of the servo on it [N m].
         """
         sign, table = self.place.sign, self.table
-        self.put("present_position", self.place.zero + round(sign * angle / (2 * pi / STEPS)))
+        self.put("present_position", self.place.zero + round(sign * angle / table.step))
         self.put("present_velocity", round(sign * speed / table["present_velocity"].unit))
         self.torque = abs(torque)
         self._tell("present_current", sign * torque / table.torque_per_ampere)
@@ -184,6 +177,16 @@ class EmulatedServo(Device):
             if patience > 0.0 and time - self.heard_at > patience + 1e-9:
                 self.put("bus_watchdog", -1)
                 self.put("goal_position", self.get("present_position"))
+
+    @property
+    def reply_delay(self) -> float:
+        """How long it waits before it answers [s]."""
+        return self.get("return_delay") * self.table["return_delay"].unit if "return_delay" in self.table else 0.0
+
+    def soak(self) -> None:
+        """Raise the alert of a servo in water: a shock where the servo knows one, else an overload."""
+        alert_names = [name for _, name in self.table.alerts]
+        self.fail("electrical shock" if "electrical shock" in alert_names else "overload")
 
     def fail(self, alert: str) -> None:
         """Raise an alert, and switch the servo off if its maker has it so."""

@@ -7,10 +7,21 @@ from random import Random
 import numpy as np
 
 from suchus.core.errors import Diverged
-from suchus.hardware.bus import BROADCAST, CLOCK, FRAMINGS, BusGone, Decoder, Framing, Instruction, Packet, Wiring
+from suchus.hardware.bus import (
+    BROADCAST,
+    CLOCK,
+    BusGone,
+    BusProtocol,
+    Decoder,
+    Instruction,
+    Packet,
+    Refusal,
+    Wiring,
+)
 from suchus.hardware.emulator.body import EmulatedBody
-from suchus.hardware.emulator.devices import OK, Board, Device, EmulatedServo
+from suchus.hardware.emulator.devices import Board, Device, EmulatedServo
 from suchus.hardware.emulator.trouble import Trouble
+from suchus.hardware.protocols import bus_protocol
 from suchus.robot.control import Sensed
 
 BITS = 10
@@ -23,7 +34,7 @@ _GARBLED = 0.5  # share of the bytes of two replies that collide which arrive wr
 class _Line:
     """One bus."""
 
-    framing: Framing
+    protocol: BusProtocol
     decoder: Decoder
     devices: dict[int, Device]
     baud: int
@@ -49,9 +60,10 @@ class Emulator:
         """Why the robot cannot go on; None as long as it can."""
         self._random = Random(self.trouble.seed)
         self._noise = np.random.default_rng([self.trouble.seed, 1])
-        framings = [FRAMINGS[bus.protocol] for bus in wiring.bus]
+        protocols = [bus_protocol(bus.protocol) for bus in wiring.bus]
         self.lines = [
-            _Line(framing, framing.requests(), {}, bus.baud) for framing, bus in zip(framings, wiring.bus, strict=True)
+            _Line(protocol, protocol.requests(), {}, bus.baud)
+            for protocol, bus in zip(protocols, wiring.bus, strict=True)
         ]
         self.servos = []
         for number, place in enumerate(wiring.ordered(body.robot)):
@@ -85,9 +97,9 @@ class Emulator:
             if not clock and self._random.random() < self.trouble.lost:
                 continue
             for servo, reply in self._answers(line, packet):
-                data = line.framing.reply(reply) if servo is None else self._spoilt(line, reply)
-                delay = servo.get("return_delay") * 2e-6 if isinstance(servo, EmulatedServo) else 0.0
-                arrival_time += delay + len(line.framing.reply(reply)) * BITS / line.baud
+                data = line.protocol.reply(reply) if servo is None else self._spoilt(line, reply)
+                delay = servo.reply_delay if isinstance(servo, EmulatedServo) else 0.0
+                arrival_time += delay + len(line.protocol.reply(reply)) * BITS / line.baud
                 if data:
                     replies.append((arrival_time, data))
         return replies
@@ -112,15 +124,16 @@ class Emulator:
 
     def _answers(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
         """Return the replies to a packet with their devices; None for the clock."""
-        word, data = line.framing.word, packet.data
+        word, data = line.protocol.word, packet.data
         if packet.code == Instruction.SYNC_READ and len(data) >= 2 * word:
             address, length = _number(data, word), _number(data[word:], word)
             answers: list[tuple[Device | None, Packet]] = []
             for servo in data[2 * word :]:
                 if servo == CLOCK and self.clocked:
-                    answers.append((None, Packet(CLOCK, OK, self.body.tick.to_bytes(4, "little").ljust(length, b"\0"))))
+                    answers.append((None, Packet(CLOCK, 0, self.body.tick.to_bytes(4, "little").ljust(length, b"\0"))))
                 elif (device := self._listening(line, servo)) is not None:
-                    answers.append((device, Packet(servo, device.alert, device.read(address, length))))
+                    code = line.protocol.reply_code(Refusal.NONE, device.alerts)
+                    answers.append((device, Packet(servo, code, device.read(address, length))))
             return answers
         if packet.code == Instruction.SYNC_WRITE and len(data) > 2 * word:
             address, length = _number(data, word), _number(data[word:], word)
@@ -141,33 +154,27 @@ class Emulator:
         if packet.code == Instruction.WRITE:
             self.pass_until(int.from_bytes(packet.data[word : word + 4], "little"))
             return Packet(CLOCK, int(self.diverged is not None))
-        return Packet(CLOCK, OK, self.body.tick.to_bytes(4, "little"))
+        return Packet(CLOCK, 0, self.body.tick.to_bytes(4, "little"))
 
     def _device_answers(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
         """Return the reply of the device that a packet names; empty if it does not answer."""
-        device, word = self._listening(line, packet.id), line.framing.word
+        device, word = self._listening(line, packet.id), line.protocol.word
         if device is None:
             return []
-        data, error = packet.data, OK
+        data, refusal = packet.data, Refusal.NONE
         answer = b""
         if packet.code == Instruction.PING:
-            answer = self._ping_reply(device)
+            firmware = device.get("firmware") if "firmware" in device.table else 0
+            answer = line.protocol.ping_data(device.get("model_number"), firmware)
         elif packet.code == Instruction.READ and len(data) == 2 * word:
             answer = device.read(_number(data, word), _number(data[word:], word))
         elif packet.code == Instruction.WRITE and len(data) > word:
-            error = self._write(device, _number(data, word), data[word:])
+            refusal = self._write(device, _number(data, word), data[word:])
         elif packet.code == Instruction.REBOOT and isinstance(device, EmulatedServo):
             device.reboot()
         else:
-            error = 2 if word == 2 else OK
-        return [(device, Packet(packet.id, error | device.alert, answer))]
-
-    def _ping_reply(self, device: Device) -> bytes:
-        """Return the data of a reply to a ping: model and firmware for Dynamixel, nothing for other protocols."""
-        if device.table.protocol != "dynamixel":
-            return b""
-        firmware = device.get("firmware") if "firmware" in device.table else 0
-        return device.get("model_number").to_bytes(2, "little") + bytes([firmware])
+            refusal = Refusal.INSTRUCTION
+        return [(device, Packet(packet.id, line.protocol.reply_code(refusal, device.alerts), answer))]
 
     def _listening(self, line: _Line, servo: int) -> Device | None:
         """Return a device, or None if it does not answer."""
@@ -183,21 +190,21 @@ class Emulator:
             device.heard_at = self.body.time
         return device
 
-    def _write(self, device: Device, address: int, data: bytes) -> int:
-        """Write registers of a device, pass new goals and torque limits to the robot, and return the error code."""
-        error = device.write(address, data)
-        if isinstance(device, EmulatedServo) and error == OK:
+    def _write(self, device: Device, address: int, data: bytes) -> Refusal:
+        """Write registers of a device, pass new goals and torque limits to the robot, and return the refusal."""
+        refusal = device.write(address, data)
+        if isinstance(device, EmulatedServo) and refusal == Refusal.NONE:
             goal = device.table["goal_position"]
             if address <= goal.address < address + len(data):
                 self.body.aim({device.number: self._rounded(device.goal)})
             if device.share != self.body.powered[device.number]:
                 self._power()
-        return error
+        return refusal
 
     def _spoilt(self, line: _Line, reply: Packet) -> bytes:
         """Return the bytes of a reply as they arrive; empty if it is lost."""
         random, trouble = self._random, self.trouble
-        data = bytearray(line.framing.reply(reply))
+        data = bytearray(line.protocol.reply(reply))
         if reply.id in trouble.twin:  # two replies at once
             for i in range(4, len(data)):
                 if random.random() < _GARBLED:
@@ -227,7 +234,7 @@ class Emulator:
             heating = trouble.heating if has_trouble and servo.place.id in trouble.hot else 0.0
             servo.age(period, heating, max(servo.supply - self._sagged, 0.0), time)
             if has_trouble and servo.place.id in trouble.wet:
-                servo.fail("overload" if servo.table.protocol == "feetech" else "electrical shock")
+                servo.soak()
 
     def _feel(self) -> None:
         """Write the robot's sensor readings to servos and boards, delayed by the latency."""

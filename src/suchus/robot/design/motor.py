@@ -2,12 +2,9 @@
 
 from dataclasses import dataclass
 from math import inf, log1p
-from typing import Literal
 
 from suchus.core.checks import Checks
-
-Protocol = Literal["dynamixel", "dynamixel1", "feetech", "pwm"]
-"""How a servo is spoken to: Dynamixel protocol 2.0, protocol 1.0, Feetech STS, or pulses, which answer nothing."""
+from suchus.core.sources import SHELVES, gather
 
 COPPER = 0.0039
 """How much more a copper winding resists for each kelvin, as a part of it at ``ROOM_TEMPERATURE`` [1/K]."""
@@ -115,8 +112,8 @@ class Motor:
     """Who makes it."""
     family: str
     """Servos of one family hang on one bus and one supply, so that a robot can be built of them."""
-    protocol: Protocol
-    """How it is spoken to."""
+    protocol: str
+    """How it is spoken to, as ``dynamixel``, ``feetech`` or ``pwm``: a name among the protocols of servos."""
     model_number: int
     """Number that it answers for its model on its bus [-]; 0 where it has none."""
     volts: float
@@ -155,6 +152,7 @@ class Motor:
     def __post_init__(self) -> None:
         with Checks(f"motor {self.name}", self) as check:
             check.that(bool(self.name), "a motor needs a name")
+            check.choice("protocol", gather("protocol", SHELVES["protocols"]))  # by file names: nothing is imported
             check.whole("model_number", 0, 65535)
             check.number("volts", 0.1, 1000.0, "V")
             check.range("volts_range", 0.1, 1000.0, "V")

@@ -14,7 +14,8 @@ from suchus.core.errors import Diverged
 from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, SimulationResult, silent
 from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, drive
 from suchus.hardware.bus import BusPlace, Wiring, straight
-from suchus.hardware.emulator import DEFAULT_MODELS, EmulatedBody, Emulator, MemoryPort, Trouble
+from suchus.hardware.emulator import EmulatedBody, Emulator, MemoryPort, Trouble
+from suchus.hardware.protocols import bus_protocol, bus_protocols
 from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator
 from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS
@@ -73,7 +74,8 @@ def rehearse(
         trouble: imperfections of the wire; none by default.
         actual_wiring: actual wiring of the robot, where it differs from the configured one.
     """
-    wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], DEFAULT_MODELS[protocol], boards=True)  # type: ignore[arg-type]
+    bus = BusPlace(port="memory", protocol=protocol)
+    wiring = straight(robot, [bus], bus_protocol(protocol).default_model, boards=True)
     trouble = trouble or Trouble()
     emulator = Emulator(
         actual_wiring or wiring, EmulatedBody(robot, gait, latency=trouble.latency), trouble, has_clock=True
@@ -161,7 +163,7 @@ class Rehearsal(Experiment):
         with Checks(self.name(), self) as check:
             check.number("cycles", 0.1, 100.0, "")
             check.number("rule_cycles", 0.1, 100.0, "")
-            for name, options in (("protocols", DEFAULT_MODELS), ("controls", RULES)):
+            for name, options in (("protocols", tuple(bus_protocols())), ("controls", RULES)):
                 unknown = [choice for choice in getattr(self, name) if choice not in options]
                 check.that(not unknown, f"{self.name()}.{name} has {unknown}; there is {', '.join(options)}")
             check.that(bool(self.protocols), f"{self.name()}.protocols is empty; one at least is needed")

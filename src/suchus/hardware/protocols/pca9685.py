@@ -3,11 +3,12 @@
 Source: NXP, "PCA9685, 16-channel, 12-bit PWM Fm+ I2C-bus LED controller", rev. 4.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
 from suchus.core.errors import BusFailure, InvalidDesign
+from suchus.hardware.bus.protocol import ChannelProtocol
 
 MODE, PRESCALE, FIRST_CHANNEL, ALL_CHANNELS_OFF = 0x00, 0xFE, 0x06, 0xFD
 """Addresses: mode, prescaler, the first channel, and the byte that switches all channels off."""
@@ -18,6 +19,9 @@ _CLOCK, _STEPS = 25e6, 4096  # [Hz] of its oscillator; steps of a period
 _BLOCK = 8  # channels of a write of 32 bytes, the most that SMBus carries
 MIN_RATE, MAX_RATE = 24.0, 1526.0
 """Rates of pulses that its prescaler can give [Hz]."""
+CHANNELS = 16
+"""Channels of a board [-]."""
+_MAX_PRINTED_WRITES = 24  # writes that a dry run prints
 
 
 class Wires(Protocol):
@@ -75,6 +79,8 @@ class Pulses:
                 f"the rate of pulses is {rate:g} Hz; {MIN_RATE:g} to {MAX_RATE:g} Hz is what the boards give."
             )
         self._wires, self.boards, self.rate = wires, tuple(boards), rate
+        self.step = 1e6 / rate / _STEPS
+        """Step of a pulse's width [us]."""
         for board in self.boards:
             self._write(board, MODE, [_SLEEP | _INCREMENT])  # its prescaler is only taken asleep
             self._write(board, PRESCALE, [round(_CLOCK / _STEPS / rate) - 1])
@@ -90,7 +96,7 @@ class Pulses:
             board_widths = {
                 channel: width for (channel_board, channel), width in pulses.items() if channel_board == board
             }
-            for start in range(0, 16, _BLOCK):
+            for start in range(0, CHANNELS, _BLOCK):
                 self._block(board, {c: board_widths[c] for c in range(start, start + _BLOCK) if c in board_widths})
 
     def _block(self, board: int, widths: Mapping[int, float]) -> None:
@@ -125,3 +131,43 @@ class Pulses:
                 "its "
                 "power, its plug and the bridges of its address."
             ) from error
+
+
+class PrintingWires:
+    """A stand-in for an I2C bus, which tells the first writes.
+
+    Args:
+        say: takes a line of text.
+    """
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say, self._remaining_writes = say, _MAX_PRINTED_WRITES
+
+    def write_i2c_block_data(self, i2c_addr: int, register: int, data: Sequence[int]) -> None:
+        """Tell what would be written."""
+        self._remaining_writes -= 1
+        if self._remaining_writes >= 0:
+            self._say(f"write {i2c_addr:#04x} {register:#04x}  {bytes(data).hex(' ')}")
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class Pca9685(ChannelProtocol):
+    """PCA9685 boards on an I2C bus."""
+
+    name = "pca9685"
+    families = ("hobby servos",)
+    channels = CHANNELS
+    default_port = "/dev/i2c-1"
+
+    def open(self, port: str, boards: Sequence[int], rate: float) -> Pulses:
+        """Open an I2C bus, and set the rate of pulses on its boards."""
+        return Pulses(open_wires(port), boards, rate)
+
+    def open_printing(self, say: Callable[[str], None], boards: Sequence[int], rate: float) -> Pulses:
+        """Return boards whose writes are told and not made."""
+        return Pulses(PrintingWires(say), boards, rate)
+
+
+protocol = Pca9685()

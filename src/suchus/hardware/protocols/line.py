@@ -1,7 +1,7 @@
 """A plain line protocol for boards of one's own: lines of text with whole numbers, which a terminal can type and read.
 
-A board holds, for each of its servos, a row of 16-bit registers, as ``tables`` lists them. A line is what it says, a
-star, the CRC-16 of what stands before the star (as of Dynamixel 2.0, four hexadecimal digits), and a line feed:
+A board holds, for each of its servos, a row of 16-bit registers, as ``PlainLine.table`` lists them. A line is what it
+says, a star, the CRC-16 of what stands before the star (as of Dynamixel 2.0, four hexadecimal digits), and a line feed:
 
 * ``p 3``: is number 3 there? It answers ``3 0``: its number, and its error.
 * ``r 3 15 2``: read two registers of it from register 15 on; it answers ``3 0 2048 -12``. With several numbers, as in
@@ -15,9 +15,13 @@ a line whose CRC is wrong is dropped by either side, and the next one counts.
 """
 
 from collections.abc import Iterator, Sequence
+from types import MappingProxyType
 
-from suchus.hardware.bus.dynamixel import NumberedErrors, crc
-from suchus.hardware.bus.packets import BROADCAST, Decoder, Instruction, Packet
+from suchus.hardware.bus.packets import BROADCAST, Decoder, Instruction, Packet, Refusal
+from suchus.hardware.bus.protocol import BusProtocol
+from suchus.hardware.bus.tables import STEP, STEPS, Register, Sign, Table
+from suchus.hardware.protocols.dynamixel import ALERT, REFUSALS, crc
+from suchus.robot.design import Motor
 
 _MAX_LINE_LENGTH = 4096  # bytes of a line; what is longer is noise
 _TAIL = 5  # bytes of the star and the CRC
@@ -130,11 +134,16 @@ class _Lines(Decoder):
             return length, None
 
 
-class PlainLine(NumberedErrors):
+class PlainLine(BusProtocol):
     """Lines of text, for boards of one's own."""
 
     name = "line"
+    families = ("hobby servos",)
     word = 2
+    servo_protocol = "pwm"
+    bauds = MappingProxyType(dict(enumerate((1_000_000, 500_000, 250_000, 115_200, 57_600, 2_000_000, 3_000_000))))
+    default_model = "DS3225"
+    default_baud = 2_000_000  # numbers that are written out are longer
 
     def request(self, packet: Packet) -> bytes:
         """Return the bytes of a request."""
@@ -144,6 +153,15 @@ class PlainLine(NumberedErrors):
         """Return the bytes of a reply."""
         return _line(" ".join(str(number) for number in (packet.id, packet.code, *_numbers(packet.data))))
 
+    def alert(self, code: int) -> bool:
+        """Return whether the error says that there is an alert."""
+        return bool(code & ALERT)
+
+    def refusal(self, code: int) -> str:
+        """Return what the error says."""
+        number = code & ~ALERT
+        return REFUSALS.get(number, f"error {number}") if number else ""
+
     def requests(self) -> Decoder:
         """Return a decoder of what the host says."""
         return _Lines(replies=False)
@@ -151,6 +169,48 @@ class PlainLine(NumberedErrors):
     def replies(self) -> Decoder:
         """Return a decoder of what boards say; the host's own echo is passed over."""
         return _Lines(replies=True)
+
+    def reply_code(self, refusal: Refusal, alerts: int) -> int:
+        """Return the number of the refusal, and 128 more while there is an alert."""
+        return refusal | (ALERT if alerts else 0)
+
+    def table(self, motor: Motor) -> Table:
+        """Return the table of a hobby servo behind a board of one's own; register n is at 2 n."""
+        hottest = round(motor.temperature_limit)
+        min_voltage = round(100 * motor.volts_range[0])
+        two: Sign = "two"
+        rows = (
+            Register(name="model_number", address=0, size=2, initial=motor.model_number),
+            Register(name="firmware", address=2, size=2, initial=1),
+            Register(name="id", address=4, size=2, initial=1),
+            Register(name="baud_rate", address=6, size=2),
+            Register(name="return_delay", address=8, size=2, unit=1e-6, writable=True, span=(0, 10_000)),
+            Register(name="operating_mode", address=10, size=2, writable=True, initial=3, span=(0, 16)),
+            Register(name="temperature_limit", address=12, size=2, writable=True, initial=hottest, span=(0, 200)),
+            Register(name="voltage_low", address=14, size=2, unit=0.01, writable=True, initial=min_voltage),
+            Register(name="position_low", address=16, size=2, unit=STEP, sign=two, writable=True),
+            Register(name="position_high", address=18, size=2, unit=STEP, sign=two, writable=True, initial=STEPS - 1),
+            Register(name="bus_watchdog", address=20, size=2, unit=0.02, sign=two, writable=True, span=(0, 127)),
+            Register(name="torque_enable", address=22, size=2, writable=True, span=(0, 1)),
+            Register(name="torque_limit", address=24, size=2, sign=two, writable=True, initial=1000, span=(0, 1000)),
+            Register(name="goal_position", address=28, size=2, unit=STEP, sign=two, writable=True, initial=2048),
+            Register(name="present_position", address=30, size=2, unit=STEP, sign=two, initial=2048),
+            Register(name="present_velocity", address=32, size=2, unit=1e-3, sign=two),
+            Register(name="present_current", address=34, size=2, unit=1e-3, sign=two),
+            Register(name="present_voltage", address=36, size=2, unit=0.01, initial=round(100 * motor.volts)),
+            Register(name="present_temperature", address=38, size=2, sign=two, initial=25),
+            Register(name="hardware_error", address=40, size=2),
+        )
+        return Table(
+            model=motor.name,
+            number=motor.model_number,
+            protocol=self.name,
+            registers=rows,
+            motor=motor,
+            felt=("present_position", "hardware_error"),
+            bauds=self.bauds,
+            alerts=((0, "input voltage"), (2, "overheated"), (3, "encoder"), (4, "electrical shock"), (5, "overload")),
+        )
 
 
 def _request_words(packet: Packet) -> Iterator[str]:
@@ -178,3 +238,6 @@ def _request_words(packet: Packet) -> Iterator[str]:
     yield ",".join(str(rows[i]) for i in range(0, len(rows), size))
     yield str(start // 2)
     yield ",".join(str(number) for i in range(0, len(rows), size) for number in _numbers(rows[i + 1 : i + size]))
+
+
+protocol = PlainLine()
