@@ -6,7 +6,7 @@ import os
 import pickle
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +18,7 @@ from hypothesis import settings
 from jaxtyping import install_import_hook
 
 import first_calls
+import programs as programs_of_tests
 from batteries import counted  # noqa: F401  a fixture
 from left_out import COLLECTED
 
@@ -103,6 +104,13 @@ def limbs_gait() -> Gait:
 def long_tail(robot: Robot) -> Robot:
     """A robot of another topology."""
     return crocodile(replace(robot.tables, name="long_tail", tail=replace(robot.tables.tail, joints=8, fin_segments=4)))
+
+
+@pytest.fixture(scope="session")
+def programs() -> Iterator[programs_of_tests.Programs]:
+    """What runs programs of Python, each in a process of its own; the libraries are imported once for all."""
+    with programs_of_tests.started() as running:
+        yield running
 
 
 @pytest.fixture(scope="session")

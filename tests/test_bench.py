@@ -2,8 +2,6 @@
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -22,11 +20,13 @@ RATIOS = {
 """How a bench prints a ratio; that of a card prints one only where there is a card."""
 
 
-def run_bench(name, *words, **environment):
-    return subprocess.run(
-        [sys.executable, str(BENCHES[name]), *words], env=os.environ | {"SUCHUS_BENCH": "short"} | environment,
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+@pytest.fixture
+def run_bench(programs, tmp_path):
+    def run(name, **environment):
+        whole = os.environ | {"SUCHUS_BENCH": "short"} | environment
+        return programs.run([BENCHES[name]], cwd=tmp_path, environment=whole)
+
+    return run
 
 
 def test_every_bench_but_that_of_a_card_has_a_ratio():
@@ -34,13 +34,13 @@ def test_every_bench_but_that_of_a_card_has_a_ratio():
 
 
 @pytest.mark.parametrize("name", RATIOS)
-def test_a_bench_prints_ratios(name):
+def test_a_bench_prints_ratios(name, run_bench):
     done = run_bench(name)
     assert done.returncode == 0, done.stderr
     assert re.search(RATIOS[name], done.stdout), done.stdout
 
 
-def test_the_bench_of_a_card_says_that_there_is_none():
+def test_the_bench_of_a_card_says_that_there_is_none(run_bench):
     done = run_bench("bench_gpu", CUDA_VISIBLE_DEVICES="-1")
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("There is no card of NVIDIA that numba can use")

@@ -30,8 +30,8 @@ LONG = ("05", "06", "07", "19")
         for e in EXAMPLES
     ],
 )
-def test_example_runs(example, tmp_path):
-    done = subprocess.run([sys.executable, str(example)], cwd=tmp_path, capture_output=True, text=True, check=False)
+def test_example_runs(example, tmp_path, programs):
+    done = programs.run([example], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip()
 
@@ -85,13 +85,12 @@ def test_what_the_readme_takes_from_suchus_is_there():
     assert [f"{module}.{name}" for module, name in taken if not hasattr(import_module(module), name)] == []
 
 
-def test_the_python_of_the_readme_prints_what_it_says(tmp_path):
+def test_the_python_of_the_readme_prints_what_it_says(tmp_path, programs):
     page = "\n".join(re.findall(r"^```(?:python|text)\n.*?^```$", (ROOT / "README.md").read_text(), re.S | re.M))
     assert page.count("```text") == 1
     (tmp_path / "page.md").write_text(page)
     code = (
         "import sys; sys.path.insert(0, sys.argv[1]); from pages import blocks; blocks.follow(open('page.md').read())"
     )
-    command = [sys.executable, "-c", code, str(ROOT / "tools")]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = programs.run(["-c", code, ROOT / "tools"], cwd=tmp_path)
     assert done.returncode == 0, done.stderr

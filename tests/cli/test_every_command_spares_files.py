@@ -12,16 +12,19 @@ import os
 import re
 import shutil
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
+from PIL import Image
 from tests.cli.test_failing_writes import SEARCH, STUDY, film
 from tests.model.hinge_trees import quadruped
 from tests.wires import Obedient, wiring
 
-from suchus.apps.cli import calibrate, demo, drive, main, view
+from suchus.apps.cli import calibrate, demo, drive, main, size, view
 from suchus.apps.cli.entry import COMMANDS
 from suchus.core.files import load, save
 from suchus.core.writing import MANIFEST
@@ -54,6 +57,35 @@ class Case:
 
 def short_walks(patch):
     patch.setattr(demo, "simulate", lambda runs, progress: simulate(runs, duration=5.0, timestep=0.01))
+
+
+def once(module, name):
+    """Return a double under which a function computes once what the same words ask for again."""
+
+    def install(patch):
+        compute, results = getattr(module, name), []
+
+        def computed(*args, **named):
+            if not results:
+                results.append(compute(*args, **named))
+            return deepcopy(results[0])
+
+        patch.setattr(module, name, computed)
+
+    return install
+
+
+def blank_pictures(patch):
+    """No picture is drawn: an empty one of its format is written in its place."""
+    buffer = io.BytesIO()
+    Image.new("RGB", (4, 4), "white").save(buffer, "png")
+    blank = {"png": buffer.getvalue(), "svg": b'<svg xmlns="http://www.w3.org/2000/svg" width="4pt" height="4pt"/>'}
+
+    def save(_, file, **settings):
+        data = blank[settings["format"]]
+        file.write(data.decode() if isinstance(file, io.TextIOBase) else data)
+
+    patch.setattr(Figure, "savefig", save)
 
 
 def emulated(patch):
@@ -97,7 +129,12 @@ CASES = {
         Case(words=("export", "--format", "urdf", "--out", "made/it")),
         Case(words=("export", "--format", "mjcf", "--out", "made/it")),
     ],
-    "size": [Case(words=("size", "caiman", "belly_crawl", "--family", "Dynamixel XW 12 V RS-485", "--out", "made"))],
+    "size": [
+        Case(
+            words=("size", "caiman", "belly_crawl", "--family", "Dynamixel XW 12 V RS-485", "--out", "made"),
+            doubles=once(size, "size"),
+        )
+    ],
     "parts": [Case(words=("parts", "strider", "--out", "made"))],
     "export-commands": [
         Case(words=("export-commands", "limbs_only", "--out", "made")),
@@ -114,10 +151,12 @@ CASES = {
                 "drive", "belly_crawl", "--dry-run", "--seconds", "0.3", "--hardware", "hardware.toml", "--out", "made"
             ),
             needs=("hardware.toml",),
+            doubles=once(drive, "drive"),
         ),
         Case(
             words=("drive", "belly_crawl", "--dry-run", "--seconds", "0.3", "--map", "map.toml", "--out", "made"),
             needs=("map.toml",),
+            doubles=once(drive, "drive"),
         ),
     ],
     "calibrate": [
@@ -174,6 +213,7 @@ def desk(tmp_path, monkeypatch):
     """A folder of a user's."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
+    blank_pictures(monkeypatch)
     return tmp_path
 
 

@@ -1,7 +1,5 @@
 """The lines of the page run; the values of MuJoCo's issue 3452 are met, and missed where the thread says so."""
 
-import subprocess
-import sys
 from dataclasses import replace
 from math import pi, prod
 from pathlib import Path
@@ -78,10 +76,9 @@ def test_the_mass_matrix_is_that_of_body_and_water_in_any_attitude():
     assert tank.momenta()[:3] == pytest.approx(momentum, abs=1e-9)
 
 
-def test_the_lines_of_the_page_print_what_it_says(tmp_path):
+def test_the_lines_of_the_page_print_what_it_says(tmp_path, programs):
     code = (
         "import sys; sys.path.insert(0, sys.argv[1]); from pages import blocks; blocks.follow(open(sys.argv[2]).read())"
     )
-    command = [sys.executable, "-c", code, str(ROOT / "tools"), str(ROOT / "docs" / "asked_elsewhere.md")]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = programs.run(["-c", code, ROOT / "tools", ROOT / "docs" / "asked_elsewhere.md"], cwd=tmp_path)
     assert done.returncode == 0, done.stderr[-2000:]

@@ -1,7 +1,5 @@
 """The how-to pages, followed literally in an empty folder: each in a process of its own."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -30,13 +28,12 @@ ROOT = Path(__file__).parents[2]
         "projects",
     ],
 )
-def test_following_the_page_gives_what_it_says(page, tmp_path):
+def test_following_the_page_gives_what_it_says(page, tmp_path, programs):
     code = (
         "import sys; from pathlib import Path; sys.path.insert(0, sys.argv[1])\n"
         "from pages.blocks import follow; follow(Path(sys.argv[2]).read_text())"
     )
-    command = [sys.executable, "-c", code, str(ROOT / "tools"), str(ROOT / "docs" / f"{page}.md")]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = programs.run(["-c", code, ROOT / "tools", ROOT / "docs" / f"{page}.md"], cwd=tmp_path)
     assert done.returncode == 0, done.stderr[-3000:]
 
 

@@ -5,8 +5,6 @@ In a project, in the package itself, and in a package with entry points; nothing
 
 import os
 import re
-import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree
@@ -18,7 +16,8 @@ from suchus.core.sources import SHELVES
 
 ROOT = Path(__file__).parents[2]
 PAGES = (
-    "own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "own_command", "own_protocol", "extending",
+    "own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "own_command", "own_protocol",
+    "extending",
 )  # fmt: skip
 BATTERIES = {
     "robots": ("tests/shelves/test_robots.py",),
@@ -48,87 +47,89 @@ def examples():
 
 
 EXAMPLES = list(examples())
-NAMED = pytest.mark.parametrize(("shelf", "name", "text"), EXAMPLES, ids=[name for _, name, _ in EXAMPLES])
+NAMES = {shelf: name for shelf, name, _ in EXAMPLES}
 
 
 def test_each_shelf_has_an_example_on_its_page():
-    assert {shelf for shelf, _, _ in EXAMPLES} == set(BATTERIES)
+    assert sorted(shelf for shelf, _, _ in EXAMPLES) == sorted(BATTERIES)
 
 
-def tried(names, folder, paths=(), left_out="not validate", **surroundings):
-    """Run the batteries of some shelves, each over one name, in a process of their own.
+@pytest.fixture
+def failed_batteries(programs, tmp_path):
+    """Return what runs the batteries of all shelves, each over the example of its shelf, in a process of its own."""
 
-    Args:
-        names: the name by its shelf.
-        folder: for what the tests write.
-        paths: where Python looks for modules first.
-        left_out: which tests are run, by their marks.
-        **surroundings: environment variables.
+    def run(paths=(), left_out="not validate", **surroundings):
+        """Return how many tests of each battery passed where they are fewer than it has; none may fail.
 
-    Returns:
-        how many tests of each shelf's battery, over its name, passed; none failed.
-    """
-    told = folder / "told.xml"
-    options = ["-n0", "-p", "no:cacheprovider", "--basetemp", str(folder / "t"), f"--junitxml={told}", "-m", left_out]
-    chosen = " or ".join(f"[{name}] or [{name}-" for name in names.values())
-    plain = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
-    path = os.pathsep.join([*map(str, paths), plain.get("PYTHONPATH", str(ROOT / "src"))])
-    files = [file for shelf in names for file in BATTERIES[shelf]]
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", *options, *files, "-k", chosen],
-        cwd=ROOT, env={**plain, "PYTHONPATH": path, **surroundings}, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-500:]
-    passed = Counter(
-        (case.get("classname"), re.split(r"[\]-]", case.get("name").partition("[")[2])[0])
-        for case in ElementTree.parse(told).iter("testcase")
-        if case.find("skipped") is None
-    )
-    return {
-        shelf: sum(passed[file.removesuffix(".py").replace("/", "."), name] for file in BATTERIES[shelf])
-        for shelf, name in names.items()
-    }
+        Args:
+            paths: where Python looks for modules first.
+            left_out: which tests are run, by their marks.
+            **surroundings: environment variables.
+        """
+        told = tmp_path / "told.xml"
+        options = ["-n0", "-p", "no:cacheprovider", "--basetemp", tmp_path / "t", f"--junitxml={told}", "-m", left_out]
+        chosen = " or ".join(f"[{name}] or [{name}-" for name in NAMES.values())
+        plain = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
+        path = os.pathsep.join([*map(str, paths), plain.get("PYTHONPATH", str(ROOT / "src"))])
+        files = [file for battery in BATTERIES.values() for file in battery]
+        done = programs.run(
+            ["-m", "pytest", *options, *files, "-k", chosen],
+            cwd=ROOT, environment={**plain, "PYTHONPATH": path, **surroundings},
+        )  # fmt: skip
+        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-500:]
+        passed = Counter(
+            (case.get("classname"), re.split(r"[\]-]", case.get("name").partition("[")[2])[0])
+            for case in ElementTree.parse(told).iter("testcase")
+            if case.find("skipped") is None
+        )
+        counts = {shelf: sum(passed[_module(file), name] for file in BATTERIES[shelf]) for shelf, name in NAMES.items()}
+        return {shelf: count for shelf, count in counts.items() if count < LEAST[shelf]}
+
+    return run
 
 
-def test_in_a_project(tmp_path):
+def _module(file):
+    """Return a file of a battery as the report of its tests names it."""
+    return file.removesuffix(".py").replace("/", ".")
+
+
+def test_in_a_project(failed_batteries, tmp_path):
     """All examples stand in one project, as a user's would; each goes through the battery of its own shelf."""
     lab = tmp_path / "lab"
     for shelf, name, text in EXAMPLES:
         (lab / shelf).mkdir(parents=True)
         (lab / shelf / f"{name}.py").write_text(text)
     (lab / "suchus.toml").write_text("")
-    names = {shelf: name for shelf, name, _ in EXAMPLES}
-    passed = tried(names, tmp_path, left_out="not validate and not slow", SUCHUS_PROJECT=str(lab))
-    assert {shelf for shelf, count in passed.items() if count < LEAST[shelf]} == set()
+    assert failed_batteries(left_out="not validate and not slow", SUCHUS_PROJECT=str(lab)) == {}
 
 
-@NAMED
-def test_in_the_package(shelf, name, text, tmp_path):
+def test_in_the_package(failed_batteries, tmp_path):
+    """All examples stand beside the package's own things, as if they were a part of it."""
     copy = tmp_path / "src/suchus"
     for file in (ROOT / "src/suchus").rglob("*"):
         if file.is_file() and "__pycache__" not in file.parts:
             there = copy / file.relative_to(ROOT / "src/suchus")
             there.parent.mkdir(parents=True, exist_ok=True)
             there.symlink_to(file)
-    package = copy / Path(*SHELVES[shelf].split(".")[1:])
-    (package / f"{name}.py").write_text(text)
-    passed = tried({shelf: name}, tmp_path, [tmp_path / "src"], SUCHUS_GOLDEN=str(tmp_path / "golden"))
-    assert passed[shelf] >= LEAST[shelf]
+    for shelf, name, text in EXAMPLES:
+        package = copy / Path(*SHELVES[shelf].split(".")[1:])
+        (package / f"{name}.py").write_text(text)
+    assert failed_batteries([tmp_path / "src"], SUCHUS_GOLDEN=str(tmp_path / "golden")) == {}
 
 
-@NAMED
-def test_in_a_package_with_entry_points(shelf, name, text, tmp_path):
+def test_in_a_package_with_entry_points(failed_batteries, tmp_path):
+    """All examples stand in one package of somebody else's, which names each of them."""
     site = tmp_path / "site"
     (site / "my_lab-1.0.dist-info").mkdir(parents=True)
     (site / "my_lab").mkdir()
     (site / "my_lab/__init__.py").write_text("")
-    (site / "my_lab" / f"{name}.py").write_text(text)
+    named = []
+    for shelf, name, text in EXAMPLES:
+        (site / "my_lab" / f"{name}.py").write_text(text)
+        named.append(f"[suchus.{shelf}]\n{name} = my_lab.{name}:{_object(shelf, name, text)}\n")
     (site / "my_lab-1.0.dist-info/METADATA").write_text("Metadata-Version: 2.1\nName: my-lab\nVersion: 1.0\n")
-    (site / "my_lab-1.0.dist-info/entry_points.txt").write_text(
-        f"[suchus.{shelf}]\n{name} = my_lab.{name}:{_object(shelf, name, text)}\n"
-    )
-    passed = tried({shelf: name}, tmp_path, [site], SUCHUS_GOLDEN=str(tmp_path / "golden"))
-    assert passed[shelf] >= LEAST[shelf]
+    (site / "my_lab-1.0.dist-info/entry_points.txt").write_text("".join(named))
+    assert failed_batteries([site], SUCHUS_GOLDEN=str(tmp_path / "golden")) == {}
 
 
 def _object(shelf, name, text):

@@ -3,8 +3,6 @@
 import json
 import os
 import shutil
-import subprocess
-import sys
 from dataclasses import replace
 
 import pytest
@@ -114,15 +112,14 @@ def today(tmp_path_factory, quick_outcome):
     return folder
 
 
-def old_after(package, results, names):
+def old_after(programs, package, results, names):
     """Return the results in a folder that are old by a changed copy of the package, in a process of its own."""
     words = "import json, pathlib, sys; from evidence import stale, store; store.RESULTS = pathlib.Path(sys.argv[1]); "
     words += "print(json.dumps([one.name for one in stale.check(sys.argv[2:]) if one.state != 'current']))"
     paths = os.pathsep.join([str(package.parent), str(ROOT)])
-    done = subprocess.run(
-        [sys.executable, "-c", words, str(results), *names], env=os.environ | {"PYTHONPATH": paths},
-        capture_output=True, text=True, check=True, cwd=package.parent,
-    )  # fmt: skip
+    environment = os.environ | {"PYTHONPATH": paths}
+    done = programs.run(["-c", words, results, *names], cwd=package.parent, environment=environment)
+    assert done.returncode == 0, done.stderr
     return json.loads(done.stdout.splitlines()[-1])
 
 
@@ -147,13 +144,15 @@ def test_a_comment_in_every_module_makes_no_result_old(package):
     ],
     ids=["a servo's gain", "a metric"],
 )
-def test_a_change_of_behaviour_makes_old_what_it_moves_and_nothing_else(package, today, file, before, after, old):
+def test_a_change_of_behaviour_makes_old_what_it_moves_and_nothing_else(
+    programs, package, today, file, before, after, old
+):
     edit(package, file, before, after)
-    assert old_after(package, today, WALKS) == old
+    assert old_after(programs, package, today, WALKS) == old
 
 
 @pytest.mark.slow("the kernels of the flow are compiled anew, for a changed copy of the package")
-def test_another_offset_of_the_wall_makes_flows_old_and_nothing_else(package, today):
+def test_another_offset_of_the_wall_makes_flows_old_and_nothing_else(programs, package, today):
     for name in ("snakes", "walls"):
         code = source.digest(source.reached(RESULTS[name].modules))
         save(
@@ -161,4 +160,4 @@ def test_another_offset_of_the_wall_makes_flows_old_and_nothing_else(package, to
             today,
         )
     edit(package, "flow/immerse.py", "return float(0.66 * spread**0.4)", "return float(0.33 * spread**0.4)")
-    assert old_after(package, today, ("snakes", "walls", *WALKS)) == ["snakes", "walls"]
+    assert old_after(programs, package, today, ("snakes", "walls", *WALKS)) == ["snakes", "walls"]
