@@ -253,7 +253,7 @@ class Flag:
         self.turned, origin = turned, np.zeros(2)
         modes = self.chain.modes(self.posture.place, origin, 2)[3:]
         found = self.sim.added_mass("flag", modes)
-        inside = self.chain.unpressed(self.posture.place, found.pressed, origin)[:, 3:]
+        inside = self.chain.unpressed(self.posture.place, found.internal_pressure, origin)[:, 3:]
         self.added = found.matrix - 0.5 * (inside + inside.T)
 
     def step(self, longest=np.inf):

@@ -101,9 +101,9 @@ def test_mass_and_skin_are_those_of_the_mesh(mesh):
     assert mass.volume == pytest.approx(moved.volume)
     assert mass.centre == pytest.approx(moved.center_mass)
     np.testing.assert_allclose(mass.moments, moved.moment_inertia, rtol=1e-9, atol=1e-12)
-    assert skin.share.sum() == pytest.approx(moved.area)
-    assert np.sqrt(skin.share).max() < 0.05
-    facing = skin.share * skin.normals
+    assert skin.weight.sum() == pytest.approx(moved.area)
+    assert np.sqrt(skin.weight).max() < 0.05
+    facing = skin.weight * skin.normals
     np.testing.assert_allclose(facing.sum(axis=1), 0.0, atol=1e-12)
     assert (facing * skin.points).sum() / 3 == pytest.approx(moved.volume)
     np.testing.assert_allclose(skin.velocities, np.stack(POSE.rates(skin.points)), atol=1e-12)
@@ -125,10 +125,10 @@ def test_its_thickness_is_that_of_the_largest_ball_inside(mesh, thick):
 
 
 def test_it_knows_its_symmetries_and_whether_it_is_blunt():
-    assert of(BOX).even == (True, True, True)
-    assert elbow().even == (False, False, True)
-    assert not of(BOX).blunt
-    assert of(trimesh.creation.icosphere()).blunt
+    assert of(BOX).mirror_symmetry == (True, True, True)
+    assert elbow().mirror_symmetry == (False, False, True)
+    assert not of(BOX).is_compact
+    assert of(trimesh.creation.icosphere()).is_compact
 
 
 def test_a_sphere_of_triangles_is_pushed_as_a_sphere():

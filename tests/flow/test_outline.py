@@ -61,8 +61,8 @@ def test_distance_is_that_to_the_nearest_marker_and_the_normal_its_slope(shape):
 @pytest.mark.parametrize("shape", MAKERS, indirect=True)
 def test_markers_close_and_enclose_the_area(shape):
     m = shape.markers(0.0, flow.Pose(), 0.01)
-    assert abs((m.normals[0] * m.share).sum()) < 1e-9
-    area = 0.5 * ((m.x * m.normals[0] + m.y * m.normals[1]) * m.share).sum()
+    assert abs((m.normals[0] * m.weight).sum()) < 1e-9
+    area = 0.5 * ((m.x * m.normals[0] + m.y * m.normals[1]) * m.weight).sum()
     assert area == pytest.approx(shape.mass(0.0).area, rel=0.01)
     grid = np.linspace(-1.4, 1.4, 141)
     inside = shape.distance(*np.meshgrid(grid, grid))[0] < 0

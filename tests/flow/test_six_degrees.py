@@ -180,8 +180,8 @@ def test_a_shape_in_any_attitude_is_the_upright_one_seen_from_another_side(name)
         rigid = np.array(TURNED.rates(point))
         assert [float(part[at]) for part in found.velocity] == pytest.approx(matrix @ drift + rigid, abs=1e-9)
         assert found.thickness[at] == pytest.approx(wanted.thickness[at], rel=1e-6)
-        if wanted.part is not None:
-            assert found.part[at] == wanted.part[at]
+        if wanted.part_index is not None:
+            assert found.part_index[at] == wanted.part_index[at]
     assert reached > 20
 
 
@@ -203,7 +203,7 @@ def test_a_skin_in_any_attitude_moves_as_it_says_and_fills_its_bounds(name):
     assert (bounds[:, 1] >= high - 1e-9).all()
     assert np.abs(bounds.T - [low, high]).max() < 0.02
     upright = shape.markers(time, flow.Pose(position=(0.0, 0.0, 0.0)), 0.02)
-    assert now.share == pytest.approx(upright.share)
+    assert now.weight == pytest.approx(upright.weight)
 
 
 def test_a_trunk_that_hardly_tilts_is_painted_as_the_upright_one():

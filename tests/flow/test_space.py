@@ -287,9 +287,9 @@ def test_an_ellipsoid_knows_the_distance_of_every_point(axes, direction, far):
     if np.linalg.norm(direction) < 0.1:
         return
     unit = np.array(direction) / np.linalg.norm(direction)
-    foot, normal = shape.half * unit, unit / shape.half
+    foot, normal = shape.half_extents * unit, unit / shape.half_extents
     normal = normal / np.linalg.norm(normal)
-    bend = shape.half.min() ** 2 / shape.half.max()  # smallest radius of curvature
+    bend = shape.half_extents.min() ** 2 / shape.half_extents.max()  # smallest radius of curvature
     reach = max(far, -0.9) * (bend if far < 0 else 1.0)
     lines = [np.array([at]) for at in foot + reach * normal]
     still = flow.Pose(position=(0.0, 0.0, 0.0))
@@ -353,8 +353,8 @@ def test_the_skin_of_an_ellipsoid_has_its_area_and_moves_with_it():
     pose = flow.Pose(position=(1.0, 2.0, 3.0), angle=0.4, velocity=(0.1, 0.2, 0.3), spin=2.0)
     shape = flow.Ellipsoid(length=2 * a, width=2 * b, height=2 * b)
     skin = shape.markers(0.0, pose, 0.02)
-    assert skin.share.sum() == pytest.approx(2 * np.pi * b**2 * (1 + a / (b * e) * np.arcsin(e)), rel=1e-3)
-    expected = [0.1 - 2.0 * (skin.points[1] - 2.0), 0.2 + 2.0 * (skin.points[0] - 1.0), np.full(skin.share.size, 0.3)]
+    assert skin.weight.sum() == pytest.approx(2 * np.pi * b**2 * (1 + a / (b * e) * np.arcsin(e)), rel=1e-3)
+    expected = [0.1 - 2.0 * (skin.points[1] - 2.0), 0.2 + 2.0 * (skin.points[0] - 1.0), np.full(skin.weight.size, 0.3)]
     assert skin.velocities == pytest.approx(np.array(expected))
     found = [(p.min(), p.max()) for p in skin.points]
     assert np.ravel(found) == pytest.approx(np.array(shape.bounds(0.0, pose)), abs=0.02)

@@ -84,7 +84,7 @@ def test_a_trunk_with_the_sections_of_an_ellipsoid_is_one(axes):
     mass, wanted = egg(*axes).mass(0.0), exact.mass(0.0)
     assert mass.volume == pytest.approx(wanted.volume, rel=2e-4)
     assert np.diag(mass.moments) == pytest.approx(np.diag(wanted.moments), rel=4e-4)
-    skins = [shape.markers(0.0, POSE, 0.5 * h).share.sum() for shape in (egg(*axes), exact)]
+    skins = [shape.markers(0.0, POSE, 0.5 * h).weight.sum() for shape in (egg(*axes), exact)]
     assert skins[0] == pytest.approx(skins[1], rel=2e-3)
 
 
@@ -103,7 +103,7 @@ def test_a_trunk_of_constant_section_is_a_cylinder_with_flat_ends(x, y, z):
         assert np.sign(found) == np.sign(exact)
         assert abs(found) >= reach - 1e-9
     assert trunk.volume(0.0) == pytest.approx(np.pi * radius**2)
-    assert trunk.markers(0.0, flow.Pose(), 0.02).share.sum() == pytest.approx(2 * np.pi * radius * 1.2, rel=5e-3)
+    assert trunk.markers(0.0, flow.Pose(), 0.02).weight.sum() == pytest.approx(2 * np.pi * radius * 1.2, rel=5e-3)
 
 
 def test_the_volume_of_a_bent_trunk_is_what_it_fills():
@@ -191,7 +191,7 @@ def test_the_parts_make_the_whole(swum):
     shape, pose = swum.setup.bodies[0].shape, swum.pose("body")
     force = np.stack([record.along("force_x"), record.along("force_y")], axis=-1)[-1]
     about = np.array([record.column("x")[-1], record.column("y")[-1]])
-    for k, joint in enumerate(shape.at(swum.time, pose, np.array([0.0, *CUTS]))[:, :2]):
+    for k, joint in enumerate(shape.position_at(swum.time, pose, np.array([0.0, *CUTS]))[:, :2]):
         arm, behind = about - joint, force[k:].sum(axis=0)
         torque = record.along("torque")[-1, k:].sum() + arm[0] * behind[1] - arm[1] * behind[0]
         assert record.along("torque_behind")[-1, k] == pytest.approx(torque, abs=1e-9)

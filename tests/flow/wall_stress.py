@@ -214,7 +214,7 @@ class Column(SpaceShape):
         velocity = np.array((*pose.velocity, 0.0)[:3])[:, None] + np.zeros((3, count))
         return flow.markers.Markers(
             points=np.array((*pose.position, 0.0)[:3])[:, None] + 0.5 * self.diameter * normals,
-            share=np.full(count, np.pi * self.diameter / count), velocities=velocity, normals=normals,
+            weight=np.full(count, np.pi * self.diameter / count), velocities=velocity, normals=normals,
             spins=np.zeros((3, count)),
         )  # fmt: skip
 

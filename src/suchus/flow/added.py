@@ -22,7 +22,7 @@ class AddedMass(NamedTuple):
 
     matrix: np.ndarray
     """Added mass, shape (mode, mode): the force in mode i is ``-matrix[i, k]`` per unit acceleration of mode k."""
-    pressed: np.ndarray
+    internal_pressure: np.ndarray
     """Integral of the pressure inside the parts and its first moments, as ``log.FlowLoads.pressed`` but about the
     origin of the grid's frame, shape (mode, row, 1 + axis)."""
 
@@ -106,7 +106,7 @@ def generalised_added_mass(
     h = water.grid.cell
     corner = np.array(water.grid.origin)
     matrix: np.ndarray = times * density * (h**water.axes * responses.fixed_side_mass + rim)
-    pressed = times * density * h ** (water.axes + 1) * responses.pressed
+    pressed = times * density * h ** (water.axes + 1) * responses.internal_pressure
     pressed[..., 1:] = h * pressed[..., 1:] + pressed[..., :1] * corner
     return AddedMass(0.5 * (matrix + matrix.T), pressed)
 
@@ -179,7 +179,7 @@ class _ModeResponses:
     """Potential along each side, mode by mode [m/s^2 cells]."""
     inward: list[list[np.ndarray]]
     """Acceleration that each mode induces on each side; empty in bounded water [m/s^2]."""
-    pressed: np.ndarray
+    internal_pressure: np.ndarray
     """Integral of the potential inside each part, mode by mode; see ``Fluid.pressures``."""
     joint_correction: np.ndarray
     """Correction that removes the push of the potential between links, (mode, row, ...); see ``Fluid.across``."""
@@ -253,7 +253,7 @@ def _rim(
     """
     total = np.zeros((len(modes[0]), len(modes[0])))
     for outline, body_modes, ends in zip(outlines, modes, mirror_cuts, strict=True):
-        skin = water.offset * water.grid.cell * 0.5 ** sum(ends) * outline.share
+        skin = water.offset * water.grid.cell * 0.5 ** sum(ends) * outline.weight
         row = part_indices(outline)
         moves = np.array([mode.at(row, outline.points) for mode in body_modes])
         total += np.einsum("icm,jcm,m->ij", moves, moves, skin)

@@ -33,7 +33,7 @@ class Body:
         return self.motion if isinstance(self.motion, Pose) else self.motion(time)
 
     @property
-    def still(self) -> bool:
+    def is_static(self) -> bool:
         """Whether neither shape nor pose ever change."""
         moving = not isinstance(self.motion, Pose) or any(self.motion.velocity) or self.motion.spins.any()
         return self.shape.rigid and not moving
@@ -125,7 +125,7 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
     frame, name = pose.along(3), "xyz"[axis]
     alignment = np.abs(frame.matrix[axis])  # cosines between the body's axes and the mirror's normal
     upright = float(alignment.max()) > 1 - SYMMETRY_TOLERANCE**2
-    if isinstance(body.shape, SpaceShape) and upright and not body.shape.even[int(alignment.argmax())]:
+    if isinstance(body.shape, SpaceShape) and upright and not body.shape.mirror_symmetry[int(alignment.argmax())]:
         raise InvalidDesign(
             f"the Mirror at {name} = {plane:.4g} m cuts {body.name}, whose two halves there are no images of each "
             f"other; move the body or the grid, or take another side. A Trunk may be cut across z."
@@ -202,7 +202,7 @@ def measure_all(
         measure: Callable[..., Field | SpaceField] = body.shape.measure
         f = measure(*points, time, pose, (REACH + (len(points) == 2)) * h)
         body_field = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
-        part_index = getattr(f, "part", None)
+        part_index = getattr(f, "part_index", None)
         if nearest_field is None:
             nearest_field = body_field
             owner = owner if part_index is None else part_index.astype(np.int8)

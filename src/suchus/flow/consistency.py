@@ -128,7 +128,9 @@ class MidlineSource(NamedTuple):
         Raises:
             InvalidDesign: the number of stations changes.
         """
-        reference, *later_states = (np.concatenate([state.rows, [state.swell]]) for state in map(self.spine, times))
+        reference, *later_states = (
+            np.concatenate([state.rows, [state.half_width_rates]]) for state in map(self.spine, times)
+        )
         for time, later_state in zip(times[1:], later_states, strict=True):
             if later_state.shape != reference.shape:
                 raise InvalidDesign(

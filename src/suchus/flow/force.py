@@ -62,7 +62,7 @@ class Surface:
     def load(self, reference_point: tuple[float, ...]) -> Load:
         """Return the integral over the outline or the skin, torque about a point [m]."""
         m = self.markers
-        push, rub = -self.pressure * m.normals * m.share, self.shear * m.share
+        push, rub = -self.pressure * m.normals * m.weight, self.shear * m.weight
         force, arms = push + rub, m.points - np.array(reference_point)[:, None]
         return Load(
             pressure=tuple(push.sum(axis=1).tolist()),

@@ -199,7 +199,7 @@ def part_columns(
     assert isinstance(body.shape, Trunk | Midline)
     power = acts.power - force @ frame
     rear_force, rear_moment = (load[::-1].cumsum(axis=0)[::-1] for load in (force, torque))
-    ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(reference_point)
+    ends = body.shape.position_at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(reference_point)
     if len(reference_point) == 2:
         joint = rear_moment[:, 0] - (ends[:, 0] * rear_force[:, 1] - ends[:, 1] * rear_force[:, 0])
     else:  # the midline bends about the body's z

@@ -75,7 +75,7 @@ class TriangleMesh(SpaceShape):
         object.__setattr__(self, "_max_thickness", self._max_ball_diameter())
 
     @property
-    def even(self) -> tuple[bool, bool, bool]:  # type: ignore[override]
+    def mirror_symmetry(self) -> tuple[bool, bool, bool]:  # type: ignore[override]
         """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
         tree, tolerance = KDTree(self.vertices), _SYMMETRY_TOLERANCE * float(np.ptp(self.vertices, axis=0).max())
         mirrored = [self.vertices * np.where(np.arange(3) == d, -1, 1) for d in range(3)]
@@ -114,7 +114,7 @@ class TriangleMesh(SpaceShape):
         points, areas, normals = face_centres(self._world_vertices(frame)[self.faces], spacing)
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(
-            points=points, share=areas, velocities=np.stack(frame.rates(points)), normals=normals, spins=spins
+            points=points, weight=areas, velocities=np.stack(frame.rates(points)), normals=normals, spins=spins
         )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
@@ -141,7 +141,7 @@ class TriangleMesh(SpaceShape):
         return 2 * float(depth.max())
 
     @property
-    def blunt(self) -> bool:
+    def is_compact(self) -> bool:
         """Whether it is about as long along each axis."""
         return is_blunt(np.ptp(self.vertices, axis=0))
 

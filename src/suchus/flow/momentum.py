@@ -320,7 +320,7 @@ def skin_contents(
         count: parts of the body, the rows of the result, shape (part, ``contents_of``) [-].
     """
     axes = len(origin)
-    w = offset * markers.share / h ** (axes - 1)
+    w = offset * markers.weight / h ** (axes - 1)
     position = [(p - start) / h for p, start in zip(markers.points, origin, strict=True)]
     v = markers.velocities
     square = v[0] ** 2 + v[1] ** 2
@@ -328,9 +328,9 @@ def skin_contents(
         square = square + v[2] ** 2
     angular = (position[a] * v[b] - position[b] * v[a] for a, b in ROTATION_PLANES[axes])
     columns = (*v, *angular, 0.5 * square, np.ones(w.size), *position)
-    if count == 1 or markers.part is None:
+    if count == 1 or markers.part_index is None:
         return (w * np.array(columns)).sum(axis=1)[None]
-    return np.stack([np.bincount(markers.part, w * column, count) for column in columns], axis=1)
+    return np.stack([np.bincount(markers.part_index, w * column, count) for column in columns], axis=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -317,4 +317,4 @@ class Setup:
 
 
 def _has_blunt_shape(body: Body | FreeBody) -> bool:
-    return isinstance(body.shape, SpaceShape) and body.shape.blunt
+    return isinstance(body.shape, SpaceShape) and body.shape.is_compact

@@ -35,7 +35,7 @@ class Field:
     """Velocity of the body along y, extended likewise [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
-    part: np.ndarray | None = None
+    part_index: np.ndarray | None = None
     """Index of the body's part to which a point belongs; None for a body of one part [-]."""
 
     @property
@@ -135,10 +135,14 @@ class Solid(Shape):
         centres, normal, length = _edges(self, spacing)
         points = np.stack(pose.to_world(*centres))
         return Markers(
-            points=points, share=length, velocities=np.stack(pose.carry(*points)), normals=np.stack(pose.turn(*normal)),
-            spins=np.full((1, length.size), pose.spin), station=np.cumsum(length) - length / 2,
+            points=points,
+            weight=length,
+            velocities=np.stack(pose.carry(*points)),
+            normals=np.stack(pose.turn(*normal)),
+            spins=np.full((1, length.size), pose.spin),
+            station=np.cumsum(length) - length / 2,
             side=np.zeros(length.size),
-        )  # fmt: skip
+        )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""

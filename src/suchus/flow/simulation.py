@@ -167,7 +167,7 @@ class Simulation(Fields):
             )
             changing.append(not body.shape.rigid)
         if isinstance(body.shape, Linked):
-            links = LinkSource(body.name, body.shape.motion, body.shape.reach)
+            links = LinkSource(body.name, body.shape.motion, body.shape.bounding_radii)
             consistencies.append(Consistency(links, cell, every=RATE_CHECK_INTERVAL))
             changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
@@ -266,7 +266,7 @@ class Simulation(Fields):
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
         time = self.time + dt
         poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
-        moving = self.setup.follow is not None or not all(b.still for b in self._bodies)
+        moving = self.setup.follow is not None or not all(b.is_static for b in self._bodies)
         offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
         if moving or not self._placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE:
             self.water.offset = offset
@@ -448,7 +448,7 @@ class Simulation(Fields):
         for body in self._bodies:
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, CachedMidline):
-                spine.forget()
+                spine.clear()
 
     def snapshot(self) -> Snapshot:
         """Return a copy of the whole state, for ``restore``."""
@@ -624,7 +624,7 @@ class Simulation(Fields):
         if grid.axes == 3:
             low_corner = np.array(grid.origin)[:, None]
             high_corner = low_corner + np.array(grid.size)[:, None]
-            skin = skin.of(((skin.points >= low_corner) & (skin.points <= high_corner)).all(axis=0))
+            skin = skin.select(((skin.points >= low_corner) & (skin.points <= high_corner)).all(axis=0))
         return sample(self.water, skin, self.setup.density)
 
 

@@ -203,9 +203,9 @@ def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
 
 def part_indices(outline: Markers) -> np.ndarray:
     """Return which of its body's parts each point of a skin belongs to, shape (point,) [-]."""
-    if outline.part is None:
+    if outline.part_index is None:
         return np.zeros(outline.points.shape[1], np.intp)
-    return outline.part.astype(np.intp)
+    return outline.part_index.astype(np.intp)
 
 
 def add_twists(outline: Markers, twists: Twists) -> Markers:

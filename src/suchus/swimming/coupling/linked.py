@@ -206,9 +206,12 @@ def _piece(shape: LinkShape) -> flow.LinkPiece:
     if shape.kind == "ellipsoid":
         length, width, height = (2 * half for half in shape.size)
         ellipsoid: flow.Ellipsoid | flow.Spherocylinder = flow.Ellipsoid(length=length, width=width, height=height)
-        return flow.LinkPiece(link=shape.link, shape=ellipsoid, at=shape.at, turn=shape.turn)
+        return flow.LinkPiece(link=shape.link, shape=ellipsoid, position=shape.at, quaternion=shape.turn)
     length = 2 * shape.size[1] if shape.kind == "rod" else 0.0
     w, x, y, z = rotation.multiply(np.array(shape.turn), _ROD_TURN).tolist()
     return flow.LinkPiece(
-        link=shape.link, shape=flow.Spherocylinder(length=length, radius=shape.size[0]), at=shape.at, turn=(w, x, y, z)
+        link=shape.link,
+        shape=flow.Spherocylinder(length=length, radius=shape.size[0]),
+        position=shape.at,
+        quaternion=(w, x, y, z),
     )

@@ -410,7 +410,7 @@ class Swim:
         previous_mass = self._added_mass
         modes = self.chain.modes(posture.place, self._origin, self._axes)
         added_mass = self.sim.added_mass(self.run.robot.name, modes)
-        internal_mass = self.chain.unpressed(posture.place, added_mass.pressed, self._origin)
+        internal_mass = self.chain.unpressed(posture.place, added_mass.internal_pressure, self._origin)
         water_mass = added_mass.matrix - 0.5 * (internal_mass + internal_mass.T)
         self._added_mass = never_negative(self._times * self.chain.of_robot(water_mass), self.stepper.mass())
         if len(self.series.time):

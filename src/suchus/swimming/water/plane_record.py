@@ -219,7 +219,7 @@ def _moments(
 ) -> Float[np.ndarray, " joint"]:
     """Return the moment about each joint of the water's load beyond it."""
     m = surface.markers
-    fx, fy = surface.traction * m.share * height
+    fx, fy = surface.traction * m.weight * height
     moments = []
     for i, place in enumerate(outline.places):
         x, y = np.interp(place, outline.s, midline.x), np.interp(place, outline.s, midline.y)
@@ -246,7 +246,7 @@ def convex_less_concave(outline: Outline, surface: flow.Surface, midline: flow.M
     means = []
     for side in (1.0, -1.0):
         is_on_side = (m.side == side) & (m.station > start)
-        means.append(float(np.average(surface.pressure[is_on_side], weights=m.share[is_on_side])))
+        means.append(float(np.average(surface.pressure[is_on_side], weights=m.weight[is_on_side])))
     # what bends to the right is convex on the left
     return (means[1] - means[0]) * float(np.sign(bend(outline, midline)))
 

@@ -219,7 +219,7 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
 def _along_the_outline(surface: Surface) -> Figure:
     """Draw pressure and friction over the arc length of a plane body's outline."""
     m = surface.markers
-    arc_length = np.cumsum(m.share) - m.share / 2
+    arc_length = np.cumsum(m.weight) - m.weight / 2
     friction = surface.shear[1] * m.normals[0] - surface.shear[0] * m.normals[1]
     figure, grid = panels(1, 2, width=WIDTH, height=3.8)
     for axes, values, label in zip(
@@ -236,7 +236,7 @@ def _over_the_skin(surface: Surface) -> Figure:
     max_pressure = max(float(np.abs(surface.pressure).max()), 1e-12)
     views = (("seen along y", 2, 1, -1.0), ("from above", 1, 2, 1.0))
     length, *extents = np.ptp(m.points, axis=1)
-    side = _COVERING * np.sqrt(m.share.max()) / length * 0.4 * WIDTH * 72.0  # side of a dot, in points of the page
+    side = _COVERING * np.sqrt(m.weight.max()) / length * 0.4 * WIDTH * 72.0  # side of a dot, in points of the page
     figure, grid = panels(2, 2, width=WIDTH, height=2.4 + min(2 * 0.4 * WIDTH * max(extents) / length, 6.0))
     for row, (values, label, cmap, lower_bound, upper_bound) in zip(
         grid,
@@ -247,7 +247,7 @@ def _over_the_skin(surface: Surface) -> Figure:
         strict=True,
     ):
         for axes, (view, vertical_axis, depth, view_sign) in zip(row, views, strict=True):
-            is_visible = (view_sign * m.normals[depth] > 0) & (m.share > 0)
+            is_visible = (view_sign * m.normals[depth] > 0) & (m.weight > 0)
             order = np.argsort(view_sign * m.points[depth, is_visible])
             x, y, visible_values = (
                 m.points[0, is_visible][order],
