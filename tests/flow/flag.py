@@ -303,7 +303,7 @@ class Flag:
             self.path.go(start, began, start + h, posture)
             self.sim.accelerate({"flag": more})
         self.force, self.push, self.posture = found, push, posture
-        whole = self.sim.last("flag").whole.force
+        whole = self.sim.last("flag").total.force
         self.rows.append([self.time, *self.beam.tip(posture.place[3:]), *whole, size, made])
         self._renew()
 

@@ -78,7 +78,7 @@ def roughness(least: int | None) -> float:
     patch = whole.patch((-0.8, 2.0), (-0.85, 0.85), ratio=2)
     sim = flow.Simulation(replace(STREAM, grid=patch, around=whole, viscosity=1e-3, step=None))
     if least is not None:
-        sim.water.coarse.least = least
+        sim.water.coarse.min_cycles = least
     for _ in range(60):
         sim.advance()
     drag = sim.record.force()[30:, 0]
@@ -211,7 +211,7 @@ def test_a_body_that_is_accelerated_after_a_step_takes_the_water_along():
     for name, setup in (("patch", STREAM), ("fine", uniform(STREAM))):
         sim = flow.Simulation(replace(setup, stream=(0.0, 0.0), bodies=(moving(0.0),)))
         sim.advance(0.02)
-        push = flow.Twists(about=np.zeros((1, 2)), linear=np.array([[0.1, 0.0]]), angular=np.zeros((1, 1)))
+        push = flow.Twists(reference_points=np.zeros((1, 2)), linear=np.array([[0.1, 0.0]]), angular=np.zeros((1, 1)))
         sim.accelerate({"body": push})
         forces[name] = float(sim.record.force()[-1, 0])
     assert forces["patch"] == pytest.approx(forces["fine"], rel=3e-3)
@@ -230,7 +230,9 @@ def test_small_accelerations_count_as_much_as_large_ones(across):
             top=flow.Wall(),
         ),
     )  # fmt: skip
-    push = flow.Twists(about=np.array([[0.9, 0.48]]), linear=np.array([[0.02, 0.03]]), angular=np.array([[0.1]]))
+    push = flow.Twists(
+        reference_points=np.array([[0.9, 0.48]]), linear=np.array([[0.02, 0.03]]), angular=np.array([[0.1]])
+    )
     found = {}
     for name, one in (("patch", setup), ("fine", uniform(setup))):
         sim = flow.Simulation(one)
@@ -240,9 +242,9 @@ def test_small_accelerations_count_as_much_as_large_ones(across):
         for size in (1.0, 1e-3, 1e-6):
             sim.restore(begun)
             sim.advance(0.01)
-            before = sim.last("ellipse").whole
+            before = sim.last("ellipse").total
             sim.accelerate({"ellipse": push * size})
-            after = sim.last("ellipse").whole
+            after = sim.last("ellipse").total
             found[name, size] = np.array([*(after.force - before.force), *(after.moment - before.moment)]) / size
     for size in (1.0, 1e-3, 1e-6):
         assert found["patch", size] == pytest.approx(found["fine", 1.0], rel=5e-3, abs=5e-4)

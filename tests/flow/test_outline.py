@@ -125,7 +125,7 @@ def test_what_is_painted_of_an_outline_is_its_distance(seed, angle, across):
     off = np.hypot(*(back - foot))[near]
     assert (np.abs(off) < 1e-12).mean() > 0.99  # but for points as near to two edges
     assert np.abs(shape.distance(*pose.to_body(*back))[0][near]).max() < 1e-12
-    assert all(np.array_equal(a, b) for a, b in zip(found.velocity, pose.carry(*points), strict=True))
+    assert all(np.array_equal(a, b) for a, b in zip(found.velocity, pose.velocity_in_plane(*points), strict=True))
     assert np.isinf(found.thickness).all()
 
 

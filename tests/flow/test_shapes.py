@@ -144,8 +144,8 @@ def test_a_turned_midline_is_the_turned_field(angle, px, py):
     m, n = shape.markers(0.2, STILL, 0.05), shape.markers(0.2, pose, 0.05)
     wx, wy = pose.to_world(m.x, m.y)
     assert (n.x, n.y) == (pytest.approx(wx), pytest.approx(wy))
-    vx, vy = pose.turn(*m.velocities)
-    cx, cy = pose.carry(wx, wy)
+    vx, vy = pose.rotate_in_plane(*m.velocities)
+    cx, cy = pose.velocity_in_plane(wx, wy)
     assert n.velocities[0] == pytest.approx(vx + cx, abs=1e-9)
     assert n.velocities[1] == pytest.approx(vy + cy, abs=1e-9)
 

@@ -150,7 +150,7 @@ def test_a_part_of_a_force_becomes_the_whole():
     part = Reaction(force=np.array([1.0, 2.0, 3.0]), moment=np.array([6.0, 7.0, 4.0]), power=np.array(5.0))
 
     def told(cut):
-        whole = part.whole(cut)
+        whole = part.of_whole_body(cut)
         return whole.force.tolist(), whole.moment.tolist(), float(whole.power)
 
     assert told((False,) * 6) == ([1.0, 2.0, 3.0], [6.0, 7.0, 4.0], 5.0)
@@ -224,11 +224,11 @@ def test_values_of_one_window_are_found_in_another(ends):
     water = empty_water()
     old, new = (tuple(n for first, size in part for n in (first, first + size)) for part in (ends[:3], ends[3:]))
     whole = np.zeros((3, 20, 20, 20), np.float32)
-    water._look_at(old)
+    water._set_window(old)
     values = np.arange(1, water.b.size + 1, dtype=np.float32).reshape(water.b.shape)
-    whole[:, *water.here] = values
-    water._look_at(new)
-    assert np.array_equal(water._in_window(values, old), whole[:, *water.here])
+    whole[:, *water.window_slices] = values
+    water._set_window(new)
+    assert np.array_equal(water._in_window(values, old), whole[:, *water.window_slices])
 
 
 def test_the_force_on_a_body_that_starts_is_its_added_mass():

@@ -279,7 +279,7 @@ def test_a_heavy_sphere_begins_to_sink_with_its_mass_and_added_mass():
         sim.advance()
     speed = sim.record.column("velocity_x")
     push = (speed[-1] - speed[2]) / (3 * 0.01)
-    added = float(sim.swimmers["body"].added[0, 0]) / (np.pi / 6)
+    added = float(sim.swimmers["body"].added_mass[0, 0]) / (np.pi / 6)
     assert added == pytest.approx(0.5, abs=0.06)
     assert push == pytest.approx(-3.0 / (2.0 + added), rel=0.02)
     assert np.abs(sim.record.column("velocity_y")).max() < 1e-4

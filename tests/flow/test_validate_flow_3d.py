@@ -344,7 +344,7 @@ def test_momentum_of_body_and_water():
 
     def gained():
         cells = sim.water.velocity[:, PAD:-PAD, PAD:-PAD, PAD:-PAD].astype(float)
-        held = sim._log.held[0, :3]  # what the body's region holds is not the water's
+        held = sim._log.region_contents[0, :3]  # what the body's region holds is not the water's
         return (cells.sum(axis=(1, 2, 3)) - held) * sim.setup.grid.cell**3
 
     sim.advance()

@@ -119,7 +119,7 @@ class Layered:
         self.along = np.array(pose.velocity[:2])
         count = round(2 * np.pi * self.radius / h)
         self.angles, self.spacing = 2 * np.pi * np.arange(count) / count, 2 * np.pi * self.radius / count
-        ends, self._around = [(s.start, s.stop) for s in reversed(self.here)], []
+        ends, self._around = [(s.start, s.stop) for s in reversed(self.window_slices)], []
         for c in range(self.axes):
             points = [(self.grid.faces if c == d else self.grid.centres)(*ends[d], d) for d in (0, 1)]
             x, y = np.meshgrid(points[0] - self.centre[0], points[1] - self.centre[1])
@@ -134,7 +134,7 @@ class Layered:
         out = self.radius + GAP * self.grid.cell
         ring = self.centre[:, None] + out * np.stack([np.cos(self.angles), np.sin(self.angles)])
         if self.axes == 3:
-            first, end = self.here[0].start, self.here[0].stop
+            first, end = self.window_slices[0].start, self.window_slices[0].stop
             high = self.grid.centres(first, end, 2)
             ring = np.concatenate([np.tile(ring, high.size), np.repeat(high, ring.shape[1])[None]])
         found, steps, places = np.empty((self.axes, ring.shape[1])), steps_of(self.p), padded(ring, self.grid)
@@ -166,7 +166,7 @@ class Layered:
 
     def _fill_source(self):
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
-        fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
+        fill_source(source, b, mu0, self._layout[0], self._near_layout, self.inner)
 
 
 class LayeredFluid(Layered, Fluid):
@@ -181,12 +181,12 @@ class LayeredNested(Layered, Nested):
         super()._fill_source()
         ratio, coarse = self.ratio, self.coarse
         fine = np.zeros(self.p.shape)
-        fine[self.here] = self.source
+        fine[self.window_slices] = self.source
         inner = fine[(slice(PAD, -PAD),) * self.axes]
         split = [part for n in inner.shape for part in (n // ratio, ratio)]
         net = np.zeros(coarse.p.shape)
         net[self._cells] = inner.reshape(split).sum(axis=tuple(range(1, 2 * self.axes, 2))) / ratio ** (self.axes - 1)
-        coarse.source[:] = net[coarse.here]
+        coarse.source[:] = net[coarse.window_slices]
 
 
 class Column(SpaceShape):

@@ -90,7 +90,7 @@ def _domain(axes: int) -> tuple[Grid, Sides, float]:
 
 def _place_body(water: Fluid) -> None:
     shape = Cylinder(diameter=1.0) if water.axes == 2 else Sphere(diameter=1.0)
-    water.place([Body(shape=shape)], [Pose().along(water.axes)], 0.0)
+    water.place([Body(shape=shape)], [Pose().in_dimensions(water.axes)], 0.0)
 
 
 def _step(water: Fluid) -> None:

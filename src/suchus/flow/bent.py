@@ -198,9 +198,11 @@ class BentOutline(Shape):
         flat = 1e-9 * self.bend.size
         d, nx, ny = paint_outline(corners, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), flat)
         wx, wy = np.meshgrid(x, y)
-        vx, vy = (np.array(np.broadcast_to(v, d.shape)) for v in pose.carry(wx, wy))
+        vx, vy = (np.array(np.broadcast_to(v, d.shape)) for v in pose.velocity_in_plane(wx, wy))
         is_near = d < reach
-        bend_velocity = pose.turn(*self.bend.velocity(np.stack(pose.to_body(wx[is_near], wy[is_near])), time))
+        bend_velocity = pose.rotate_in_plane(
+            *self.bend.velocity(np.stack(pose.to_body(wx[is_near], wy[is_near])), time)
+        )
         vx[is_near] += bend_velocity[0]
         vy[is_near] += bend_velocity[1]
         return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
@@ -218,10 +220,12 @@ class BentOutline(Shape):
         edges, rate_change = next_vertices - vertices, next_rates - rates
         edge_lengths = np.hypot(*edges)
         points = np.stack(pose.to_world(*(0.5 * (vertices + next_vertices))))
-        velocities = np.stack(pose.carry(*points)) + np.stack(pose.turn(*(0.5 * (rates + next_rates))))
+        velocities = np.stack(pose.velocity_in_plane(*points)) + np.stack(
+            pose.rotate_in_plane(*(0.5 * (rates + next_rates)))
+        )
         return Markers(
             points=points, weight=edge_lengths, velocities=velocities,
-            normals=np.stack(pose.turn(*(np.stack([edges[1], -edges[0]]) / edge_lengths))),
+            normals=np.stack(pose.rotate_in_plane(*(np.stack([edges[1], -edges[0]]) / edge_lengths))),
             spins=(pose.spin + (edges[0] * rate_change[1] - edges[1] * rate_change[0]) / edge_lengths**2)[None],
             station=np.cumsum(edge_lengths) - edge_lengths / 2, side=np.zeros(edge_lengths.size),
         )  # fmt: skip
@@ -277,15 +281,15 @@ class BentMesh(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window, as far as ``reach``."""
-        frame, faces = pose.along(3), self.rest_shape.faces
+        frame, faces = pose.in_dimensions(3), self.rest_shape.faces
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         window_field = np.zeros((4, z.size, y.size, x.size))
         h = float(x[1] - x[0]) if x.size > 1 else float(reach)
-        corners = np.stack(frame.place(self._corners_at(time)), axis=1)
+        corners = np.stack(frame.to_world_3d(self._corners_at(time)), axis=1)
         normals = np.ascontiguousarray(pseudo_normals(corners, faces))
         paint_mesh(window_field, px, py, pz, np.ascontiguousarray(corners[faces]), normals, float(reach), h)
         wz, wy, wx = np.meshgrid(pz, py, px, indexing="ij")
-        rates = [np.array(np.broadcast_to(rate, window_field[0].shape)) for rate in frame.rates((wx, wy, wz))]
+        rates = [np.array(np.broadcast_to(rate, window_field[0].shape)) for rate in frame.velocity_at((wx, wy, wz))]
         is_near = window_field[0] < reach
         bend_velocity = self._velocity(np.stack([wx[is_near], wy[is_near], wz[is_near]]), time, frame)
         for rate, component in zip(rates, bend_velocity, strict=True):
@@ -305,16 +309,18 @@ class BentMesh(SpaceShape):
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
-        frame, corners = pose.along(3), self._corners_at(time)
+        frame, corners = pose.in_dimensions(3), self._corners_at(time)
         self.bend.check(corners, time)
-        points, share, normals = face_centres(np.stack(frame.place(corners), axis=1)[self.rest_shape.faces], spacing)
-        velocities = np.stack(frame.rates(points)) + self._velocity(points, time, frame)
+        points, share, normals = face_centres(
+            np.stack(frame.to_world_3d(corners), axis=1)[self.rest_shape.faces], spacing
+        )
+        velocities = np.stack(frame.velocity_at(points)) + self._velocity(points, time, frame)
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(points=points, weight=share, velocities=velocities, normals=normals, spins=spins)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the corners."""
-        corners = np.stack(pose.along(3).place(self._corners_at(time)))
+        corners = np.stack(pose.in_dimensions(3).to_world_3d(self._corners_at(time)))
         return tuple(np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1).ravel().tolist())
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:

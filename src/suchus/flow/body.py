@@ -122,7 +122,7 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
         InvalidDesign: its halves differ, its middle lies off the plane, it moves through the plane, or its axes are
             oblique to it.
     """
-    frame, name = pose.along(3), "xyz"[axis]
+    frame, name = pose.in_dimensions(3), "xyz"[axis]
     alignment = np.abs(frame.matrix[axis])  # cosines between the body's axes and the mirror's normal
     upright = float(alignment.max()) > 1 - SYMMETRY_TOLERANCE**2
     if isinstance(body.shape, SpaceShape) and upright and not body.shape.mirror_symmetry[int(alignment.argmax())]:

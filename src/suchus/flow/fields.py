@@ -109,7 +109,7 @@ class Fields:
             raise InvalidDesign(f"{quantity} is for plane grids, and this one has three axes; take {instead}.")
 
     @property
-    def fluid_share(self) -> np.ndarray:
+    def fluid_fraction(self) -> np.ndarray:
         """Volume fraction of the fluid in the cells, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
         faces = list(self._faces(self.water.mu0))
         total: np.ndarray = faces[0][0] + faces[0][1]

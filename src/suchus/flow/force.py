@@ -168,7 +168,7 @@ class ControlVolume:
 
     box: tuple[int, ...]
     """Padded cell indices, first and end along each axis, the last axis first."""
-    before: np.ndarray | None = None
+    last_balance: np.ndarray | None = None
     """Momentum of water and bodies, and flow through the sides, at the last step, shape (3, axis)."""
 
     def force(self, water: Fluid, dt: float, push: tuple[float, ...], density: float) -> tuple[float, ...]:
@@ -185,11 +185,11 @@ class ControlVolume:
         h = water.grid.cell
         balance = np.array(
             [
-                momentum(water.velocity, self.box), momentum(water.carried, self.box),
+                momentum(water.velocity, self.box), momentum(water.weighted_body_velocity, self.box),
                 boundary_flux(water.velocity, water.p, float(water.nu), self.box),
             ]
         )  # fmt: skip
-        previous_balance, self.before = self.before, balance
+        previous_balance, self.last_balance = self.last_balance, balance
         if previous_balance is None:
             return (float("nan"),) * water.axes
         cells = np.prod(np.subtract(self.box[1::2], self.box[::2]))

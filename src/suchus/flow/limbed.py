@@ -210,7 +210,7 @@ class Limbed(Trunk):
             reach: distance up to which the field counts [m].
         """
         start, end, rate, turn = limb.end_motion(spine)
-        ends = [np.array(frame.place((*end_point, 0.0))) for end_point in (start, end)]
+        ends = [np.array(frame.to_world_3d((*end_point, 0.0))) for end_point in (start, end)]
         lower_bound, upper_bound = (pick(*ends)[::-1] for pick in (np.minimum, np.maximum))
         max_distance = limb.radius + reach
         box = tuple(
@@ -218,7 +218,7 @@ class Limbed(Trunk):
             for axis, a, b in zip(axes, lower_bound, upper_bound, strict=True)
         )  # fmt: skip
         wz, wy, wx = np.meshgrid(*(axis[s] for axis, s in zip(axes, box, strict=True)), indexing="ij")
-        px, py, pz = frame.seen((wx, wy, wz))
+        px, py, pz = frame.to_body_3d((wx, wy, wz))
         offsets, size = limb.offsets_from_axis(px, py, pz, spine)
         distance = size - limb.radius
         trunk = window_field.distance[box]
@@ -236,7 +236,7 @@ class Limbed(Trunk):
         limb_velocity = rotate_vectors(
             frame.matrix, (rate[0] - turn * (py - start[1]), rate[1] + turn * (px - start[0]), 0 * px)
         )
-        velocity = [a + b for a, b in zip(limb_velocity, frame.rates((wx, wy, wz)), strict=True)]
+        velocity = [a + b for a, b in zip(limb_velocity, frame.velocity_at((wx, wy, wz)), strict=True)]
         values = [
             (window_field.distance, distance), (window_field.thickness, np.where(sunk, np.inf, 2 * limb.radius)),
             *zip(window_field.normal, normal, strict=True),
@@ -289,7 +289,7 @@ class Limbed(Trunk):
         """Return the box around the body."""
         box, (spine, frame) = list(Trunk.bounds(self, time, pose)), self.midline_and_frame(time, pose)
         for limb in self.limbs:
-            end_points = (frame.place((*end, 0.0)) for end in limb.end_motion(spine)[:2])
+            end_points = (frame.to_world_3d((*end, 0.0)) for end in limb.end_motion(spine)[:2])
             for d, ends in enumerate(zip(*end_points, strict=True)):
                 box[2 * d] = min(box[2 * d], float(min(ends)) - limb.radius)
                 box[2 * d + 1] = max(box[2 * d + 1], float(max(ends)) + limb.radius)

@@ -48,30 +48,30 @@ class Spherocylinder(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:  # noqa: ARG002
         """Return the field on the points of a window."""
-        frame = pose.along(3)
+        frame = pose.in_dimensions(3)
         world = x, y[:, None], z[:, None, None]
-        px, py, pz = frame.seen(world)
+        px, py, pz = frame.to_body_3d(world)
         dx = px - np.clip(px, -0.5 * self.length, 0.5 * self.length)
         size = np.sqrt(dx * dx + py * py + pz * pz)
         safe = np.maximum(size, 1e-12 * self.radius)
         normal = rotate_vectors(frame.matrix, (dx / safe, py / safe, pz / safe))
-        u, v, w = (np.broadcast_to(component, size.shape) for component in frame.rates(world))
+        u, v, w = (np.broadcast_to(component, size.shape) for component in frame.velocity_at(world))
         return SpaceField(size - self.radius, normal, (u, v, w), np.full(size.shape, 2 * self.radius))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:  # noqa: ARG002
         """Return points on rings along it and over its round ends."""
-        frame = pose.along(3)
+        frame = pose.in_dimensions(3)
         local, facing, areas = around_rod(self.length, self.radius, spacing)
-        points = np.stack(frame.place(local - np.array([[0.5 * self.length], [0.0], [0.0]])))
+        points = np.stack(frame.to_world_3d(local - np.array([[0.5 * self.length], [0.0], [0.0]])))
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(
-            points=points, weight=areas, velocities=np.stack(frame.rates(points)),
+            points=points, weight=areas, velocities=np.stack(frame.velocity_at(points)),
             normals=np.stack(rotate_vectors(frame.matrix, facing)), spins=spins,
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:  # noqa: ARG002
         """Return the box around it."""
-        frame = pose.along(3)
+        frame = pose.in_dimensions(3)
         reach = (0.5 * self.length * np.abs(frame.matrix[:, 0]) + self.radius).tolist()
         return tuple(p + direction * r for p, r in zip(frame.position, reach, strict=True) for direction in (-1.0, 1.0))
 
@@ -168,7 +168,7 @@ class Linked(SpaceShape):
 
     def poses(self, time: float, pose: Pose) -> list[Pose]:
         """Return the pose of each piece in the world."""
-        frame, links = pose.along(3), self.motion(time)
+        frame, links = pose.in_dimensions(3), self.motion(time)
         return [_piece_pose(piece, links, frame) for piece in self.pieces]
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
@@ -252,7 +252,7 @@ class Linked(SpaceShape):
                 or (upper_bound < a).any()
             ):
                 continue
-            is_inside |= piece.shape.contains(np.array(piece_pose.seen(points)))
+            is_inside |= piece.shape.contains(np.array(piece_pose.to_body_3d(points)))
         return is_inside
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
@@ -283,10 +283,10 @@ class Linked(SpaceShape):
         piece_poses, points, rates, volumes = self.poses(time, Pose()), [], [], []
         for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
             inner, point_volume = _volume_samples(piece.shape)
-            world = np.array(piece_pose.place(inner))
+            world = np.array(piece_pose.to_world_3d(inner))
             is_outside = ~self._is_covered(world, piece_poses, k, time, earlier_only=True)
             points.append(world[:, is_outside])
-            rates.append(np.array(piece_pose.rates(world))[:, is_outside])
+            rates.append(np.array(piece_pose.velocity_at(world))[:, is_outside])
             volumes.append(np.full(int(is_outside.sum()), point_volume))
         positions = np.concatenate(points, axis=1)
         velocities = np.concatenate(rates, axis=1)
@@ -336,8 +336,8 @@ def _piece_pose(piece: LinkPiece, links: LinkStates, frame: Pose) -> Pose:
     link_matrix = links.matrix[k]
     arm = link_matrix @ np.array(piece.position)
     spin, rate = links.spin[k], links.velocity[k] + np.cross(links.spin[k], arm)
-    position = np.array(frame.place(links.position[k] + arm))
-    velocity = outer @ rate + np.array(frame.rates(position))
+    position = np.array(frame.to_world_3d(links.position[k] + arm))
+    velocity = outer @ rate + np.array(frame.velocity_at(position))
     yaw, pitch, roll = rotation.attitude(outer @ link_matrix @ rotation.matrix(np.array(piece.quaternion)))
     p, q, r = (outer @ spin + frame.spins).tolist()
     (x, y, z), (u, v, w) = position.tolist(), velocity.tolist()

@@ -88,8 +88,8 @@ class MidlineState:
     def in_world(self, pose: Pose) -> "MidlineState":
         """Return the midline in the world."""
         x, y = pose.to_world(self.x, self.y)
-        vx, vy = pose.turn(self.x_rate, self.y_rate)
-        cx, cy = pose.carry(x, y)
+        vx, vy = pose.rotate_in_plane(self.x_rate, self.y_rate)
+        cx, cy = pose.velocity_in_plane(x, y)
         return replace(
             self, x=x, y=y, heading=self.heading + pose.angle, x_rate=vx + cx, y_rate=vy + cy,
             heading_rate=self.heading_rate + pose.spin,

@@ -354,7 +354,7 @@ class Reaction:
         """Return the loads on one or some of several bodies or parts."""
         return Reaction(force=self.force[index], moment=self.moment[index], power=self.power[index])
 
-    def whole(self, mirror_cuts: tuple[bool, ...]) -> "Reaction":
+    def of_whole_body(self, mirror_cuts: tuple[bool, ...]) -> "Reaction":
         """Return the load on the whole body, if mirrors cut it and this is the load on the part in the domain.
 
         Forces through a mirror, and torques about the axes in it, vanish.

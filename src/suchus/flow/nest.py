@@ -231,11 +231,11 @@ def _interpolate(coarse, runs, first_cells, weights, taps, values):  # type: ign
 class RimStencil(NamedTuple):
     """Interpolation stencil of one velocity component around a patch; see ``_interpolate``."""
 
-    places: np.ndarray
+    flat_indices: np.ndarray
     """Flat indices of the values in the padded patch."""
     runs: np.ndarray
     """Runs of consecutive values along the rows."""
-    first: np.ndarray
+    first_cells: np.ndarray
     """First coarse index of a box."""
     weights: np.ndarray
     """Weights of the coarse values."""
@@ -313,7 +313,7 @@ class Rim:
             weights[flat + axis, :n, : axis_weights.shape[1]] = axis_weights
         return RimStencil(places, _runs(places, (1,) * flat + shape), first_cells, weights, taps)
 
-    def read(self, coarse: np.ndarray) -> list[np.ndarray]:
+    def interpolate(self, coarse: np.ndarray) -> list[np.ndarray]:
         """Return the velocity around the patch, interpolated from the coarse faces, one array for each component [m/s].
 
         Args:
@@ -321,16 +321,16 @@ class Rim:
         """
         values = []
         for component, stencil in zip(coarse, self._stencils, strict=True):
-            rim_values: np.ndarray = np.empty(stencil.places.size, self._dtype)
+            rim_values: np.ndarray = np.empty(stencil.flat_indices.size, self._dtype)
             slabs = component if component.ndim == 3 else component[None]
-            _interpolate(slabs, stencil.runs, stencil.first, stencil.weights, stencil.taps, rim_values)
+            _interpolate(slabs, stencil.runs, stencil.first_cells, stencil.weights, stencil.taps, rim_values)
             values.append(rim_values)
         return values
 
     def write(self, velocity: np.ndarray, values: Sequence[np.ndarray]) -> None:
         """Write interpolated values, see ``read``, to the padded velocity of the patch."""
         for component, stencil, rim_values in zip(velocity, self._stencils, values, strict=True):
-            component.reshape(-1)[stencil.places] = rim_values
+            component.reshape(-1)[stencil.flat_indices] = rim_values
 
 
 class Nested(Fluid):
@@ -361,7 +361,7 @@ class Nested(Fluid):
         super().__init__(grid, sides_of_patch, viscosity, dtype, scheme, integrator)
         self.coarse = Fluid(coarse_grid, sides, viscosity, dtype, scheme, integrator)
         self.ratio, corner = locate_patch(grid, coarse_grid)
-        self.coarse.least = min_pressure_cycles(max(grid.cells) // self.ratio)
+        self.coarse.min_cycles = min_pressure_cycles(max(grid.cells) // self.ratio)
         self._rim = Rim(grid, coarse_grid, sides_of_patch, dtype)
         self._values: list[np.ndarray] = []  # around the patch, as they were last read
         self._previous_values: list[np.ndarray] = []  # a round of the first step earlier
@@ -374,7 +374,7 @@ class Nested(Fluid):
             face_slices, axis = list(self._cells), grid.axes - 1 - c
             face_slices[axis] = slice(face_slices[axis].start + (not is_periodic), face_slices[axis].stop)
             self._faces.append(tuple(face_slices))
-        self._shares = any(not isinstance(side, CoarseSide) for side in sides_of_patch.around(grid.axes))
+        self._has_domain_sides = any(not isinstance(side, CoarseSide) for side in sides_of_patch.around(grid.axes))
         self._push: tuple[float, ...] = ()
         self._span = 0.0
         self._coarse_acceleration: np.ndarray = np.zeros(0)
@@ -438,7 +438,7 @@ class Nested(Fluid):
 
     def _surround(self, velocity: np.ndarray, coarse: np.ndarray) -> None:
         """Write the velocity on and beyond the sides of the patch, by that on the coarse faces."""
-        self._values = self._rim.read(coarse)
+        self._values = self._rim.interpolate(coarse)
         self._rim.write(velocity, self._values)
         self.border.fill(velocity)
 
@@ -450,7 +450,7 @@ class Nested(Fluid):
     def _replace(self, fine: np.ndarray, coarse: np.ndarray) -> None:
         """Let the coarse velocity inside the patch be the mean of the fine one, and fit sides that both share."""
         self._give(fine, coarse)
-        if self._shares:
+        if self._has_domain_sides:
             self.coarse.border.fill(coarse)
 
     def _average(self, fine: np.ndarray, coarse: np.ndarray, face_axis: int | None = None) -> None:
@@ -498,26 +498,26 @@ class Nested(Fluid):
 
     def _plan(self, span: float) -> list[PlannedStage]:
         pairs = zip(super()._plan(span), self.coarse._plan(self._span), strict=True)
-        return [stage._replace(beyond=coarse_stage) for stage, coarse_stage in pairs]
+        return [stage._replace(coarse_stage=coarse_stage) for stage, coarse_stage in pairs]
 
     def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
         """Take one stage on both grids: fine advance, coarse advance and pressure, then the fine pressure."""
-        coarse, coarse_stage = self.coarse, stage.beyond
+        coarse, coarse_stage = self.coarse, stage.coarse_stage
         self._advance(stage, push)
         coarse._advance(coarse_stage, self._push)
-        self._replace(stage.out, coarse_stage.out)
+        self._replace(stage.result, coarse_stage.result)
         coarse._project(
-            coarse_stage.out,
-            coarse_stage.solved,
+            coarse_stage.result,
+            coarse_stage.pressure_duration,
             (COARSE_TOLERANCE_RATIO * limits[0], COARSE_TOLERANCE_RATIO * limits[1]),
         )
-        self._surround(stage.out, coarse_stage.out)
-        self._project(stage.out, stage.solved, limits)
-        self._replace(stage.out, coarse_stage.out)
+        self._surround(stage.result, coarse_stage.result)
+        self._project(stage.result, stage.pressure_duration, limits)
+        self._replace(stage.result, coarse_stage.result)
         self._give_pressure()
 
     def _hear(self, stage: PlannedStage) -> float:
-        return self.coarse._hear(stage.beyond)
+        return self.coarse._hear(stage.coarse_stage)
 
     @property
     def _learns(self) -> bool:
@@ -544,9 +544,9 @@ class Nested(Fluid):
     def _coarsened(self, face_values: np.ndarray) -> np.ndarray:
         """Return values on the faces of the fine window, averaged onto those of the coarse window, (axis, ...)."""
         fine, coarse = np.zeros(self.velocity.shape), np.zeros(self.coarse.velocity.shape)
-        fine[:, *self.here] = face_values
+        fine[:, *self.window_slices] = face_values
         self._give(fine, coarse)
-        return coarse[:, *self.coarse.here]
+        return coarse[:, *self.coarse.window_slices]
 
     def potential(self, acceleration: np.ndarray, limit: float) -> np.ndarray:
         """Return the pressure that answers a body acceleration on the patch; see ``Fluid``."""
@@ -554,7 +554,7 @@ class Nested(Fluid):
         self.coarse.potential(self._coarse_acceleration, COARSE_TOLERANCE_RATIO * limit)
         return self._answering(acceleration, self._side_velocity(self._coarse_acceleration), limit)
 
-    def press(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
+    def apply_velocity_change(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
         """Add a velocity change to the water on both grids, with the pressure that it causes; see ``Fluid``.
 
         Only the change is solved for on both grids. The step leaves a divergence; beside it, a change ten thousand
@@ -566,7 +566,7 @@ class Nested(Fluid):
             limit: mean divergence that may be left [m/s per cell].
         """
         span = self.dtype(dt / self.grid.cell)
-        self.coarse.press(self._coarsened(velocity_change), dt, COARSE_TOLERANCE_RATIO * limit)
+        self.coarse.apply_velocity_change(self._coarsened(velocity_change), dt, COARSE_TOLERANCE_RATIO * limit)
         x = self._answering(velocity_change, self._side_velocity(self._coarsened(velocity_change)), limit)
         self._answer_with(velocity_change, dt)
         self._surround(self.velocity, self.coarse.velocity)
@@ -580,7 +580,7 @@ class Nested(Fluid):
             acceleration: argument of that ``potential``, on the faces of the coarse window, shape (axis, ...).
         """
         velocity = np.zeros(self.velocity.shape)
-        self._rim.write(velocity, self._rim.read(self.coarse._gained(acceleration)))
+        self._rim.write(velocity, self._rim.interpolate(self.coarse._gained(acceleration)))
         return velocity
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
@@ -588,7 +588,7 @@ class Nested(Fluid):
         del x
         return self.coarse.along_sides(self.coarse._x.reshape(self.coarse.p.shape))
 
-    def answer(self, acceleration: np.ndarray) -> list[np.ndarray]:
+    def side_accelerations(self, acceleration: np.ndarray) -> list[np.ndarray]:
         """Return the acceleration into the domain on each side that ``potential``'s last answer induces."""
         del acceleration
-        return self.coarse.answer(self._coarse_acceleration)
+        return self.coarse.side_accelerations(self._coarse_acceleration)

@@ -43,7 +43,7 @@ def snapshot(sim: Fields) -> xr.Dataset:
     spin = cells if grid.axes == 2 else ("component", *cells)
     values = {
         "velocity": (("component", *cells), velocity), "pressure": (cells, sim.pressure),
-        "vorticity": (spin, sim.vorticity_at_centres), "fluid_share": (cells, sim.fluid_share),
+        "vorticity": (spin, sim.vorticity_at_centres), "fluid_share": (cells, sim.fluid_fraction),
     }  # fmt: skip
     coords: dict[str, object] = {
         name: (name, getattr(grid, name) + shift, {"units": "m"}) for name, shift in zip(names, position, strict=True)

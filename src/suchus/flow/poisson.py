@@ -311,9 +311,9 @@ class Solve:
 
     cycles: int
     """Iterations [-]."""
-    mean: float
+    mean_divergence: float
     """Mean of the remaining divergence [m/s per cell]."""
-    largest: float
+    max_divergence: float
     """Largest remaining divergence [m/s per cell]."""
 
 

@@ -215,8 +215,8 @@ class Setup:
         """
         thin_fractions = {}
         for body in self.bodies:
-            pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
-            pose = pose.along(self.grid.axes)
+            pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.from_body(body).pose(body.shape.mass(0.0))
+            pose = pose.in_dimensions(self.grid.axes)
             window = window_of(body, pose, self.grid, 0.0, self._mirrors)
             if isinstance(body, FreeBody):
                 self._check_weight(body, cuts(window, self.grid))

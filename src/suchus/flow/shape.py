@@ -127,8 +127,8 @@ class Solid(Shape):
         """Return distance, normal and velocity on the points of a window; see ``Shape``."""
         wx, wy = np.meshgrid(x, y)
         d, nx, ny = self.distance(*pose.to_body(wx, wy))
-        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy))
-        return Field(d, *pose.turn(nx, ny), vx, vy, np.full(d.shape, np.inf))
+        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.velocity_in_plane(wx, wy))
+        return Field(d, *pose.rotate_in_plane(nx, ny), vx, vy, np.full(d.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return markers at the centres of the outline's edges; see ``Shape``."""
@@ -137,8 +137,8 @@ class Solid(Shape):
         return Markers(
             points=points,
             weight=length,
-            velocities=np.stack(pose.carry(*points)),
-            normals=np.stack(pose.turn(*normal)),
+            velocities=np.stack(pose.velocity_in_plane(*points)),
+            normals=np.stack(pose.rotate_in_plane(*normal)),
             spins=np.full((1, length.size), pose.spin),
             station=np.cumsum(length) - length / 2,
             side=np.zeros(length.size),

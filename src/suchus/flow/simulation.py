@@ -109,7 +109,7 @@ class Simulation(Fields):
         self.axes = setup.grid.axes
         self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
         self._bodies = [_remembering(body) for body in setup.bodies]
-        self.swimmers = {b.name: Swimmer.of(b) for b in self._bodies if isinstance(b, FreeBody)}
+        self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
         self._log, self._watch = Log(setup), Watch(setup)
         self._last = 0.0
@@ -130,13 +130,13 @@ class Simulation(Fields):
         self._reference = 0.0  # fastest stream, body or wall so far
         self._max_first_step = inf  # of a first step, by how far it carries bodies that begin at rest
         self.water.place(self._bodies, [self._in_frame(self.pose(b.name)) for b in self._bodies], 0.0)
-        shared = self._watch.shared(self.water, 0.0)
+        shared = self._watch.overlap_message(self.water, 0.0)
         if shared is not None:
             raise InvalidDesign(shared)
-        for body, mirror_cuts in zip(self._bodies, self.water.cut, strict=True):
+        for body, mirror_cuts in zip(self._bodies, self.water.mirror_cuts, strict=True):
             if isinstance(body, FreeBody) and body.free is None:
-                self.swimmers[body.name].go &= np.array(symmetric(mirror_cuts))
-        self._log.hold(self.water, outlines)
+                self.swimmers[body.name].is_free &= np.array(symmetric(mirror_cuts))
+        self._log.store_contents(self.water, outlines)
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(self._bodies, outlines, strict=True)]
         )  # fmt: skip
@@ -149,7 +149,7 @@ class Simulation(Fields):
         """
         cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
-            pose = body.pose(0.0).along(self.axes)
+            pose = body.pose(0.0).in_dimensions(self.axes)
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
@@ -157,22 +157,23 @@ class Simulation(Fields):
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
             consistencies.append(
                 Consistency(
-                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).along(self.axes), reach), cell
+                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.axes), reach),
+                    cell,
                 )
             )
             changing.append(not fixed)
         if isinstance(body.shape, Midline | Trunk):
             consistencies.append(
-                Consistency(MidlineSource(body.name, body.shape.spine), cell, every=RATE_CHECK_INTERVAL)
+                Consistency(MidlineSource(body.name, body.shape.spine), cell, check_interval=RATE_CHECK_INTERVAL)
             )
             changing.append(not body.shape.rigid)
         if isinstance(body.shape, Linked):
             links = LinkSource(body.name, body.shape.motion, body.shape.bounding_radii)
-            consistencies.append(Consistency(links, cell, every=RATE_CHECK_INTERVAL))
+            consistencies.append(Consistency(links, cell, check_interval=RATE_CHECK_INTERVAL))
             changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
         for consistency in consistencies:
-            first_step = consistency.longest(0.0, step)
+            first_step = consistency.max_first_step(0.0, step)
             self._max_first_step = min(self._max_first_step, first_step)
             consistency.start(0.0, first_step)
         return [consistency for consistency, is_changing in zip(consistencies, changing, strict=True) if is_changing]
@@ -188,7 +189,7 @@ class Simulation(Fields):
         """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
-            return body.pose(self.time if time is None else time).along(self.axes)
+            return body.pose(self.time if time is None else time).in_dimensions(self.axes)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
@@ -257,7 +258,7 @@ class Simulation(Fields):
         if not (isfinite(dt) and dt > 0):
             raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
         for consistency in self._watched:
-            consistency.look(self.time, dt)
+            consistency.check_step(self.time, dt)
         contacts = self._contacts(dt)
         for name, swimmer in self.swimmers.items():
             swimmer.advance(self.time, dt, self.setup.density, contacts.get(name))
@@ -291,7 +292,7 @@ class Simulation(Fields):
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits, time)
         self.time, self._last = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
-        self._latest_step = _LatestStep(dt, poses, push, drift, self._log.held)
+        self._latest_step = _LatestStep(dt, poses, push, drift, self._log.region_contents)
         self._note(self._latest_step)
         self._log.control(self.water, dt, push)
 
@@ -310,7 +311,7 @@ class Simulation(Fields):
             half_step = 0.5 * dt
             outlines.append(replace(outline, points=outline.points + half_step * outline.velocities))
             swimmer = self.swimmers.get(body.name)
-            centres.append(np.zeros(2) if swimmer is None else swimmer.place[:2] + half_step * swimmer.rate[:2])
+            centres.append(np.zeros(2) if swimmer is None else swimmer.coordinates[:2] + half_step * swimmer.rate[:2])
         contact_forces = contact.forces(setup.contact, outlines, centres)
         return dict(zip([b.name for b in self._bodies], contact_forces, strict=True))
 
@@ -335,16 +336,16 @@ class Simulation(Fields):
         for k, (body, markers, point, loads) in enumerate(
             zip(self._bodies, outlines, torque_points, self._loads, strict=True)
         ):  # fmt: skip
-            act = loads.whole
+            act = loads.total
             load = sample(water, markers, setup.density).load(point) if water.axes == 2 else None
             body_pose = self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
             if swimmer is not None:
                 body_pose = swimmer.place_and_rate
                 swimmer.load = np.array([*act.force, *act.moment])
-                if swimmer.steps % ADDED_MASS_INTERVAL == 1 and swimmer.go.any():
-                    free_degrees = swimmer.go if self.axes == 3 else None
-                    swimmer.take_added(added_mass(water, markers, point, setup.density, k, free_degrees), self.time)
+                if swimmer.steps % ADDED_MASS_INTERVAL == 1 and swimmer.is_free.any():
+                    free_degrees = swimmer.is_free if self.axes == 3 else None
+                    swimmer.set_added_mass(added_mass(water, markers, point, setup.density, k, free_degrees), self.time)
             values += columns(load, act, step.drift, body_pose, self._watch.errors[k])
             part_values += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
@@ -353,11 +354,11 @@ class Simulation(Fields):
         solves = water.solves
         row = np.array(
             [
-                self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].largest / self._speed, *values,
+                self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].max_divergence / self._speed, *values,
                 *part_values,
             ]
         )  # fmt: skip
-        good = dict(zip("uvw", water.before, strict=False))
+        good = dict(zip("uvw", water.previous_velocity, strict=False))
         self._log.refuse_nonsense(fastest, self._reference, row, good)
         self._log.rows.append(row)
         if len(self._log.rows) % SIDE_CHECK_INTERVAL == 0:
@@ -402,10 +403,10 @@ class Simulation(Fields):
         body_twists = [resting_twists(len(rows), self.axes) for rows in self.water.rows]
         for name, motion in twists.items():
             number = self._number(name)
-            if motion.about.shape != body_twists[number].about.shape:
+            if motion.reference_points.shape != body_twists[number].reference_points.shape:
                 raise InvalidDesign(
-                    f"{name} is given the motions of {len(motion.about)} parts, and it has "
-                    f"{len(body_twists[number].about)}; give one for each part, from the first to the last."
+                    f"{name} is given the motions of {len(motion.reference_points)} parts, and it has "
+                    f"{len(body_twists[number].reference_points)}; give one for each part, from the first to the last."
                 )
             body_twists[number] = motion
         accelerate(self.water, join_twists(body_twists), self._latest_step.dt)
@@ -474,9 +475,14 @@ class Simulation(Fields):
         rows = np.array(self._log.rows).reshape(len(self._log.rows), -1)
         swimmers = {f"{n}.{key}": value for n, s in self.swimmers.items() for key, value in s.state().items()}
         return {
-            **numbers, **self.water.state(), **swimmers, "frame": self.frame, "rows": rows, "held": self._log.held,
+            **numbers,
+            **self.water.state(),
+            **swimmers,
+            "frame": self.frame,
+            "rows": rows,
+            "held": self._log.region_contents,
             "b": self.water.b,
-        }  # fmt: skip
+        }
 
     def resume(self, state: store.State) -> None:
         """Continue from the state of a checkpoint.
@@ -487,7 +493,7 @@ class Simulation(Fields):
         for key in _CHANGING:
             setattr(self, key, float(state[key]))
         self.frame = state["frame"]
-        self._log.rows, self._log.held = list(state["rows"]), state["held"]
+        self._log.rows, self._log.region_contents = list(state["rows"]), state["held"]
         self.water.resume(state)
         self._fastest = self.water.fastest()
         for name, swimmer in self.swimmers.items():
@@ -585,7 +591,7 @@ class Simulation(Fields):
         if not self._placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
-        for body, mirror_cuts in zip(self._bodies, self.water.cut, strict=True):
+        for body, mirror_cuts in zip(self._bodies, self.water.mirror_cuts, strict=True):
             if any(mirror_cuts):
                 raise InvalidDesign(
                     f"a mirror cuts {body.name}, and a control volume goes all around bodies; take Record.force."

@@ -150,7 +150,7 @@ class Ellipsoid(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return distance, normal and velocity on the points of a window; see ``SpaceShape``."""
-        pose_3d = pose.along(3)
+        pose_3d = pose.in_dimensions(3)
         fields = np.zeros((8, z.size, y.size, x.size))
         fields[7] = np.inf
         cell = float(x[1] - x[0]) if x.size > 1 else float(reach)
@@ -163,7 +163,10 @@ class Ellipsoid(SpaceShape):
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return points on rings about the body's z axis; each represents the same area of a unit sphere."""
-        pose_3d, rings = pose.along(3), max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half_extents.max()) / spacing)))
+        pose_3d, rings = (
+            pose.in_dimensions(3),
+            max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half_extents.max()) / spacing))),
+        )
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
         turn = (np.arange(2 * rings) + 0.5) * np.pi / rings
         sin = np.sqrt(1 - cos * cos)[:, None]
@@ -171,16 +174,16 @@ class Ellipsoid(SpaceShape):
         unit = unit.reshape(3, -1)
         a = self.half_extents[:, None]
         areas = float(np.prod(self.half_extents)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
-        points = np.stack(pose_3d.place(a * unit))
+        points = np.stack(pose_3d.to_world_3d(a * unit))
         normals = np.stack(rotate_vectors(pose_3d.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
         spins = np.broadcast_to(pose_3d.spins[:, None], points.shape)
         return Markers(
-            points=points, weight=areas, velocities=np.stack(pose_3d.rates(points)), normals=normals, spins=spins
+            points=points, weight=areas, velocities=np.stack(pose_3d.velocity_at(points)), normals=normals, spins=spins
         )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""
-        pose_3d = pose.along(3)
+        pose_3d = pose.in_dimensions(3)
         reach = np.sqrt(((pose_3d.matrix * self.half_extents) ** 2).sum(axis=1)).tolist()
         return tuple(p + sign * r for p, r in zip(pose_3d.position, reach, strict=True) for sign in (-1.0, 1.0))
 
@@ -198,7 +201,7 @@ class Ellipsoid(SpaceShape):
         turn = np.linspace(0.0, 2 * np.pi, _RIM + 1)
         rim = np.zeros((3, turn.size))
         rim[long_axes] = rim_half_axes[long_axes, None] * np.stack([np.cos(turn), np.sin(turn)])
-        rim, centre = np.array(pose.along(3).place(rim)), np.array(pose.along(3).position)
+        rim, centre = np.array(pose.in_dimensions(3).to_world_3d(rim)), np.array(pose.in_dimensions(3).position)
         return np.stack([np.broadcast_to(centre[:, None], (3, _RIM)), rim[:, :-1], rim[:, 1:]])
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:

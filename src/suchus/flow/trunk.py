@@ -73,7 +73,7 @@ class Trunk(SpaceShape):
         Raises:
             InvalidDesign: the midline has another number of stations than the half-heights.
         """
-        spine, pose_3d = self._spine(time), pose.along(3)
+        spine, pose_3d = self._spine(time), pose.in_dimensions(3)
         if not pose_3d.in_plane:
             return spine, pose_3d
         height, rate = pose_3d.position[2], pose_3d.velocity[2]
@@ -110,7 +110,7 @@ class Trunk(SpaceShape):
         matrix = np.ascontiguousarray(frame.matrix)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_turned_sections(*arguments, px, py, pz, matrix, np.array(frame.position), float(reach))
-        rigid = frame.rates((x, y[:, None], z[:, None, None]))
+        rigid = frame.velocity_at((x, y[:, None], z[:, None, None]))
         u, v, w = (
             a + b for a, b in zip(rigid, rotate_vectors(matrix, (fields[4], fields[5], 0 * fields[5])), strict=True)
         )
@@ -176,7 +176,7 @@ class Trunk(SpaceShape):
             ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
             half_height = float(self.half_height.max())
             return (*ends, height - half_height, height + half_height)
-        centres, matrix = np.array(frame.place((spine.x, spine.y, 0 * spine.x))), frame.matrix
+        centres, matrix = np.array(frame.to_world_3d((spine.x, spine.y, 0 * spine.x))), frame.matrix
         lateral = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
         lateral_extent = spine.half_width * (matrix[:, :2] @ lateral)
         vertical_extent = np.outer(matrix[:, 2], self.half_height)
@@ -200,7 +200,7 @@ class Trunk(SpaceShape):
         has_surface = ((vertical[1:] > 0) & (vertical[:-1] > 0)) | ((lateral[1:] > 0) & (lateral[:-1] > 0))
         if not has_surface.any():
             return None
-        lower_rim, upper_rim = (np.array(frame.place(centre_line + sign * rim_offset)) for sign in (-1.0, 1.0))
+        lower_rim, upper_rim = (np.array(frame.to_world_3d(centre_line + sign * rim_offset)) for sign in (-1.0, 1.0))
         pairs = [
             (lower_rim[:, :-1], lower_rim[:, 1:], upper_rim[:, :-1]),
             (lower_rim[:, 1:], upper_rim[:, 1:], upper_rim[:, :-1]),
@@ -230,7 +230,7 @@ class Trunk(SpaceShape):
         """
         spine, frame = self.midline_and_frame(time, pose)
         x, y = (np.interp(arc, spine.arc, line) for line in (spine.x, spine.y))
-        return np.column_stack(frame.place((x, y, 0 * x)))
+        return np.column_stack(frame.to_world_3d((x, y, 0 * x)))
 
 
 def in_world(skin: Markers, frame: Pose) -> Markers:
@@ -240,8 +240,8 @@ def in_world(skin: Markers, frame: Pose) -> Markers:
         skin: markers in a frame.
         frame: pose of that frame.
     """
-    points = np.array(frame.place(skin.points))
-    velocities = np.array(rotate_vectors(frame.matrix, skin.velocities)) + frame.rates(points)
+    points = np.array(frame.to_world_3d(skin.points))
+    velocities = np.array(rotate_vectors(frame.matrix, skin.velocities)) + frame.velocity_at(points)
     return Markers(
         points=points, weight=skin.weight, velocities=velocities,
         normals=np.array(rotate_vectors(frame.matrix, skin.normals)),

@@ -582,7 +582,7 @@ class Swim:
         series = self.series
         loads = self.sim.last(self.run.robot.name)
         h = self.time - (series.time[-1] if series.time else 0.0)
-        power = self._times * float(loads.whole.power - loads.whole.force @ self._drift())
+        power = self._times * float(loads.total.power - loads.total.force @ self._drift())
         series.time.append(self.time)
         series.force.append(water_force)
         series.links.append(self._times * self.chain.felt(posture.place, loads, self._origin))

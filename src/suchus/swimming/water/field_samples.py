@@ -149,7 +149,7 @@ def _vortices(sim: flow.Simulation) -> np.ndarray:
     velocity = np.stack(sim.velocity).astype(float)
     image = velocity[:, :1] * np.array([1.0, 1.0, -1.0])[:, None, None, None]
     q = flow.second_invariant(np.concatenate([image, velocity], axis=1), sim.setup.grid.cell)[1:]
-    invariant: np.ndarray = q * (sim.fluid_share > MIN_FLUID_FRACTION)
+    invariant: np.ndarray = q * (sim.fluid_fraction > MIN_FLUID_FRACTION)
     return invariant
 
 
