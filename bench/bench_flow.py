@@ -182,7 +182,7 @@ def tell_patch(steps=6, rounds=4, cells=64):
         }  # fmt: skip
         sims = [
             flow.Simulation(flow.Setup(**grids, **more), thread_count=1)
-            for grids in ({"grid": fine}, {"grid": patch, "around": whole})
+            for grids in ({"grid": fine}, {"grid": patch, "coarse_grid": whole})
         ]
         every = []
         for _ in range(rounds):
@@ -255,7 +255,7 @@ def tell_solve(w, per_cell):
             poisson._step
         )
     )  # fmt: skip
-    store, layout, room, patches, inner, sides = w._store, w._layout, w._buffer, w._patches, w.inner, w.repeats
+    store, layout, room, patches, inner, sides = w._store, w._layout, w._buffer, w._patches, w.inner, w.is_periodic
     print("one iteration of the pressure solver, ns per cell of the finest level; best of 20")
 
     def tell(label, function):

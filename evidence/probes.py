@@ -116,7 +116,7 @@ def flow_state(sim: flow.Simulation) -> Numbers:
     energy = sum(float(np.square(component, dtype=float).mean()) for component in layer.velocity)
     numbers = {"time": float(sim.time), "energy": energy}
     for body in sim.setup.bodies:
-        loads = sim.last(body.name).total
+        loads = sim.last_loads(body.name).total
         numbers |= {f"{body.name}_force_{axis}": float(value) for axis, value in zip("xyz", loads.force, strict=False)}
     for name in sim.swimmers:
         velocity = sim.pose(name).velocity

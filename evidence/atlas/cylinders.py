@@ -124,7 +124,7 @@ def _steady(effort: RunEffort, progress: Progress) -> Curves:
     record = march(sim, effort.until, staged(progress, "fine grid", 0.5, 1.0))
     skin = read_skin(sim)
     return {
-        "drag": np.array(2 * record.after(0.8 * effort.until).force()[:, 0].mean()),
+        "drag": np.array(2 * record.select_after(0.8 * effort.until).force()[:, 0].mean()),
         "wake length": np.array(wake_length(sim)), "pressure": skin.curve("pressure"),
     }  # fmt: skip
 
@@ -138,7 +138,7 @@ def _shedding(effort: RunEffort, progress: Progress) -> Curves:
         skins.append((now.time, read_skin(now)))
 
     record = march(sim, effort.until, staged(progress, "fine grid", 0.5, 1.0), watch=(note,), every=_READINGS)
-    numbers = shedding(record.after(_SETTLED), _PERIODS)
+    numbers = shedding(record.select_after(_SETTLED), _PERIODS)
     since = effort.until - _PERIODS / float(numbers["Strouhal"])
     late = [skin for time, skin in skins if time > since]
     mean = np.mean([skin.pressure for skin in late], axis=0)

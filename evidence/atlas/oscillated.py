@@ -122,7 +122,7 @@ def _at_rest(effort: RunEffort, progress: Progress) -> Curves:
 
     sim = refined(formed(("held", effort.coarse, effort.before), form), _setup(_near(effort.cells), 0.0))
     record = march(sim, effort.until, staged(progress, "fine grid", _COARSE_SHARE, 1.0))
-    return shedding(record.after(_SETTLED), _PERIODS)
+    return shedding(record.select_after(_SETTLED), _PERIODS)
 
 
 def mean_skin(skins: list[WallValues]) -> WallValues:

@@ -42,7 +42,7 @@ def _snake(effort: RunEffort, progress: Progress, *, reynolds: float, degrees: i
     wake = formed(("snake", reynolds, degrees, effort.coarse, effort.before), form)
     sim = refined(wake, _setup(near(effort.cells), reynolds, degrees))
     record = march(sim, effort.until, staged(progress, "fine grid", 0.2, 1.0))
-    late = record.after(_SETTLED)
+    late = record.select_after(_SETTLED)
     drag, lift = 2 * np.average(late.force(), axis=0, weights=late.step)
     strouhal = last_strouhal(middles(late), late.force()[:, 1])
     return {"mean drag": np.array(drag), "mean lift": np.array(lift), "Strouhal": np.array(strouhal)}

@@ -28,7 +28,7 @@ def _steady(effort: RunEffort, progress: Progress) -> Curves:
             bodies=(flow.Body(shape=flow.Sphere(diameter=1.0)),),
         )
     )  # fmt: skip
-    late = march(sim, effort.until, progress).after(effort.until - min(_LATE, 0.5 * effort.until))
+    late = march(sim, effort.until, progress).select_after(effort.until - min(_LATE, 0.5 * effort.until))
     return {"drag": np.array(np.average(2 * late.force()[:, 0] / _AREA, weights=late.step))}
 
 

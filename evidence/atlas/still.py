@@ -28,7 +28,7 @@ def _in_line(effort: RunEffort, progress: Progress) -> Curves:
             courant=LONG_STEP,
         )
     )  # fmt: skip
-    late = march(sim, effort.until, progress).after(effort.until - 1.0)
+    late = march(sim, effort.until, progress).select_after(effort.until - 1.0)
     return {"force": np.stack([middles(late) % 1.0, late.force()[:, 0] / speed**2])}
 
 

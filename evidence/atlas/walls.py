@@ -76,13 +76,13 @@ def _even_channel(cells: int, coarse: int) -> Grids:
     """Return the grid of the DFG channel with so many cells a diameter and the same corners as on the coarse grid."""
     rows, first = _rows(cells), _rows(coarse)
     long = flow.Grid.covering((0.0, 2.2), (0.0, _HEIGHT), cell=_HEIGHT / first).cells[0]
-    return Grids(grid=flow.Grid(cells=(long * rows // first, rows), cell=_HEIGHT / rows), around=None)
+    return Grids(grid=flow.Grid(cells=(long * rows // first, rows), cell=_HEIGHT / rows), coarse_grid=None)
 
 
 def _fine_channel(cells: int, coarse: int) -> Grids:
     """Return the same with so many cells a diameter around the cylinder alone."""
     whole = _even_channel(cells // _FINER, coarse)["grid"]
-    return Grids(grid=whole.patch(*_NEAR, ratio=_FINER), around=whole)
+    return Grids(grid=whole.patch(*_NEAR, ratio=_FINER), coarse_grid=whole)
 
 
 def _channel_setup(grids: Grids, mean_speed: float) -> flow.Setup:

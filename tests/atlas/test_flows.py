@@ -46,7 +46,7 @@ def test_both_grids_of_a_flow_lie_at_the_same_place(name, quick, monkeypatch):
     case, module = CASES[name], import_module(getattr(CASES[name].run, "func", CASES[name].run).__module__)
 
     def go_on(coarse, setup):
-        ours, theirs = (now.around or now.grid for now in (setup, coarse.setup))
+        ours, theirs = (now.coarse_grid or now.grid for now in (setup, coarse.setup))
         assert (*ours.origin, *ours.size) == pytest.approx((*theirs.origin, *theirs.size))
         assert setup.grid.cell < coarse.setup.grid.cell
         raise Begun

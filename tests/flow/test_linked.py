@@ -165,7 +165,7 @@ def test_one_link_swims_as_its_piece_alone_does():
 
     alone = setup(flow.Body(shape=ball, motion=swing))
     linked = setup(flow.Body(shape=flow.Linked(pieces=(flow.LinkPiece(link=0, shape=ball),), motion=link)))
-    one, other = alone.last("body").total, linked.last("body").total
+    one, other = alone.last_loads("body").total, linked.last_loads("body").total
     assert np.abs(one.force).max() > 0.01
     assert other.force == pytest.approx(one.force, abs=1e-4 * np.abs(one.force).max())
     assert float(other.power) == pytest.approx(float(one.power), rel=1e-4)
@@ -173,7 +173,7 @@ def test_one_link_swims_as_its_piece_alone_does():
 
 def test_loads_on_the_links_add_up_and_do_the_power_s_work():
     sim = setup(flow.Body(shape=paddler()), steps=8)
-    loads, h = sim.last("body"), 0.01
+    loads, h = sim.last_loads("body"), 0.01
     assert loads.parts.force.sum(axis=0) == pytest.approx(loads.total.force, abs=1e-9)
     middle = paddle(sim.time - 0.5 * h)
     force, moment = loads.parts.force[1], loads.parts.moment[1]

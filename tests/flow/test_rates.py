@@ -214,4 +214,4 @@ def test_a_body_that_begins_at_rest_in_thin_water_begins_with_a_step_in_which_it
     first = sim.next_step()
     assert 0.1 * CELL < motion(first).position[1] < CELL
     sim.run(first)
-    assert sim.last("body").total.force[1] < 0.0
+    assert sim.last_loads("body").total.force[1] < 0.0

@@ -518,7 +518,7 @@ def test_what_only_space_has_is_refused_in_the_plane(changes, said):
     with pytest.raises(InvalidDesign, match=r"roll 0.1 rad .* in the plane a body has an angle and a spin alone"):
         flow.Setup(
             grid=flow.Grid(cells=(64, 64), cell=0.1, origin=(-3.2, -3.2)), viscosity=1.0, bodies=(turned,)
-        ).check()
+        ).check_bodies()
 
 
 def test_a_force_of_the_wrong_length_says_when():

@@ -52,13 +52,13 @@ def swing(sim, told, inertia, spring, h):
     mode = Twists(reference_points=np.array([pose.position]), linear=np.zeros((1, 2)), angular=np.ones((1, 1)))
     added = float(sim.added_mass("body", [mode]).matrix[0, 0])
     if len(sim.record.time):
-        load = sim.last("body").total.torque
+        load = sim.last_loads("body").total.torque
     whole = inertia + added + 0.25 * h * h * spring
     middle = told.angle + 0.5 * h * told.rate
     told.push = (load + added * told.push - spring * middle) / whole
     sim.advance(h)
     for _ in range(3):
-        load = sim.last("body").total.torque
+        load = sim.last_loads("body").total.torque
         left = inertia * told.push + spring * (middle + 0.25 * h * h * told.push) - load
         more = -left / whole
         told.push += more
@@ -393,7 +393,7 @@ def test_a_step_that_is_taken_again():
         if corrected:
             more = swim.chain.twists(end.place, 0.1 * h * push, np.array(sim.frame[0]), 2)
             sim.accelerate({name: more})
-        loads = sim.last(name)
+        loads = sim.last_loads(name)
         return [
             sim.water.velocity.copy(),
             sim.water.p.copy(),

@@ -157,7 +157,7 @@ class LinkedSwimmer:
         for made in range(6):
             acts = np.zeros(3)
             for name in NAMES:
-                load = sim.last(name)
+                load = sim.last_loads(name)
                 (x, y), (fx, fy) = load.reference_point, load.total.force
                 acts += [fx, fy, float(load.total.torque) + x * fy - y * fx]
             found = self._about(end, acts)

@@ -288,7 +288,7 @@ def cylinder(case, reynolds, cells, where):
     sides = flow.Sides(low=flow.Mirror(), high=flow.Mirror()) if space else flow.Sides()
     whole = flow.Grid.covering(*ends, *span, cell=1 / coarse, sides=sides)
     ratio = cells // coarse
-    grids = {"grid": whole} if ratio == 1 else {"grid": whole.patch(*patched, *span, ratio=ratio), "around": whole}
+    grids = {"grid": whole} if ratio == 1 else {"grid": whole.patch(*patched, *span, ratio=ratio), "coarse_grid": whole}
     shape = Column(diameter=1.0) if space else flow.Cylinder(diameter=1.0)
     start = None
     if space:  # what makes the wake one in space is a ripple of a hundredth of the speed
@@ -309,7 +309,7 @@ def cylinder(case, reynolds, cells, where):
 
 def read(case, reynolds, record, span, since):
     """Return what is compared: mean drag, rms lift and Strouhal number, or drag and inertia by Morison's equation."""
-    late = record.after(since)
+    late = record.select_after(since)
     time, force = late.time - late.step / 2, late.force() / span
     if case == "towed":
         drag, lift = 2 * force[:, 0], 2 * force[:, 1]

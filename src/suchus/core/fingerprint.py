@@ -20,6 +20,7 @@ FORMER_NAMES: dict[str, dict[str, str]] = {
     "BentOutline": {"rest_shape": "still"},
     "Capsule": {"arc_position": "at"},
     "LinkPiece": {"position": "at", "quaternion": "turn"},
+    "Setup": {"coarse_grid": "around"},
 }
 """First name of each field that was renamed, by class.
 

@@ -57,7 +57,7 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple
         pose: its pose.
         grid: the grid.
         time: when [s].
-        mirrors: whether there is a mirror at the low and at the high end of each axis; see ``Sides.mirrors``. Empty:
+        mirrors: whether there is a mirror at the low and at the high end of each axis; see ``Sides.has_mirror``. Empty:
             there are none.
 
     Raises:

@@ -235,15 +235,15 @@ class Edge:
         Raises:
             InvalidDesign: the side gives something that is no velocity.
         """
-        slides, inflow = self.side.along(time, 1 + self.prescribed.ndim), None
+        slides, inflow = self.side.wall_velocity(time, 1 + self.prescribed.ndim), None
         side_text = f"the {self.name} side, a {type(self.side).__name__},"
         if slides is not None and not (np.shape(slides) == (self.prescribed.ndim,) and np.isfinite(slides).all()):
             raise InvalidDesign(
                 f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; along() gives one finite "
                 f"number for each other axis, or None."
             )
-        if self.side.passes and not self.side.opens:
-            inflow = np.asarray(self.side.into(time, *self.face_coordinates))
+        if self.side.is_permeable and not self.side.is_open:
+            inflow = np.asarray(self.side.inflow_velocity(time, *self.face_coordinates))
             if inflow.shape not in ((), self.prescribed.shape) or not np.isfinite(inflow).all():
                 raise InvalidDesign(
                     f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; into() "
@@ -258,7 +258,7 @@ class Edge:
             time: when [s].
             outward: component of the far stream along the outward normal, over its speed [-].
         """
-        self.convective_weight = self.side.carries(outward)
+        self.convective_weight = self.side.outflow_fraction(outward)
         self.wall_velocity, inflow = self.side_velocities(time)
         if inflow is not None:
             self.prescribed[:] = inflow
@@ -287,7 +287,7 @@ class Edge:
                 for a in lines:
                     a[ghost] = a[source]
             return
-        straight = not self.side.passes or (self.unbounded and not self.convective_weight)
+        straight = not self.side.is_permeable or (self.unbounded and not self.convective_weight)
         condition, value = self._tangential_condition(0, tangential_axes[0], step, stream)
         if len(tangential_axes) == 1:
             tangential = self.with_normal_first(velocity[tangential_axes[0]])
@@ -339,9 +339,9 @@ class Border:
     def for_grid(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
         """Return the border of a grid."""
         edges, unbounded = [], sides.unbounded(grid.axes)
-        for k, (name, side) in enumerate(zip(NAMES, sides.around(grid.axes), strict=False)):
+        for k, (name, side) in enumerate(zip(NAMES, sides.of_axes(grid.axes), strict=False)):
             axis = k // 2
-            if not side.ends:
+            if not side.is_domain_end:
                 continue
             prescribed: np.ndarray = np.zeros([n for d, n in enumerate(grid.cells) if d != axis][::-1], dtype)
             places = np.meshgrid(*(grid.centres(PAD, PAD + n, d) for d, n in enumerate(grid.cells) if d != axis))
@@ -351,7 +351,7 @@ class Border:
             edges.append(edge)
         water: OpenWater | FarField | None = None
         if unbounded:
-            water = OpenWater.for_grid(grid) if grid.axes == 2 else FarField(grid, sides.mirrors(3))
+            water = OpenWater.for_grid(grid) if grid.axes == 2 else FarField(grid, sides.has_mirror(3))
         return cls(edges=edges, water=water, stream=(0.0,) * grid.axes)
 
     def state(self) -> dict[str, np.ndarray]:
@@ -400,7 +400,7 @@ class Border:
         growth = dt / self.last_step if self.last_step else 0.0
         for edge in self.edges:
             extrapolation = growth * (edge.induced - edge.previous_induced)
-            if edge.side.opens:
+            if edge.side.is_open:
                 inflow = edge.sign * stream[edge.axis] + edge.induced + extrapolation
                 if edge.convective_weight:
                     rise = (
@@ -425,7 +425,7 @@ class Border:
         net = sum(float(p.sum(dtype=np.float64)) for p in side_inflows)
         gross_flow = sum(float(np.abs(p).sum(dtype=np.float64)) for p in side_inflows)
         if abs(net) > BALANCE_TOLERANCE * gross_flow:
-            side_names = ", ".join(e.name for e in self.edges if e.side.passes)
+            side_names = ", ".join(e.name for e in self.edges if e.side.is_permeable)
             imbalance_text = "enters and cannot leave" if net > 0 else "leaves and none enters"
             raise InvalidDesign(
                 f"at t = {time:.4g} s {100 * abs(net) / gross_flow:.3g} % of the water that passes the domain's sides "

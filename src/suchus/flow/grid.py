@@ -154,7 +154,7 @@ class Grid:
         cells = _fitting(tuple(max(8, ceil(side / cell - POSITION_TOLERANCE)) for side in lengths))
         origin = []
         for d, ((start, _), n, side) in enumerate(zip(pairs, cells, lengths, strict=True)):
-            is_low_held, is_high_held = (False, False) if sides is None else sides.held(len(pairs))[d]
+            is_low_held, is_high_held = (False, False) if sides is None else sides.is_fixed(len(pairs))[d]
             if is_low_held and is_high_held and abs(n * cell - side) > POSITION_TOLERANCE * cell:
                 raise InvalidDesign(
                     f"along {'xyz'[d]} both sides are held, {side:.6g} m apart, and {n} cells of {cell:.6g} m, as "

@@ -131,8 +131,8 @@ class LinkPiece:
 class Linked(SpaceShape):
     """The union of rigid pieces on links, each of which has its own position, attitude, velocity and spin.
 
-    Each link is a part of its own in ``Simulation.last``. Links that turn against each other at a joint should overlap
-    there, as the round ends of rods do: to the water they are one body.
+    Each link is a part of its own in ``Simulation.last_loads``. Links that turn against each other at a joint should
+    overlap there, as the round ends of rods do: to the water they are one body.
 
     Raises:
         InvalidDesign: on creation, without pieces, or where the links that they name are not those of ``motion``.

@@ -13,7 +13,7 @@ from suchus.flow.markers import Markers
 if TYPE_CHECKING:
     from suchus.flow.simulation import Simulation
 
-_NUMBERS = ("time", "_last", "_speed", "_reference", "_fastest", "_placed")
+_SCALARS = ("time", "_last_step", "_speed", "_reference", "_fastest", "_is_placed")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,11 +42,11 @@ def take_snapshot(sim: "Simulation") -> Snapshot:
     log, state = sim._log, sim.water.state()
     extra_arrays = {"frame": sim.frame, "held": log.region_contents, "b": sim.water.b}
     return Snapshot(
-        scalars={name: getattr(sim, name) for name in _NUMBERS},
+        scalars={name: getattr(sim, name) for name in _SCALARS},
         arrays={name: np.array(value) for name, value in {**state, **extra_arrays}.items()},
         swimmers={name: swimmer.state() for name, swimmer in sim.swimmers.items()},
         rows=(len(log.rows), len(log.control_rows), log.rows[-1] if log.rows else None),
-        consistency_checks=tuple(copy(check) for check in sim._watched), outlines=tuple(sim._outlines),
+        consistency_checks=tuple(copy(check) for check in sim._consistency_checks), outlines=tuple(sim._outlines),
     )  # fmt: skip
 
 
@@ -63,5 +63,5 @@ def restore_snapshot(sim: "Simulation", snapshot: Snapshot) -> None:
     sim.water.resume(arrays)
     for name, state in snapshot.swimmers.items():
         sim.swimmers[name].resume({key: value.copy() for key, value in state.items()})
-    sim._watched = [copy(check) for check in snapshot.consistency_checks]
+    sim._consistency_checks = [copy(check) for check in snapshot.consistency_checks]
     sim._outlines = list(snapshot.outlines)

@@ -159,7 +159,8 @@ class Midline(Shape):
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths, from the first station, at which the body is divided into the parts of ``Record.along`` [m]."""
+    """Arc lengths, from the first station, at which the body is divided into the parts of ``Record.part_series``
+    [m]."""
 
     def __post_init__(self) -> None:
         check_cuts(self.cuts, "midline")

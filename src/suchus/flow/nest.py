@@ -56,7 +56,7 @@ _SHIFT = -0.8  # of the wall's offset in cells, over the cell: see ``immerse.wal
 class CoarseSide(Side):
     """The side of a patch beyond which the coarser cells continue."""
 
-    ends: ClassVar[bool] = False
+    is_domain_end: ClassVar[bool] = False
 
 
 def locate_patch(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
@@ -116,7 +116,7 @@ def patch_sides(grid: Grid, coarse_grid: Grid, sides: Sides) -> Sides:
         for k, margin in enumerate((start, m - start - n // ratio)):
             name = NAMES[2 * d + k]
             side: Side = getattr(sides, name)
-            shared = margin == 0 and not side.opens and not side.passes
+            shared = margin == 0 and not side.is_open and not side.is_permeable
             if not shared and margin < MIN_SIDE_CLEARANCE:
                 raise InvalidDesign(
                     f"the patch comes within {margin * coarse_grid.cell:.4g} m of the {name} side of the domain; keep "
@@ -272,7 +272,10 @@ class Rim:
         ratio, corner = locate_patch(patch, coarse_grid)
         axes = patch.axes
         shape = tuple(n + 2 * PAD for n in reversed(patch.cells))
-        is_coarse_side, repeats = [isinstance(side, CoarseSide) for side in sides.around(axes)], sides.repeats(axes)
+        is_coarse_side, repeats = (
+            [isinstance(side, CoarseSide) for side in sides.of_axes(axes)],
+            sides.is_periodic(axes),
+        )
         self._stencils = []
         for c in range(axes):
             is_rim, is_excluded = np.zeros(shape, bool), np.zeros(shape, bool)
@@ -374,7 +377,7 @@ class Nested(Fluid):
             face_slices, axis = list(self._cells), grid.axes - 1 - c
             face_slices[axis] = slice(face_slices[axis].start + (not is_periodic), face_slices[axis].stop)
             self._faces.append(tuple(face_slices))
-        self._has_domain_sides = any(not isinstance(side, CoarseSide) for side in sides_of_patch.around(grid.axes))
+        self._has_domain_sides = any(not isinstance(side, CoarseSide) for side in sides_of_patch.of_axes(grid.axes))
         self._push: tuple[float, ...] = ()
         self._span = 0.0
         self._coarse_acceleration: np.ndarray = np.zeros(0)
@@ -422,7 +425,7 @@ class Nested(Fluid):
         """Refuse bodies that come too near to where the coarser cells begin."""
         if self.window[1] <= self.window[0]:
             return
-        min_clearance, sides = MIN_BODY_CLEARANCE * self.ratio, self.sides.around(self.axes)
+        min_clearance, sides = MIN_BODY_CLEARANCE * self.ratio, self.sides.of_axes(self.axes)
         for d, n in enumerate(self.grid.cells):
             start, end = self.window[2 * (self.axes - 1 - d) : 2 * (self.axes - d)]
             for k, clearance in enumerate((start - PAD, n + PAD - end)):

@@ -121,7 +121,7 @@ class Rake:
 
     points: RakePoints
     """Positions of the points; a function of time for a rake that travels [m]."""
-    every: float | None = None
+    interval: float | None = None
     """Interval of the samples [s]; None samples after every step."""
     _times: list[float] = field(default_factory=list)
     _samples: list[Sample] = field(default_factory=list)
@@ -131,7 +131,7 @@ class Rake:
         """Record the water at the points if the interval has passed."""
         if sim.time < self._due:
             return
-        self._due = due_after(sim.time, self.every)
+        self._due = due_after(sim.time, self.interval)
         self._samples.append(sim.probe(self.points(sim.time) if callable(self.points) else self.points))
         self._times.append(sim.time)
 

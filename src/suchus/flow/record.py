@@ -109,7 +109,7 @@ class Record:
             raise UnknownName("column", str(name), self.columns)
         return self.bodies[:, self._number(body), self.columns.index(name)]
 
-    def along(self, name: str, body: str | int = 0) -> np.ndarray:
+    def part_series(self, name: str, body: str | int = 0) -> np.ndarray:
         """Return a time series of each part of a divided body, front to back, shape (step, part).
 
         Args:
@@ -231,7 +231,7 @@ class Record:
             [self.column(f"pressure_{a}", body) + self.column(f"shear_{a}", body) for a in ("x", "y")], axis=1
         )
 
-    def after(self, time: float) -> "Record":
+    def select_after(self, time: float) -> "Record":
         """Return the record of the steps that end after a time [s]."""
         k = self.time > time
         return Record(

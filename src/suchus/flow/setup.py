@@ -48,8 +48,9 @@ class Setup:
     """
 
     grid: Grid
-    """The cells of the domain; with ``around``, the fine cells of a patch around the bodies, see ``Grid.patch``."""
-    around: Grid | None = None
+    """The cells of the domain; with ``coarse_grid``, the fine cells of a patch around the bodies, see
+    ``Grid.patch``."""
+    coarse_grid: Grid | None = None
     """Coarse cells of the whole domain, in which ``grid`` is a patch; None if ``grid`` is the whole domain."""
     viscosity: float
     """Kinematic viscosity of the water [m^2/s]."""
@@ -131,9 +132,9 @@ class Setup:
         if self.follow is not None:
             x, y, z = (*self.follow_axes, False)[:3]
             self.sides.check_travel(self.grid.axes, (x, y, z), self.follow)
-        if self.around is not None:
-            patch_sides(self.grid, self.around, self.sides)
-            check_memory(self.around, self.dtype)
+        if self.coarse_grid is not None:
+            patch_sides(self.grid, self.coarse_grid, self.sides)
+            check_memory(self.coarse_grid, self.dtype)
         check_memory(self.grid, self.dtype)
 
     def _check_dimension(self) -> None:
@@ -163,7 +164,7 @@ class Setup:
         """Type of the fields."""
         return np.float32 if self.precision == "single" else np.float64
 
-    def far(self, time: float) -> tuple[float, ...]:
+    def far_velocity(self, time: float) -> tuple[float, ...]:
         """Return the velocity of the far water at a time [s], along every axis [m/s]."""
         if callable(self.stream):
             stream = self.stream(time)
@@ -172,7 +173,7 @@ class Setup:
             stream = self.stream
         return stream if len(stream) == self.grid.axes else (*stream, 0.0)
 
-    def began(self, component: int, grid: Grid) -> np.ndarray | float:
+    def initial_velocity(self, component: int, grid: Grid) -> np.ndarray | float:
         """Return one component of the initial velocity of the water on all faces across its axis [m/s].
 
         Args:
@@ -183,7 +184,7 @@ class Setup:
             InvalidDesign: ``start`` returns something else than a velocity.
         """
         if self.start is None:
-            return self.far(0.0)[component]
+            return self.far_velocity(0.0)[component]
         ends = [n + 2 * PAD for n in grid.cells]
         coordinates = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
         points = np.meshgrid(*coordinates[::-1], indexing="ij")[::-1]
@@ -206,7 +207,7 @@ class Setup:
             needs = "two finite velocities (x, y)" if self.grid.axes == 2 else "finite velocities (x, y) or (x, y, z)"
             raise InvalidDesign(f"stream is {show(stream)}{time_text}; give {needs} in m/s.")
 
-    def check(self) -> dict[str, float]:
+    def check_bodies(self) -> dict[str, float]:
         """Return, for each body, the fraction of its length that is too thin for the grid.
 
         Raises:
@@ -221,14 +222,14 @@ class Setup:
             if isinstance(body, FreeBody):
                 self._check_weight(body, cuts(window, self.grid))
             thin_fractions[body.name] = thin_fraction(body, self.grid, 0.0)
-            self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
+            self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far_velocity(0.0), 0.0)
         return thin_fractions
 
     @property
     def _mirrors(self) -> tuple[bool, ...]:
-        """Whether there is a mirror at the ends of the axes of ``grid``; see ``Sides.mirrors``."""
-        sides = self.sides if self.around is None else patch_sides(self.grid, self.around, self.sides)
-        return sides.mirrors(self.grid.axes)
+        """Whether there is a mirror at the ends of the axes of ``grid``; see ``Sides.has_mirror``."""
+        sides = self.sides if self.coarse_grid is None else patch_sides(self.grid, self.coarse_grid, self.sides)
+        return sides.has_mirror(self.grid.axes)
 
     def _check_weight(self, body: FreeBody, mirror_cuts: tuple[bool, ...]) -> None:
         """Refuse gravity that would move a body through a mirror that cuts it.

@@ -22,19 +22,19 @@ class Side:
 
     __slots__ = ()
 
-    passes: ClassVar[bool] = False
-    """Whether water can go through the side; water that enters must leave by a side that ``opens``."""
-    opens: ClassVar[bool] = False
+    is_permeable: ClassVar[bool] = False
+    """Whether water can go through the side; water that enters must leave by a side that ``is_open``."""
+    is_open: ClassVar[bool] = False
     """Whether the flow through the side balances that through the others; the position of such a side is arbitrary."""
-    ends: ClassVar[bool] = True
+    is_domain_end: ClassVar[bool] = True
     """Whether the domain ends here; beyond the side of a patch it may continue in coarser cells."""
     travels: ClassVar[tuple[bool, bool]] = False, True
     """Whether the side may travel with the grid: across itself, and along itself."""
 
-    def into(self, time: float, *places: np.ndarray) -> np.ndarray | float:
+    def inflow_velocity(self, time: float, *places: np.ndarray) -> np.ndarray | float:
         """Return the velocity into the domain, a number or one for each point [m/s].
 
-        It is called only if the side ``passes``.
+        It is called only if the side ``is_permeable``.
 
         Args:
             time: time [s].
@@ -43,7 +43,7 @@ class Side:
         del time, places
         return 0.0
 
-    def along(self, time: float, axes: int) -> tuple[float, ...] | None:
+    def wall_velocity(self, time: float, axes: int) -> tuple[float, ...] | None:
         """Return the velocity of the wall along the other axes [m/s]; None without friction.
 
         Args:
@@ -53,7 +53,7 @@ class Side:
         del time, axes
         return None
 
-    def carries(self, outward: float) -> float:
+    def outflow_fraction(self, outward: float) -> float:
         """Return the fraction of a step in which the arriving water is carried out [-].
 
         Args:
@@ -77,11 +77,11 @@ class Stream(Side):
     ``farfield``). False prescribes the far stream itself, so that the displacement of a body cannot widen it. In space
     some of the six may be a Mirror."""
 
-    passes: ClassVar[bool] = True
-    opens: ClassVar[bool] = True
+    is_permeable: ClassVar[bool] = True
+    is_open: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = True, True
 
-    def carries(self, outward: float) -> float:
+    def outflow_fraction(self, outward: float) -> float:
         """Return the fraction, which rises with the outward velocity of the far stream; see ``Side``."""
         return min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
 
@@ -101,7 +101,7 @@ class Wall(Side):
 
     travels: ClassVar[tuple[bool, bool]] = False, False
 
-    def along(self, time: float, axes: int) -> tuple[float, ...]:
+    def wall_velocity(self, time: float, axes: int) -> tuple[float, ...]:
         """Return the wall's speed; see ``Side``."""
         del time
         return self.speed if isinstance(self.speed, tuple) else (self.speed, *(0.0,) * (axes - 2))
@@ -115,15 +115,15 @@ class Inflow(Side):
     """Velocity into the domain [m/s] as a function of the coordinate along the side [m]; in space of both, two arrays
     of one shape in the order x, y, z."""
 
-    passes: ClassVar[bool] = True
+    is_permeable: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = False, False
 
-    def into(self, time: float, *places: np.ndarray) -> np.ndarray:
+    def inflow_velocity(self, time: float, *places: np.ndarray) -> np.ndarray:
         """Return the profile; see ``Side``."""
         del time
         return np.asarray(self.profile(*places))
 
-    def along(self, time: float, axes: int) -> tuple[float, ...]:
+    def wall_velocity(self, time: float, axes: int) -> tuple[float, ...]:
         """Return zero: the water enters at a right angle; see ``Side``."""
         del time
         return (0.0,) * (axes - 1)
@@ -133,11 +133,11 @@ class Inflow(Side):
 class Outflow(Side):
     """A side at which water leaves, carried out with the mean speed."""
 
-    passes: ClassVar[bool] = True
-    opens: ClassVar[bool] = True
+    is_permeable: ClassVar[bool] = True
+    is_open: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = True, True
 
-    def carries(self, outward: float) -> float:
+    def outflow_fraction(self, outward: float) -> float:
         """Return 1: the water is always carried out; see ``Side``."""
         del outward
         return 1.0
@@ -191,9 +191,9 @@ class Sides:
                 raise InvalidDesign(
                     f"of {low_name} and {high_name}, one side is periodic and the other is not; make both Periodic()."
                 )
-        plane, ends = self.around(2), (self.low, self.high)
+        plane, ends = self.of_axes(2), (self.low, self.high)
         enters = any(isinstance(side, Inflow) for side in (*plane, *ends))
-        if enters and not any(s.opens for s in plane) and Outflow not in map(type, ends):
+        if enters and not any(s.is_open for s in plane) and Outflow not in map(type, ends):
             raise InvalidDesign("water enters through an Inflow and cannot leave; make another side an Outflow().")
 
     def check(self, axes: int) -> None:
@@ -205,10 +205,13 @@ class Sides:
         Raises:
             InvalidDesign: a mirror in the plane, or a side's speed of another dimension.
         """
-        for name, side in zip(NAMES, self.around(axes), strict=False):
+        for name, side in zip(NAMES, self.of_axes(axes), strict=False):
             if isinstance(side, Mirror) and axes == 2:
                 raise InvalidDesign(f"the {name} side of a plane grid is a Mirror; in the plane take a Slip().")
-            speed, needs = side.along(0.0, axes), ("a plane grid needs one number", "in space it has two")[axes - 2]
+            speed, needs = (
+                side.wall_velocity(0.0, axes),
+                ("a plane grid needs one number", "in space it has two")[axes - 2],
+            )
             if speed is not None and len(speed) != axes - 1:
                 raise InvalidDesign(f"the speed of the {name} side along itself is {show(speed)} m/s; {needs}.")
 
@@ -245,28 +248,28 @@ class Sides:
         """Return a domain that repeats itself along all axes."""
         return cls(**dict.fromkeys(NAMES, Periodic()))
 
-    def around(self, axes: int) -> tuple[Side, ...]:
+    def of_axes(self, axes: int) -> tuple[Side, ...]:
         """Return the sides of a domain with so many axes, in the order of ``NAMES``."""
         return tuple(getattr(self, name) for name in NAMES[: 2 * axes])
 
     def unbounded(self, axes: int) -> bool:
         """Return whether the domain is unbounded, so that its sides move with the flow."""
-        sides = self.around(axes)
+        sides = self.of_axes(axes)
         open_sides = [isinstance(s, Stream) and s.unbounded for s in sides]
         return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, sides, strict=True))
 
-    def repeats(self, axes: int) -> tuple[bool, ...]:
+    def is_periodic(self, axes: int) -> tuple[bool, ...]:
         """Return whether the domain is periodic, along each axis."""
-        return tuple(isinstance(side, Periodic) for side in self.around(axes)[::2])
+        return tuple(isinstance(side, Periodic) for side in self.of_axes(axes)[::2])
 
-    def mirrors(self, axes: int) -> tuple[bool, ...]:
+    def has_mirror(self, axes: int) -> tuple[bool, ...]:
         """Return whether there is a mirror at the low and at the high end, along each axis: ``NAMES``."""
-        return tuple(isinstance(side, Mirror) for side in self.around(axes))
+        return tuple(isinstance(side, Mirror) for side in self.of_axes(axes))
 
-    def held(self, axes: int) -> tuple[tuple[bool, bool], ...]:
+    def is_fixed(self, axes: int) -> tuple[tuple[bool, bool], ...]:
         """Return whether the positions of the low and the high side are fixed, along each axis.
 
         They are fixed for all but open sides.
         """
-        fixed = [not side.opens for side in self.around(axes)]
+        fixed = [not side.is_open for side in self.of_axes(axes)]
         return tuple(zip(fixed[::2], fixed[1::2], strict=True))

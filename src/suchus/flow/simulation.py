@@ -72,7 +72,8 @@ def _fastest_marker(markers: Markers) -> float:
 Watcher = Callable[["Simulation"], None]
 """Function that is called with the simulation during a run."""
 
-_CHANGING = ("time", "_last", "_speed", "_reference")
+_CHANGING = {"time": "time", "_last": "_last_step", "_speed": "_speed", "_reference": "_reference"}
+"""Numbers that change, by their key in a checkpoint."""
 
 MAX_EVENED_STEPS = 16
 """Steps before the end of a run over which the time step is evened out, so that the last step is not much shorter
@@ -86,8 +87,8 @@ class Simulation(Fields):
         setup: what is simulated.
         time: time reached [s].
         water: velocity and pressure.
-        thin: for each body, the fraction of its length that is thinner than the kernel: no water passes it, but its
-            force is noisy.
+        thin_fractions: for each body, the fraction of its length that is thinner than the kernel: no water passes it,
+            but its force is noisy.
     """
 
     def __init__(self, setup: Setup, *, thread_count: int | None = None) -> None:
@@ -98,28 +99,32 @@ class Simulation(Fields):
             thread_count: threads of the kernels; None takes those of ``threads.count`` [-].
 
         Raises:
-            InvalidDesign: bodies overlap, or see ``Setup.check``.
+            InvalidDesign: bodies overlap, or see ``Setup.check_bodies``.
         """
         self.setup = setup
-        self.thin = setup.check()
+        self.thin_fractions = setup.check_bodies()
         precompile(setup.grid.axes, setup.dtype)
         self.time = 0.0
         options = setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
-        self.water = Fluid(setup.grid, *options) if setup.around is None else Nested(setup.grid, setup.around, *options)
+        self.water = (
+            Fluid(setup.grid, *options)
+            if setup.coarse_grid is None
+            else Nested(setup.grid, setup.coarse_grid, *options)
+        )
         self.axes = setup.grid.axes
         self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
         self._bodies = [_remembering(body) for body in setup.bodies]
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
         self._log, self._watch = Log(setup), Watch(setup)
-        self._last = 0.0
+        self._last_step = 0.0
         self._frame_velocity_at(0.0)
         stream = self._stream(0.0)
         for layer in self.water.layers:
             for c, component in enumerate(layer.velocity):
-                component[:] = setup.began(c, layer.grid) - self.frame[1, c]
+                component[:] = setup.initial_velocity(c, layer.grid) - self.frame[1, c]
             layer.border.stream = stream
-        self._placed = False
+        self._is_placed = False
         self._latest_step: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
         self._outlines = outlines = [
@@ -140,7 +145,7 @@ class Simulation(Fields):
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(self._bodies, outlines, strict=True)]
         )  # fmt: skip
-        self._watched = [consistency for b in self._bodies for consistency in self._consistencies_of(b)]
+        self._consistency_checks = [consistency for b in self._bodies for consistency in self._consistencies_of(b)]
 
     def _consistencies_of(self, body: AnyBody) -> list[Consistency]:
         """Return the checks that compare a body's prescribed rates with its positions during the run.
@@ -204,7 +209,7 @@ class Simulation(Fields):
         """Return the velocity of the far water in the frame of the grid [m/s]."""
         return tuple(
             float(component - frame_component)
-            for component, frame_component in zip(self.setup.far(time), self.frame[1], strict=True)
+            for component, frame_component in zip(self.setup.far_velocity(time), self.frame[1], strict=True)
         )
 
     def _frame_velocity_at(self, time: float) -> None:
@@ -257,7 +262,7 @@ class Simulation(Fields):
         dt = self.next_step() if dt is None else dt
         if not (isfinite(dt) and dt > 0):
             raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
-        for consistency in self._watched:
+        for consistency in self._consistency_checks:
             consistency.check_step(self.time, dt)
         contacts = self._contacts(dt)
         for name, swimmer in self.swimmers.items():
@@ -269,10 +274,10 @@ class Simulation(Fields):
         poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
         moving = self.setup.follow is not None or not all(b.is_static for b in self._bodies)
         offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
-        if moving or not self._placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE:
+        if moving or not self._is_placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE:
             self.water.offset = offset
             self.water.place(self._bodies, poses, time)
-            self._placed = True
+            self._is_placed = True
             self._watch.overlap(self.water, time)
         if moving:
             cell = self.setup.grid.cell
@@ -290,7 +295,7 @@ class Simulation(Fields):
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits, time)
-        self.time, self._last = time, dt
+        self.time, self._last_step = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
         self._latest_step = _LatestStep(dt, poses, push, drift, self._log.region_contents)
         self._note(self._latest_step)
@@ -364,7 +369,7 @@ class Simulation(Fields):
         if len(self._log.rows) % SIDE_CHECK_INTERVAL == 0:
             self._watch.sides(water, self.time)
 
-    def last(self, name: str) -> FlowLoads:
+    def last_loads(self, name: str) -> FlowLoads:
         """Return the force of the water on a body and on each of its parts in the last step.
 
         Args:
@@ -413,7 +418,7 @@ class Simulation(Fields):
         self._outlines = [
             add_twists(outline, motion) for outline, motion in zip(self._outlines, body_twists, strict=True)
         ]
-        self.forget()
+        self.clear_shape_cache()
         self._log.rows.pop()
         self._note(self._latest_step)
 
@@ -444,7 +449,7 @@ class Simulation(Fields):
             raise UnknownName("body", name, names or ("none",))
         return names.index(name)
 
-    def forget(self) -> None:
+    def clear_shape_cache(self) -> None:
         """Clear the cached midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
             spine = getattr(body.shape, "spine", None)
@@ -462,7 +467,7 @@ class Simulation(Fields):
             snapshot: see ``snapshot``.
         """
         restore_snapshot(self, snapshot)
-        self.forget()
+        self.clear_shape_cache()
         self._latest_step = None
         if snapshot.arrays["b"].size:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
@@ -471,7 +476,7 @@ class Simulation(Fields):
 
     def state(self) -> store.State:
         """Return the whole state, for a checkpoint."""
-        numbers = {key: np.array(getattr(self, key)) for key in _CHANGING}
+        numbers = {key: np.array(getattr(self, name)) for key, name in _CHANGING.items()}
         rows = np.array(self._log.rows).reshape(len(self._log.rows), -1)
         swimmers = {f"{n}.{key}": value for n, s in self.swimmers.items() for key, value in s.state().items()}
         return {
@@ -490,20 +495,20 @@ class Simulation(Fields):
         Args:
             state: see ``state``.
         """
-        for key in _CHANGING:
-            setattr(self, key, float(state[key]))
+        for key, name in _CHANGING.items():
+            setattr(self, name, float(state[key]))
         self.frame = state["frame"]
         self._log.rows, self._log.region_contents = list(state["rows"]), state["held"]
         self.water.resume(state)
         self._fastest = self.water.fastest()
         for name, swimmer in self.swimmers.items():
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
-        self.forget()
+        self.clear_shape_cache()
         poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
         self.water.place(self._bodies, poses, self.time)
         if self.water.b.shape == state["b"].shape:
             self.water.b[:] = state["b"]  # as it was after ``accelerate``
-        self._placed = bool(self._log.rows)  # as in the continued run, which keeps its offset
+        self._is_placed = bool(self._log.rows)  # as in the continued run, which keeps its offset
 
     # --- a run -------------------------------------------------------------------------------------------------
 
@@ -549,7 +554,7 @@ class Simulation(Fields):
             try:
                 while self.time < end_time * (1 - 1e-12):
                     self.advance(_even_step(self.next_step(), end_time - self.time))
-                    if end_time - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
+                    if end_time - self.time < 1e-6 * self._last_step:  # rounding must not leave a tiny last step
                         self.time = end_time
                     bar.move(self.time)
                     if watchers and (self.time >= due or self.time == end_time):
@@ -588,7 +593,7 @@ class Simulation(Fields):
         Raises:
             InvalidDesign: a mirror cuts a body, so that no box goes around it.
         """
-        if not self._placed:
+        if not self._is_placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
         for body, mirror_cuts in zip(self._bodies, self.water.mirror_cuts, strict=True):

@@ -37,7 +37,7 @@ class Trunk(SpaceShape):
     half_height: np.ndarray
     """Half of the height across the plane at each station, shape (station,) [m]."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths from the first station that divide the body into the parts of ``Record.along`` [m]."""
+    """Arc lengths from the first station that divide the body into the parts of ``Record.part_series`` [m]."""
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
 

@@ -135,7 +135,7 @@ class Fluid:
         """
         self.grid, self.sides, self.dtype, self.integrator = grid, sides, dtype, integrator
         self._advance_all = advance_by(scheme)
-        self.axes, self.repeats = grid.axes, sides.repeats(grid.axes)
+        self.axes, self.repeats = grid.axes, sides.is_periodic(grid.axes)
         self.inner = inner_strides(grid.cells)
         self.nu = dtype(viscosity / grid.cell)
         self.border = Border.for_grid(sides, grid, dtype)
@@ -305,7 +305,7 @@ class Fluid:
             InvalidDesign: a body reaches out of the domain.
         """
         old = self.window
-        mirrors = self.sides.mirrors(self.axes)
+        mirrors = self.sides.has_mirror(self.axes)
         windows = [window_of(b, p, self.grid, time, mirrors) for b, p in zip(bodies, poses, strict=True)]
         self.mirror_cuts, new = [cuts(window, self.grid) for window in windows], unite(windows, self.axes)
         self._clear(old)
@@ -840,7 +840,8 @@ class Fluid:
         ):
             raise NotConverged(
                 f"the pressure solver stopped after {solve.cycles} cycles with a divergence of "
-                f"{solve.mean_divergence:.2g} m/s per cell on the average and {solve.max_divergence:.2g} at most, where "
-                f"{limits[0]:.2g} and {limits[1]:.2g} are allowed; take a larger tolerance, or precision='double'."
+                f"{solve.mean_divergence:.2g} m/s per cell on the average and {solve.max_divergence:.2g} at most, "
+                f"where {limits[0]:.2g} and {limits[1]:.2g} are allowed; take a larger tolerance, "
+                "or precision='double'."
             )
         return solve, (self.dtype(a), self.dtype(b))

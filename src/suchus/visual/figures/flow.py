@@ -127,9 +127,9 @@ class FieldFilm:
     The picture travels with the grid. Vorticity is red counter-clockwise, pressure purple above that of the far water.
     """
 
-    every: float
+    interval: float
     """Interval of the frames [s]."""
-    what: FieldName = "vorticity"
+    field_name: FieldName = "vorticity"
     """Name of the field."""
     limit: float | None = None
     """End of the scale [1/s, Pa]; None takes what 99 % of the values stay below."""
@@ -140,11 +140,11 @@ class FieldFilm:
     _sim: Simulation | None = None
 
     def __post_init__(self) -> None:
-        for name, value in (("every", self.every), ("speed", self.speed), ("limit", self.limit)):
+        for name, value in (("interval", self.interval), ("speed", self.speed), ("limit", self.limit)):
             if value is not None and not (isfinite(value) and value > 0):
                 raise InvalidDesign(f"{name} of a film is {value}; a positive number is needed.")
-        if self.what not in _FIELDS:
-            raise UnknownName("field", str(self.what), tuple(_FIELDS))
+        if self.field_name not in _FIELDS:
+            raise UnknownName("field", str(self.field_name), tuple(_FIELDS))
 
     def __call__(self, sim: Simulation) -> None:
         """Store the field and the outlines, if a frame is due.
@@ -155,8 +155,8 @@ class FieldFilm:
         if sim.setup.grid.axes == 3:
             raise InvalidDesign("this film is of plane flows, and this one has three axes; see suchus view swim.")
         if sim.time >= self._due:
-            self._due, self._sim = due_after(sim.time, self.every), sim
-            fields = [values.astype(np.float32) for values in _field_values(sim, self.what)]
+            self._due, self._sim = due_after(sim.time, self.interval), sim
+            fields = [values.astype(np.float32) for values in _field_values(sim, self.field_name)]
             self._frames.append((sim.time, fields, _edges(sim)))
 
     def save(self, path: Path | str) -> Path:
@@ -172,11 +172,11 @@ class FieldFilm:
         if self._sim is None:
             raise InvalidDesign("the film holds no frame; give it to a run first: sim.run(until, watch=film).")
         limit = self.limit if self.limit is not None else span(np.stack([f[-1] for _, f, _ in self._frames]), 0.99)
-        picture = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.what])
+        picture = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.field_name])
         picture.figure.set_dpi(_FILM_DPI)
         times = [time for time, _, _ in self._frames]
-        seconds = max(times[-1] - times[0] + self.every, self.every) / self.speed
-        caption = f"{self.what} of a flow from {times[0]:.3g} to {times[-1]:.3g} s"
+        seconds = max(times[-1] - times[0] + self.interval, self.interval) / self.speed
+        caption = f"{self.field_name} of a flow from {times[0]:.3g} to {times[-1]:.3g} s"
         frames = self._frames
         data = film(
             picture.figure, lambda i: picture.move_on(*frames[i]), len(frames), seconds=seconds, caption=caption
