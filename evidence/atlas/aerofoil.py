@@ -49,7 +49,7 @@ def _pitching(effort: RunEffort, progress: Progress) -> Curves:
 CASES = (
     Case(
         name="pitching", run=_pitching, code=_CODE, grids=grids((192, 128, 96), _BEFORE + 1.85),
-        quick=RunEffort(cells=64, until=0.1),
+        quick_effort=RunEffort(cells=64, until=0.1),
         setup="A NACA 0015 aerofoil at Re 10 000 that pitches about its quarter chord, after two chords of travel at "
         "rest; unbounded domain, of which 8 x 6 chords are computed; {cells} cells a chord in a patch of 2.1 x 1.6 "
         "chords around it, an eighth of them elsewhere.",

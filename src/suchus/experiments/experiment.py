@@ -163,7 +163,7 @@ class SimulationResult:
     """Animated GIFs, by file name; see ``figures.film``."""
     replays: Mapping[str, Replay] = field(default_factory=dict)
     """Replays of runs, by file name ending in .html."""
-    kept: tuple[Path, ...] = ()
+    checkpoint_files: tuple[Path, ...] = ()
     """Checkpoint files; the caller removes them after saving the outcome."""
 
 
@@ -258,7 +258,7 @@ class Experiment(ABC):
                 tables=simulated.tables,
                 films=simulated.films,
                 replays=simulated.replays,
-                kept=simulated.kept,
+                checkpoint_files=simulated.checkpoint_files,
                 decides=" ".join(self.explain(numbers).split()),
                 unjudged=unjudged,
                 seconds=seconds(),

@@ -137,12 +137,12 @@ class SwimPage(CyclePage):
         self._films = {film.title: film for film in films}
         gui = client.gui
         with gui.add_folder("Replay"):
-            self._phase = gui.add_slider("phase [cycle]", 0.0, 1.0, 0.01, 0.0)
+            self._phase_slider = gui.add_slider("phase [cycle]", 0.0, 1.0, 0.01, 0.0)
             self._add_player()
         with gui.add_folder("Record"):
             self._film = gui.add_dropdown("swim", tuple(self._films), initial_value=films[-1].title)
             self._field = gui.add_dropdown("field", ("vorticity", "pressure", "none"))
-        self._phase.on_update(self._seek)
+        self._phase_slider.on_update(self._seek)
         self._dock()
         self._measured(curves)
         scene = client.scene
@@ -157,7 +157,7 @@ class SwimPage(CyclePage):
     def show(self) -> None:
         """Draw the frame that is due, unless the browser shows it already."""
         if not self._pause.value:
-            self._phase.value = round(self._phase, 2)
+            self._phase_slider.value = round(self._phase, 2)
         film = self._films[self._film.value]
         frame = int(np.argmin(np.abs((film.phase - self._phase + 0.5) % 1.0 - 0.5)))
         frame_key = film.title, str(self._field.value), frame
@@ -167,7 +167,7 @@ class SwimPage(CyclePage):
 
     def _seek(self, event: Any) -> None:
         if event.client is not None:
-            self.set_phase(float(self._phase.value))
+            self.set_phase(float(self._phase_slider.value))
 
     def _show(self, film: Film, field: str, frame: int, *, anew: bool) -> None:
         """Draw a field and the body of one frame; ``anew`` replaces the picture since its size may differ."""

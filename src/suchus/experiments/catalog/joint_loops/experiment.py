@@ -110,11 +110,11 @@ class JointLoops(Experiment):
             time=("time", step * np.arange(1, round(self.seconds / step) + 1), {"units": "s", "long_name": "time"}),
         )
         kp = self.robot.servo(self.joint).kp
-        attrs = {"gripped": self.gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
+        attrs = {"gripped": self.clamp_duration, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
         return SimulationResult(record=data.assign_attrs(attrs))
 
     @property
-    def gripped(self) -> float:
+    def clamp_duration(self) -> float:
         """Duration for which the joint is clamped, a second for the article's robot [s]."""
         return _CLAMP_PERIODS * control_period(self.robot)
 
@@ -139,7 +139,7 @@ class JointLoops(Experiment):
             load: load of the second test [N m].
         """
         step = physics_step(self.robot)
-        free_steps, clamp_steps = round(self.seconds / step), round(self.gripped / step)
+        free_steps, clamp_steps = round(self.seconds / step), round(self.clamp_duration / step)
         zeros, step_target = np.zeros(free_steps), np.full(free_steps, self.step)
         no_clamp = np.zeros(free_steps, dtype=bool)
         angles: list[list[np.ndarray]] = [[], [], []]

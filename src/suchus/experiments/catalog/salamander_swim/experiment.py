@@ -148,7 +148,7 @@ class SalamanderSwim(Experiment):
             coords={
                 "frequency": ("swim", list(self.frequencies), {"units": "Hz"}),
                 "rung": list(LADDER),
-                "place": ("point", envelopes[0].place, units),
+                "place": ("point", envelopes[0].position, units),
             },
         )
 

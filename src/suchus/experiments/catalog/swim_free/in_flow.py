@@ -117,9 +117,9 @@ def checkpoint_names(labels: Sequence[str]) -> list[str]:
 class FlowSwims(NamedTuple):
     """Results of the swims in a flow."""
 
-    kept: xr.Dataset
+    record: xr.Dataset
     """Stored variables of all swims."""
-    first: xr.Dataset
+    first_record: xr.Dataset
     """Record of the first swim."""
     judgement: str
     """Whether the swims justify a correction of the section model, link by link, as Markdown."""
