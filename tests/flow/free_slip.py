@@ -128,10 +128,10 @@ class SlipWater(Fluid):
         self.offset, here, h = 0.0, self._window_slices(self.window), self.grid.cell
         ends = [(s.start, s.stop) for s in reversed(here)]
         self._distance = np.empty(self.b.shape, self.dtype)
-        self._normal = np.empty((self.axes, *self.b.shape), self.dtype)
+        self._normal = np.empty((self.ndim, *self.b.shape), self.dtype)
         self.mu1[:] = 0
-        for c in range(self.axes):
-            points = [(self.grid.faces if c == d else self.grid.centres)(*ends[d], d) for d in range(self.axes)]
+        for c in range(self.ndim):
+            points = [(self.grid.faces if c == d else self.grid.centres)(*ends[d], d) for d in range(self.ndim)]
             f, self.owners[c], _ = measure_all(bodies, poses, points, time, h)
             near, far = f.distance / h, -(f.thickness + f.distance) / h
             along = np.delete(np.abs(np.stack(f.normal)), c, axis=0)
@@ -143,11 +143,11 @@ class SlipWater(Fluid):
 
     def _in_space(self, a, ahead):
         """Return an array of the grid or window with a third axis, one plane thick where there are two."""
-        return a if self.axes == 3 else a.reshape(*a.shape[:ahead], 1, *a.shape[ahead:])
+        return a if self.ndim == 3 else a.reshape(*a.shape[:ahead], 1, *a.shape[ahead:])
 
     @property
     def _first(self):
-        return np.array((*(0,) * (3 - self.axes), *self.window[::2]))
+        return np.array((*(0,) * (3 - self.ndim), *self.window[::2]))
 
     def _unblended(self, u):
         """Turn u into w."""
@@ -219,7 +219,7 @@ class SlipWater(Fluid):
             _leave_divergence(self._in_space(self._raw, 1), self._in_space(stage.rate, 1), self._first, step)
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
-            for c in range(self.axes):
+            for c in range(self.ndim):
                 immerse(
                     out[c],
                     blend[c],

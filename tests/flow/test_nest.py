@@ -36,11 +36,11 @@ def ran(setup: flow.Setup, until: float) -> flow.Simulation:
 
 def divergence(water) -> np.ndarray:
     """Return what leaves each cell of the domain [m/s]."""
-    cells = (slice(PAD, -PAD),) * water.axes
+    cells = (slice(PAD, -PAD),) * water.ndim
     total = np.zeros(tuple(reversed(water.grid.cells)))
     for d, part in enumerate(water.velocity):
-        at = water.axes - 1 - d
-        behind = tuple(slice(PAD + 1, 1 - PAD) if n == at else slice(PAD, -PAD) for n in range(water.axes))
+        at = water.ndim - 1 - d
+        behind = tuple(slice(PAD + 1, 1 - PAD) if n == at else slice(PAD, -PAD) for n in range(water.ndim))
         total += part[behind].astype(float) - part[cells]
     return total
 

@@ -17,8 +17,8 @@ class Swinging(flow.Side):
     rate: float
     travels = False, False
 
-    def wall_velocity(self, time, axes):
-        return (self.speed * cos(self.rate * time), *(0.0,) * (axes - 2))
+    def wall_velocity(self, time, ndim):
+        return (self.speed * cos(self.rate * time), *(0.0,) * (ndim - 2))
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Wrong(flow.Side):
     def inflow_velocity(self, time, *places):
         return self.given
 
-    def wall_velocity(self, time, axes):
+    def wall_velocity(self, time, ndim):
         return self.slides
 
 

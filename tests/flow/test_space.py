@@ -485,7 +485,7 @@ def test_bad_input_is_one_sentence_with_the_remedy(make, part):
 
 def test_a_box_covers_what_was_asked_for():
     grid = flow.Grid.covering((-0.65, 1.15), (-0.35, 0.35), (0.0, 0.2), cell=1 / 96)
-    assert grid.axes == 3
+    assert grid.ndim == 3
     for low, size, (start, end) in zip(grid.origin, grid.size, ((-0.65, 1.15), (-0.35, 0.35), (0.0, 0.2)), strict=True):
         assert low <= start + 1e-12
         assert low + size >= end - 1e-12

@@ -120,7 +120,7 @@ class Layered:
         count = round(2 * np.pi * self.radius / h)
         self.angles, self.spacing = 2 * np.pi * np.arange(count) / count, 2 * np.pi * self.radius / count
         ends, self._around = [(s.start, s.stop) for s in reversed(self.window_slices)], []
-        for c in range(self.axes):
+        for c in range(self.ndim):
             points = [(self.grid.faces if c == d else self.grid.centres)(*ends[d], d) for d in (0, 1)]
             x, y = np.meshgrid(points[0] - self.centre[0], points[1] - self.centre[1])
             r = np.maximum(np.hypot(x, y), 1e-9)
@@ -133,16 +133,16 @@ class Layered:
         """Return the water's velocity against the body, ``GAP`` cells off it, shape (axis, ring, point) [m/s]."""
         out = self.radius + GAP * self.grid.cell
         ring = self.centre[:, None] + out * np.stack([np.cos(self.angles), np.sin(self.angles)])
-        if self.axes == 3:
+        if self.ndim == 3:
             first, end = self.window_slices[0].start, self.window_slices[0].stop
             high = self.grid.centres(first, end, 2)
             ring = np.concatenate([np.tile(ring, high.size), np.repeat(high, ring.shape[1])[None]])
-        found, steps, places = np.empty((self.axes, ring.shape[1])), steps_of(self.p), padded(ring, self.grid)
+        found, steps, places = np.empty((self.ndim, ring.shape[1])), steps_of(self.p), padded(ring, self.grid)
         for c, component in enumerate(self.velocity):
             shifted = places.copy()
             shifted[c] += 0.5
             interpolate(component.reshape(-1), steps, shifted, found[c])
-        found = found.reshape(self.axes, -1, self.angles.size)
+        found = found.reshape(self.ndim, -1, self.angles.size)
         for _ in range(SMOOTHED):
             found = 0.5 * found + 0.25 * (np.roll(found, 1, axis=2) + np.roll(found, -1, axis=2))
         found[:2] -= self.along[:, None, None]
@@ -155,12 +155,12 @@ class Layered:
         h = self.grid.cell
         share, self.stress = layers(turning, self.spacing, float(self.nu) * h, GAP * h)
         self.slip = share * turning
-        gone = [self.slip, share * outward, share * beside[2] if self.axes == 3 else None]
+        gone = [self.slip, share * outward, share * beside[2] if self.ndim == 3 else None]
         self.b = self._bare.copy()
         for c, (low, high, part, off, x, y) in enumerate(self._around):
             slip, across, up = (None if g is None else g[:, low] + part * (g[:, high] - g[:, low]) for g in gone)
             more = (across * off * x - slip * y, across * off * y + slip * x, up)[c]
-            self.b[c] += more if self.axes == 3 else more[0]
+            self.b[c] += more if self.ndim == 3 else more[0]
         self._fill_source()
         super().step(dt, stream, push, limits, time)
 
@@ -182,10 +182,10 @@ class LayeredNested(Layered, Nested):
         ratio, coarse = self.ratio, self.coarse
         fine = np.zeros(self.p.shape)
         fine[self.window_slices] = self.source
-        inner = fine[(slice(PAD, -PAD),) * self.axes]
+        inner = fine[(slice(PAD, -PAD),) * self.ndim]
         split = [part for n in inner.shape for part in (n // ratio, ratio)]
         net = np.zeros(coarse.p.shape)
-        net[self._cells] = inner.reshape(split).sum(axis=tuple(range(1, 2 * self.axes, 2))) / ratio ** (self.axes - 1)
+        net[self._cells] = inner.reshape(split).sum(axis=tuple(range(1, 2 * self.ndim, 2))) / ratio ** (self.ndim - 1)
         coarse.source[:] = net[coarse.window_slices]
 
 

@@ -56,19 +56,19 @@ def added_mass(
     Raises:
         NotConverged: the pressure solver got stuck.
     """
-    axes, mirror_cuts = water.axes, water.mirror_cuts[body]
+    ndim, mirror_cuts = water.ndim, water.mirror_cuts[body]
     mode_mask = symmetric(mirror_cuts)
     if requested_modes is not None:  # in open water the body's whole momentum counts, that along other axes too
-        unbounded = water.layers[-1].border.water is not None and axes == 3
+        unbounded = water.layers[-1].border.water is not None and ndim == 3
         request_mask = [
-            bool(is_requested) or (unbounded and k < axes) for k, is_requested in enumerate(requested_modes)
+            bool(is_requested) or (unbounded and k < ndim) for k, is_requested in enumerate(requested_modes)
         ]
         mode_mask = [keep and is_requested for keep, is_requested in zip(mode_mask, request_mask, strict=True)]
     modes = [mode for mode, keep in zip(_rigid(water, reference_point, body), mode_mask, strict=True) if keep]
     responses = _ModeResponses.solve(water, modes, _RESIDUAL_TOLERANCE, sides_held=False)
-    volume, mode_block = water.grid.cell**axes, np.ix_(mode_mask, mode_mask)
+    volume, mode_block = water.grid.cell**ndim, np.ix_(mode_mask, mode_mask)
     matrix = np.full((len(mode_mask), len(mode_mask)), np.nan)
-    shore = water.layers[-1].grid.cell ** axes
+    shore = water.layers[-1].grid.cell ** ndim
     open_water_mass = _in_open_water(
         volume * responses.fixed_side_mass,
         volume * responses.region_mass,
@@ -109,8 +109,8 @@ def generalised_added_mass(
     times = 2 ** max(sum(mirror_cuts) for mirror_cuts in water.mirror_cuts)
     h = water.grid.cell
     corner = np.array(water.grid.origin)
-    matrix: np.ndarray = times * density * (h**water.axes * responses.fixed_side_mass + rim)
-    pressed = times * density * h ** (water.axes + 1) * responses.internal_pressure
+    matrix: np.ndarray = times * density * (h**water.ndim * responses.fixed_side_mass + rim)
+    pressed = times * density * h ** (water.ndim + 1) * responses.internal_pressure
     pressed[..., 1:] = h * pressed[..., 1:] + pressed[..., :1] * corner
     return AddedMass(0.5 * (matrix + matrix.T), pressed)
 
@@ -123,8 +123,8 @@ def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndar
         modes: motions of all parts.
         joint_correction: see ``_ModeResponses``.
     """
-    axes, h, corner = water.axes, water.grid.cell, np.array(water.grid.origin)
-    turns = len(ROTATION_PLANES[axes])
+    ndim, h, corner = water.ndim, water.grid.cell, np.array(water.grid.origin)
+    turns = len(ROTATION_PLANES[ndim])
     moves = np.array(
         [
             np.concatenate(
@@ -133,7 +133,7 @@ def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndar
             for mode in modes
         ]
     )
-    return np.asarray(np.einsum("irc,jrc->ij", moves, joint_correction[:, :, : axes + turns]))
+    return np.asarray(np.einsum("irc,jrc->ij", moves, joint_correction[:, :, : ndim + turns]))
 
 
 def symmetric(mirror_cuts: tuple[bool, ...]) -> list[bool]:
@@ -160,12 +160,12 @@ def _rigid(water: Fluid, reference_point: tuple[float, ...], body: int) -> list[
         reference_point: point that the rotations are about [m].
         body: which body, counted from 0 [-].
     """
-    axes, rows, modes = water.axes, water.rows[body], []
-    turns = len(ROTATION_PLANES[axes])
-    for k in range(axes + turns):
-        mode = resting_twists(len(water.immersion_sums), axes)
+    ndim, rows, modes = water.ndim, water.rows[body], []
+    turns = len(ROTATION_PLANES[ndim])
+    for k in range(ndim + turns):
+        mode = resting_twists(len(water.immersion_sums), ndim)
         mode.reference_points[:] = reference_point
-        (mode.linear if k < axes else mode.angular)[rows.start : rows.stop, k if k < axes else k - axes] = 1.0
+        (mode.linear if k < ndim else mode.angular)[rows.start : rows.stop, k if k < ndim else k - ndim] = 1.0
         modes.append(mode)
     return modes
 
@@ -204,7 +204,7 @@ class _ModeResponses:
             limit: divergence that may be left, relative to the accelerations [-].
             sides_held: whether the sides are held; then nothing is computed for sides that move as in open water.
         """
-        faces, axes = held_faces(water), water.axes
+        faces, ndim = held_faces(water), water.ndim
         shape = tuple(s.stop - s.start for s in water.window_slices)
         rises, moves, side_potentials, inward, part_pressures, joint_corrections = [], [], [], [], [], []
         for mode in modes:
@@ -213,7 +213,7 @@ class _ModeResponses:
                 for c, component_faces in enumerate(faces)
             ]
             scale = max(float(np.abs(acceleration).max(initial=0.0)) for acceleration in face_accelerations) or 1.0
-            acceleration_field = np.zeros((axes, *shape))
+            acceleration_field = np.zeros((ndim, *shape))
             for c, (component_faces, acceleration) in enumerate(zip(faces, face_accelerations, strict=True)):
                 acceleration_field[c].ravel()[component_faces.face_indices] = (
                     component_faces.closed_fraction * acceleration / scale

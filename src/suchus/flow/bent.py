@@ -48,7 +48,7 @@ class BendingMap:
 
     map_to_rest: Back
     """The map."""
-    axes: int
+    ndim: int
     """Number of axes, 2 or 3."""
     size: float
     """Greatest extent of the still shape [m]."""
@@ -66,9 +66,9 @@ class BendingMap:
             InvalidDesign: the map gives something that is no place.
         """
         coordinates = self.map_to_rest(*places, time)
-        if len(coordinates) != self.axes:
+        if len(coordinates) != self.ndim:
             raise InvalidDesign(
-                f"the map that bends the body gives {len(coordinates)} coordinates; {self.axes} are needed."
+                f"the map that bends the body gives {len(coordinates)} coordinates; {self.ndim} are needed."
             )
         still_points: np.ndarray = np.stack(
             [np.broadcast_to(np.asarray(row, float), places[0].shape) for row in coordinates]
@@ -89,8 +89,8 @@ class BendingMap:
             time: when [s].
         """
         step, columns = _STEP * self.size, []
-        for d in range(self.axes):
-            offset = np.zeros((self.axes, *(1,) * (places.ndim - 1)))
+        for d in range(self.ndim):
+            offset = np.zeros((self.ndim, *(1,) * (places.ndim - 1)))
             offset[d] = step
             columns.append((self(places + offset, time) - self(places - offset, time)) / (2 * step))
         return np.moveaxis(np.stack(columns, axis=1), (0, 1), (-2, -1))
@@ -130,7 +130,7 @@ class BendingMap:
                         f"{_row(places[:, is_inverted][:, 0])} m; bend it less."
                     )
                 return places
-            slope[is_inverted] = np.eye(self.axes)
+            slope[is_inverted] = np.eye(self.ndim)
             step = np.linalg.solve(slope, residual.T[..., None])[..., 0].T
             size = np.sqrt((step**2).sum(axis=0))
             places -= step * np.minimum(1.0, _MAX_STEP * self.size / np.maximum(size, 1e-300))

@@ -65,8 +65,8 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple
     """
     bounds = body.shape.bounds(time, pose)
     ends, h, margin = list(zip(bounds[::2], bounds[1::2], strict=True)), grid.cell, (REACH + 2) * grid.cell
-    mirrors, window = mirrors or (False,) * (2 * grid.axes), []
-    for d in reversed(range(grid.axes)):
+    mirrors, window = mirrors or (False,) * (2 * grid.ndim), []
+    for d in reversed(range(grid.ndim)):
         (lower_bound, upper_bound), start, end = ends[d], grid.origin[d], grid.origin[d] + grid.size[d]
         end_cuts = (
             mirrors[2 * d] and lower_bound < start < upper_bound,
@@ -154,11 +154,11 @@ def cuts(window: Window, grid: Grid) -> tuple[bool, ...]:
     return tuple(end for pair in pairs for end in pair)
 
 
-def unite(windows: list[Window], axes: int) -> Window:
+def unite(windows: list[Window], ndim: int) -> Window:
     """Return the smallest window around all; an empty one around none."""
     if not windows:
-        return (PAD,) * (2 * axes)
-    return tuple((max if k % 2 else min)(w[k] for w in windows) for k in range(2 * axes))
+        return (PAD,) * (2 * ndim)
+    return tuple((max if k % 2 else min)(w[k] for w in windows) for k in range(2 * ndim))
 
 
 def rows_of(bodies: list[AnyBody]) -> list[range]:

@@ -338,8 +338,8 @@ class Border:
     @classmethod
     def for_grid(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
         """Return the border of a grid."""
-        edges, unbounded = [], sides.unbounded(grid.axes)
-        for k, (name, side) in enumerate(zip(NAMES, sides.of_axes(grid.axes), strict=False)):
+        edges, unbounded = [], sides.unbounded(grid.ndim)
+        for k, (name, side) in enumerate(zip(NAMES, sides.of_axes(grid.ndim), strict=False)):
             axis = k // 2
             if not side.is_domain_end:
                 continue
@@ -351,8 +351,8 @@ class Border:
             edges.append(edge)
         water: OpenWater | FarField | None = None
         if unbounded:
-            water = OpenWater.for_grid(grid) if grid.axes == 2 else FarField(grid, sides.has_mirror(3))
-        return cls(edges=edges, water=water, stream=(0.0,) * grid.axes)
+            water = OpenWater.for_grid(grid) if grid.ndim == 2 else FarField(grid, sides.has_mirror(3))
+        return cls(edges=edges, water=water, stream=(0.0,) * grid.ndim)
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all that changes, by name."""

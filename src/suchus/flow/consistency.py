@@ -85,22 +85,22 @@ class MotionSource(NamedTuple):
     def sample(self, times: Sequence[float]) -> CoordinateSeries:
         """Return positions and angles, in space rotation vectors from the first pose, and their rates."""
         poses = [self.motion(time) for time in times]
-        axes = len(poses[0].position)
+        ndim = len(poses[0].position)
         places = np.array([[*p.position, *_turn(poses[0], p)] for p in poses])
-        rates = np.array([[*p.velocity, *([p.spin] if axes == 2 else p.spins)] for p in poses])
-        turns = (np.arange(places.shape[1]) >= axes).astype(int)
+        rates = np.array([[*p.velocity, *([p.spin] if ndim == 2 else p.spins)] for p in poses])
+        turns = (np.arange(places.shape[1]) >= ndim).astype(int)
         return CoordinateSeries(places - places[0], rates, np.where(turns, self.bounding_radius, 1.0), turns)
 
     def error_text(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates and the remedy."""
-        axes = 2 if declared_rate.size == 3 else 3
-        turning = index >= axes
+        ndim = 2 if declared_rate.size == 3 else 3
+        turning = index >= ndim
         rate_name, position_name = (
-            ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
+            ("spin", "angle" if ndim == 2 else "attitude") if turning else ("velocity", "position")
         )
 
         def numbers(rate: np.ndarray) -> str:
-            parts, unit = (rate[axes:], "rad/s") if turning else (rate[:axes], "m/s")
+            parts, unit = (rate[ndim:], "rad/s") if turning else (rate[:ndim], "m/s")
             text = ", ".join(f"{component:.4g}" for component in parts)
             return f"({text}) {unit}" if parts.size > 1 else f"{text} {unit}"
 

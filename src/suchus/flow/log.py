@@ -55,7 +55,7 @@ class Log:
     """Force from the first box, step by step [N/m, N]."""
 
     def __post_init__(self) -> None:
-        self.region_contents = np.zeros((0, contents_of(self.setup.grid.axes)))
+        self.region_contents = np.zeros((0, contents_of(self.setup.grid.ndim)))
 
     def store_contents(self, water: Fluid, outlines: Sequence[Markers]) -> None:
         """Store the contents of the placed bodies' regions; of a body that mirrors cut, the part inside the domain."""
@@ -65,7 +65,7 @@ class Log:
             for outline, mirror_cuts, rows in zip(outlines, water.mirror_cuts, water.rows, strict=True)
         ]
         self.region_contents = water.contents() - np.concatenate(
-            [np.zeros((0, contents_of(grid.axes))), *body_contents]
+            [np.zeros((0, contents_of(grid.ndim))), *body_contents]
         )
 
     def reactions(
@@ -104,7 +104,7 @@ class Log:
                 density=self.setup.density,
             ).of_whole_body(mirror_cuts)
             body_action, parts = actions[0], actions if len(rows) == 1 else actions[1:]
-            scale = 2 ** sum(mirror_cuts) * self.setup.density * grid.cell ** (grid.axes + 1) / dt
+            scale = 2 ** sum(mirror_cuts) * self.setup.density * grid.cell ** (grid.ndim + 1) / dt
             pressed = scale * water.internal_pressure_sums[rows.start : rows.stop]
             pressed[:, 1:] = grid.cell * pressed[:, 1:] - pressed[:, :1] * (position - np.array(grid.origin))
             loads.append(FlowLoads(reference_point=position, total=body_action, parts=parts, internal_pressure=pressed))
@@ -143,7 +143,7 @@ class Log:
     @property
     def record(self) -> Record:
         """The time series so far."""
-        bodies, names = self.setup.bodies, COLUMNS if self.setup.grid.axes == 2 else SPACE_COLUMNS
+        bodies, names = self.setup.bodies, COLUMNS if self.setup.grid.ndim == 2 else SPACE_COLUMNS
         counts = [
             len(rows) if _is_divided(body) else 1 for body, rows in zip(bodies, rows_of(list(bodies)), strict=True)
         ]

@@ -72,9 +72,9 @@ def locate_patch(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
     Raises:
         InvalidDesign: the cells of both do not fit, or the patch reaches out of the domain.
     """
-    if coarse_grid.axes != grid.axes:
+    if coarse_grid.ndim != grid.ndim:
         raise InvalidDesign(
-            f"the patch has {grid.axes} axes and the grid around it {coarse_grid.axes}; give both the same."
+            f"the patch has {grid.ndim} axes and the grid around it {coarse_grid.ndim}; give both the same."
         )
     ratio = round(coarse_grid.cell / grid.cell)
     low_corner = [(a - b) / coarse_grid.cell for a, b in zip(grid.origin, coarse_grid.origin, strict=True)]
@@ -270,18 +270,18 @@ class Rim:
         """
         self._dtype = dtype
         ratio, corner = locate_patch(patch, coarse_grid)
-        axes = patch.axes
+        ndim = patch.ndim
         shape = tuple(n + 2 * PAD for n in reversed(patch.cells))
         is_coarse_side, repeats = (
-            [isinstance(side, CoarseSide) for side in sides.of_axes(axes)],
-            sides.is_periodic(axes),
+            [isinstance(side, CoarseSide) for side in sides.of_axes(ndim)],
+            sides.is_periodic(ndim),
         )
         self._stencils = []
-        for c in range(axes):
+        for c in range(ndim):
             is_rim, is_excluded = np.zeros(shape, bool), np.zeros(shape, bool)
             for d, n in enumerate(patch.cells):
-                rim_lines = np.moveaxis(is_rim, axes - 1 - d, 0)
-                excluded_lines = np.moveaxis(is_excluded, axes - 1 - d, 0)
+                rim_lines = np.moveaxis(is_rim, ndim - 1 - d, 0)
+                excluded_lines = np.moveaxis(is_excluded, ndim - 1 - d, 0)
                 low_end, high_end = slice(0, PAD + (c == d and not repeats[d])), slice(PAD + n, None)
                 for end, is_coarse in zip((low_end, high_end), is_coarse_side[2 * d :], strict=False):
                     if is_coarse:
@@ -303,13 +303,13 @@ class Rim:
             ratio: fine cells along a coarse cell [-].
             corner: coarse cell in the low corner of the patch, x first [-].
         """
-        axes = len(shape)
-        flat = 3 - axes  # of a plane the first of three axes is a single place
+        ndim = len(shape)
+        flat = 3 - ndim  # of a plane the first of three axes is a single place
         first_cells, taps = np.zeros((3, max(shape)), unsigned), np.ones(3, unsigned)
         weights: np.ndarray = np.zeros((3, max(shape), 4), self._dtype)
         weights[:flat, 0, 0] = 1
         for axis, n in enumerate(shape):
-            d = axes - 1 - axis
+            d = ndim - 1 - axis
             coarse_cells, axis_weights = _weights(np.arange(n), ratio, on_faces=c == d)
             first_cells[flat + axis, :n] = coarse_cells[:, 0] + corner[d] + PAD
             taps[flat + axis] = axis_weights.shape[1]
@@ -374,10 +374,10 @@ class Nested(Fluid):
         )  # fmt: skip
         self._faces = []
         for c, is_periodic in enumerate(self.repeats):
-            face_slices, axis = list(self._cells), grid.axes - 1 - c
+            face_slices, axis = list(self._cells), grid.ndim - 1 - c
             face_slices[axis] = slice(face_slices[axis].start + (not is_periodic), face_slices[axis].stop)
             self._faces.append(tuple(face_slices))
-        self._has_domain_sides = any(not isinstance(side, CoarseSide) for side in sides_of_patch.of_axes(grid.axes))
+        self._has_domain_sides = any(not isinstance(side, CoarseSide) for side in sides_of_patch.of_axes(grid.ndim))
         self._push: tuple[float, ...] = ()
         self._span = 0.0
         self._coarse_acceleration: np.ndarray = np.zeros(0)
@@ -425,9 +425,9 @@ class Nested(Fluid):
         """Refuse bodies that come too near to where the coarser cells begin."""
         if self.window[1] <= self.window[0]:
             return
-        min_clearance, sides = MIN_BODY_CLEARANCE * self.ratio, self.sides.of_axes(self.axes)
+        min_clearance, sides = MIN_BODY_CLEARANCE * self.ratio, self.sides.of_axes(self.ndim)
         for d, n in enumerate(self.grid.cells):
-            start, end = self.window[2 * (self.axes - 1 - d) : 2 * (self.axes - d)]
+            start, end = self.window[2 * (self.ndim - 1 - d) : 2 * (self.ndim - d)]
             for k, clearance in enumerate((start - PAD, n + PAD - end)):
                 if isinstance(sides[2 * d + k], CoarseSide) and clearance < min_clearance:
                     names, missing = ", ".join(body.name for body in bodies), min_clearance - clearance
@@ -464,11 +464,11 @@ class Nested(Fluid):
             coarse: where they go; the coarse cells of the patch, or the faces between them.
             face_axis: the axis that the faces lie across; None for cells.
         """
-        spans = [1 if d == face_axis else self.ratio for d in reversed(range(self.axes))]
+        spans = [1 if d == face_axis else self.ratio for d in reversed(range(self.ndim))]
         inner = face_axis is not None and not self.repeats[face_axis]  # the first face lies on a side
-        starts = [PAD + self.ratio * (d == face_axis and inner) for d in reversed(range(self.axes))]
-        steps = [self.ratio] * self.axes
-        if self.axes == 2:
+        starts = [PAD + self.ratio * (d == face_axis and inner) for d in reversed(range(self.ndim))]
+        steps = [self.ratio] * self.ndim
+        if self.ndim == 2:
             fine, coarse, spans, starts, steps = fine[None], coarse[None], [1, *spans], [0, *starts], [1, *steps]
         average(fine, coarse, tuple(starts), tuple(steps), tuple(spans))
 
@@ -482,7 +482,7 @@ class Nested(Fluid):
         mean = np.empty_like(coarse_pressure)
         self._average(self.p, mean)
         rise = coarse_pressure - mean
-        core = rise[(slice(1, -1),) * self.axes]
+        core = rise[(slice(1, -1),) * self.ndim]
         level = self.dtype((rise.sum(dtype=np.float64) - core.sum(dtype=np.float64)) / (rise.size - core.size))
         self.p += level
         coarse_pressure[:] = mean + level

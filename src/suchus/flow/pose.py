@@ -68,11 +68,11 @@ class Pose:
     spin_y: float = 0.0
     """In space, angular velocity about y [rad/s]."""
 
-    def in_dimensions(self, axes: int) -> "Pose":
+    def in_dimensions(self, ndim: int) -> "Pose":
         """Return the same pose with position and velocity of a domain with 2 or 3 axes; a missing z is 0.
 
         Args:
-            axes: number of axes of the domain, 2 or 3.
+            ndim: number of axes of the domain, 2 or 3.
 
         Raises:
             InvalidDesign: another number of components, an infinite number, or pitch or roll in the plane.
@@ -81,14 +81,14 @@ class Pose:
         if not isfinite(sum(self.position) + sum(self.velocity) + turns):
             self._refuse_endless()
         position, velocity = (
-            (*vector, 0.0) if len(vector) == 2 and axes == 3 else vector for vector in (self.position, self.velocity)
+            (*vector, 0.0) if len(vector) == 2 and ndim == 3 else vector for vector in (self.position, self.velocity)
         )
-        if len(position) != axes or len(velocity) != axes:
+        if len(position) != ndim or len(velocity) != ndim:
             raise InvalidDesign(
                 f"a pose has the position {show(self.position)} m and the velocity {show(self.velocity)} m/s; "
-                f"{'two numbers are needed in the plane' if axes == 2 else 'three numbers are needed in space'}."
+                f"{'two numbers are needed in the plane' if ndim == 2 else 'three numbers are needed in space'}."
             )
-        if axes == 2 and not self.in_plane:
+        if ndim == 2 and not self.in_plane:
             raise InvalidDesign(
                 f"a pose has pitch {self.pitch:.4g} rad, roll {self.roll:.4g} rad and the spins {self.spin_x:.4g} and "
                 f"{self.spin_y:.4g} rad/s; in the plane a body has an angle and a spin alone. Leave the others 0."

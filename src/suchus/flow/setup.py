@@ -131,7 +131,7 @@ class Setup:
             self.scheme.check()
         if self.follow is not None:
             x, y, z = (*self.follow_axes, False)[:3]
-            self.sides.check_travel(self.grid.axes, (x, y, z), self.follow)
+            self.sides.check_travel(self.grid.ndim, (x, y, z), self.follow)
         if self.coarse_grid is not None:
             patch_sides(self.grid, self.coarse_grid, self.sides)
             check_memory(self.coarse_grid, self.dtype)
@@ -139,15 +139,15 @@ class Setup:
 
     def _check_dimension(self) -> None:
         """Refuse plane bodies in a grid in space, and bodies in space in a plane grid."""
-        axes = self.grid.axes
-        self.sides.check(axes)
+        ndim = self.grid.ndim
+        self.sides.check(ndim)
         for body in self.bodies:
-            if isinstance(body, FreeBody) and axes == 2:
+            if isinstance(body, FreeBody) and ndim == 2:
                 body.check_plane()
-            if body.shape.axes == axes:
+            if body.shape.ndim == ndim:
                 continue
             shape = type(body.shape).__name__
-            if axes == 3:
+            if ndim == 3:
                 raise InvalidDesign(
                     f"{body.name} is a {shape}, which is plane, and the grid has three axes; give a shape in space, "
                     f"say a Sphere, or a grid of two axes."
@@ -156,7 +156,7 @@ class Setup:
                 f"{body.name} is a {shape}, which is a shape in space, and the grid has two axes; give the grid a "
                 f"third pair, or a plane shape."
             )
-        if axes == 3 and self.contact is not None:
+        if ndim == 3 and self.contact is not None:
             raise InvalidDesign("contact acts between plane outlines, and the grid has three axes; leave it None.")
 
     @property
@@ -171,7 +171,7 @@ class Setup:
             self._check_stream(stream, f" at t = {time:.4g} s")
         else:
             stream = self.stream
-        return stream if len(stream) == self.grid.axes else (*stream, 0.0)
+        return stream if len(stream) == self.grid.ndim else (*stream, 0.0)
 
     def initial_velocity(self, component: int, grid: Grid) -> np.ndarray | float:
         """Return one component of the initial velocity of the water on all faces across its axis [m/s].
@@ -189,9 +189,9 @@ class Setup:
         coordinates = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
         points = np.meshgrid(*coordinates[::-1], indexing="ij")[::-1]
         velocities = self.start(*points)
-        if len(velocities) != self.grid.axes:
+        if len(velocities) != self.grid.ndim:
             raise InvalidDesign(
-                f"start gives {len(velocities)} velocities; one along each of {self.grid.axes} axes counts."
+                f"start gives {len(velocities)} velocities; one along each of {self.grid.ndim} axes counts."
             )
         velocity = np.asarray(velocities[component], float)
         if velocity.shape not in ((), points[0].shape) or not np.isfinite(velocity).all():
@@ -202,9 +202,9 @@ class Setup:
         return velocity
 
     def _check_stream(self, stream: Any, time_text: str) -> None:
-        allowed = [(2,), (self.grid.axes,)]
+        allowed = [(2,), (self.grid.ndim,)]
         if np.shape(stream) not in allowed or not np.isfinite(np.asarray(stream, float)).all():
-            needs = "two finite velocities (x, y)" if self.grid.axes == 2 else "finite velocities (x, y) or (x, y, z)"
+            needs = "two finite velocities (x, y)" if self.grid.ndim == 2 else "finite velocities (x, y) or (x, y, z)"
             raise InvalidDesign(f"stream is {show(stream)}{time_text}; give {needs} in m/s.")
 
     def check_bodies(self) -> dict[str, float]:
@@ -217,7 +217,7 @@ class Setup:
         thin_fractions = {}
         for body in self.bodies:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.from_body(body).pose(body.shape.mass(0.0))
-            pose = pose.in_dimensions(self.grid.axes)
+            pose = pose.in_dimensions(self.grid.ndim)
             window = window_of(body, pose, self.grid, 0.0, self._mirrors)
             if isinstance(body, FreeBody):
                 self._check_weight(body, cuts(window, self.grid))
@@ -229,7 +229,7 @@ class Setup:
     def _mirrors(self) -> tuple[bool, ...]:
         """Whether there is a mirror at the ends of the axes of ``grid``; see ``Sides.has_mirror``."""
         sides = self.sides if self.coarse_grid is None else patch_sides(self.grid, self.coarse_grid, self.sides)
-        return sides.has_mirror(self.grid.axes)
+        return sides.has_mirror(self.grid.ndim)
 
     def _check_weight(self, body: FreeBody, mirror_cuts: tuple[bool, ...]) -> None:
         """Refuse gravity that would move a body through a mirror that cuts it.
@@ -281,8 +281,8 @@ class Setup:
         )
         if not self.coarse and cells * slack**0.5 < min_cells:
             layer = cells * self.grid.cell
-            million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.axes / 1e6
-            size = f" (this domain then takes {million_cells:.3g} million cells)" if self.grid.axes == 3 else ""
+            million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.ndim / 1e6
+            size = f" (this domain then takes {million_cells:.3g} million cells)" if self.grid.ndim == 3 else ""
             raise InvalidDesign(
                 f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "

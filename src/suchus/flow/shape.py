@@ -52,7 +52,7 @@ class Field:
 class Shape(ABC):
     """A body's shape in its own frame, in the plane; it may change with time."""
 
-    axes: ClassVar[int] = 2
+    ndim: ClassVar[int] = 2
 
     @abstractmethod
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:

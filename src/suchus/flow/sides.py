@@ -43,14 +43,14 @@ class Side:
         del time, places
         return 0.0
 
-    def wall_velocity(self, time: float, axes: int) -> tuple[float, ...] | None:
+    def wall_velocity(self, time: float, ndim: int) -> tuple[float, ...] | None:
         """Return the velocity of the wall along the other axes [m/s]; None without friction.
 
         Args:
             time: time [s].
-            axes: of the domain, 2 or 3.
+            ndim: of the domain, 2 or 3.
         """
-        del time, axes
+        del time, ndim
         return None
 
     def outflow_fraction(self, outward: float) -> float:
@@ -101,10 +101,10 @@ class Wall(Side):
 
     travels: ClassVar[tuple[bool, bool]] = False, False
 
-    def wall_velocity(self, time: float, axes: int) -> tuple[float, ...]:
+    def wall_velocity(self, time: float, ndim: int) -> tuple[float, ...]:
         """Return the wall's speed; see ``Side``."""
         del time
-        return self.speed if isinstance(self.speed, tuple) else (self.speed, *(0.0,) * (axes - 2))
+        return self.speed if isinstance(self.speed, tuple) else (self.speed, *(0.0,) * (ndim - 2))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,10 +123,10 @@ class Inflow(Side):
         del time
         return np.asarray(self.profile(*places))
 
-    def wall_velocity(self, time: float, axes: int) -> tuple[float, ...]:
+    def wall_velocity(self, time: float, ndim: int) -> tuple[float, ...]:
         """Return zero: the water enters at a right angle; see ``Side``."""
         del time
-        return (0.0,) * (axes - 1)
+        return (0.0,) * (ndim - 1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -196,39 +196,39 @@ class Sides:
         if enters and not any(s.is_open for s in plane) and Outflow not in map(type, ends):
             raise InvalidDesign("water enters through an Inflow and cannot leave; make another side an Outflow().")
 
-    def check(self, axes: int) -> None:
+    def check(self, ndim: int) -> None:
         """Refuse sides that do not fit the number of axes of the domain.
 
         Args:
-            axes: number of axes, 2 or 3.
+            ndim: number of axes, 2 or 3.
 
         Raises:
             InvalidDesign: a mirror in the plane, or a side's speed of another dimension.
         """
-        for name, side in zip(NAMES, self.of_axes(axes), strict=False):
-            if isinstance(side, Mirror) and axes == 2:
+        for name, side in zip(NAMES, self.of_axes(ndim), strict=False):
+            if isinstance(side, Mirror) and ndim == 2:
                 raise InvalidDesign(f"the {name} side of a plane grid is a Mirror; in the plane take a Slip().")
             speed, needs = (
-                side.wall_velocity(0.0, axes),
-                ("a plane grid needs one number", "in space it has two")[axes - 2],
+                side.wall_velocity(0.0, ndim),
+                ("a plane grid needs one number", "in space it has two")[ndim - 2],
             )
-            if speed is not None and len(speed) != axes - 1:
+            if speed is not None and len(speed) != ndim - 1:
                 raise InvalidDesign(f"the speed of the {name} side along itself is {show(speed)} m/s; {needs}.")
 
-    def check_travel(self, axes: int, travels: tuple[bool, bool, bool], body: str) -> None:
+    def check_travel(self, ndim: int, travels: tuple[bool, bool, bool], body: str) -> None:
         """Refuse sides with a fixed position in the world if the grid travels and would move them.
 
         A side without friction may travel along itself. Open and periodic sides may travel in any direction.
 
         Args:
-            axes: of the domain.
+            ndim: of the domain.
             travels: whether the grid travels along x, y and z.
             body: name of the body that it travels with.
 
         Raises:
             InvalidDesign: a wall, an inflow or a mirror would travel.
         """
-        for number, name in enumerate(NAMES[: 2 * axes]):
+        for number, name in enumerate(NAMES[: 2 * ndim]):
             side, travels_across = getattr(self, name), travels[number // 2]
             may_across, may_along = side.travels
             if (travels_across and not may_across) or (any(travels) and not may_along):
@@ -248,28 +248,28 @@ class Sides:
         """Return a domain that repeats itself along all axes."""
         return cls(**dict.fromkeys(NAMES, Periodic()))
 
-    def of_axes(self, axes: int) -> tuple[Side, ...]:
+    def of_axes(self, ndim: int) -> tuple[Side, ...]:
         """Return the sides of a domain with so many axes, in the order of ``NAMES``."""
-        return tuple(getattr(self, name) for name in NAMES[: 2 * axes])
+        return tuple(getattr(self, name) for name in NAMES[: 2 * ndim])
 
-    def unbounded(self, axes: int) -> bool:
+    def unbounded(self, ndim: int) -> bool:
         """Return whether the domain is unbounded, so that its sides move with the flow."""
-        sides = self.of_axes(axes)
+        sides = self.of_axes(ndim)
         open_sides = [isinstance(s, Stream) and s.unbounded for s in sides]
         return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, sides, strict=True))
 
-    def is_periodic(self, axes: int) -> tuple[bool, ...]:
+    def is_periodic(self, ndim: int) -> tuple[bool, ...]:
         """Return whether the domain is periodic, along each axis."""
-        return tuple(isinstance(side, Periodic) for side in self.of_axes(axes)[::2])
+        return tuple(isinstance(side, Periodic) for side in self.of_axes(ndim)[::2])
 
-    def has_mirror(self, axes: int) -> tuple[bool, ...]:
+    def has_mirror(self, ndim: int) -> tuple[bool, ...]:
         """Return whether there is a mirror at the low and at the high end, along each axis: ``NAMES``."""
-        return tuple(isinstance(side, Mirror) for side in self.of_axes(axes))
+        return tuple(isinstance(side, Mirror) for side in self.of_axes(ndim))
 
-    def is_fixed(self, axes: int) -> tuple[tuple[bool, bool], ...]:
+    def is_fixed(self, ndim: int) -> tuple[tuple[bool, bool], ...]:
         """Return whether the positions of the low and the high side are fixed, along each axis.
 
         They are fixed for all but open sides.
         """
-        fixed = [not side.is_open for side in self.of_axes(axes)]
+        fixed = [not side.is_open for side in self.of_axes(ndim)]
         return tuple(zip(fixed[::2], fixed[1::2], strict=True))

@@ -103,7 +103,7 @@ class Simulation(Fields):
         """
         self.setup = setup
         self.thin_fractions = setup.check_bodies()
-        precompile(setup.grid.axes, setup.dtype)
+        precompile(setup.grid.ndim, setup.dtype)
         self.time = 0.0
         options = setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
         self.water = (
@@ -111,8 +111,8 @@ class Simulation(Fields):
             if setup.coarse_grid is None
             else Nested(setup.grid, setup.coarse_grid, *options)
         )
-        self.axes = setup.grid.axes
-        self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
+        self.ndim = setup.grid.ndim
+        self.frame = np.zeros((2, self.ndim))  # position and velocity of the grid
         self._bodies = [_remembering(body) for body in setup.bodies]
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
@@ -154,7 +154,7 @@ class Simulation(Fields):
         """
         cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
-            pose = body.pose(0.0).in_dimensions(self.axes)
+            pose = body.pose(0.0).in_dimensions(self.ndim)
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
@@ -162,7 +162,7 @@ class Simulation(Fields):
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
             consistencies.append(
                 Consistency(
-                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.axes), reach),
+                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.ndim), reach),
                     cell,
                 )
             )
@@ -194,7 +194,7 @@ class Simulation(Fields):
         """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
-            return body.pose(self.time if time is None else time).in_dimensions(self.axes)
+            return body.pose(self.time if time is None else time).in_dimensions(self.ndim)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
@@ -218,7 +218,7 @@ class Simulation(Fields):
             return
         name = self.setup.follow
         velocity = self.swimmers[name].rate if name in self.swimmers else np.array(self.pose(name, time).velocity)
-        travels = self.setup.follow_axes[: self.axes]
+        travels = self.setup.follow_axes[: self.ndim]
         self.frame[1, : len(travels)] = np.where(travels, velocity[: len(travels)], 0.0)
 
     # --- one step ----------------------------------------------------------------------------------------------
@@ -242,7 +242,7 @@ class Simulation(Fields):
 
     def _limit(self, fastest: float) -> float:
         """Return the time step at which the fastest water crosses one cell, with a margin for friction [s]."""
-        return self.setup.grid.cell / (fastest + 2 * self.axes * float(self.water.nu))
+        return self.setup.grid.cell / (fastest + 2 * self.ndim * float(self.water.nu))
 
     def advance(self, dt: float | None = None) -> None:
         """Advance by one step.
@@ -342,14 +342,14 @@ class Simulation(Fields):
             zip(self._bodies, outlines, torque_points, self._loads, strict=True)
         ):  # fmt: skip
             act = loads.total
-            load = sample(water, markers, setup.density).load(point) if water.axes == 2 else None
+            load = sample(water, markers, setup.density).load(point) if water.ndim == 2 else None
             body_pose = self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
             if swimmer is not None:
                 body_pose = swimmer.place_and_rate
                 swimmer.load = np.array([*act.force, *act.moment])
                 if swimmer.steps % ADDED_MASS_INTERVAL == 1 and swimmer.is_free.any():
-                    free_degrees = swimmer.is_free if self.axes == 3 else None
+                    free_degrees = swimmer.is_free if self.ndim == 3 else None
                     swimmer.set_added_mass(added_mass(water, markers, point, setup.density, k, free_degrees), self.time)
             values += columns(load, act, step.drift, body_pose, self._watch.errors[k])
             part_values += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
@@ -386,7 +386,7 @@ class Simulation(Fields):
     @property
     def drift(self) -> np.ndarray:
         """Mean velocity of the grid in the last step, shape (axis,) [m/s]."""
-        return np.zeros(self.axes) if self._latest_step is None else self._latest_step.drift
+        return np.zeros(self.ndim) if self._latest_step is None else self._latest_step.drift
 
     def accelerate(self, twists: Mapping[str, Twists]) -> None:
         """Change the velocities of bodies at the end of the last step, and let the water follow; see ``twist``.
@@ -405,7 +405,7 @@ class Simulation(Fields):
         """
         if self._latest_step is None:
             raise OutsideLimits("bodies are to be accelerated before any step was taken; call advance first.")
-        body_twists = [resting_twists(len(rows), self.axes) for rows in self.water.rows]
+        body_twists = [resting_twists(len(rows), self.ndim) for rows in self.water.rows]
         for name, motion in twists.items():
             number = self._number(name)
             if motion.reference_points.shape != body_twists[number].reference_points.shape:
@@ -434,7 +434,7 @@ class Simulation(Fields):
             NotConverged: the pressure solver did not converge.
         """
         number = self._number(name)
-        resting = [resting_twists(len(rows), self.axes) for rows in self.water.rows]
+        resting = [resting_twists(len(rows), self.ndim) for rows in self.water.rows]
         joined_modes = [join_twists([*resting[:number], mode, *resting[number + 1 :]]) for mode in modes]
         return generalised_added_mass(self.water, self._outlines, joined_modes, self.setup.density)
 
@@ -612,7 +612,7 @@ class Simulation(Fields):
     @property
     def control_forces(self) -> np.ndarray:
         """Force on all bodies from the momentum through the box, one row per step since ``control`` [N/m, N]."""
-        return np.array(self._log.control_rows).reshape(-1, self.setup.grid.axes)
+        return np.array(self._log.control_rows).reshape(-1, self.setup.grid.ndim)
 
     # --- what there is to see ----------------------------------------------------------------------------------
 
@@ -632,7 +632,7 @@ class Simulation(Fields):
             raise UnknownName("body", "" if name is None else name, names or ("none",))
         body, grid = self._bodies[0 if name is None else names.index(name)], self.setup.grid
         skin = body.shape.markers(self.time, self._in_frame(self.pose(body.name)), grid.cell)
-        if grid.axes == 3:
+        if grid.ndim == 3:
             low_corner = np.array(grid.origin)[:, None]
             high_corner = low_corner + np.array(grid.size)[:, None]
             skin = skin.select(((skin.points >= low_corner) & (skin.points <= high_corner)).all(axis=0))

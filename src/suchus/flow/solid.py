@@ -53,7 +53,7 @@ class SpaceField:
 class SpaceShape(ABC):
     """A body's shape in space in its own frame; it may change with time."""
 
-    axes: ClassVar[int] = 3
+    ndim: ClassVar[int] = 3
     mirror_symmetry: ClassVar[tuple[bool, bool, bool]] = (True, True, True)
     """Whether the planes through the origin across x, y and z are planes of symmetry."""
 

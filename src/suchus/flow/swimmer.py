@@ -25,22 +25,22 @@ from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.pose import Pose, rotate_vectors
 
 
-def to_degrees_of_freedom(values: Sequence[float], axes: int) -> np.ndarray:
+def to_degrees_of_freedom(values: Sequence[float], ndim: int) -> np.ndarray:
     """Return values for all degrees of freedom; of three values in space, those along z and about x and y are 0.
 
     Args:
         values: along x and y and about z, or all six.
-        axes: of the domain, 2 or 3.
+        ndim: of the domain, 2 or 3.
     """
-    if axes == 2 or len(values) == 6:
+    if ndim == 2 or len(values) == 6:
         return np.array(values)
     x, y, turn = values
     return np.array([x, y, 0 * x, 0 * x, 0 * x, turn])
 
 
-def _lengthened(vector: Sequence[float], axes: int) -> list[float]:
+def _lengthened(vector: Sequence[float], ndim: int) -> list[float]:
     """Return a vector with as many components as there are axes."""
-    return [*vector, *(0.0,) * (axes - len(vector))]
+    return [*vector, *(0.0,) * (ndim - len(vector))]
 
 
 def _attitude(yaw: float, pitch: float, roll: float) -> np.ndarray:
@@ -129,19 +129,19 @@ class Swimmer:
     @classmethod
     def from_body(cls, body: FreeBody) -> "Swimmer":
         """Return a free body in its initial state."""
-        axes = body.shape.axes
-        if axes == 2:
+        ndim = body.shape.ndim
+        if ndim == 2:
             place, rate = np.array([*body.start[:2], body.angle]), np.array([*body.velocity[:2], body.spin])
         else:
             turn = _attitude(body.angle, body.pitch, body.roll)
             place = np.array([*_lengthened(body.start, 3), *turn])
             rate = np.array([*_lengthened(body.velocity, 3), body.spin_x, body.spin_y, body.spin])
         free = (True,) * place.size if body.free is None else body.free
-        return cls(body, place, rate, to_degrees_of_freedom(free, axes).astype(bool))
+        return cls(body, place, rate, to_degrees_of_freedom(free, ndim).astype(bool))
 
     @property
     def _ndim(self) -> int:
-        return self.body.shape.axes
+        return self.body.shape.ndim
 
     @staticmethod
     def _angles(place: np.ndarray) -> tuple[float, float, float]:
@@ -349,22 +349,22 @@ class Swimmer:
         Raises:
             InvalidDesign: the body's own force is not three or six finite numbers.
         """
-        body, axes = self.body, self._ndim
+        body, ndim = self.body, self._ndim
         mid_place = self._displaced(0.5 * dt * (self.rate - 0.5 * recoil))
-        stiff, viscous = to_degrees_of_freedom(body.springs, axes), to_degrees_of_freedom(body.dampers, axes)
-        pull = _lengthened(body.gravity, axes)
-        outer = weight * np.array([*pull, *np.zeros(mid_place.size - axes)]) - self._spring_force(mid_place, stiff)
+        stiff, viscous = to_degrees_of_freedom(body.springs, ndim), to_degrees_of_freedom(body.dampers, ndim)
+        pull = _lengthened(body.gravity, ndim)
+        outer = weight * np.array([*pull, *np.zeros(mid_place.size - ndim)]) - self._spring_force(mid_place, stiff)
         outer = outer - viscous * self.rate
         if body.force is not None:
             force = body.force(time + 0.5 * dt, self._state(mid_place))
-            sizes = [(3,)] if axes == 2 else [(3,), (6,)]
+            sizes = [(3,)] if ndim == 2 else [(3,), (6,)]
             if np.shape(force) not in sizes or not np.isfinite(np.asarray(force, float)).all():
                 raise InvalidDesign(
                     f"the force of {body.name} at t = {time:.4g} s is {show(force)}; give three finite numbers, the "
                     f"force along x and y in N/m and the torque in N (in space N and N m, or six numbers: forces along "
                     f"and torques about x, y and z)."
                 )
-            outer = outer + to_degrees_of_freedom(np.asarray(force, float).tolist(), axes)
+            outer = outer + to_degrees_of_freedom(np.asarray(force, float).tolist(), ndim)
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff
 
     def _spring_force(self, mid_place: np.ndarray, stiff: np.ndarray) -> np.ndarray:

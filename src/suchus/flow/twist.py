@@ -57,16 +57,16 @@ class Twists:
         return replace(self, linear=factor * self.linear, angular=factor * self.angular)
 
 
-def resting_twists(rows: int, axes: int) -> Twists:
+def resting_twists(rows: int, ndim: int) -> Twists:
     """Return zero twists of parts at rest.
 
     Args:
         rows: number of parts.
-        axes: of the domain, 2 or 3.
+        ndim: of the domain, 2 or 3.
     """
-    turns = len(ROTATION_PLANES[axes])
+    turns = len(ROTATION_PLANES[ndim])
     return Twists(
-        reference_points=np.zeros((rows, axes)), linear=np.zeros((rows, axes)), angular=np.zeros((rows, turns))
+        reference_points=np.zeros((rows, ndim)), linear=np.zeros((rows, ndim)), angular=np.zeros((rows, turns))
     )  # fmt: skip
 
 
@@ -99,17 +99,17 @@ def held_faces(water: Fluid) -> list[HeldFaces]:
 
     Faces beyond mirrors are left out.
     """
-    window, axes, grid, faces = water.window_slices, water.axes, water.grid, []
+    window, ndim, grid, faces = water.window_slices, water.ndim, water.grid, []
     is_inside = np.ones([s.stop - s.start for s in window], bool)
     for mirror_cuts in water.mirror_cuts:
         clear_images(is_inside, mirror_cuts)
     ends = [(s.start, s.stop) for s in reversed(window)]
-    for c in range(axes):
+    for c in range(ndim):
         body_fraction, closed = (1 - fraction[c][window].astype(np.float64) for fraction in (water.mu0, water.passage))
         index = np.flatnonzero(((body_fraction > 0) | (closed > 0)) & is_inside)
-        lines = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(axes)]
+        lines = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(ndim)]
         places = np.unravel_index(index, body_fraction.shape)
-        points = np.stack([lines[d][places[axes - 1 - d]] for d in range(axes)])
+        points = np.stack([lines[d][places[ndim - 1 - d]] for d in range(ndim)])
         row = water.owners[c].ravel()[index].astype(np.intp)
         faces.append(HeldFaces(index, row, points, body_fraction.ravel()[index], closed.ravel()[index]))
     return faces
@@ -144,7 +144,7 @@ def face_differences(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -
         index + start
         for index, start in zip(np.unravel_index(faces.face_indices, _shape(water)), low_corner, strict=True)
     ]
-    cell_before = [index - (n == water.axes - 1 - axis) for n, index in enumerate(cell_behind)]
+    cell_before = [index - (n == water.ndim - 1 - axis) for n, index in enumerate(cell_behind)]
     return x[tuple(cell_behind)].astype(np.float64) - x[tuple(cell_before)]
 
 
@@ -166,24 +166,24 @@ def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
     Raises:
         NotConverged: the pressure solver did not converge.
     """
-    axes, h, faces = water.axes, water.grid.cell, held_faces(water)
+    ndim, h, faces = water.ndim, water.grid.cell, held_faces(water)
     changes = [twists.velocity_at(axis_faces.row, axis_faces.points)[c] for c, axis_faces in enumerate(faces)]
     max_change = max((float(np.abs(change).max(initial=0.0)) for change in changes), default=0.0)
     if max_change == 0.0:
         return
     shape, count = _shape(water), len(water.immersion_sums)
-    velocity_change = np.zeros((axes, *shape))
+    velocity_change = np.zeros((ndim, *shape))
     for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
         velocity_change[c].ravel()[axis_faces.face_indices] = axis_faces.body_fraction * change
     x = water.apply_velocity_change(velocity_change, dt, DIVERGENCE_TOLERANCE * max_change)
-    energy, turns = axes + len(ROTATION_PLANES[axes]), ROTATION_PLANES[axes]
+    energy, turns = ndim + len(ROTATION_PLANES[ndim]), ROTATION_PLANES[ndim]
     sums = np.zeros_like(water.immersion_sums)
     corner = np.array(water.grid.origin)
     lever = replace(twists, reference_points=twists.reference_points - corner)
     # the mean velocity of the step changes by half of the velocity change, which acts on the previous sums too
     previous_sums, spin = water.immersion_sums, h * twists.angular
-    sums[:, energy] += 0.5 * (lever.at_origin() * previous_sums[:, :axes]).sum(axis=1)
-    sums[:, energy] += 0.5 * (spin * previous_sums[:, axes:energy]).sum(axis=1)
+    sums[:, energy] += 0.5 * (lever.at_origin() * previous_sums[:, :ndim]).sum(axis=1)
+    sums[:, energy] += 0.5 * (spin * previous_sums[:, ndim:energy]).sum(axis=1)
     for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
         gained = axis_faces.body_fraction * change + axis_faces.closed_fraction * face_differences(
             water, x, axis_faces, c
@@ -192,7 +192,7 @@ def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
         for n, (a, b) in enumerate(turns):
             if c in (a, b):
                 offset = (axis_faces.points[b if c == a else a] - corner[b if c == a else a]) / h
-                sums[:, axes + n] += np.bincount(axis_faces.row, (-offset if c == a else offset) * gained, count)
+                sums[:, ndim + n] += np.bincount(axis_faces.row, (-offset if c == a else offset) * gained, count)
         mean = water.mean[c].ravel()[axis_faces.face_indices].astype(np.float64)
         sums[:, energy] += np.bincount(axis_faces.row, (mean + 0.5 * change) * gained, count)
         body_velocity = water.b[c].ravel()

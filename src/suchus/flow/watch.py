@@ -32,15 +32,15 @@ def vorticity_size(velocity: np.ndarray) -> np.ndarray:
     Args:
         velocity: padded velocity, shape (axis, ...) [m/s].
     """
-    axes, interior = len(velocity), slice(PAD + 1, -PAD)
+    ndim, interior = len(velocity), slice(PAD + 1, -PAD)
 
     def shifted(component: np.ndarray, axis: int) -> np.ndarray:
         """Return the values one cell lower along an axis."""
-        return component[tuple(slice(PAD, -PAD - 1) if axes - 1 - n == axis else interior for n in range(axes))]
+        return component[tuple(slice(PAD, -PAD - 1) if ndim - 1 - n == axis else interior for n in range(ndim))]
 
-    inner = (interior,) * axes
+    inner = (interior,) * ndim
     total: np.ndarray = np.zeros(velocity[0][inner].shape, velocity.dtype)
-    for d in range(axes):
+    for d in range(ndim):
         for e in range(d):
             u, v = velocity[e], velocity[d]
             total += np.abs((v[inner] - shifted(v, e)) - (u[inner] - shifted(u, d)))
@@ -107,7 +107,7 @@ class Watch:
         ]  # fmt: skip
         if not fixed_edges:
             return
-        inner = (slice(PAD + 1, -PAD),) * water.axes
+        inner = (slice(PAD + 1, -PAD),) * water.ndim
         spin = vorticity_size(water.velocity)
         max_vorticity = float(spin.max())
         fastest = max(float(np.abs(component[inner]).max()) for component in water.velocity)

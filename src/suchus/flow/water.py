@@ -135,13 +135,13 @@ class Fluid:
         """
         self.grid, self.sides, self.dtype, self.integrator = grid, sides, dtype, integrator
         self._advance_all = advance_by(scheme)
-        self.axes, self.repeats = grid.axes, sides.is_periodic(grid.axes)
+        self.ndim, self.repeats = grid.ndim, sides.is_periodic(grid.ndim)
         self.inner = inner_strides(grid.cells)
         self.nu = dtype(viscosity / grid.cell)
         self.border = Border.for_grid(sides, grid, dtype)
         shape = tuple(n + 2 * PAD for n in reversed(grid.cells))
         slabs = shape[0], int(np.prod(shape[1:]))
-        vector = (self.axes, *shape)
+        vector = (self.ndim, *shape)
         # Fluid: now, predicted, corrected; pressure
         self.velocity: np.ndarray = np.zeros(vector, dtype)
         self._predicted: np.ndarray = np.zeros(vector, dtype)
@@ -158,10 +158,10 @@ class Fluid:
         faces = multigrid.faces_of(self._store, self._layout, self.inner, 0)
         self._views = (*parts, faces.reshape(vector))  # of its finest level
         self._patches = patch.patch_layouts(self._layout, self.repeats)
-        self._buffer: np.ndarray = np.zeros((patch.FACES + self.axes, 0), dtype)
+        self._buffer: np.ndarray = np.zeros((patch.FACES + self.ndim, 0), dtype)
         self._sums = np.zeros((shape[0], 4))
         self._near_layout = self._layout[0].copy()
-        self._set_window((PAD,) * (2 * self.axes))
+        self._set_window((PAD,) * (2 * self.ndim))
         self._level_window = self.window  # that of the levels
         self.mirror_cuts: list[tuple[bool, ...]] = []
         self.offset = 0.0
@@ -169,13 +169,13 @@ class Fluid:
         self.min_cycles = 1
         self.overlap = Overlap(0.0, (0, 0))
         self.rows: list[range] = []
-        self.immersion_sums = np.zeros((0, sums_of(self.axes)))
-        self.internal_pressure_sums = np.zeros((0, 1 + self.axes))
+        self.immersion_sums = np.zeros((0, sums_of(self.ndim)))
+        self.internal_pressure_sums = np.zeros((0, 1 + self.ndim))
         self._jointed = False
-        self.widening: np.ndarray = np.zeros((0,) * self.axes, dtype)
+        self.widening: np.ndarray = np.zeros((0,) * self.ndim, dtype)
         self._widens = False
-        self.mean: list[np.ndarray] = [np.zeros((0,) * self.axes, dtype)] * self.axes
-        self.owners = [np.zeros((0,) * self.axes, np.int8)] * self.axes
+        self.mean: list[np.ndarray] = [np.zeros((0,) * self.ndim, dtype)] * self.ndim
+        self.owners = [np.zeros((0,) * self.ndim, np.int8)] * self.ndim
 
     @property
     def u(self) -> np.ndarray:
@@ -194,7 +194,7 @@ class Fluid:
 
     def _flat(self, a: np.ndarray) -> np.ndarray:
         """Return a field or values of the window as the kernels see them: slabs, and components before them."""
-        component_axes = a.ndim - self.axes
+        component_axes = a.ndim - self.ndim
         return a.reshape(*a.shape[: component_axes + 1], -1)
 
     def _set_window(self, window: Window) -> None:
@@ -206,11 +206,11 @@ class Fluid:
             window: padded indices, first and end along each axis, the last axis first.
         """
         self.window: Window = window
-        self._near_layout[1 + self.axes :] = window
+        self._near_layout[1 + self.ndim :] = window
         shape = tuple(end - start + 1 for start, end in zip(window[::2], window[1::2], strict=True))
-        self.mu1: np.ndarray = np.zeros((self.axes, self.axes, *shape), self.dtype)
-        self.b: np.ndarray = np.zeros((self.axes, *shape), self.dtype)
-        self._raw: np.ndarray = np.zeros((self.axes, *shape), self.dtype)
+        self.mu1: np.ndarray = np.zeros((self.ndim, self.ndim, *shape), self.dtype)
+        self.b: np.ndarray = np.zeros((self.ndim, *shape), self.dtype)
+        self._raw: np.ndarray = np.zeros((self.ndim, *shape), self.dtype)
         self.source: np.ndarray = np.zeros(shape, self.dtype)
 
     def _in_window(self, values: np.ndarray, window: Window) -> np.ndarray:
@@ -261,8 +261,8 @@ class Fluid:
 
     def _level_of(self, p: np.ndarray) -> float:
         """Return the mean of a field at the cells along the outermost ones of this grid."""
-        cells = p[(slice(PAD, -PAD),) * self.axes]
-        sides = [cells[(slice(None),) * axis + (end,)] for axis in range(self.axes) for end in (0, -1)]
+        cells = p[(slice(PAD, -PAD),) * self.ndim]
+        sides = [cells[(slice(None),) * axis + (end,)] for axis in range(self.ndim) for end in (0, -1)]
         return float(sum(side.sum(dtype=np.float64) for side in sides) / sum(side.size for side in sides))
 
     def imposed(self, time: float) -> float:
@@ -305,16 +305,16 @@ class Fluid:
             InvalidDesign: a body reaches out of the domain.
         """
         old = self.window
-        mirrors = self.sides.has_mirror(self.axes)
+        mirrors = self.sides.has_mirror(self.ndim)
         windows = [window_of(b, p, self.grid, time, mirrors) for b, p in zip(bodies, poses, strict=True)]
-        self.mirror_cuts, new = [cuts(window, self.grid) for window in windows], unite(windows, self.axes)
+        self.mirror_cuts, new = [cuts(window, self.grid) for window in windows], unite(windows, self.ndim)
         self._clear(old)
         old_velocity = self.b
         self._set_window(new)
         filled_windows = [w for w in (old, new) if w[1] > w[0]]
         self.rows = rows_of(bodies)
-        self.immersion_sums = np.zeros((sum(map(len, self.rows)), sums_of(self.axes)))
-        self.internal_pressure_sums = np.zeros((len(self.immersion_sums), 1 + self.axes))
+        self.immersion_sums = np.zeros((sum(map(len, self.rows)), sums_of(self.ndim)))
+        self.internal_pressure_sums = np.zeros((len(self.immersion_sums), 1 + self.ndim))
         self._jointed = any(getattr(body.shape, "jointed", False) for body in bodies)
         if not filled_windows:
             return
@@ -327,7 +327,7 @@ class Fluid:
             self.mean = list(0.5 * ((self._in_window(old_velocity, old) if new != old else old_velocity) + self.b))
             self._widening(bodies)
         if has_moved:
-            poisson.place_window(self._layout, unite(filled_windows, self.axes))
+            poisson.place_window(self._layout, unite(filled_windows, self.ndim))
         multigrid.coarsen(self._store, self._layout, self.inner)
         if has_moved:
             poisson.place_window(self._layout, new)
@@ -361,18 +361,18 @@ class Fluid:
         h, grid, slices = self.grid.cell, self.grid, self._window_slices(self.window)
         self.overlap = Overlap(0.0, (0, 0))
         ends = [(s.start, s.stop) for s in reversed(slices)]
-        for c in range(self.axes):
-            points = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(self.axes)]
+        for c in range(self.ndim):
+            points = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(self.ndim)]
             f, self.owners[c], overlap = measure_all(bodies, poses, points, time, h)
             self.overlap = max(self.overlap, overlap)
             distance, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
             mu0: np.ndarray = np.empty(distance.size, self.dtype)
-            mu1: np.ndarray = np.empty((self.axes, distance.size), self.dtype)
+            mu1: np.ndarray = np.empty((self.ndim, distance.size), self.dtype)
             fill(distance.ravel(), np.array([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
             self.mu0[c][slices] = self.passage[c][slices] = mu0.reshape(distance.shape)
-            self.mu1[c] = mu1.reshape(self.axes, *distance.shape)
+            self.mu1[c] = mu1.reshape(self.ndim, *distance.shape)
             self.b[c] = f.velocity[c]
-        first_centre = [grid.centres(*ends[d], d)[0] for d in range(self.axes)]
+        first_centre = [grid.centres(*ends[d], d)[0] for d in range(self.ndim)]
         for body, pose in zip(bodies, poses, strict=True):
             self._close(body.shape, pose, time, first_centre)
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
@@ -546,7 +546,7 @@ class Fluid:
         if self.window[1] > self.window[0]:
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
-            for c in range(self.axes):
+            for c in range(self.ndim):
                 immerse(
                     result[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near_layout, self.inner,
                     stage.dt, stage.blend_fraction,
@@ -559,9 +559,9 @@ class Fluid:
             if not is_cut:
                 continue
             axis, is_low = k // 2, k % 2 == 0
-            start = self.window[2 * (self.axes - 1 - axis)]
+            start = self.window[2 * (self.ndim - 1 - axis)]
             for c, component in enumerate(self._raw):
-                planes = np.moveaxis(component, self.axes - 1 - axis, 0)
+                planes = np.moveaxis(component, self.ndim - 1 - axis, 0)
                 n = self.grid.cells[axis] + PAD - start
                 if c == axis:  # across the mirror, which lies on these faces
                     low_planes = PAD - start, PAD - 1 - start, PAD + 1 - start
@@ -647,7 +647,7 @@ class Fluid:
 
         The shape is (row, ``momentum.contents_of``).
         """
-        sums = np.zeros((len(self.immersion_sums), contents_of(self.axes)))
+        sums = np.zeros((len(self.immersion_sums), contents_of(self.ndim)))
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
             for c, owner in enumerate(self.owners):
@@ -693,7 +693,7 @@ class Fluid:
 
     def _seal(self, x: np.ndarray) -> None:
         """Fill the cells beside the domain with mirrored values, or with those at the other end of a periodic axis."""
-        for axis, is_periodic in zip(reversed(range(self.axes)), self.repeats, strict=True):
+        for axis, is_periodic in zip(reversed(range(self.ndim)), self.repeats, strict=True):
             lines, n = x.swapaxes(axis, 0), x.shape[axis]
             lines[PAD - 1] = lines[n - PAD - 1 if is_periodic else PAD]
             lines[n - PAD] = lines[PAD if is_periodic else n - PAD - 1]
@@ -723,7 +723,7 @@ class Fluid:
         r = self._level_view(multigrid.B)
         r[:] = 0
         net = sum(
-            np.moveaxis(_inflow(component, self.axes - 1 - c), 0, self.axes - 1 - c)
+            np.moveaxis(_inflow(component, self.ndim - 1 - c), 0, self.ndim - 1 - c)
             for c, component in enumerate(acceleration)
         )
         window_cells = tuple(slice(a, b) for a, b in zip(self.window[::2], self.window[1::2], strict=True))
@@ -731,15 +731,15 @@ class Fluid:
         field[window_cells] = net
         if side_velocity is not None:
             for c, component in enumerate(side_velocity):
-                lines, faces = np.moveaxis(field, self.axes - 1 - c, 0), np.moveaxis(component, self.axes - 1 - c, 0)
+                lines, faces = np.moveaxis(field, self.ndim - 1 - c, 0), np.moveaxis(component, self.ndim - 1 - c, 0)
                 lines[:-1] += faces[:-1] - faces[1:]
-        for axis in range(self.axes):  # a body cut by a mirror has cells beyond the mirror
+        for axis in range(self.ndim):  # a body cut by a mirror has cells beyond the mirror
             lines = np.moveaxis(field, axis, 0)
             lines[:PAD], lines[-PAD:] = 0, 0
         r[self._level_view(multigrid.DINV) == 0] = 0
         _, (a, b) = self._solve((limit, 10 * limit))
         x, d, z = (slabs.reshape(self.p.shape) for slabs in (self._x, self._d, self._level_view(multigrid.X)))
-        cells = (slice(PAD, -PAD),) * self.axes  # the multigrid leaves undefined values beyond them
+        cells = (slice(PAD, -PAD),) * self.ndim  # the multigrid leaves undefined values beyond them
         x[:] = 0
         np.multiply(d[cells], a, out=x[cells])
         x[cells] += b * z[cells]
@@ -782,8 +782,8 @@ class Fluid:
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
         """Return the values of the cells along each side: left, right, bottom, top (low and high)."""
-        cells = x[(slice(PAD, -PAD),) * self.axes]
-        return [np.moveaxis(cells, axis, 0)[end] for axis in reversed(range(self.axes)) for end in (0, -1)]
+        cells = x[(slice(PAD, -PAD),) * self.ndim]
+        return [np.moveaxis(cells, axis, 0)[end] for axis in reversed(range(self.ndim)) for end in (0, -1)]
 
     def side_accelerations(self, acceleration: np.ndarray) -> list[np.ndarray]:
         """Return the acceleration into the domain that the last ``potential`` induces on each side [m/s^2].
@@ -812,7 +812,7 @@ class Fluid:
             np.zeros_like(self.velocity),
         )
         for c, work in enumerate(gained):
-            axis = self.axes - 1 - c
+            axis = self.ndim - 1 - c
             np.moveaxis(work, axis, 0)[1:] = -np.moveaxis(np.diff(x, axis=axis), axis, 0)
             work[slices] = acceleration[c] + self.passage[c][slices] * work[slices]
         return gained

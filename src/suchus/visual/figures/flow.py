@@ -152,7 +152,7 @@ class FieldFilm:
         Raises:
             InvalidDesign: in space.
         """
-        if sim.setup.grid.axes == 3:
+        if sim.setup.grid.ndim == 3:
             raise InvalidDesign("this film is of plane flows, and this one has three axes; see suchus view swim.")
         if sim.time >= self._due:
             self._due, self._sim = due_after(sim.time, self.interval), sim
@@ -209,7 +209,7 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
     """Return pressure and friction along a body's outline or over its skin now, and what is known of their error."""
     surface = sim.surface(body)
     with styled():
-        draw = _over_the_skin if sim.setup.grid.axes == 3 else _along_the_outline
+        draw = _over_the_skin if sim.setup.grid.ndim == 3 else _along_the_outline
         figure: Figure = draw(surface)
         figure.suptitle(f"t = {sim.time:.3g} s", fontsize="medium", x=0.02, ha="left")
         figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 110)), fontsize="x-small", x=0.02, ha="left")
