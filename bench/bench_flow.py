@@ -255,7 +255,7 @@ def tell_solve(w, per_cell):
             poisson._step
         )
     )  # fmt: skip
-    store, layout, room, patches, inner, sides = w._store, w._layout, w._buffer, w._patches, w.inner, w.is_periodic
+    store, layout, room, patches, inner, sides = w._store, w._layout, w._buffer, w._patches, w.inner, w.repeats
     print("one iteration of the pressure solver, ns per cell of the finest level; best of 20")
 
     def tell(label, function):

@@ -81,13 +81,17 @@ def standing(contestant: Contestant, out: Path, measured: Path) -> LeagueEntry:
     )
 
 
+_STORED_KEYS = {"explanation": "about"}
+"""Keys of the stored standings that differ from the fields' names."""
+
+
 def standing_text(standings: Sequence[LeagueEntry]) -> str:
     """Return standings as JSON, from which ``standings_of`` makes them again."""
     return json.dumps([_plain(one) for one in standings], indent=1) + "\n"
 
 
 def _plain(one: LeagueEntry) -> Any:
-    data: dict[str, Any] = plain(one)
+    data: dict[str, Any] = {_STORED_KEYS.get(name, name): value for name, value in plain(one).items()}
     data["prediction"] = {
         quantity: {rung: {"value": at.value, "low": at.low, "high": at.high} for rung, at in rungs.items()}
         for quantity, rungs in one.prediction.items()
@@ -124,7 +128,8 @@ def standing_of(data: Any) -> LeagueEntry:
         name: Measured(**(one | {end: value(one[end]) for end in ("value", "low", "high")}))
         for name, one in data["measured"].items()
     }
-    return LeagueEntry(**(data | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
+    fields = {name: data[_STORED_KEYS.get(name, name)] for name in LeagueEntry.__dataclass_fields__}
+    return LeagueEntry(**(fields | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
 
 
 def all_standings(out: Path, contestants: Sequence[Contestant], measured: Mapping[str, Path]) -> list[LeagueEntry]:

@@ -273,5 +273,5 @@ def test_only_what_the_claims_are_read_of_swims(swum):
 
 def test_a_motion_that_the_servos_cannot_follow_is_no_swim_for_theories_to_judge(swum):
     with pytest.raises(OutsideLimits, match="tail_cable"):
-        replace(SWIMMING.quick(), frequency=3.0).measured(RULES[-1].needs)
+        replace(SWIMMING.quick(), frequency=3.0).simulate_measures(RULES[-1].needs)
     assert swum == []

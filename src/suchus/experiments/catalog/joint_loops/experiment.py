@@ -56,8 +56,8 @@ class JointLoops(Experiment):
         "tracking_by_damping",
     )
     needs = ("limbs",)
-    judged_with = ("robot", "gait", "joint", "step")
-    judged_from: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
+    judged_settings = ("robot", "gait", "joint", "step")
+    judged_minima: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose servos are tested."""
@@ -86,7 +86,7 @@ class JointLoops(Experiment):
         """Return two gains, a second each, one cycle."""
         return replace(self, integrals=(0.0, 20.0), seconds=1.0, cycles=1)
 
-    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+    def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
         """Return the robot's own gait, and the left hind servo that lifts the limb, or its only one."""
         hind = layout(robot).limbs[-2]
         servos = layout(robot).servos[hind.servos]

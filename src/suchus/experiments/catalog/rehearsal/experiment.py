@@ -303,7 +303,9 @@ class Rehearsal(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what decided, with the bounds beyond which a wire is flagged."""
-        return self.told(measures, loses=MAX_DISPLACEMENT_CHANGE, turns=MAX_HEADING_CHANGE, enough=MIN_JUDGED_CYCLES)
+        return self.render_explanation(
+            measures, loses=MAX_DISPLACEMENT_CHANGE, turns=MAX_HEADING_CHANGE, enough=MIN_JUDGED_CYCLES
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw what each wire costs each rule, and how far each servo is off over ideal wires."""

@@ -106,8 +106,8 @@ class PlaneSwims(Experiment):
     answers = ("speed_free", "speed_as_printed", "gain_tail_share_space", "gain_spine_share_space",
                "gain_spine_share_slice", "misfit")  # fmt: skip
     needs = ("trunk", "tail_yaw")
-    judged_with = ("robot", "reading", "frequency", "reynolds")
-    judged_from: ClassVar[Mapping[str, float]] = {"cells": 80, "space_cells": 68, "cycles": 10}
+    judged_settings = ("robot", "reading", "frequency", "reynolds")
+    judged_minima: ClassVar[Mapping[str, float]] = {"cells": 80, "space_cells": 68, "cycles": 10}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
@@ -198,14 +198,14 @@ class PlaneSwims(Experiment):
             record=record, tables=tables, films=films, checkpoint_files=checkpoint_paths(self.keep, names)
         )
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; if they are the ladder's, only the ladder swims.
 
         Swims that no verdict needs are left out too: once two rungs disagree on a claim, slower rungs do not swim for
         it, and their measures are NaN.
         """
         if not all(name.endswith(_OF_RUNGS) for name in measure_names):
-            return super(PlaneSwims, self).measured(measure_names, progress)
+            return super(PlaneSwims, self).simulate_measures(measure_names, progress)
         claims = [rule.claim for rule in RULES if rule.needs & set(measure_names)]
         return Measures(measures(run_ladder(self.ladder_setting(), progress, claims=claims), self.robot.length))
 
