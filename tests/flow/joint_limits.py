@@ -128,7 +128,7 @@ class FreeLinks:
         kept, origin = sim.snapshot(), np.array(sim.frame[0])
         modes = swim.chain.modes(q, origin, 2)
         found = sim.added_mass(name, modes)
-        inside = swim.chain.unpressed(q, found.pressed, origin)
+        inside = swim.chain.unpressed(q, found.internal_pressure, origin)
         added = self.depth * (found.matrix - 0.5 * (inside + inside.T))
         a = self.more
         for _ in range(60):
