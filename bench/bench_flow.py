@@ -176,13 +176,13 @@ def tell_patch(steps=6, rounds=4, cells=64):
     aerofoil, sphere = flow.foil(1.0, thickness=0.12), flow.Sphere(diameter=1.0)
     for (whole, box, ratio), shape in ((plane, aerofoil), (space, sphere))[: in_form(2, 1)]:
         fine = flow.Grid(cells=tuple(ratio * n for n in whole.cells), cell=whole.cell / ratio, origin=whole.origin)
-        patch, key = whole.patch(*box, ratio=ratio), f"patch_{whole.axes}"
+        patch, key = whole.patch(*box, ratio=ratio), f"patch_{whole.ndim}"
         more = {
             "viscosity": 1e-2, "stream": (1.0, 0.0), "bodies": (flow.Body(shape=shape),), "coarse": True
         }  # fmt: skip
         sims = [
             flow.Simulation(flow.Setup(**grids, **more), thread_count=1)
-            for grids in ({"grid": fine}, {"grid": patch, "around": whole})
+            for grids in ({"grid": fine}, {"grid": patch, "coarse_grid": whole})
         ]
         every = []
         for _ in range(rounds):
@@ -197,7 +197,7 @@ def tell_patch(steps=6, rounds=4, cells=64):
         sizes = [" x ".join(map(str, grid.cells)) for grid in (patch, whole, fine)]
         print(
             f"{sizes[0]} fine cells in {sizes[1]} coarse ones: a step {1e3 * alone:.1f} ms, {alone / everywhere:.2f} "
-            f"of {1e3 * everywhere:.1f} ms on {sizes[2]} (asked: {0.35 if whole.axes == 2 else 0.2}), with "
+            f"of {1e3 * everywhere:.1f} ms on {sizes[2]} (asked: {0.35 if whole.ndim == 2 else 0.2}), with "
             f"{share:.2f} of the cells"
         )
     return found
@@ -242,7 +242,7 @@ def tell_pieces(make, cells, threads, steps):
 
 def cells_of(w, level):
     """Return the cells of a level along x, y (and z)."""
-    return tuple(int(n) for n in w._layout[level, w.axes : 0 : -1])
+    return tuple(int(n) for n in w._layout[level, w.ndim : 0 : -1])
 
 
 def tell_solve(w, per_cell):
@@ -255,7 +255,7 @@ def tell_solve(w, per_cell):
             poisson._step
         )
     )  # fmt: skip
-    store, layout, room, patches, inner, sides = w._store, w._layout, w._room, w._patches, w.inner, w.repeats
+    store, layout, room, patches, inner, sides = w._store, w._layout, w._buffer, w._patches, w.inner, w.repeats
     print("one iteration of the pressure solver, ns per cell of the finest level; best of 20")
 
     def tell(label, function):
@@ -347,7 +347,7 @@ def tell_speed(label, make, cells, steps, far):
             for _ in range(steps):
                 sim.advance()
 
-        spent = best(batch, 3 if sim.axes == 3 else 5) / steps
+        spent = best(batch, 3 if sim.ndim == 3 else 5) / steps
         rates[threads] = count / spent / 1e6
         solves, memory = sim.record.cycles[-steps:].mean(), sim.water.arrays * sim.water.p.nbytes / count
         print(

@@ -59,7 +59,7 @@ def swim_to_goal(task: Task) -> Policy:
 
 def amphibious(task: Task) -> Policy:
     """Return the controller of the catalog that swims to the shore and walks on."""
-    control = Amphibious(swim=task.swum, swimming=Swimming(heading=HeadingHold()), heading=HeadingRule())
+    control = Amphibious(swim=task.swimming_gait, swimming=Swimming(heading=HeadingHold()), heading=HeadingRule())
     return ControllerPolicy(task, centre(task), control, steps=MAX_STEPS_BY_TASK["Shore"])
 
 
@@ -96,11 +96,11 @@ def summary(played: EpisodeResults, longest: float) -> dict[str, float]:
         "episodes": len(played.returns),
         "return_mean": float(played.returns.mean()),
         "return_std": float(played.returns.std()),
-        "lasted": float(played.lasted.mean()),
+        "lasted": float(played.durations.mean()),
         "forward": float(played.forward.mean()),
         "approach": float(played.approach.mean()),
         "reached": int(played.goal.sum()),
-        "ended_early": int((played.lasted < longest - 1e-6).sum()),
+        "ended_early": int((played.durations < longest - 1e-6).sum()),
     }
 
 

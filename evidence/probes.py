@@ -105,7 +105,7 @@ def first_steps(names: Sequence[str], count: int = STEPS) -> Numbers:
 def _started(name: str, count: int) -> Numbers:
     case = CASES[name]
     with _first_steps(count) as taken, suppress(_Enough):
-        case.run(case.quick, silent)
+        case.run(case.quick_effort, silent)
     (sim,) = taken
     return flow_state(sim)
 
@@ -116,7 +116,7 @@ def flow_state(sim: flow.Simulation) -> Numbers:
     energy = sum(float(np.square(component, dtype=float).mean()) for component in layer.velocity)
     numbers = {"time": float(sim.time), "energy": energy}
     for body in sim.setup.bodies:
-        loads = sim.last(body.name).whole
+        loads = sim.last_loads(body.name).total
         numbers |= {f"{body.name}_force_{axis}": float(value) for axis, value in zip("xyz", loads.force, strict=False)}
     for name in sim.swimmers:
         velocity = sim.pose(name).velocity
@@ -135,7 +135,7 @@ def search(name: str, candidates: int = 4, duration: float = 2.5) -> Numbers:
     spec = replace(READY[name](), duration=duration)
     numbers: dict[str, float] = {}
     for arm in spec.arms:
-        of_arm = spec.of(arm)
+        of_arm = spec.for_arm(arm)
         shares = np.tile(np.linspace(0.35, 0.65, candidates)[:, None], len(of_arm.vary))
         table = evaluate(of_arm, shares)
         for key, values in table.data_vars.items():

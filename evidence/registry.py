@@ -45,7 +45,7 @@ class Kept:
     """Relative change of its probe's numbers that means the same [-]."""
     small: float = tolerance.SMALL
     """Absolute change of them that no reader looks at [SI unit]."""
-    of: tuple[str, ...] = ()
+    sources: tuple[str, ...] = ()
     """Results that it is made of: it is old when one of them is."""
 
     def bounded(self) -> dict[str, Bounded]:
@@ -95,7 +95,7 @@ _OTHERS = (
             "suchus.experiments.experiment",
         ),
         probe=partial(probes.experiment, "displacement"), renew="python tools/lifted_design.py",
-        of=("optimise_lifted",),
+        sources=("optimise_lifted",),
     ),
     Kept(
         name="claims", modules=("suchus.experiments.study", "suchus.article.verdict"), probe=probes.claims,
@@ -104,7 +104,7 @@ _OTHERS = (
     Kept(
         name="verdicts", modules=("suchus.article.verdict",),
         renew="make reproduce && python tools/verdict_table.py out",
-        of=("claims", *EXPERIMENTS),
+        sources=("claims", *EXPERIMENTS),
     ),
     Kept(name="bodies", modules=("suchus.apps.cli",), renew="python tools/body_table.py --anew"),
     Kept(

@@ -35,7 +35,7 @@ class Status:
     """Name of the result."""
     state: State
     """State of the result."""
-    why: str
+    reason: str
     """Reason, in a phrase."""
     seconds: float | None
     """Processor time that computing it took when it was last computed [s]; None where that is unknown."""
@@ -80,7 +80,9 @@ def status(kept: Kept, *, package: Path = source.PACKAGE, by_probe: bool = True)
 
 def _status(kept: Kept, stored: StoredResult | None, state: State, why: str, code: str = "") -> Status:
     seconds, version = (stored.origin.seconds, stored.origin.version) if stored else (None, "")
-    return Status(name=kept.name, state=state, why=why, seconds=seconds, renew=kept.renew, version=version, code=code)
+    return Status(
+        name=kept.name, state=state, reason=why, seconds=seconds, renew=kept.renew, version=version, code=code
+    )
 
 
 def _moved(moved: Mapping[str, tuple[float, float]]) -> str:
@@ -94,13 +96,13 @@ def with_parts(answers: Sequence[Status]) -> list[Status]:
     order: tuple[State, ...] = ("current", "not checked here", "possibly old", "old")
     found = []
     for answer in answers:
-        parts = [by_name[part] for part in RESULTS[answer.name].of if part in by_name]
+        parts = [by_name[part] for part in RESULTS[answer.name].sources if part in by_name]
         worst = max([answer, *parts], key=lambda part: order.index(part.state))
         if worst is answer:
             found.append(answer)
             continue
         found.append(
-            Status(**{**asdict(answer), "state": worst.state, "why": f"{worst.name}, of which it is made, is"})
+            Status(**{**asdict(answer), "state": worst.state, "reason": f"{worst.name}, of which it is made, is"})
         )
     return found
 
@@ -132,7 +134,7 @@ def table(answers: Sequence[Status]) -> str:
     lines = []
     for answer in (answer for answer in answers if answer.state != "current"):
         cost = "time unknown" if answer.seconds is None else f"{answer.seconds / 60:.1f} min"
-        lines.append(f"{answer.name:24s} {answer.state:17s} {cost:>12s}  {answer.renew}\n{'':25s}{answer.why}")
+        lines.append(f"{answer.name:24s} {answer.state:17s} {cost:>12s}  {answer.renew}\n{'':25s}{answer.reason}")
     old = [answer for answer in answers if answer.state in ("old", "possibly old")]
     known = sum(answer.seconds or 0.0 for answer in old)
     unknown = sum(answer.seconds is None for answer in old)

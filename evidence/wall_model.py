@@ -29,7 +29,7 @@ class Stage(NamedTuple):
     """What becomes of the slip that there was, shape (node, node)."""
     gain: np.ndarray
     """What friction in the water adds, per slip, shape (node, node)."""
-    wet: np.ndarray
+    momentum_weights: np.ndarray
     """Weights that make the water's momentum of the slip, shape (node,) [cells]."""
     lag: np.ndarray
     """Share of a change of the wall's speed that the water does not know of yet, shape (node,)."""

@@ -110,7 +110,7 @@ def main() -> None:
     }
     for name, (where, policy) in shown.items():
         played = envs.play(where, policy, episodes=16, seed=1000)
-        fell = int((played.lasted < envs.MAX_STEPS * task.decision - 1e-6).sum())
+        fell = int((played.durations < envs.MAX_STEPS * task.decision - 1e-6).sum())
         print(
             f"{name:44s} return {played.returns.mean():+7.2f} +- {played.returns.std():5.2f}, "
             f"forward {played.forward.mean():+6.2f} m in up to 10 s, {fell} of 16 fell"

@@ -11,6 +11,6 @@ body = flow.Body(shape=flow.from_outline("outline.csv"))
 grid = flow.Grid.covering((-2.0, 5.0), (-2.0, 2.0), cell=1 / 16)
 sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 40, stream=(1.0, 0.0), bodies=(body,)))
 series = flow.FieldSeries("outline.pvd", times=(2.0, 4.0, 6.0))  # open it in ParaView
-late = sim.run(6.0, watch=series).after(5.0)
+late = sim.run(6.0, watch=series).select_after(5.0)
 drag = late.coefficients(length=1.0, speed=1.0).drag
 print(f"drag coefficient at Reynolds number 40, 6 s after the start: {drag.mean():.2f}")

@@ -12,7 +12,7 @@ foil = flow.Body(
 )
 grid = flow.Grid.covering((-0.6, 2.6), (-1.1, 1.1), cell=1 / 48)
 sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 400, stream=(1.0, 0.0), bodies=(foil,)))
-late = sim.run(2 / 0.6).after(1 / 0.6)
+late = sim.run(2 / 0.6).select_after(1 / 0.6)
 vorticity(sim, limit=12.0).savefig("heaving_foil.png")
 got = late.coefficients(length=1.0, speed=1.0)
 thrust, power = (np.average(value, weights=late.step) for value in (-got.drag, got.power))

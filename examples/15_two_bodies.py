@@ -22,9 +22,9 @@ setup = flow.Setup(
     bodies=(front, rear),
     contact=flow.BodyContact(gap=2 / 16, pressure=10.0),  # had they come near each other
 )
-rake = flow.Rake(points=flow.line((4.0, -2.0), (4.0, 2.0), 21), every=0.25)
+rake = flow.Rake(points=flow.line((4.0, -2.0), (4.0, 2.0), 21), interval=0.25)
 sim = flow.Simulation(setup)
-late = sim.run(15.0, watch=rake).after(10.0)
+late = sim.run(15.0, watch=rake).select_after(10.0)
 swing = np.ptp(late.column("y", "rear")) / 2
 behind = rake.velocity[rake.time > 10.0, :, 0].mean(axis=0)
 print(f"the rear cylinder swings by {swing:.3f} diameters and stays at x = {late.column('x', 'rear')[-1]}")

@@ -21,7 +21,7 @@ fin = flow.Body(
 grid = flow.Grid.covering((-1.2, 2.8), (-1.3, 1.3), (-1.3, 1.3), cell=1 / 20)
 setup = flow.Setup(grid=grid, viscosity=1 / 400, stream=(1.0, 0.0, 0.0), bodies=(fin,), coarse=True)
 sim = flow.Simulation(setup)
-late = sim.run(2 / 0.7).after(1 / 0.7)
+late = sim.run(2 / 0.7).select_after(1 / 0.7)
 skin(sim).savefig("fin.png")
 thrust = -late.coefficients(length=1.0, speed=1.0, area=1.5).drag
 print(f"thrust coefficient {np.average(thrust, weights=late.step):.2f}, at Reynolds number 400")

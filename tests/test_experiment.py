@@ -25,8 +25,8 @@ from suchus.robot.motion import Gait
 class Drop(Experiment):
     title = "How far does it fall?"
     shows = "Beyond the article"
-    judged_with = ("ground",)
-    judged_from: ClassVar = {"repeats": 4, "heights": 2}
+    judged_settings = ("ground",)
+    judged_minima: ClassVar = {"repeats": 4, "heights": 2}
 
     ground: str = "floor"
     repeats: int = 4

@@ -4,13 +4,16 @@ import importlib
 import sys
 import tomllib
 from copy import deepcopy
+from dataclasses import fields, is_dataclass
 from importlib.metadata import packages_distributions
 from pathlib import Path
+from pkgutil import iter_modules
 
 import numpy as np
 import pytest
 from packaging.requirements import Requirement
 
+from suchus import flow
 from suchus.core import fingerprint as prints
 from suchus.core.fingerprint import fingerprint
 
@@ -96,3 +99,33 @@ def test_required_libraries_are_those_of_the_project():
 def test_values_of_every_kind_count(value, other):
     assert fingerprint(value) != fingerprint(other)
     assert fingerprint(value) == fingerprint(deepcopy(value))
+
+
+@pytest.mark.parametrize(
+    ("part", "digest"),
+    [
+        (flow.Capsule(arc_position=0.4, start=(0.0, 0.1), end=(0.2, 0.1), radius=0.02),
+         "ed3cb7765773c812f7a8af6bdb1d96d7605c055274987e5a2cd2ca37a41f403d"),
+        (flow.LinkPiece(link=0, shape=flow.Spherocylinder(length=0.3, radius=0.05), position=(0.1, 0.0, 0.0)),
+         "cb34cf59935167fce50e0ecdb777e0c6abc7218f3a81e200b9f28c340e2d7fd6"),
+    ],
+    ids=["Capsule", "LinkPiece"],
+)  # fmt: skip
+def test_a_renamed_field_does_not_change_the_fingerprint(part, digest):
+    """The digests were computed before the fields ``at`` and ``turn`` were renamed."""
+    assert fingerprint(part) == digest
+
+
+def test_former_names_belong_to_fields_of_today():
+    classes = {kind.__qualname__: kind for kind in _dataclasses_of("suchus.flow")}
+    for name, former_names in prints.FORMER_NAMES.items():
+        names = {field.name for field in fields(classes[name])}
+        assert set(former_names) <= names, name
+        assert not names.intersection(former_names.values()), name
+
+
+def _dataclasses_of(package):
+    """Yield the dataclasses of all modules of a package."""
+    for module in iter_modules(importlib.import_module(package).__path__, f"{package}."):
+        values = vars(importlib.import_module(module.name)).values()
+        yield from (value for value in values if isinstance(value, type) and is_dataclass(value))

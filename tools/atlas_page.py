@@ -28,15 +28,26 @@ def stated(listed: Sequence[Entry]) -> Mapping[str, Any]:
     """Return what pages state of the rows: of each its numbers, and which differ by more than their grids explain."""
     rows = {
         entry.row.name: {
-            "rms": found.rms, "over_range": found.over_range, "own": found.own, "bound": found.bound,
-            "scatter": found.scatter, "cells": entry.outcome.cells, "grids": 1 + len(entry.coarser),
-            "agrees": found.agrees, "index": entry.convergence.uncertainty, "order": entry.convergence.order,
-            "refused": entry.convergence.refused, "turning": entry.convergence.turning,
+            "rms": found.rms,
+            "over_range": found.over_range,
+            "own": found.source_error,
+            "bound": found.bound,
+            "scatter": found.scatter,
+            "cells": entry.outcome.cells,
+            "grids": 1 + len(entry.coarser),
+            "agrees": found.agrees,
+            "index": entry.convergence.uncertainty,
+            "order": entry.convergence.order,
+            "refused": entry.convergence.refusal,
+            "turning": entry.convergence.turning,
             "cycles": [min(found.cycles), max(found.cycles)] if found.cycles else [],
-            "ours": dict(zip(_names(entry), found.ours.tolist(), strict=True)) if entry.row.kind == "numbers" else {},
+            "ours": dict(zip(_names(entry), found.computed.tolist(), strict=True))
+            if entry.row.kind == "numbers"
+            else {},
         }
-        for entry in listed if entry.outcome is not None and (found := entry.comparison) is not None
-    }  # fmt: skip
+        for entry in listed
+        if entry.outcome is not None and (found := entry.comparison) is not None
+    }
     known = {name: row for name, row in rows.items() if row["index"] is not None}
     costs = {one.flow: one.seconds for entry in listed if entry.outcome for one in (entry.outcome, *entry.coarser)}
     return {

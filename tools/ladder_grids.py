@@ -43,7 +43,7 @@ def swum(climb: LadderSetting, folder: Path) -> Swims:
 
 def study(folder: Path) -> dict[str, Any]:
     """Return what is kept: what it was made for, and the ends of each number's halves and sides over the grids."""
-    climbs = [replace(experiment, space_cells=cells).climb() for cells in CELLS]
+    climbs = [replace(experiment, space_cells=cells).ladder_setting() for cells in CELLS]
     found = [dict(numbers_in_space(climb, swum(climb, folder))) for climb in climbs]
     return {
         "rules": rules_digest(),

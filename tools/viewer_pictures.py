@@ -43,9 +43,9 @@ def live(client: Any) -> LivePage:
     """Return a page whose walk has gone on for 12 s, and 4 s more with a limp joint."""
     session = Session(ROBOTS["caiman"], GAITS["belly_crawl"])
     session.advance(12.0)
-    session.lose("RF_yaw", "limp")
+    session.break_part("RF_yaw", "limp")
     session.advance(4.0)
-    session.put("speed", _SLOWEST)
+    session.set_number("speed", _SLOWEST)
     return LivePage(client, session)
 
 

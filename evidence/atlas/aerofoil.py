@@ -32,11 +32,15 @@ def _pitching(effort: RunEffort, progress: Progress) -> Curves:
     body = flow.Body(shape=flow.foil(1.0, thickness=0.15), motion=pitching)
     sim = flow.Simulation(
         flow.Setup(
-            grid=whole.patch((-0.7, 1.4), (-1.0, 0.6), ratio=_FINER), around=whole, viscosity=1e-4, stream=(1.0, 0.0),
-            bodies=(body,), coarse=True,
+            grid=whole.patch((-0.7, 1.4), (-1.0, 0.6), ratio=_FINER),
+            coarse_grid=whole,
+            viscosity=1e-4,
+            stream=(1.0, 0.0),
+            bodies=(body,),
+            coarse=True,
         )
-    )  # fmt: skip
-    record = march(sim, effort.until, progress).after(min(_BEFORE, 0.5 * effort.until))
+    )
+    record = march(sim, effort.until, progress).select_after(min(_BEFORE, 0.5 * effort.until))
     angles = np.degrees([-pitching(float(time)).angle for time in middles(record)])
     drag, lift = 2 * record.force().T
     return {"drag": np.stack([angles, drag]), "lift": np.stack([angles, lift])}
@@ -45,7 +49,7 @@ def _pitching(effort: RunEffort, progress: Progress) -> Curves:
 CASES = (
     Case(
         name="pitching", run=_pitching, code=_CODE, grids=grids((192, 128, 96), _BEFORE + 1.85),
-        quick=RunEffort(cells=64, until=0.1),
+        quick_effort=RunEffort(cells=64, until=0.1),
         setup="A NACA 0015 aerofoil at Re 10 000 that pitches about its quarter chord, after two chords of travel at "
         "rest; unbounded domain, of which 8 x 6 chords are computed; {cells} cells a chord in a patch of 2.1 x 1.6 "
         "chords around it, an eighth of them elsewhere.",

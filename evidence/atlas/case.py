@@ -41,7 +41,7 @@ class RunEffort:
     """Duration of the run, in the units of the case [s]."""
     coarse: int = 0
     """Cells per diameter of the run before, in which the wake forms; 0 where there is none [-]."""
-    before: float = 0.0
+    initial_duration: float = 0.0
     """Duration of that run, in the units of the case [s]."""
 
 
@@ -58,7 +58,7 @@ class Case:
     grids: tuple[RunEffort, ...]
     """The efforts of a judged run, on the finest cells, which are compared, first; on three grids the run tells its own
     uncertainty too."""
-    quick: RunEffort
+    quick_effort: RunEffort
     """The effort of a quick trial, whose result is drawn and not judged."""
     code: tuple[str, ...]
     """Files of this package that decide its curves, beside the flow solver itself."""
@@ -70,12 +70,12 @@ class Case:
 
     def effort(self, grid: int, *, quick: bool) -> RunEffort:
         """Return the effort of one of its runs; a trial has one grid, 1."""
-        return self.quick if quick else self.grids[grid - 1]
+        return self.quick_effort if quick else self.grids[grid - 1]
 
 
 def grids(cells: tuple[int, ...], until: float, *, coarse: int = 0, before: float = 0.0) -> tuple[RunEffort, ...]:
     """Return the efforts of a flow on several grids, the finest first, that differ in nothing else."""
-    return tuple(RunEffort(cells=each, until=until, coarse=coarse, before=before) for each in cells)
+    return tuple(RunEffort(cells=each, until=until, coarse=coarse, initial_duration=before) for each in cells)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +96,7 @@ class AtlasRow:
     """Column of the ordinate."""
     kind: Literal["curve", "loop", "numbers"] = "curve"
     """Ordinate over abscissa, a closed curve, or single numbers by their names."""
-    ours: str = ""
+    computed_curve: str = ""
     """Name of our curve; numbers are found by their own names."""
     labels: tuple[str, str] = ("", "")
     """Abscissa and ordinate with their units."""
@@ -106,11 +106,11 @@ class AtlasRow:
     """Offsets that are added to them after that."""
     window: tuple[float, float] = (-np.inf, np.inf)
     """Range of our abscissae that is compared, both ends included."""
-    without: tuple[float, float] | None = None
+    excluded_spacing: tuple[float, float] | None = None
     """Spacing of abscissae, and the half-width around each multiple of it, that are left out."""
     period: float | None = None
     """Period of the abscissa; None for one that has none."""
-    others: tuple[tuple[str, str, str, float], ...] = ()
+    other_sources: tuple[tuple[str, str, str, float], ...] = ()
     """Further sources of the same curve: table, its columns, factor on its abscissa, which the row then shifts as
     its own; they give the scatter."""
     any_cycle: bool = False
@@ -118,9 +118,9 @@ class AtlasRow:
     counts then, curves named ``ours`` with a number behind it, and the nearest is compared."""
     cycle_of: "AtlasRow | None" = None
     """Row of the same source whose nearest cycle is taken, so that this one chooses nothing; None for its own."""
-    own: str = ""
+    error_column: str = ""
     """Column of the error that the source states of its ordinate; empty for none."""
-    printed: bool = False
+    is_printed: bool = False
     """Whether the source prints its numbers, so that their last digit tells its error; else they were read off a
     figure."""
     choice: str = "The source shows one instant and does not say of which cycle"
@@ -148,7 +148,7 @@ _FOLDER = Path(__file__).parent / "data"
 class PublishedCurves:
     """A table of numbers and where it comes from."""
 
-    about: tuple[str, ...]
+    description: tuple[str, ...]
     """What it is, where it was published, how it was digitised: the lines at the head of the file."""
     columns: Mapping[str, tuple[str, ...]]
     """The texts of each column by its name, all of one length."""
@@ -171,6 +171,6 @@ def published(name: str) -> PublishedCurves:
     lines = path.read_text(encoding="utf-8").splitlines()
     rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
     return PublishedCurves(
-        about=tuple(line.removeprefix("# ") for line in lines if line.startswith("#")),
+        description=tuple(line.removeprefix("# ") for line in lines if line.startswith("#")),
         columns={name: tuple(row[name] for row in rows) for name in rows[0]},
     )

@@ -21,16 +21,16 @@ class CurveComparison:
 
     x: np.ndarray
     """Abscissae of the published points that are compared, or the numbers' places, shape (point,)."""
-    theirs: np.ndarray
+    published: np.ndarray
     """Published ordinates, shape (point,)."""
-    ours: np.ndarray
+    computed: np.ndarray
     """Ours at the same abscissae, shape (point,)."""
     rms: float
     """Root mean square of the difference over the largest published magnitude; of numbers, of the relative
     differences [-]."""
     over_range: float | None
     """The same of a curve over its range, from the least published value to the largest; None for numbers [-]."""
-    own: float | None
+    source_error: float | None
     """The source's own error where it can be read, over the same peak: what the source states, the digits that it
     gives, or the scatter of points read off a figure about their curve; None where it cannot [-]."""
     scatter: float | None
@@ -74,9 +74,16 @@ def compare(row: AtlasRow, curves: Curves) -> CurveComparison:
         )
     x, y, at = x[reached], y[reached], at[reached]
     return CurveComparison(
-        x=x, theirs=y, ours=at, rms=rms_over_peak(at, y), over_range=_over_range(at, y), own=_own(row, table),
-        scatter=_scatter(row, x, y), curve=name, cycles=tuple(_cycles(row, curves).values()) if row.any_cycle else (),
-    )  # fmt: skip
+        x=x,
+        published=y,
+        computed=at,
+        rms=rms_over_peak(at, y),
+        over_range=_over_range(at, y),
+        source_error=_own(row, table),
+        scatter=_scatter(row, x, y),
+        curve=name,
+        cycles=tuple(_cycles(row, curves).values()) if row.any_cycle else (),
+    )
 
 
 class AtPoints(NamedTuple):
@@ -84,9 +91,9 @@ class AtPoints(NamedTuple):
 
     x: np.ndarray
     """Abscissae, shape (point,)."""
-    theirs: np.ndarray
+    published: np.ndarray
     """Published ordinates, shape (point,)."""
-    ours: np.ndarray
+    computed: np.ndarray
     """Ours at the same abscissae, shape (point,)."""
     curve: str
     """Name of our curve."""
@@ -103,15 +110,17 @@ def values_of(row: AtlasRow, curves: Curves) -> AtPoints | None:
 
 
 def _named(row: AtlasRow, curves: Curves) -> str:
-    return f"{row.ours} {_nearest_cycle(row.cycle_of or row, curves)}" if row.any_cycle else row.ours
+    return (
+        f"{row.computed_curve} {_nearest_cycle(row.cycle_of or row, curves)}" if row.any_cycle else row.computed_curve
+    )
 
 
 def _own(row: AtlasRow, table: PublishedCurves) -> float | None:
     """Return the own error of a curve's source over its peak [-]."""
     x, y = points(row, table)
-    if row.own:
-        return stated_error(table.values(row.own) * row.scale[1], y)
-    if row.printed:
+    if row.error_column:
+        return stated_error(table.values(row.error_column) * row.scale[1], y)
+    if row.is_printed:
         return digits_error(table.columns[row.y], float(row.scale[1]), y)
     return None if row.kind == "loop" else reading_error(x, y, row.period)
 
@@ -119,7 +128,11 @@ def _own(row: AtlasRow, table: PublishedCurves) -> float | None:
 def _cycles(row: AtlasRow, curves: Curves) -> dict[str, float]:
     """Return the difference of each cycle of ours from a row's published points, by the cycle's number [-]."""
     x, y = points(row, published(row.data))
-    cycles = {name.removeprefix(f"{row.ours} "): curve for name, curve in curves.items() if name.startswith(row.ours)}
+    cycles = {
+        name.removeprefix(f"{row.computed_curve} "): curve
+        for name, curve in curves.items()
+        if name.startswith(row.computed_curve)
+    }
     return {
         cycle: rms_over_peak(at_abscissae(curve, x, row.period), y)
         for cycle, curve in cycles.items() if cycle.isdecimal()
@@ -137,8 +150,8 @@ def points(row: AtlasRow, table: PublishedCurves) -> tuple[np.ndarray, np.ndarra
     x = table.values(row.x) * row.scale[0] + row.shift[0]
     y = table.values(row.y) * row.scale[1] + row.shift[1]
     inside = (x >= row.window[0]) & (x <= row.window[1])
-    if row.without is not None:
-        spacing, half = row.without
+    if row.excluded_spacing is not None:
+        spacing, half = row.excluded_spacing
         inside &= np.abs(x - spacing * np.round(x / spacing)) > half
     return x[inside], y[inside]
 
@@ -193,8 +206,8 @@ def _numbers(table: PublishedCurves, curves: Curves) -> CurveComparison:
     off = sources / theirs - 1
     ours = np.array([float(curves[name]) for name in names])
     return CurveComparison(
-        x=np.arange(len(names)), theirs=theirs, ours=ours, rms=float(np.sqrt(np.mean((ours / theirs - 1) ** 2))),
-        over_range=None, own=_own_of_numbers(table, sources),
+        x=np.arange(len(names)), published=theirs, computed=ours, rms=float(np.sqrt(np.mean((ours / theirs - 1) ** 2))),
+        over_range=None, source_error=_own_of_numbers(table, sources),
         scatter=float(np.sqrt(np.nanmean(off**2))) if len(sources) > 1 else None,
     )  # fmt: skip
 
@@ -210,7 +223,7 @@ def _own_of_numbers(table: PublishedCurves, sources: np.ndarray) -> float:
 def _scatter(row: AtlasRow, x: np.ndarray, y: np.ndarray) -> float | None:
     """Return the largest rms difference over the peak between a row's source and another one, where both are known."""
     differences = []
-    for name, abscissa, ordinate, factor in row.others:
+    for name, abscissa, ordinate, factor in row.other_sources:
         table = published(name)
         other = np.stack([table.values(abscissa) * factor + row.shift[0], table.values(ordinate)])
         values = at_abscissae(other, x, row.period)

@@ -48,7 +48,7 @@ class GridConvergence:
     """Observed order of convergence; of several numbers their median; None where there is none [-]."""
     turning: float = 0.0
     """Share of the points, or of the numbers, at which the second change turns back: oscillatory convergence [-]."""
-    refused: str = ""
+    refusal: str = ""
     """Why there is no index; empty where there is one."""
 
 
@@ -61,7 +61,7 @@ def grid_convergence(values: Sequence[np.ndarray], cells: Sequence[float], peak:
         peak: what the index is divided by, in the unit of the values.
     """
     if len(values) != GRIDS:
-        return GridConvergence(refused=f"{len(values)} of {GRIDS} grids are there")
+        return GridConvergence(refusal=f"{len(values)} of {GRIDS} grids are there")
     finest, middle, coarsest = values
     first, second = middle - finest, coarsest - middle
     near, far = (float(np.sqrt(np.mean(change**2))) for change in (first, second))
@@ -71,7 +71,7 @@ def grid_convergence(values: Sequence[np.ndarray], cells: Sequence[float], peak:
     turning = float(np.mean(first * second < 0))
     order = _order(far / near, r21, r32, -1 if float(np.mean(first * second)) < 0 else 1)
     if order is None:
-        return GridConvergence(turning=turning, refused="its change does not become smaller with the cells")
+        return GridConvergence(turning=turning, refusal="its change does not become smaller with the cells")
     band = SAFETY * near / (r21 ** min(order, FORMAL) - 1) / abs(peak)
     return GridConvergence(uncertainty=band, order=order, turning=turning)
 
@@ -101,35 +101,35 @@ def row_convergence(row: AtlasRow, grids: Mapping[int, tuple[int, Curves]]) -> G
     found = [grids[number] for number in sorted(grids)]
     cells = [float(cells) for cells, _ in found]
     if len(found) != GRIDS:
-        return GridConvergence(refused=f"{len(found)} of {GRIDS} grids are there")
+        return GridConvergence(refusal=f"{len(found)} of {GRIDS} grids are there")
     if row.kind == "numbers":
         return _of_numbers(row, [curves for _, curves in found], cells)
     read = [values_of(row, curves) for _, curves in found]
     missing = [cells for cells, one in zip(cells, read, strict=True) if one is None]
     if missing:
-        return GridConvergence(refused=f"{missing[0]:g} cells gave no such curve")
+        return GridConvergence(refusal=f"{missing[0]:g} cells gave no such curve")
     lines = [one for one in read if one is not None]
-    reached = np.all([np.isfinite(line.ours) for line in lines], axis=0)
+    reached = np.all([np.isfinite(line.computed) for line in lines], axis=0)
     if reached.mean() < LEAST_SHARE:
-        return GridConvergence(refused="the three reach fewer than half of the points together")
-    peak = float(np.abs(lines[0].theirs).max())
-    return grid_convergence([line.ours[reached] for line in lines], cells, peak)
+        return GridConvergence(refusal="the three reach fewer than half of the points together")
+    peak = float(np.abs(lines[0].published).max())
+    return grid_convergence([line.computed[reached] for line in lines], cells, peak)
 
 
 def _of_numbers(row: AtlasRow, curves: Sequence[Curves], cells: Sequence[float]) -> GridConvergence:
     table = published(row.data)
     names = table.columns["quantity"]
     if any(name not in each for name in names for each in curves):
-        return GridConvergence(refused="a grid gave not all of the numbers")
+        return GridConvergence(refusal="a grid gave not all of the numbers")
     sources = np.stack([table.values(column) for column in table.columns if column != "quantity"])
     theirs = np.nanmean(sources, axis=0)
     each = {
         name: grid_convergence([np.atleast_1d(one[name]) for one in curves], cells, float(value))
         for name, value in zip(names, theirs, strict=True)
     }
-    refused = [f"{name}: {one.refused}" for name, one in each.items() if one.refused]
+    refused = [f"{name}: {one.refusal}" for name, one in each.items() if one.refusal]
     if refused:
-        return GridConvergence(refused="; ".join(refused))
+        return GridConvergence(refusal="; ".join(refused))
     sizes = [one.uncertainty for one in each.values() if one.uncertainty is not None]
     orders = [one.order for one in each.values() if one.order is not None]
     return GridConvergence(

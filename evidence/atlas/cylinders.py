@@ -124,7 +124,7 @@ def _steady(effort: RunEffort, progress: Progress) -> Curves:
     record = march(sim, effort.until, staged(progress, "fine grid", 0.5, 1.0))
     skin = read_skin(sim)
     return {
-        "drag": np.array(2 * record.after(0.8 * effort.until).force()[:, 0].mean()),
+        "drag": np.array(2 * record.select_after(0.8 * effort.until).force()[:, 0].mean()),
         "wake length": np.array(wake_length(sim)), "pressure": skin.curve("pressure"),
     }  # fmt: skip
 
@@ -138,7 +138,7 @@ def _shedding(effort: RunEffort, progress: Progress) -> Curves:
         skins.append((now.time, read_skin(now)))
 
     record = march(sim, effort.until, staged(progress, "fine grid", 0.5, 1.0), watch=(note,), every=_READINGS)
-    numbers = shedding(record.after(_SETTLED), _PERIODS)
+    numbers = shedding(record.select_after(_SETTLED), _PERIODS)
     since = effort.until - _PERIODS / float(numbers["Strouhal"])
     late = [skin for time, skin in skins if time > since]
     mean = np.mean([skin.pressure for skin in late], axis=0)
@@ -153,10 +153,10 @@ def _on_two_grids(
 
     def form() -> flow.Simulation:
         wake = flow.Simulation(replace(_cylinder(even(domain, cells=effort.coarse), reynolds), stream=stream))
-        march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.5))
+        march(wake, effort.initial_duration, staged(progress, "coarse grid", 0.0, 0.5))
         return wake
 
-    wake = formed(("cylinder", reynolds, effort.coarse, effort.before), form)
+    wake = formed(("cylinder", reynolds, effort.coarse, effort.initial_duration), form)
     return refined(wake, _cylinder(fine, reynolds))
 
 
@@ -166,43 +166,43 @@ _PATCH_THIN = "a patch of 2.8 x 1.7 diameters around it and what it sheds, a qua
 CASES = (
     Case(
         name="started_re40", run=partial(_started, reynolds=40.0, domain=((-5.0, 7.0), (-5.0, 5.0))),
-        grids=grids((48, 32, 24), 5.0), quick=RunEffort(cells=12, until=1.0), code=_CODE,
+        grids=grids((48, 32, 24), 5.0), quick_effort=RunEffort(cells=12, until=1.0), code=_CODE,
         setup="A cylinder that starts at once in water at rest; {cells} cells a diameter, unbounded "
         "domain, of which 12 x 10 diameters are computed. The length of the recirculation ends where the velocity on "
         "the axis is zero.",
     ),
     Case(
         name="started_re550", run=partial(_started, reynolds=550.0, domain=((-2.5, 4.0), (-2.5, 2.5))),
-        grids=grids((96, 64, 48), 3.5), quick=RunEffort(cells=16, until=1.0), code=_CODE,
+        grids=grids((96, 64, 48), 3.5), quick_effort=RunEffort(cells=16, until=1.0), code=_CODE,
         setup="The same in 6.5 x 5 diameters, {cells} cells a diameter.",
     ),
     Case(
         name="started_re3000", run=partial(_started_finely, reynolds=3000.0),
-        grids=grids((256, 192, 128), 3.0), quick=RunEffort(cells=48, until=0.5), code=_CODE,
+        grids=grids((256, 192, 128), 3.0), quick_effort=RunEffort(cells=48, until=0.5), code=_CODE,
         setup=f"The same in 6 x 4 diameters, {{cells}} cells a diameter in {_PATCH_THIN}.",
     ),
     Case(
         name="started_re1000", run=_started_skin, grids=grids((192, 128, 96), 2.8),
-        quick=RunEffort(cells=48, until=1.6), code=_CODE,
+        quick_effort=RunEffort(cells=48, until=1.6), code=_CODE,
         setup=f"The same in 6 x 4 diameters, {{cells}} cells a diameter in {_PATCH_THIN}. Friction is the integral of "
         "the vorticity at the wall, the pressure part the force exchanged less that.",
     ),
     Case(
         name="turning_re200", run=_turning, grids=grids((48, 32, 24), 12.0),
-        quick=RunEffort(cells=16, until=1.0), code=_CODE,
+        quick_effort=RunEffort(cells=16, until=1.0), code=_CODE,
         setup="A cylinder that starts at once to move and to turn, in an unbounded domain, of which 14 x 10 diameters "
         "are computed; {cells} cells a diameter.",
     ),
     Case(
         name="steady_re40", run=_steady, code=_CODE, grids=grids((32, 24, 16), 20.0, coarse=8, before=80.0),
-        quick=RunEffort(cells=16, until=1.0, coarse=6, before=2.0),
+        quick_effort=RunEffort(cells=16, until=1.0, coarse=6, initial_duration=2.0),
         setup="A cylinder in a stream, in an unbounded domain, of which 48 x 32 diameters are computed; 80 diameters "
         "of travel with {coarse} cells a diameter and twenty with {cells} in a patch of 6.5 x 3.5 diameters around it, "
         "a quarter of them elsewhere.",
     ),
     Case(
         name="shedding_re100", run=_shedding, code=_CODE, grids=grids((32, 24, 16), 45.0, coarse=12, before=80.0),
-        quick=RunEffort(cells=16, until=45.0, coarse=8, before=50.0),
+        quick_effort=RunEffort(cells=16, until=45.0, coarse=8, initial_duration=50.0),
         setup="A cylinder in a stream with a short gust at the start, in an unbounded domain, of which 24 x 16 "
         f"diameters are computed; 80 diameters of travel with {{coarse}} cells a diameter and 45 with {{cells}} in "
         f"{_PATCH}; means over the last five periods of shedding.",

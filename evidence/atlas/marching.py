@@ -79,13 +79,13 @@ class Grids(TypedDict):
 
     grid: flow.Grid
     """That of the bodies."""
-    around: flow.Grid | None
+    coarse_grid: flow.Grid | None
     """Coarser cells in all of the domain; None where the others fill it."""
 
 
 def even(domain: tuple[Span, Span], *, cells: int) -> Grids:
     """Return the grids of a set-up with as many cells along a length of 1 m in all of a domain."""
-    return Grids(grid=flow.Grid.covering(*domain, cell=1 / cells), around=None)
+    return Grids(grid=flow.Grid.covering(*domain, cell=1 / cells), coarse_grid=None)
 
 
 def nested(
@@ -101,7 +101,7 @@ def nested(
         sides: of the domain, where there are mirrors among them.
     """
     whole = flow.Grid.covering(*domain, cell=ratio / cells, sides=sides)
-    return Grids(grid=whole.patch(*near, ratio=ratio), around=whole)
+    return Grids(grid=whole.patch(*near, ratio=ratio), coarse_grid=whole)
 
 
 _FORMED: dict[Hashable, Any] = {}
@@ -134,7 +134,7 @@ def refined(coarse: flow.Simulation, setup: flow.Setup) -> flow.Simulation:
     Raises:
         InvalidDesign: the two domains do not begin and end at the same places.
     """
-    ours, theirs = ((now.around or now.grid) for now in (setup, coarse.setup))
+    ours, theirs = ((now.coarse_grid or now.grid) for now in (setup, coarse.setup))
     here, there = (np.array([grid.origin, np.add(grid.origin, grid.size)]) for grid in (ours, theirs))
     if np.abs(here - there).max() > 1e-6 * theirs.cell:
         raise InvalidDesign(

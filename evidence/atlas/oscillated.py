@@ -65,7 +65,7 @@ def _oscillated(effort: RunEffort, progress: Progress, *, ratio: float) -> Curve
     """Compute ``effort.before`` periods and then ``effort.until`` finer ones, of which all but the first are read."""
     rate = 2 * np.pi * ratio * NATURAL
     period = 2 * np.pi / rate
-    whole, first = round(effort.until), round(effort.before)
+    whole, first = round(effort.until), round(effort.initial_duration)
 
     def form() -> flow.Simulation:
         wake = flow.Simulation(_setup(_near(effort.coarse, _FINER_FIRST), rate))
@@ -117,12 +117,12 @@ def _at_rest(effort: RunEffort, progress: Progress) -> Curves:
 
     def form() -> flow.Simulation:
         wake = flow.Simulation(replace(_setup(_near(effort.coarse, _FINER_FIRST), 0.0), stream=nudged))
-        march(wake, effort.before, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
+        march(wake, effort.initial_duration, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
         return wake
 
-    sim = refined(formed(("held", effort.coarse, effort.before), form), _setup(_near(effort.cells), 0.0))
+    sim = refined(formed(("held", effort.coarse, effort.initial_duration), form), _setup(_near(effort.cells), 0.0))
     record = march(sim, effort.until, staged(progress, "fine grid", _COARSE_SHARE, 1.0))
-    return shedding(record.after(_SETTLED), _PERIODS)
+    return shedding(record.select_after(_SETTLED), _PERIODS)
 
 
 def mean_skin(skins: list[WallValues]) -> WallValues:
@@ -141,7 +141,7 @@ CASES = (
             name=f"shaken_{ratio:g}".replace(".", "p"),
             run=partial(_oscillated, ratio=ratio),
             grids=grids((48, 32, 24), 9.0 if ratio > _BEATS else 3.0, coarse=_COARSE, before=9.0),
-            quick=RunEffort(cells=24, until=1.0, coarse=20, before=1.0),
+            quick_effort=RunEffort(cells=24, until=1.0, coarse=20, initial_duration=1.0),
             code=_CODE,
             setup=f"Re 185, amplitude 0.2 diameters across the stream, frequency {ratio:g} times 0.195 U/D; unbounded "
             "domain, of which 32 x 24 diameters are computed; nine periods from rest with {coarse} cells a diameter "
@@ -154,7 +154,7 @@ CASES = (
         name="held_re185",
         run=_at_rest,
         grids=grids((48, 32, 24), 38.0, coarse=_COARSE, before=60.0),
-        quick=RunEffort(cells=24, until=36.0, coarse=20, before=40.0),
+        quick_effort=RunEffort(cells=24, until=36.0, coarse=20, initial_duration=40.0),
         code=_CODE,
         setup="The same cylinder at rest, with a short gust at the start; 60 diameters of travel with {coarse} cells a "
         f"diameter and 38 with {{cells}} in {_PATCH}, the last five periods of shedding.",

@@ -112,11 +112,11 @@ def entries(rows: Sequence[AtlasRow], outcomes: Mapping[str, FlowOutcome]) -> li
 def _convergence(entry: Entry) -> GridConvergence:
     """Return what the grids say, of which all have to be by the same code."""
     if entry.outcome is None or entry.comparison is None or entry.outcome.quick:
-        return GridConvergence(refused="the row is not judged")
+        return GridConvergence(refusal="the row is not judged")
     every = (entry.outcome, *entry.coarser)
     failed = [one for one in every if one.failed]
     if failed:
-        return GridConvergence(refused=f"{failed[0].cells} cells failed")
+        return GridConvergence(refusal=f"{failed[0].cells} cells failed")
     return row_convergence(entry.row, {one.grid: (one.cells, one.curves) for one in every})
 
 
@@ -203,7 +203,11 @@ def _summary_line(entry: Entry) -> str:
         cells += [""] * 5
     else:
         cells += [_percent(found.rms), "" if found.over_range is None else _percent(found.over_range)]
-        cells += [_percent(found.bound), _percent(found.scatter), "" if found.own is None else _fine_percent(found.own)]
+        cells += [
+            _percent(found.bound),
+            _percent(found.scatter),
+            "" if found.source_error is None else _fine_percent(found.source_error),
+        ]
     index, order = entry.convergence.uncertainty, entry.convergence.order
     cells += ["none" if index is None else _percent(index), "" if order is None else f"{order:.1f}", word]
     every = _every(entry)
@@ -241,10 +245,12 @@ def _section(entry: Entry) -> list[str]:
     found = entry.comparison
     if found is not None and row.kind == "numbers":
         lines += ["", "| quantity | computed | published | difference |", "|---|---|---|---|"]
-        for name, ours, theirs in zip(published(row.data).columns["quantity"], found.ours, found.theirs, strict=True):
+        for name, ours, theirs in zip(
+            published(row.data).columns["quantity"], found.computed, found.published, strict=True
+        ):
             lines.append(f"| {name} | {ours:.4g} | {theirs:.4g} | {100 * (ours / theirs - 1):+.1f} % |")
     setup = case.setup.format(cells=effort.cells, coarse=effort.coarse)
-    about = " ".join(line if line.endswith(".") else f"{line}." for line in published(row.data).about)
+    about = " ".join(line if line.endswith(".") else f"{line}." for line in published(row.data).description)
     return [*lines, "", f"Published: {about}", "", f"Computed: {setup}"]
 
 
@@ -278,7 +284,7 @@ def _words(entry: Entry) -> list[str]:
 
 def _whose(row: AtlasRow) -> str:
     """Return by which other row a cycle is chosen, with a space behind it; nothing if by its own."""
-    return f"whose {row.cycle_of.ours.removeprefix('uppermost ')} is " if row.cycle_of else ""
+    return f"whose {row.cycle_of.computed_curve.removeprefix('uppermost ')} is " if row.cycle_of else ""
 
 
 def _grid_words(entry: Entry) -> str:
@@ -287,7 +293,7 @@ def _grid_words(entry: Entry) -> str:
     if entry.outcome is None or entry.outcome.quick:
         return ""
     if index is None:
-        return f"No uncertainty of its own from {GRIDS} grids: {entry.convergence.refused}."
+        return f"No uncertainty of its own from {GRIDS} grids: {entry.convergence.refusal}."
     cells = ", ".join(str(one.cells) for one in _every(entry))
     at = "" if order is None else f", observed order {order:.1f}"
     turning = entry.convergence.turning
@@ -363,7 +369,7 @@ def _draw_curve(axes: Axes, entry: Entry, found: CurveComparison) -> None:
         curve = curve[:, np.argsort(curve[0], kind="stable")]
         curve = curve[:, (curve[0] >= low) & (curve[0] <= high)]
     axes.plot(curve[0], curve[1], color=_OURS, linewidth=1.4, label="computed")
-    axes.plot(found.x, found.theirs, "k.", markersize=3, label="published")
+    axes.plot(found.x, found.published, "k.", markersize=3, label="published")
     axes.set_xlabel(row.labels[0], **_SMALL)
     axes.set_ylabel(row.labels[1], **_SMALL)
     axes.legend(loc="best", fontsize=7)
@@ -374,11 +380,11 @@ def _draw_numbers(axes: Axes, row: AtlasRow, found: CurveComparison) -> None:
     places = np.arange(len(found.x))
     for column in table.columns:
         if column != "quantity":
-            axes.plot(table.values(column) / found.theirs, places, "k|", markersize=14, label="published")
-    axes.plot(found.ours / found.theirs, places, "o", color=_OURS, label="computed")
+            axes.plot(table.values(column) / found.published, places, "k|", markersize=14, label="published")
+    axes.plot(found.computed / found.published, places, "o", color=_OURS, label="computed")
     axes.set_yticks(places, table.columns["quantity"])
     axes.set_ylim(-0.6, len(places) + 0.1)
-    reach = 1.2 * max(float(np.abs(found.ours / found.theirs - 1).max()), found.bound)
+    reach = 1.2 * max(float(np.abs(found.computed / found.published - 1).max()), found.bound)
     axes.set_xlim(1 - reach, 1 + reach)
     axes.locator_params(axis="x", nbins=5)
     axes.set_xlabel("over the mean of the published [-]", **_SMALL)
@@ -393,9 +399,9 @@ def draw_parity(listed: Sequence[Entry]) -> Figure:
         left, right = figure.subplots(1, 2)
         shown = [(entry, entry.comparison) for entry in listed if entry.comparison is not None]
         for entry, found in shown:
-            peak = np.abs(found.theirs).max()
+            peak = np.abs(found.published).max()
             colour = _ABOVE if entry.bad else _OURS
-            left.plot(found.theirs / peak, found.ours / peak, ".", markersize=3, color=colour, alpha=0.5)
+            left.plot(found.published / peak, found.computed / peak, ".", markersize=3, color=colour, alpha=0.5)
         left.axline((0, 0), slope=1, color="k", linewidth=0.8)
         left.set(xlabel="published, over the peak of its row [-]", ylabel="computed, over the same [-]", aspect="equal")
         left.set(xlim=(-_FARTHEST, _FARTHEST), ylim=(-_FARTHEST, _FARTHEST))

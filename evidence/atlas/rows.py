@@ -41,8 +41,8 @@ def _started() -> tuple[AtlasRow, ...]:
     drags = tuple(
         AtlasRow(
             name=titles[data][0], title=f"Started cylinder, Re 40: {titles[data][1]}", case="started_re40", data=data,
-            x=x, y=y, scale=(factor, 1.0), window=_FIRST, ours="drag", labels=(_TIME, "drag coefficient [-]"),
-            others=tuple(one for one in _COMPUTED_40 if one[0] != data),
+            x=x, y=y, scale=(factor, 1.0), window=_FIRST, computed_curve="drag", labels=(_TIME, "drag coefficient [-]"),
+            other_sources=tuple(one for one in _COMPUTED_40 if one[0] != data),
         )
         for data, x, y, factor in _DRAG_40
     )  # fmt: skip
@@ -50,14 +50,14 @@ def _started() -> tuple[AtlasRow, ...]:
         AtlasRow(
             name=f"koumoutsakos_re{reynolds}", case=f"started_re{reynolds}",
             title=f"Started cylinder, Re {reynolds}: drag, Koumoutsakos and Leonard 1995", x="t_star", y="cd",
-            data=f"koumoutsakos1995_drag_re{reynolds}", scale=(0.5, 1.0), window=_FIRST, ours="drag",
+            data=f"koumoutsakos1995_drag_re{reynolds}", scale=(0.5, 1.0), window=_FIRST, computed_curve="drag",
             labels=(_TIME, "drag coefficient [-]"),
         )
         for reynolds in (550, 3000)
     )  # fmt: skip
     length = AtlasRow(
         name="coutanceau_re40", title="Started cylinder, Re 40: recirculation, Coutanceau and Bouard 1977",
-        case="started_re40", data="coutanceau1977_length_re40", x="t", y="length", ours="length",
+        case="started_re40", data="coutanceau1977_length_re40", x="t", y="length", computed_curve="length",
         labels=(_TIME, "length of the recirculation / diameter [-]"),
     )  # fmt: skip
     return (*drags, length, *faster, *_started_1000())
@@ -72,8 +72,8 @@ def _started_1000() -> tuple[AtlasRow, ...]:
         rows.append(
             AtlasRow(
                 name=f"{author}_re1000", title=f"Started cylinder, Re 1000: drag, {long}", case="started_re1000",
-                data=f"{short}_drag_re1000", x="t_star", y="cd", scale=(0.5, 1.0), window=_FIRST, ours="drag",
-                labels=(_TIME, "drag coefficient [-]"), others=((f"{other}_drag_re1000", "t_star", "cd", 0.5),),
+                data=f"{short}_drag_re1000", x="t_star", y="cd", scale=(0.5, 1.0), window=_FIRST, computed_curve="drag",
+                labels=(_TIME, "drag coefficient [-]"), other_sources=((f"{other}_drag_re1000", "t_star", "cd", 0.5),),
             )
         )  # fmt: skip
         rows += [
@@ -81,26 +81,33 @@ def _started_1000() -> tuple[AtlasRow, ...]:
                 name=f"{author}_vorticity_{key}", case="started_re1000", data=f"{short}_vorticity_{key}", x="angle",
                 title=f"Started cylinder, Re 1000: vorticity on it after {time} diameters of travel, {long}",
                 y="vorticity", scale=(-180.0, 1.0), shift=(180.0, 0.0), period=360.0, skin=True,
-                ours=f"vorticity {key}", labels=(_ANGLE, "vorticity x D / U [-]"),
-                others=((f"{other}_vorticity_{key}", "angle", "vorticity", -180.0),),
+                computed_curve=f"vorticity {key}", labels=(_ANGLE, "vorticity x D / U [-]"),
+                other_sources=((f"{other}_vorticity_{key}", "angle", "vorticity", -180.0),),
             )
             for key, time in (("0p5", 0.5), ("1p5", 1.5))
         ]  # fmt: skip
     parts = (("friction", "friction", "friction part"), ("pressure", "pressure part", "pressure part"))
     rows += [
         AtlasRow(
-            name=f"koumoutsakos_{key}_re1000", case="started_re1000", data=f"koumoutsakos1995_{key}_re1000",
-            title=f"Started cylinder, Re 1000: {words} of the drag, Koumoutsakos and Leonard 1995", x="t_star", y="cd",
-            scale=(0.5, 1.0), window=_FIRST, ours=ours, labels=(_TIME, f"{words} of the drag coefficient [-]"),
+            name=f"koumoutsakos_{key}_re1000",
+            case="started_re1000",
+            data=f"koumoutsakos1995_{key}_re1000",
+            title=f"Started cylinder, Re 1000: {words} of the drag, Koumoutsakos and Leonard 1995",
+            x="t_star",
+            y="cd",
+            scale=(0.5, 1.0),
+            window=_FIRST,
+            computed_curve=ours,
+            labels=(_TIME, f"{words} of the drag coefficient [-]"),
             skin=True,
         )
         for key, ours, words in parts
-    ]  # fmt: skip
+    ]
     rows.append(
         AtlasRow(
             name="chen_drag", title="Cylinder that starts to move and to turn, Re 200: drag, Chen et al. 1993",
             case="turning_re200", data="chen1993_drag_re200", x="t_star", y="cd", scale=(0.5, 1.0), window=_FIRST,
-            ours="drag", labels=(_TIME, "drag coefficient [-]"), note=_FIRST_DRAG,
+            computed_curve="drag", labels=(_TIME, "drag coefficient [-]"), note=_FIRST_DRAG,
         )
     )  # fmt: skip
     return tuple(rows)
@@ -126,7 +133,7 @@ def _oscillated() -> tuple[AtlasRow, ...]:
                     f"{quantity}, Guilmineau and Queutey 2002",
                     data=f"guilmineau2002_{quantity}_{key}",
                     y="cp" if quantity == "pressure" else quantity,
-                    ours=f"uppermost {quantity}",
+                    computed_curve=f"uppermost {quantity}",
                     labels=(_ANGLE, label),
                     note=_SWITCHES if ratio == 1 else "",
                 )
@@ -141,7 +148,7 @@ def _oscillated() -> tuple[AtlasRow, ...]:
             name="schneiders_drag",
             title="Cylinder oscillated transversely at 0.8 times its natural frequency, Re 185: drag, "
             "Schneiders 2013",
-            case="shaken_0p8", data="schneiders2013_drag", x="y", y="cd", kind="loop", ours="drag loop",
+            case="shaken_0p8", data="schneiders2013_drag", x="y", y="cd", kind="loop", computed_curve="drag loop",
             labels=("displacement / diameter [-]", "drag coefficient [-]"),
             note="A point is compared with the nearer of the two branches.",
         )
@@ -151,7 +158,7 @@ def _oscillated() -> tuple[AtlasRow, ...]:
             name="schneiders_pressure", case="shaken_0p8", data="schneiders2013_pressure", x="angle", y="cp",
             title="Cylinder oscillated transversely at 0.8 times its natural frequency, Re 185: "
             "pressure going down, Schneiders 2013",
-            period=360.0, skin=True, ours="pressure going down", labels=(_ANGLE, "pressure coefficient [-]"),
+            period=360.0, skin=True, computed_curve="pressure going down", labels=(_ANGLE, "pressure coefficient [-]"),
         )
     )  # fmt: skip
     return tuple(rows)
@@ -160,12 +167,19 @@ def _oscillated() -> tuple[AtlasRow, ...]:
 def _resting() -> tuple[AtlasRow, ...]:
     pressures = tuple(
         AtlasRow(
-            name=f"li_pressure_re{reynolds}", case=case, data=f"li2016_pressure_re{reynolds}", x="angle", y="cp",
-            title=f"Cylinder, Re {reynolds}: {mean}pressure, Li et al. 2016", period=360.0, skin=True, ours="pressure",
+            name=f"li_pressure_re{reynolds}",
+            case=case,
+            data=f"li2016_pressure_re{reynolds}",
+            x="angle",
+            y="cp",
+            title=f"Cylinder, Re {reynolds}: {mean}pressure, Li et al. 2016",
+            period=360.0,
+            skin=True,
+            computed_curve="pressure",
             labels=(_ANGLE, "pressure coefficient [-]"),
         )
         for reynolds, case, mean in ((40, "steady_re40", ""), (100, "shedding_re100", "mean "))
-    )  # fmt: skip
+    )
     return (
         AtlasRow(name="re40_numbers", title="Cylinder, Re 40: drag and length of the wake", case="steady_re40",
             data="re40_numbers", kind="numbers"),
@@ -179,9 +193,9 @@ def _still() -> tuple[AtlasRow, ...]:
     strokes = tuple(
         AtlasRow(
             name=f"eldredge_{name}", title=f"Flapping ellipse, Re 75: {name}, Eldredge 2007", case="flapping",
-            data=f"eldredge2007_flapping_{name}", x="t_over_period", y=name, ours=name,
+            data=f"eldredge2007_flapping_{name}", x="t_over_period", y=name, computed_curve=name,
             labels=("time / period [-]", f"{name} over its largest quasi-steady value [-]"),
-            others=((f"li2015_flapping_{name}", "t_over_period", name, 1.0),), without=apart, note=note,
+            other_sources=((f"li2015_flapping_{name}", "t_over_period", name, 1.0),), excluded_spacing=apart, note=note,
         )
         for name, apart, note in (
             ("drag", (0.5, 0.02), "Left out: a fiftieth of a period on each side of where the motion turns, and with "
@@ -191,7 +205,7 @@ def _still() -> tuple[AtlasRow, ...]:
     return (
         AtlasRow(
             name="duetsch_force", title="Cylinder that oscillates in water at rest, Re 100, KC 5: force, Duetsch 1998",
-            case="in_line", data="duetsch1998_force", x="t_over_period", y="force", ours="force", period=1.0,
+            case="in_line", data="duetsch1998_force", x="t_over_period", y="force", computed_curve="force", period=1.0,
             labels=("time / period [-]", "force / (density x speed^2 x diameter) [-]"),
         ),
         *_two_states(), *strokes,
@@ -207,7 +221,7 @@ def _two_states() -> tuple[AtlasRow, ...]:
     across, along = (
         AtlasRow(
             name=f"duetsch_{short}_kc10", case="two_states", data=f"duetsch1998_{short}_kc10", x="t_over_period",
-            y="force", scale=(1.0, 0.25), period=1.0, ours=ours, any_cycle=True, choice=choice,
+            y="force", scale=(1.0, 0.25), period=1.0, computed_curve=ours, any_cycle=True, choice=choice,
             title=f"Cylinder that oscillates in water at rest, Re 200, KC 10: {ours} its motion, Duetsch 1998",
             labels=("time / period [-]", "force / (density x speed^2 x diameter) [-]"),
         )
@@ -220,7 +234,7 @@ def _pitching() -> tuple[AtlasRow, ...]:
     return tuple(
         AtlasRow(
             name=f"schneiders_pitching_{name}", title=f"NACA 0015 that pitches up, Re 10 000: {name}, Schneiders 2013",
-            case="pitching", data=f"schneiders2013_pitching_{name}", x="angle", y=column, ours=name,
+            case="pitching", data=f"schneiders2013_pitching_{name}", x="angle", y=column, computed_curve=name,
             labels=("angle of attack [deg]", f"{name} coefficient [-]"),
         )
         for name, column in (("drag", "cd"), ("lift", "cl"))
@@ -229,46 +243,69 @@ def _pitching() -> tuple[AtlasRow, ...]:
 
 def _spheres() -> tuple[AtlasRow, ...]:
     return (
-        AtlasRow(name="sphere_re150", title="Sphere, Re 150: drag", case="sphere_re150", data="sphere_re150_numbers",
-            kind="numbers"),
         AtlasRow(
-            name="schneiders_sphere", title="Sphere that oscillates in water at rest, Re 40: drag, Schneiders 2013",
-            case="oscillating_sphere", data="schneiders2013_sphere_drag", x="t_over_period", y="cd", ours="drag",
-            period=1.0, labels=("time / period [-]", "drag coefficient [-]"),
+            name="sphere_re150",
+            title="Sphere, Re 150: drag",
+            case="sphere_re150",
+            data="sphere_re150_numbers",
+            kind="numbers",
         ),
-    )  # fmt: skip
+        AtlasRow(
+            name="schneiders_sphere",
+            title="Sphere that oscillates in water at rest, Re 40: drag, Schneiders 2013",
+            case="oscillating_sphere",
+            data="schneiders2013_sphere_drag",
+            x="t_over_period",
+            y="cd",
+            computed_curve="drag",
+            period=1.0,
+            labels=("time / period [-]", "drag coefficient [-]"),
+        ),
+    )
 
 
 def _walls() -> tuple[AtlasRow, ...]:
     lines = tuple(
         AtlasRow(
             name=f"ghia_{line}_re{reynolds}", title=f"Lid-driven cavity, Re {reynolds}: {line}, Ghia et al. 1982",
-            case=f"cavity_re{reynolds}", data="ghia1982_cavity", x=place, y=f"{line}_re{reynolds}", ours=line,
-            window=(0.01, 0.99), printed=True, labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
+            case=f"cavity_re{reynolds}", data="ghia1982_cavity", x=place, y=f"{line}_re{reynolds}", computed_curve=line,
+            window=(0.01, 0.99), is_printed=True, labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
             note="The walls themselves, where both have the wall's speed, are left out."
             + (_MISPRINT if (reynolds, line) == (400, "v") else ""),
-            others=(("botella1998_cavity_re1000", place, line, 1.0),) if reynolds == 1000 else (),
+            other_sources=(("botella1998_cavity_re1000", place, line, 1.0),) if reynolds == 1000 else (),
         )
         for reynolds in (100, 400, 1000)
         for line, place in (("u", "y"), ("v", "x"))
     )  # fmt: skip
     marchi = tuple(
         AtlasRow(
-            name=f"marchi_{line}_re100", title=f"Lid-driven cavity, Re 100: {line}, Marchi et al. 2009",
-            case="cavity_re100", data="marchi2009_cavity_re100", x="place", y=line, own=f"{line}_error", ours=line,
+            name=f"marchi_{line}_re100",
+            title=f"Lid-driven cavity, Re 100: {line}, Marchi et al. 2009",
+            case="cavity_re100",
+            data="marchi2009_cavity_re100",
+            x="place",
+            y=line,
+            error_column=f"{line}_error",
+            computed_curve=line,
             labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
         )
         for line, place in (("u", "y"), ("v", "x"))
-    )  # fmt: skip
+    )
     botella = tuple(
         AtlasRow(
-            name=f"botella_{line}_re1000", title=f"Lid-driven cavity, Re 1000: {line}, Botella and Peyret 1998",
-            case="cavity_re1000", data="botella1998_cavity_re1000", x=place, y=line, printed=True, ours=line,
+            name=f"botella_{line}_re1000",
+            title=f"Lid-driven cavity, Re 1000: {line}, Botella and Peyret 1998",
+            case="cavity_re1000",
+            data="botella1998_cavity_re1000",
+            x=place,
+            y=line,
+            is_printed=True,
+            computed_curve=line,
             labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
-            others=(("ghia1982_cavity", place, f"{line}_re1000", 1.0),),
+            other_sources=(("ghia1982_cavity", place, f"{line}_re1000", 1.0),),
         )
         for line, place in (("u", "y"), ("v", "x"))
-    )  # fmt: skip
+    )
     return (
         *lines, *marchi, *botella,
         AtlasRow(name="dfg_2d1", title="Cylinder in a channel, DFG 2D-1", case="dfg_2d1", data="dfg_2d1_numbers",
@@ -279,7 +316,7 @@ def _walls() -> tuple[AtlasRow, ...]:
             data="wachs2009_numbers", kind="numbers"),
         AtlasRow(
             name="wachs_path", title="Settling cylinder: path, Wachs 2009", case="settling", data="wachs2009_path",
-            x="y", y="x", shift=(0.0, -2.0), window=(-20.0, 40.0), ours="path",
+            x="y", y="x", shift=(0.0, -2.0), window=(-20.0, 40.0), computed_curve="path",
             labels=("height / diameter [-]", "distance from the middle / diameter [-]"),
         ),
     )  # fmt: skip

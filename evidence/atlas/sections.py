@@ -60,7 +60,7 @@ def _moved(effort: RunEffort, progress: Progress, *, aspect: float, keulegan: fl
 def _case(aspect: float, keulegan: float, cells: int = _CELLS) -> Case:
     return Case(
         name=name_of(aspect, keulegan, cells), run=partial(_moved, aspect=aspect, keulegan=keulegan),
-        grids=grids((cells,), _PERIODS), quick=RunEffort(cells=8, until=2.0), code=_CODE,
+        grids=grids((cells,), _PERIODS), quick_effort=RunEffort(cells=8, until=2.0), code=_CODE,
         setup=f"A section {aspect:g} times as high as thick that oscillates across its height in water at rest, KC "
         f"{keulegan:g}, beta {STOKES:g}; {_MARGIN:g} heights of water around its path in an unbounded domain, "
         "{cells} cells a height; three periods from rest.",

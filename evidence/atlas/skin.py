@@ -71,7 +71,7 @@ def far_pressure(sim: flow.Simulation) -> float:
     """
     whole = sim.domain
     u, v = (field[:, 1] for field in whole.velocity)
-    stream = float(np.linalg.norm(sim.setup.far(sim.time)))
+    stream = float(np.linalg.norm(sim.setup.far_velocity(sim.time)))
     return float(np.mean(whole.pressure[:, 1] + 0.5 * sim.setup.density * (u**2 + v**2 - stream**2)))
 
 

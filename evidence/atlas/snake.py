@@ -36,13 +36,13 @@ def _snake(effort: RunEffort, progress: Progress, *, reynolds: float, degrees: i
 
     def form() -> flow.Simulation:
         wake = flow.Simulation(_setup(near(effort.coarse), reynolds, degrees))
-        march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.2))
+        march(wake, effort.initial_duration, staged(progress, "coarse grid", 0.0, 0.2))
         return wake
 
-    wake = formed(("snake", reynolds, degrees, effort.coarse, effort.before), form)
+    wake = formed(("snake", reynolds, degrees, effort.coarse, effort.initial_duration), form)
     sim = refined(wake, _setup(near(effort.cells), reynolds, degrees))
     record = march(sim, effort.until, staged(progress, "fine grid", 0.2, 1.0))
-    late = record.after(_SETTLED)
+    late = record.select_after(_SETTLED)
     drag, lift = 2 * np.average(late.force(), axis=0, weights=late.step)
     strouhal = last_strouhal(middles(late), late.force()[:, 1])
     return {"mean drag": np.array(drag), "mean lift": np.array(lift), "Strouhal": np.array(strouhal)}
@@ -68,7 +68,7 @@ CASES = tuple(
         name=f"snake_{degrees}_re{reynolds}",
         run=partial(_snake, reynolds=float(reynolds), degrees=degrees),
         grids=grids((48, 32, 24), 40.0, coarse=32, before=24.0),
-        quick=RunEffort(cells=32, until=26.0, coarse=24, before=6.0),
+        quick_effort=RunEffort(cells=32, until=26.0, coarse=24, initial_duration=6.0),
         code=_CODE,
         setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 18 x 12 chords are "
         f"computed; 24 chords of travel from rest with {{coarse}} cells a chord and 40 with {{cells}} in a patch of "

@@ -28,7 +28,7 @@ def _steady(effort: RunEffort, progress: Progress) -> Curves:
             bodies=(flow.Body(shape=flow.Sphere(diameter=1.0)),),
         )
     )  # fmt: skip
-    late = march(sim, effort.until, progress).after(effort.until - min(_LATE, 0.5 * effort.until))
+    late = march(sim, effort.until, progress).select_after(effort.until - min(_LATE, 0.5 * effort.until))
     return {"drag": np.array(np.average(2 * late.force()[:, 0] / _AREA, weights=late.step))}
 
 
@@ -53,14 +53,14 @@ def _oscillating(effort: RunEffort, progress: Progress) -> Curves:
 CASES = (
     Case(
         name="sphere_re150", run=_steady, code=_CODE, grids=grids((24, 16, 12), 20.0),
-        quick=RunEffort(cells=8, until=1.0),
+        quick_effort=RunEffort(cells=8, until=1.0),
         setup="A sphere in a stream that starts at once, in an unbounded domain, of which 6 x 4 x 4 diameters are "
         "computed, a quarter of them beside two planes of symmetry; {cells} cells a diameter; mean of the last two of "
         "twenty diameters of travel, after which the drag is steady to 0.3 %.",
     ),
     Case(
         name="oscillating_sphere", run=_oscillating, code=_CODE, grids=grids((32, 24, 16), 2.0),
-        quick=RunEffort(cells=16, until=1.0),
+        quick_effort=RunEffort(cells=16, until=1.0),
         setup="A sphere that oscillates in water at rest, Re 40; unbounded domain, of which 6 x 6 x 6 diameters are "
         "computed, a quarter of them beside two planes of symmetry; {cells} cells a diameter in a patch of 3 x 2.5 x "
         "2.5 diameters around its path, half of them elsewhere; the second period, as in the source.",

@@ -28,7 +28,7 @@ def _in_line(effort: RunEffort, progress: Progress) -> Curves:
             courant=LONG_STEP,
         )
     )  # fmt: skip
-    late = march(sim, effort.until, progress).after(effort.until - 1.0)
+    late = march(sim, effort.until, progress).select_after(effort.until - 1.0)
     return {"force": np.stack([middles(late) % 1.0, late.force()[:, 0] / speed**2])}
 
 
@@ -53,7 +53,7 @@ def _two_states(effort: RunEffort, progress: Progress) -> Curves:
     last are read. A gust to the other side gives the mirror image, whose force across has the other sign: each run is
     two members.
     """
-    first, whole = round(effort.before), round(effort.until)
+    first, whole = round(effort.initial_duration), round(effort.until)
     half = 0.5 / len(_GUSTS)
 
     def form() -> list[flow.Simulation]:
@@ -129,20 +129,20 @@ def _flapping(effort: RunEffort, progress: Progress) -> Curves:
 CASES = (
     Case(
         name="in_line", run=_in_line, code=_CODE,
-        grids=grids((48, 32, 24), 5.0), quick=RunEffort(cells=12, until=1.0),
+        grids=grids((48, 32, 24), 5.0), quick_effort=RunEffort(cells=12, until=1.0),
         setup="A cylinder that oscillates in water at rest, Re 100, KC 5; unbounded domain, of which 10 x 8 diameters "
         "are computed; {cells} cells a diameter; the last of five periods.",
     ),
     Case(
         name="two_states", run=_two_states, code=_CODE, grids=grids((32, 24, 16), 5.0, coarse=12, before=6.0),
-        quick=RunEffort(cells=12, until=1.0, coarse=8, before=1.0),
+        quick_effort=RunEffort(cells=12, until=1.0, coarse=8, initial_duration=1.0),
         setup="A cylinder that oscillates in water at rest, Re 200, KC 10; unbounded domain, of which 12 x 12 "
         "diameters are computed. Six periods from rest with {coarse} cells a diameter and five with {cells}, the last "
         "four of which are read, of runs with a small gust across the motion (a tenth of its speed) at two phases of "
         "the first and, by symmetry, with gusts to the other side.",
     ),
     Case(
-        name="flapping", run=_flapping, grids=grids((48, 32, 24), 16.0), quick=RunEffort(cells=32, until=4.0),
+        name="flapping", run=_flapping, grids=grids((48, 32, 24), 16.0), quick_effort=RunEffort(cells=32, until=4.0),
         code=_CODE,
         setup="An ellipse 10:1 that flaps in water at rest with a stroke of 2.8 chords and a swing of 45 degrees, Re "
         "75; unbounded domain, of which 7 x 9 chords are computed, most of them below; {cells} cells a chord; four "

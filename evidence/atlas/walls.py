@@ -46,10 +46,10 @@ def _channel(effort: RunEffort, progress: Progress, *, mean_speed: float) -> Cur
 
     def form() -> flow.Simulation:
         before = flow.Simulation(_channel_setup(_even_channel(effort.coarse, effort.coarse), mean_speed))
-        march(before, effort.before, staged(progress, "coarse grid", 0.0, 0.3))
+        march(before, effort.initial_duration, staged(progress, "coarse grid", 0.0, 0.3))
         return before
 
-    before = formed(("channel", mean_speed, effort.coarse, effort.before), form)
+    before = formed(("channel", mean_speed, effort.coarse, effort.initial_duration), form)
     steady = mean_speed < _SHEDS
     finer = _even_channel(effort.cells, effort.coarse) if steady else _fine_channel(effort.cells, effort.coarse)
     sim = refined(before, _channel_setup(finer, mean_speed))
@@ -76,13 +76,13 @@ def _even_channel(cells: int, coarse: int) -> Grids:
     """Return the grid of the DFG channel with so many cells a diameter and the same corners as on the coarse grid."""
     rows, first = _rows(cells), _rows(coarse)
     long = flow.Grid.covering((0.0, 2.2), (0.0, _HEIGHT), cell=_HEIGHT / first).cells[0]
-    return Grids(grid=flow.Grid(cells=(long * rows // first, rows), cell=_HEIGHT / rows), around=None)
+    return Grids(grid=flow.Grid(cells=(long * rows // first, rows), cell=_HEIGHT / rows), coarse_grid=None)
 
 
 def _fine_channel(cells: int, coarse: int) -> Grids:
     """Return the same with so many cells a diameter around the cylinder alone."""
     whole = _even_channel(cells // _FINER, coarse)["grid"]
-    return Grids(grid=whole.patch(*_NEAR, ratio=_FINER), around=whole)
+    return Grids(grid=whole.patch(*_NEAR, ratio=_FINER), coarse_grid=whole)
 
 
 def _channel_setup(grids: Grids, mean_speed: float) -> flow.Setup:
@@ -147,37 +147,37 @@ def _settling(effort: RunEffort, progress: Progress) -> Curves:
 CASES = (
     Case(
         name="cavity_re100", run=partial(_cavity, reynolds=100.0), grids=grids((96, 64, 48), 25.0),
-        quick=RunEffort(cells=16, until=3.0), code=_CODE,
+        quick_effort=RunEffort(cells=16, until=3.0), code=_CODE,
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
         name="cavity_re400", run=partial(_cavity, reynolds=400.0), grids=grids((96, 64, 48), 35.0),
-        quick=RunEffort(cells=16, until=3.0), code=_CODE,
+        quick_effort=RunEffort(cells=16, until=3.0), code=_CODE,
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
         name="cavity_re1000", run=partial(_cavity, reynolds=1000.0), grids=grids((128, 96, 64), 50.0),
-        quick=RunEffort(cells=16, until=3.0), code=_CODE,
+        quick_effort=RunEffort(cells=16, until=3.0), code=_CODE,
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
         name="dfg_2d1", run=partial(_channel, mean_speed=0.2), code=_CODE,
         grids=grids((62, 47, 31), 1.0, coarse=31, before=6.0),
-        quick=RunEffort(cells=16, until=0.3, coarse=8, before=0.7),
+        quick_effort=RunEffort(cells=16, until=0.3, coarse=8, initial_duration=0.7),
         setup="The DFG channel, 22 x 4.1 diameters: six seconds from rest with {coarse} cells a diameter and one with "
         f"{{cells}}, of which the last {_STEADY:g} s count.",
     ),
     Case(
         name="dfg_2d2", run=partial(_channel, mean_speed=1.0), code=_CODE,
         grids=grids((62, 47, 31), 2.7, coarse=16, before=6.0),
-        quick=RunEffort(cells=24, until=2.7, coarse=12, before=5.0),
+        quick_effort=RunEffort(cells=24, until=2.7, coarse=12, initial_duration=5.0),
         setup="The DFG channel, 22 x 4.1 diameters: six seconds from rest with {coarse} cells a diameter and 2.7 with "
         "{cells} in a patch of 5 x 2.5 diameters around the cylinder and where the vortices form, half of them "
         "elsewhere; the last five periods count.",
     ),
     Case(
         name="settling", run=_settling, code=_CODE, grids=grids((32, 24, 16), 46.0),
-        quick=RunEffort(cells=12, until=2.0),
+        quick_effort=RunEffort(cells=12, until=2.0),
         setup="A cylinder of relative density 1.5 that settles from rest, one diameter from a wall, in a channel 4 "
         "diameters wide, seen from a frame that sinks with 2.1 m/s: 34 diameters of the channel, {cells} cells a "
         "diameter. Means over the last two fifths of the time.",

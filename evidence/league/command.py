@@ -82,7 +82,7 @@ def _lines(one: LeagueEntry) -> list[str]:
             lines.append(f"    {'measured':<12}{shown(one.measured[quantity].value)}")
         for rung, at in rungs.items():
             word = words.get((quantity, rung))
-            verdict = f"  {word.word}, {word.off:.2g} times" if word else ""
+            verdict = f"  {word.word}, {word.ratio:.2g} times" if word else ""
             lines.append(f"    {rung:<12}{shown(at.value)} ({shown(at.low)} to {shown(at.high)}){verdict}")
     return lines + [f"  no word from {rung}: {why}" for rung, why in one.seal.refused.items()]
 

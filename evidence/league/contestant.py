@@ -10,7 +10,7 @@ from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.core.progress import Progress
 
 Numbers = Mapping[str, float]
-"""One choice of all the numbers that a prediction rests on, by their names in ``Contestant.given``."""
+"""One choice of all the numbers that a prediction rests on, by their names in ``Contestant.inputs``."""
 Value = float | tuple[float, ...]
 """What is predicted of a quantity: a number, or several in a row, as speeds in the first periods."""
 Found = Mapping[str, Value]
@@ -61,11 +61,11 @@ class Predictor:
     which is plausible, the best one first."""
     draws: int
     """Choices of the numbers drawn from their ranges, beside the most likely one [-]; 0 for an expensive model."""
-    like: str = ""
+    interval_source: str = ""
     """Of an expensive model: the one whose interval, over its value, it takes beside its own answers."""
 
     def __post_init__(self) -> None:
-        if self.draws == 0 and not self.like:
+        if self.draws == 0 and not self.interval_source:
             raise InvalidDesign(
                 "a rung without draws has no interval of its own: name in like the rung whose interval it takes."
             )
@@ -79,19 +79,19 @@ class Contestant:
     """Name, also of its folder."""
     title: str
     """Title, for people."""
-    about: str
+    description: str
     """What it is, how it moves and in which medium, in a few sentences."""
-    given: Mapping[str, Given]
+    inputs: Mapping[str, Given]
     """All numbers that the prediction rests on, by name. Nothing of them was fitted to what is predicted."""
     predicts: Mapping[str, Quantity]
     """What is predicted, by name."""
     rungs: Mapping[str, Predictor]
     """The models that can be asked, by name, the cheapest first."""
-    left_out: Mapping[str, str] = field(default_factory=dict)
+    excluded_models: Mapping[str, str] = field(default_factory=dict)
     """Why other models cannot be asked, in a phrase, by name."""
 
     def __post_init__(self) -> None:
-        for name, number in self.given.items():
+        for name, number in self.inputs.items():
             if not number.source.strip():
                 raise InvalidDesign(
                     f"contestant {self.name!r} has the number {name} = {number.value:g} without a source; name a "
@@ -103,15 +103,16 @@ class Contestant:
                     f"{number.high:g}; the value must lie in the range."
                 )
         for name, rung in self.rungs.items():
-            if rung.like and not self.rungs.get(rung.like, rung).draws:
+            if rung.interval_source and not self.rungs.get(rung.interval_source, rung).draws:
                 raise InvalidDesign(
-                    f"rung {name!r} of contestant {self.name!r} takes the interval of {rung.like!r}, which draws none."
+                    f"rung {name!r} of contestant {self.name!r} takes the interval of "
+                    f"{rung.interval_source!r}, which draws none."
                 )
 
     @property
     def likely(self) -> dict[str, float]:
         """The most likely value of each number."""
-        return {name: number.value for name, number in self.given.items()}
+        return {name: number.value for name, number in self.inputs.items()}
 
     def asking(self, models: Sequence[str]) -> "Contestant":
         """Return the same with some of its models alone, of which the others say that they were not asked.
@@ -130,10 +131,12 @@ class Contestant:
                 f"contestant {self.name!r} has none of the models {', '.join(models)}; it has {', '.join(self.rungs)}."
             )
         for name, rung in asked.items():
-            if rung.like and rung.like not in asked:
-                raise InvalidDesign(f"{name} of {self.name!r} takes the interval of {rung.like}: ask that too.")
+            if rung.interval_source and rung.interval_source not in asked:
+                raise InvalidDesign(
+                    f"{name} of {self.name!r} takes the interval of {rung.interval_source}: ask that too."
+                )
         silent = {name: "it was not asked" for name in self.rungs if name not in asked}
-        return replace(self, rungs=asked, left_out={**self.left_out, **silent})
+        return replace(self, rungs=asked, excluded_models={**self.excluded_models, **silent})
 
 
 class Entrant(ABC):
@@ -147,7 +150,7 @@ class Entrant(ABC):
         """Return the names of those that ``python -m evidence.league`` predicts unless it is told otherwise."""
 
     @abstractmethod
-    def called(self, name: str) -> Contestant:
+    def contestant_named(self, name: str) -> Contestant:
         """Return the one of a name that begins with that of the catalog.
 
         Raises:
@@ -171,7 +174,7 @@ class SingleContestant(Entrant):
         """Return its name."""
         return (self.contestant.name,)
 
-    def called(self, name: str) -> Contestant:
+    def contestant_named(self, name: str) -> Contestant:
         """Return it."""
         if name != self.contestant.name:
             raise UnknownName("contestant", name, self.names())
@@ -184,22 +187,22 @@ class ContestantFamily(Entrant):
 
     name: str
     """Name in the catalog, with which all of their names begin."""
-    asked: tuple[float, ...]
+    default_parameters: tuple[float, ...]
     """Numbers of those that are predicted unless others are asked for."""
     low: float
     """Least number that can be asked."""
     high: float
     """Greatest number that can be asked."""
-    what: str
+    parameter_label: str
     """What the number is, with its unit, for messages."""
-    made: Callable[[float], Contestant]
+    create: Callable[[float], Contestant]
     """Makes one of them."""
 
     def names(self) -> tuple[str, ...]:
         """Return those that are predicted unless others are asked for."""
-        return tuple(f"{self.name}_{number:g}" for number in self.asked)
+        return tuple(f"{self.name}_{number:g}" for number in self.default_parameters)
 
-    def called(self, name: str) -> Contestant:
+    def contestant_named(self, name: str) -> Contestant:
         """Return the one whose number stands in a name.
 
         Raises:
@@ -212,9 +215,10 @@ class ContestantFamily(Entrant):
             raise UnknownName("contestant", name, self.names()) from None
         if not self.low <= number <= self.high:
             raise InvalidDesign(
-                f"contestant {name!r} asks for {number:g} {self.what}; {self.low:g} to {self.high:g} can be asked."
+                f"contestant {name!r} asks for {number:g} {self.parameter_label}; {self.low:g} to {self.high:g} "
+                "can be asked."
             )
-        return self.made(number)
+        return self.create(number)
 
 
 def find(shelf: Mapping[str, Entrant], name: str) -> Contestant:
@@ -226,7 +230,7 @@ def find(shelf: Mapping[str, Entrant], name: str) -> Contestant:
     """
     for entry in sorted(shelf, key=len, reverse=True):
         if name == entry or name.startswith(f"{entry}_"):
-            return shelf[entry].called(name)
+            return shelf[entry].contestant_named(name)
     raise UnknownName("contestant", name, every(shelf))
 
 

@@ -28,7 +28,7 @@ class Judgement(NamedTuple):
 
     word: Word
     """The verdict."""
-    off: float
+    ratio: float
     """Value of the prediction over what was measured, the worst of several numbers [-]."""
 
 

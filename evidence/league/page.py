@@ -34,7 +34,7 @@ class LeagueEntry:
     """Name of the contestant."""
     title: str
     """Title for people."""
-    about: str
+    explanation: str
     """Explanation in a sentence, for people."""
     words: Mapping[str, str]
     """What each quantity is."""
@@ -72,7 +72,7 @@ def standing(contestant: Contestant, out: Path, measured: Path) -> LeagueEntry:
     return LeagueEntry(
         name=contestant.name,
         title=contestant.title,
-        about=contestant.about,
+        explanation=contestant.description,
         words={name: one.words for name, one in contestant.predicts.items()},
         units={name: one.unit for name, one in contestant.predicts.items()},
         prediction=read_prediction(folder),
@@ -81,13 +81,17 @@ def standing(contestant: Contestant, out: Path, measured: Path) -> LeagueEntry:
     )
 
 
+_STORED_KEYS = {"explanation": "about"}
+"""Keys of the stored standings that differ from the fields' names."""
+
+
 def standing_text(standings: Sequence[LeagueEntry]) -> str:
     """Return standings as JSON, from which ``standings_of`` makes them again."""
     return json.dumps([_plain(one) for one in standings], indent=1) + "\n"
 
 
 def _plain(one: LeagueEntry) -> Any:
-    data: dict[str, Any] = plain(one)
+    data: dict[str, Any] = {_STORED_KEYS.get(name, name): value for name, value in plain(one).items()}
     data["prediction"] = {
         quantity: {rung: {"value": at.value, "low": at.low, "high": at.high} for rung, at in rungs.items()}
         for quantity, rungs in one.prediction.items()
@@ -122,7 +126,8 @@ def standing_of(data: Any) -> LeagueEntry:
         name: Measured(**(one | {end: bound_value(one[end]) for end in ("value", "low", "high")}))
         for name, one in data["measured"].items()
     }
-    return LeagueEntry(**(data | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
+    fields = {name: data[_STORED_KEYS.get(name, name)] for name in LeagueEntry.__dataclass_fields__}
+    return LeagueEntry(**(fields | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
 
 
 def all_standings(out: Path, contestants: Sequence[Contestant], measured: Mapping[str, Path]) -> list[LeagueEntry]:
@@ -150,7 +155,7 @@ def table(one: LeagueEntry) -> list[str]:
                 f"{shown(at.value)} | "
                 f"{shown(at.low)} to {shown(at.high)} | "
                 f"{(_truth(truth) if truth else 'kept back or not published') if i == 0 else ''} | "
-                f"{_BOLD[word.word] + f', {word.off:.2g} times' if word else ''} |"
+                f"{_BOLD[word.word] + f', {word.ratio:.2g} times' if word else ''} |"
             )
     return lines
 
@@ -210,7 +215,7 @@ def page(standings: Sequence[LeagueEntry], picture: str) -> str:
             "",
             f"## {one.title}",
             "",
-            f"{one.about} `python -m evidence.league {one.name}`; sealed {seal.date}, code {seal.code}.",
+            f"{one.explanation} `python -m evidence.league {one.name}`; sealed {seal.date}, code {seal.code}.",
             "",
             *table(one),
         ]
@@ -261,13 +266,13 @@ def _misses(every: Sequence[tuple[LeagueEntry, str, str, Interval, Measured, Jud
     missed = [row for row in every if row[-1].word == "missed"]
     if not missed:
         return ["None."]
-    missed.sort(key=lambda row: -abs(np.log(abs(row[-1].off))) if row[-1].off else -np.inf)
+    missed.sort(key=lambda row: -abs(np.log(abs(row[-1].ratio))) if row[-1].ratio else -np.inf)
     lines = ["| contestant | quantity | model | prediction | measured | factor |", "|---|---|---|---|---|---|"]
     for one, quantity, rung, at, truth, word in missed:
         lines.append(
             f"| {one.name} | {one.words[quantity]} [{one.units[quantity]}] | {rung} | {shown(at.value)} "
             f"({shown(at.low)} to "
-            f"{shown(at.high)}) | {_truth(truth)} | {word.off:.2g} |"
+            f"{shown(at.high)}) | {_truth(truth)} | {word.ratio:.2g} |"
         )
     return lines
 

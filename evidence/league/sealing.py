@@ -116,8 +116,8 @@ def sealed_prediction(
         date=(date or datetime.now(UTC)).strftime("%Y-%m-%dT%H:%M:%SZ"),
         code=code_state(),
         versions=versions(),
-        given=plain(contestant.given),
-        refused={**refused, **contestant.left_out},
+        given=plain(contestant.inputs),
+        refused={**refused, **contestant.excluded_models},
         prediction=_digest(text),
     )
     write(folder / SEAL, json.dumps(plain(seal), indent=2) + "\n")
@@ -161,7 +161,9 @@ def predicted(contestant: Contestant, answers: Mapping[str, xr.Dataset]) -> tupl
                 interval = (
                     of_draws(quantity, rows)
                     if rung.draws
-                    else of_answers(quantity, rows, found[quantity].get(rung.like) or widest(found[quantity].values()))
+                    else of_answers(
+                        quantity, rows, found[quantity].get(rung.interval_source) or widest(found[quantity].values())
+                    )
                 )
             except NotConverged as error:
                 refused[name] = str(error)

@@ -26,13 +26,13 @@ def drawn(contestant: Contestant, count: int) -> list[Numbers]:
         contestant: whose numbers.
         count: choices beside the most likely one [-].
     """
-    unknown = [name for name, number in contestant.given.items() if number.high > number.low]
+    unknown = [name for name, number in contestant.inputs.items() if number.high > number.low]
     choices: list[Numbers] = [contestant.likely]
     if not (unknown and count):
         return choices
     shares = qmc.LatinHypercube(d=len(unknown), rng=np.random.default_rng(_SEED)).random(count)
     for row in shares:
-        ranges = [(contestant.given[name].low, contestant.given[name].high) for name in unknown]
+        ranges = [(contestant.inputs[name].low, contestant.inputs[name].high) for name in unknown]
         some = {
             name: float(low + share * (high - low))
             for name, share, (low, high) in zip(unknown, row, ranges, strict=True)

@@ -95,13 +95,13 @@ class SwimTask:
 
     build: Build
     """Makes it."""
-    read: Read
+    read_quantities: Read
     """Reads its quantities."""
     cycles: int = 10
     """Cycles of a swim in six degrees of freedom [-]."""
     resolved_cycles: int = 6
     """Cycles of a swim in the flow [-]."""
-    held: Callable[[Numbers], float] | None = None
+    target_speed: Callable[[Numbers], float] | None = None
     """Speed that it is to hold, from the numbers [m/s]; None where its frequency is given."""
     start: float = 2.0
     """Frequency from which that of a speed to be held is sought [Hz]."""
@@ -132,14 +132,14 @@ def rungs(asked: SwimTask, *, space: bool = True) -> dict[str, Predictor]:
         words="the flow around a slice of unlimited depth, in thick water",
         work=partial(_by_slice, asked),
         draws=0,
-        like="sections",
+        interval_source="sections",
     )
     if space:
         found["space"] = Predictor(
             words="the flow around the body in three dimensions, in thick water, brought to real water by theories",
             work=partial(_by_space, asked),
             draws=0,
-            like="sections",
+            interval_source="sections",
         )
     return found
 
@@ -153,9 +153,9 @@ def _by_theory(model: Model, asked: SwimTask, choices: Sequence[Numbers], progre
         progress("choices of the numbers", i / len(choices))
         try:
             swimmer, swum = _held(
-                asked, numbers, partial(theory, model, coasts=asked.coasts, starts=asked.held is None)
+                asked, numbers, partial(theory, model, coasts=asked.coasts, starts=asked.target_speed is None)
             )
-            found.append(asked.read(numbers, swimmer, swum))
+            found.append(asked.read_quantities(numbers, swimmer, swum))
         except (NotConverged, OutsideLimits, InvalidDesign):  # this choice: no forward speed, or no beat so fast
             found.append({})
     return found
@@ -169,10 +169,10 @@ def _held(
     Raises:
         NotConverged: it does not swim forward.
     """
-    if asked.held is None:
+    if asked.target_speed is None:
         swimmer = asked.build(numbers, None)
         return swimmer, swim(swimmer)
-    wanted, frequency = asked.held(numbers), asked.start
+    wanted, frequency = asked.target_speed(numbers), asked.start
     for _ in range(4):
         swimmer = asked.build(numbers, frequency)
         swum = swim(swimmer)
@@ -270,7 +270,7 @@ def _coast(outline: Outline, bent: Motion, model: Model, swimmer: ModelSwimmer, 
 
 
 def _by_sections(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
-    if asked.held is None:
+    if asked.target_speed is None:
         swimmers = [asked.build(numbers, None) for numbers in choices]
         if not _commanded(swimmers[0]):
             raise OutsideLimits(
@@ -280,7 +280,7 @@ def _by_sections(asked: SwimTask, choices: Sequence[Numbers], progress: Progress
             )
         swums = sections(swimmers, cycles=asked.cycles, coasts=asked.coasts, progress=progress)
         return [_sound(asked, *one) for one in zip(choices, swimmers, swums, strict=True)]
-    wanted = [asked.held(numbers) for numbers in choices]
+    wanted = [asked.target_speed(numbers) for numbers in choices]
     frequencies = []
     for numbers in choices:
         try:
@@ -298,7 +298,7 @@ def _by_sections(asked: SwimTask, choices: Sequence[Numbers], progress: Progress
     found = []
     for numbers, swimmer, swum, speed in zip(choices, swimmers, swums, wanted, strict=True):
         near = swum.speed > 0.0 and 0.7 < swum.speed / speed < 1.4 and _commanded(swimmer)
-        found.append(asked.read(numbers, swimmer, _at_speed(swum, speed)) if near else {})
+        found.append(asked.read_quantities(numbers, swimmer, _at_speed(swum, speed)) if near else {})
     return found
 
 
@@ -312,7 +312,7 @@ def _commanded(swimmer: ModelSwimmer) -> bool:
 
 
 def _sound(asked: SwimTask, numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
-    return asked.read(numbers, swimmer, swum) if isfinite(swum.speed) else {}
+    return asked.read_quantities(numbers, swimmer, swum) if isfinite(swum.speed) else {}
 
 
 def sections(
@@ -436,7 +436,7 @@ def _root(robot: Robot) -> float:
 
 def _by_slice(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     numbers = choices[0]
-    swimmer = asked.build(numbers, asked.start if asked.held else None)
+    swimmer = asked.build(numbers, asked.start if asked.target_speed else None)
     swum = resolved(swimmer, axes=2, cells=SLICE_CELLS, cycles=asked.resolved_cycles, progress=progress)
     high = 2.0 * float(np.mean(Outline(swimmer.robot, STATIONS).silhouette.half_height))
     return [_answer(asked, numbers, swimmer, swum._replace(power=high * swum.power))]
@@ -444,7 +444,7 @@ def _by_slice(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -
 
 def _by_space(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     numbers = choices[0]
-    swimmer = asked.build(numbers, asked.start if asked.held else None)
+    swimmer = asked.build(numbers, asked.start if asked.target_speed else None)
     grids = []
     for i, cells in enumerate(SPACE_CELLS):
         grids.append(
@@ -456,7 +456,7 @@ def _by_space(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -
     thick = [replace(swimmer, water=replace(swimmer.water, viscosity=_viscosity(swimmer, n))) for n in SPACE_CELLS]
     answers: list[SwimPrediction] = []
     for model in (resistive, reactive):
-        real = theory(model, swimmer, starts=asked.held is None)
+        real = theory(model, swimmer, starts=asked.target_speed is None)
         for grid, water in zip(grids, thick, strict=True):
             slow = theory(model, water, starts=False)
             if real.speed > 0.0 and slow.speed > 0.0:  # a tail that ends in a point sheds nothing there
@@ -498,11 +498,11 @@ def _mean(numbers: Sequence[float]) -> float:
 
 
 def _answer(asked: SwimTask, numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
-    if asked.held is None:
-        return asked.read(numbers, swimmer, swum)
+    if asked.target_speed is None:
+        return asked.read_quantities(numbers, swimmer, swum)
     if not swum.speed > 0.0:
         return {}
-    return asked.read(numbers, swimmer, _at_speed(swum, asked.held(numbers)))
+    return asked.read_quantities(numbers, swimmer, _at_speed(swum, asked.target_speed(numbers)))
 
 
 def resolved(swimmer: ModelSwimmer, *, axes: int, cells: int, cycles: int, progress: Progress) -> SwimPrediction:

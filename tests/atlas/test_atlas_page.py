@@ -20,11 +20,11 @@ def outcome(row, factor=1.0, **changes):
     table = published(row.data)
     if row.kind == "numbers":
         found = compare(row, {name: np.array(1.0) for name in table.columns["quantity"]})
-        pairs = zip(table.columns["quantity"], found.theirs, strict=True)
+        pairs = zip(table.columns["quantity"], found.published, strict=True)
         curves = {name: np.array(value * factor) for name, value in pairs}
     else:
         x, y = points(row, table)
-        curves = {row.ours: np.stack([x, factor * y])}
+        curves = {row.computed_curve: np.stack([x, factor * y])}
     told = {
         "case": row.case, "digest": digest_of(CASES[row.case], quick=False), "quick": False, "cells": 48,
         "seconds": 61.0, "curves": curves,
@@ -127,7 +127,7 @@ def test_the_next_grid_counts_where_the_finest_was_not_computed_and_the_page_say
 
 def test_the_range_and_the_source_s_own_error_stand_beside_the_peak():
     found = told(outcome(ROW, 1.1))[0].comparison
-    assert found.over_range == pytest.approx(found.rms * np.abs(found.theirs).max() / np.ptp(found.theirs))
+    assert found.over_range == pytest.approx(found.rms * np.abs(found.published).max() / np.ptp(found.published))
     assert found.over_range < found.rms  # a force to and fro
     text = page(told(outcome(NUMBERS, 1.1)))
     assert "| [re100_numbers](#re100_numbers) | 10.0 % |  | 2.0 % | 0.8 % |" in text

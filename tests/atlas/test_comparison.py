@@ -11,7 +11,7 @@ from evidence.atlas import AtlasRow, bound, compare, rms_over_peak
 from evidence.atlas.case import FINEST, UNKNOWN_SCATTER, PublishedCurves
 from suchus.core.errors import IncompatibleRecord
 
-ROW = AtlasRow(name="one", title="One", case="cavity_re100", data="one", x="x", y="y", ours="curve")
+ROW = AtlasRow(name="one", title="One", case="cavity_re100", data="one", x="x", y="y", computed_curve="curve")
 
 
 @pytest.fixture
@@ -21,7 +21,9 @@ def data(monkeypatch):
     monkeypatch.setattr("evidence.atlas.comparison.published", known.__getitem__)
 
     def put(name, **columns):
-        known[name] = PublishedCurves(about=("A table.",), columns={k: tuple(map(str, v)) for k, v in columns.items()})
+        known[name] = PublishedCurves(
+            description=("A table.",), columns={k: tuple(map(str, v)) for k, v in columns.items()}
+        )
 
     return put
 
@@ -82,7 +84,7 @@ def test_scale_shift_and_window_act_on_the_published_points(data):
 
 def test_points_near_a_multiple_of_a_spacing_can_be_left_out(data):
     data("one", x=[0.25, 0.49, 0.5, 0.53, 0.75], y=[1, 9, 9, 1, 1])
-    row = replace(ROW, without=(0.5, 0.02))
+    row = replace(ROW, excluded_spacing=(0.5, 0.02))
     found = compare(row, {"curve": np.array([[0, 1], [1, 1]])})
     assert found.x.tolist() == [0.25, 0.53, 0.75]
     assert found.rms == 0
@@ -125,7 +127,7 @@ def test_a_row_takes_the_cycle_that_another_row_of_its_source_chose(data):
     data("two", x=[0, 1], y=[1, 1])
     here, there = np.array([[0, 1], [1.0, 1.0]]), np.array([[0, 1], [1.5, 1.5]])
     by = replace(ROW, any_cycle=True)
-    row = replace(ROW, data="two", ours="other", any_cycle=True, cycle_of=by)
+    row = replace(ROW, data="two", computed_curve="other", any_cycle=True, cycle_of=by)
     found = compare(row, {"curve 1": there, "curve 2": here, "other 1": here, "other 2": there})
     assert found.curve == "other 2"
     assert found.rms == pytest.approx(0.5)
@@ -153,7 +155,7 @@ def test_numbers_are_compared_with_the_mean_of_their_sources(data):
     data("one", quantity=["drag", "lift"], a=[1.0, 4.0], b=[3.0, ""])
     row = replace(ROW, kind="numbers")
     found = compare(row, {"drag": np.array(2.2), "lift": np.array(4.0), "other": np.zeros(3)})
-    assert found.theirs.tolist() == [2.0, 4.0]
+    assert found.published.tolist() == [2.0, 4.0]
     assert found.rms == pytest.approx(0.1 / 2**0.5)
     assert found.scatter == pytest.approx((0.5 / 3) ** 0.5)  # 1/2 twice and 0 once
     with pytest.raises(IncompatibleRecord, match="gave no lift"):
@@ -171,9 +173,9 @@ def test_the_scatter_is_that_of_the_source_farthest_off(data):
     data("near", t=x, v=np.full(10, 2.1))
     data("far", t=2 * x, v=np.full(10, 1.8))
     data("short", t=x[:3], v=np.full(3, 9.0))  # three points say nothing
-    row = replace(ROW, others=(("near", "t", "v", 1.0), ("far", "t", "v", 0.5), ("short", "t", "v", 1.0)))
+    row = replace(ROW, other_sources=(("near", "t", "v", 1.0), ("far", "t", "v", 0.5), ("short", "t", "v", 1.0)))
     assert compare(row, {"curve": np.stack([x, np.full(10, 2.0)])}).scatter == pytest.approx(0.1)
-    only = replace(ROW, others=(("short", "t", "v", 1.0),))
+    only = replace(ROW, other_sources=(("short", "t", "v", 1.0),))
     assert compare(only, {"curve": np.stack([x, np.full(10, 2.0)])}).scatter is None
 
 
@@ -181,7 +183,7 @@ def test_another_source_is_shifted_as_the_row_is(data):
     x = np.arange(10.0)
     data("one", x=x, y=x)
     data("other", t=x, v=x + 1)
-    row = replace(ROW, scale=(-1.0, 1.0), shift=(9.0, 0.0), others=(("other", "t", "v", -1.0),))
+    row = replace(ROW, scale=(-1.0, 1.0), shift=(9.0, 0.0), other_sources=(("other", "t", "v", -1.0),))
     curve = np.stack([x, 9 - x])
     assert compare(row, {"curve": curve}).rms == 0
     assert compare(row, {"curve": curve}).scatter == pytest.approx(1 / 9)

@@ -54,8 +54,8 @@ def test_the_example_of_the_guideline():
 )
 def test_what_does_not_converge_is_refused(values, refused):
     found = grid_convergence([np.array([value]) for value in values], CELLS[: len(values)], 1.0)
-    assert refused in found.refused
-    assert bool(found.refused) == bool(refused)
+    assert refused in found.refusal
+    assert bool(found.refusal) == bool(refused)
     assert (found.uncertainty is None) == bool(refused)
 
 
@@ -76,7 +76,7 @@ def test_the_points_at_which_a_curve_turns_back_are_counted():
     for second, turning in ((2 * first, 0.0), (np.array([2.0, 2.0, 2.0, -1.0]), 0.25), (-2 * first, 1.0)):
         found = grid_convergence([np.zeros(4), first, first + second], CELLS, 1.0)
         assert found.turning == turning
-        assert not found.refused
+        assert not found.refusal
 
 
 def test_values_that_no_grid_changes_are_certain():
@@ -99,11 +99,11 @@ def test_numbers_are_judged_one_by_one_and_the_row_has_their_mean_square():
     assert found.order == pytest.approx(2.0, abs=0.01)
     assert found.uncertainty == pytest.approx(SAFETY * np.sqrt((25 + 400 + 1600) / 3) / 48**2, rel=0.01)
     bad = row_convergence(NUMBERS, numbers(good[0], np.array([1.0, 1.1, 1.01]), good[2]))
-    assert bad.refused == "lift: its change does not become smaller with the cells"
+    assert bad.refusal == "lift: its change does not become smaller with the cells"
     short = numbers(*good)
-    assert "2 of 3 grids" in row_convergence(NUMBERS, {k: v for k, v in short.items() if k < 3}).refused
+    assert "2 of 3 grids" in row_convergence(NUMBERS, {k: v for k, v in short.items() if k < 3}).refusal
     short[2][1].pop("lift")
-    assert "not all of the numbers" in row_convergence(NUMBERS, short).refused
+    assert "not all of the numbers" in row_convergence(NUMBERS, short).refusal
 
 
 def test_a_curve_is_judged_at_the_points_that_all_grids_reach():
@@ -117,6 +117,6 @@ def test_a_curve_is_judged_at_the_points_that_all_grids_reach():
     for reach, said in ((0.6, ""), (0.4, "fewer than half")):
         few = x < np.quantile(x, reach)
         cut = {**grids, 2: (32, {"force": grids[2][1]["force"][:, few]})}
-        assert said in row_convergence(row, cut).refused
-        assert bool(row_convergence(row, cut).refused) == bool(said)
-    assert "32 cells gave no such curve" in row_convergence(row, {**grids, 2: (32, {})}).refused
+        assert said in row_convergence(row, cut).refusal
+        assert bool(row_convergence(row, cut).refusal) == bool(said)
+    assert "32 cells gave no such curve" in row_convergence(row, {**grids, 2: (32, {})}).refusal

@@ -37,7 +37,7 @@ BEGUN = [name for name in CASES if "snake" not in name or name == "snake_30_re10
 
 @pytest.mark.parametrize("name", BEGUN)
 def test_a_trial_of_every_flow_begins(name):
-    begin(CASES[name], CASES[name].quick)
+    begin(CASES[name], CASES[name].quick_effort)
 
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.full.coarse and "snake" not in name])
@@ -46,7 +46,7 @@ def test_both_grids_of_a_flow_lie_at_the_same_place(name, quick, monkeypatch):
     case, module = CASES[name], import_module(getattr(CASES[name].run, "func", CASES[name].run).__module__)
 
     def go_on(coarse, setup):
-        ours, theirs = (now.around or now.grid for now in (setup, coarse.setup))
+        ours, theirs = (now.coarse_grid or now.grid for now in (setup, coarse.setup))
         assert (*ours.origin, *ours.size) == pytest.approx((*theirs.origin, *theirs.size))
         assert setup.grid.cell < coarse.setup.grid.cell
         raise Begun
@@ -55,7 +55,7 @@ def test_both_grids_of_a_flow_lie_at_the_same_place(name, quick, monkeypatch):
     monkeypatch.setattr(module, "march", lambda *words, **more: None)
     monkeypatch.setattr(module, "refined", go_on)
     with pytest.raises(Begun):
-        case.run(case.quick if quick else case.full, lambda share: None)
+        case.run(case.quick_effort if quick else case.full, lambda share: None)
 
 
 @pytest.mark.parametrize("name", ["cavity_re1000", "dfg_2d1", "settling"])
@@ -118,7 +118,7 @@ def test_the_ensemble_of_two_states_holds_each_run_and_its_mirror_image(monkeypa
     across = 0.0
     monkeypatch.setattr(still, "march", march)
     monkeypatch.setattr(marching, "_FORMED", {})
-    effort = RunEffort(cells=8, until=5.0, coarse=4, before=6.0)
+    effort = RunEffort(cells=8, until=5.0, coarse=4, initial_duration=6.0)
     found = CASES["two_states"].run(effort, lambda *words: None)
     assert len(found) == 2 * 2 * 2 * 4
     assert [float(found[f"force across {k}"][1, 9]) for k in (1, 2, 3, 9, 10)] == [3, -3, 3, 5, -5]

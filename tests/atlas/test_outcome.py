@@ -46,7 +46,7 @@ def dying_run(effort, progress):
 def case(name="one", run=plain_run, cells=4):
     return Case(
         name=name, setup="{cells}", run=run, code=("skin.py",),
-        grids=grids((cells, 3, 2), 1.0), quick=RunEffort(cells=2, until=0.5),
+        grids=grids((cells, 3, 2), 1.0), quick_effort=RunEffort(cells=2, until=0.5),
     )  # fmt: skip
 
 

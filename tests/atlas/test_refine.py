@@ -54,7 +54,7 @@ def test_grids_of_other_places_are_refused():
 
 def nested(ratio, near=((-0.5, 1.5), (-0.5, 0.5))):
     whole = flow.Grid.covering((-1.0, 3.0), (-1.0, 1.0), cell=1 / 16)
-    return flow.Setup(grid=whole.patch(*near, ratio=ratio), around=whole, viscosity=0.1)
+    return flow.Setup(grid=whole.patch(*near, ratio=ratio), coarse_grid=whole, viscosity=0.1)
 
 
 def test_a_patch_begins_with_what_the_other_patch_holds_and_around_it_with_the_coarser_water():

@@ -22,7 +22,7 @@ def test_every_flow_is_read_and_every_row_has_one():
 @pytest.mark.parametrize("row", ROWS.values(), ids=ROWS)
 def test_the_data_of_a_row_are_numbers_with_a_source(row):
     table = published(row.data)
-    about = " ".join(table.about)
+    about = " ".join(table.description)
     assert re.search(r"(19|20)\d\d, .*(J\.|Comput\.|Phys\.|Notes)", about), "a source has a year and a journal"
     if row.kind == "numbers":
         columns = [name for name in table.columns if name != "quantity"]
@@ -33,9 +33,9 @@ def test_the_data_of_a_row_are_numbers_with_a_source(row):
     assert x.size >= 10
     assert np.isfinite(x).all()
     assert np.isfinite(y).all()
-    assert row.ours
+    assert row.computed_curve
     assert all(row.labels)
-    for name, abscissa, ordinate, _ in row.others:
+    for name, abscissa, ordinate, _ in row.other_sources:
         other = published(name)
         assert other.values(abscissa).size == other.values(ordinate).size
 
@@ -45,8 +45,8 @@ def test_a_flow_says_how_it_is_set_up_and_a_trial_is_smaller(case):
     assert case.setup.format(cells=1, coarse=2)
     assert "{cells}" in case.setup
     assert ("{coarse}" in case.setup) == bool(case.full.coarse)
-    assert case.quick.cells < case.full.cells
-    assert case.quick.until <= case.full.until
+    assert case.quick_effort.cells < case.full.cells
+    assert case.quick_effort.until <= case.full.until
 
 
 def test_rows_are_chosen_by_their_names():

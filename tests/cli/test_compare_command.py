@@ -53,7 +53,7 @@ def two(tmp_path):
 
 def test_measures_have_their_difference_and_those_that_differ_most_come_first(two):
     found = compare(load_result(two[0]), load_result(two[1]), ("a", "b"))
-    told = {one.name: (one.difference, one.share) for one in found.measures}
+    told = {one.name: (one.difference, one.relative_difference) for one in found.measures}
     assert told == {"load": (0.5, None), "far": (-0.5, -0.25), "same": (0.0, 0.0), "gone": (None, None),
                     "none": (None, None)}  # fmt: skip
     assert [one.name for one in found.measures][:3] == ["load", "far", "same"]
@@ -61,8 +61,8 @@ def test_measures_have_their_difference_and_those_that_differ_most_come_first(tw
 
 def test_measures_that_only_one_outcome_has_are_folded_away(two, tmp_path):
     found = compare(load_result(two[0]), load_result(two[1]), ("a", "b"))
-    assert [one.name for one in found.of_both] == ["load", "far", "same"]
-    assert [one.name for one in found.of_one] == ["gone", "none"]
+    assert [one.name for one in found.common_measures] == ["load", "far", "same"]
+    assert [one.name for one in found.unmatched_measures] == ["gone", "none"]
     text = render_comparison(found, tmp_path)
     assert text.index("<code>same</code>") < text.index("2 measures without a number") < text.index("<code>gone</code>")
     same = compare(load_result(two[0]), load_result(two[0]), ("a", "a"))
@@ -81,9 +81,11 @@ def test_no_difference_is_told_of_other_units(tmp_path):
 
 def test_verdicts_and_settings_that_differ_are_told(two):
     found = compare(load_result(two[0]), load_result(two[1]), ("a", "b"))
-    assert [(one.first, one.second) for one in found.changed] == [("reproduced", "contradicted")]
+    assert [(one.first_verdict, one.second_verdict) for one in found.changed_verdicts] == [
+        ("reproduced", "contradicted")
+    ]
     assert len(found.verdicts) == 2
-    assert [(one.name, one.first, one.second) for one in found.settings] == [("robot.mass", "3.5", "4.0")]
+    assert [(one.name, one.first_value, one.second_value) for one in found.settings] == [("robot.mass", "3.5", "4.0")]
 
 
 def test_the_page_shows_figures_and_replays_of_both(two, tmp_path):

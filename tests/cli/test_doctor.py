@@ -11,7 +11,7 @@ from suchus.apps.cli import doctor, main
 from suchus.apps.cli.doctor import Finding, Trial
 
 REQUIRES = ("numpy>=2.2,<3", "mujoco>=3.17,<5", 'viser>=1.1,<2; extra == "viewer"', 'mjviser; extra == "viewer"')
-WALKED = Trial(found={"seconds": 0.4, "finite": True})
+WALKED = Trial(output={"seconds": 0.4, "finite": True})
 COMPILED = {"layer": "omp", "folder": "/cache/kernels-1", "compiled": 62, "missing": []}
 
 
@@ -22,7 +22,7 @@ def at(**versions):
 @pytest.fixture
 def well(monkeypatch):
     """A machine on which all trials succeed."""
-    trials = {"walk": WALKED, "swim": Trial(found=COMPILED), "draw": Trial(found=None, failure="no EGL")}
+    trials = {"walk": WALKED, "swim": Trial(output=COMPILED), "draw": Trial(output=None, failure="no EGL")}
     monkeypatch.setattr(doctor, "run_trials", lambda *names: [trials[name] for name in names])
     monkeypatch.setattr(doctor, "packages", lambda: Finding(heading="packages", lines=("numpy 2.4.6",)))
     return trials
@@ -39,7 +39,7 @@ def test_a_machine_that_is_well_has_its_page_and_exit_code_0(well, capsys):
 
 
 def test_a_walk_that_fails_is_the_sentence_and_exit_code_2(well, capsys):
-    well["walk"] = Trial(found=None, failure="ImportError: libc is too old")
+    well["walk"] = Trial(output=None, failure="ImportError: libc is too old")
     assert main(["doctor"]) == 2
     out, err = capsys.readouterr()
     assert "can run here" not in out
@@ -48,12 +48,12 @@ def test_a_walk_that_fails_is_the_sentence_and_exit_code_2(well, capsys):
 
 
 def test_packages_in_their_ranges_are_well_and_others_are_named():
-    assert doctor.packages(REQUIRES, at(numpy="2.4.6", mujoco="3.17.0")).wrong == ""
+    assert doctor.packages(REQUIRES, at(numpy="2.4.6", mujoco="3.17.0")).problem == ""
     assert doctor.packages(REQUIRES, at(numpy="2.4.6", mujoco="3.17.0")).lines == ("numpy 2.4.6, mujoco 3.17.0",)
     low = doctor.packages(REQUIRES, at(numpy="2.1.9", mujoco="5.0"))
-    assert "numpy is 2.1.9" in low.wrong
-    assert "mujoco is 5.0" in low.wrong
-    assert "mujoco is missing" in doctor.packages(REQUIRES, at(numpy="2.2")).wrong
+    assert "numpy is 2.1.9" in low.problem
+    assert "mujoco is 5.0" in low.problem
+    assert "mujoco is missing" in doctor.packages(REQUIRES, at(numpy="2.2")).problem
 
 
 def test_extras_are_there_or_it_is_said_how_to_get_them():
@@ -70,26 +70,26 @@ def test_every_extra_that_is_told_is_one_of_the_package():
 
 def test_a_bad_number_of_threads_keeps_suchus_from_running(monkeypatch):
     monkeypatch.setenv("SUCHUS_THREADS", "two")
-    assert "'two'" in doctor.cores().wrong
+    assert "'two'" in doctor.cores().problem
     monkeypatch.setenv("SUCHUS_THREADS", "2")
-    assert doctor.cores().wrong == ""
+    assert doctor.cores().problem == ""
 
 
 def test_a_walk_must_end_in_numbers():
-    assert doctor.walking(WALKED).wrong == ""
-    assert "no number" in doctor.walking(Trial(found={"seconds": 0.4, "finite": False})).wrong
+    assert doctor.walking(WALKED).problem == ""
+    assert "no number" in doctor.walking(Trial(output={"seconds": 0.4, "finite": False})).problem
 
 
 def test_what_is_said_of_compiled_code():
     def told(**changes):
-        return " ".join(doctor.compiled(Trial(found=COMPILED | changes)).lines)
+        return " ".join(doctor.compiled(Trial(output=COMPILED | changes)).lines)
 
     assert told() == ("numba compiles; its threads are those of omp compiled code is kept in /cache/kernels-1 (there)")
     assert "(not there yet" in told(compiled=0)
     assert "set NUMBA_CACHE_DIR" in told(folder=None)
     assert "libgomp1" in told(layer="workqueue")
     assert "lacks _name" in told(missing=["_name"])
-    assert "cannot be compiled (x)" in doctor.compiled(Trial(found=None, failure="x")).wrong
+    assert "cannot be compiled (x)" in doctor.compiled(Trial(output=None, failure="x")).problem
 
 
 def test_a_folder_that_takes_nothing_is_said(tmp_path, monkeypatch):
@@ -115,14 +115,14 @@ def python(monkeypatch):
 
 def test_trials_that_answer_fail_die_and_hang(python, monkeypatch):
     python("print('noise'); print('{\"by\": \"egl\"}')")
-    assert doctor.run_trials("draw", "draw") == [Trial(found={"by": "egl"})] * 2
+    assert doctor.run_trials("draw", "draw") == [Trial(output={"by": "egl"})] * 2
     python("import sys; print('first', file=sys.stderr); sys.exit('ImportError: no')")
-    assert doctor.run_trials("walk") == [Trial(found=None, failure="ImportError: no")]
+    assert doctor.run_trials("walk") == [Trial(output=None, failure="ImportError: no")]
     python("import os; os.kill(os.getpid(), 11)")
-    assert doctor.run_trials("walk") == [Trial(found=None, failure="the process died of signal 11")]
+    assert doctor.run_trials("walk") == [Trial(output=None, failure="the process died of signal 11")]
     python("import time; time.sleep(60)")
     monkeypatch.setattr(doctor, "_TRIAL_TIMEOUT", 0.2)
-    assert doctor.run_trials("walk") == [Trial(found=None, failure="no answer within 0.2 s")]
+    assert doctor.run_trials("walk") == [Trial(output=None, failure="no answer within 0.2 s")]
 
 
 def test_the_trial_walk_walks():

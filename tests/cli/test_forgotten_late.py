@@ -20,7 +20,9 @@ run = sys.modules["suchus.apps.cli.run"]
 def test_nothing_is_forgotten_before_its_successor_is_on_disk(tmp_path, monkeypatch):
     wave, kept, others = EXPERIMENTS["wave"], tmp_path / "mine.kept-swim", tmp_path / "other.kept-swim"
     simulate = type(wave).simulate
-    monkeypatch.setattr(type(wave), "simulate", lambda *a: replace(simulate(*a), kept=(kept, tmp_path / "never_made")))
+    monkeypatch.setattr(
+        type(wave), "simulate", lambda *a: replace(simulate(*a), checkpoint_files=(kept, tmp_path / "never_made"))
+    )
     kept.touch()
     others.touch()
 

@@ -86,7 +86,9 @@ def test_tasks_take_files(here):
     from suchus.apps.envs.shelf import TASKS, resolve_task  # noqa: PLC0415
 
     task = resolve_task("Crawl", {"robot": "mine.toml", "gait": "mine_walk.toml"})
-    assert task == TASKS["Crawl"].on(replace(STRIDER, name="mine"), replace(TRIPOD, name="mine_walk", period=1.1))
+    assert task == TASKS["Crawl"].for_robot(
+        replace(STRIDER, name="mine"), replace(TRIPOD, name="mine_walk", period=1.1)
+    )
     assert resolve_task("Crawl", {"robot": Path("mine.toml")}).gait == TRIPOD
 
 

@@ -72,7 +72,7 @@ def test_the_work_of_a_force_is_that_of_its_parts():
     off = points.place.T - origin - about
     moments = own + off[:, 0] * pull[:, 1] - off[:, 1] * pull[:, 0]
     parts = Reaction(force=pull, moment=moments[:, None], power=np.zeros(count))
-    loads = flow.FlowLoads(about=about, whole=parts, parts=parts, pressed=np.zeros((count, 3)))
+    loads = flow.FlowLoads(reference_point=about, total=parts, parts=parts, internal_pressure=np.zeros((count, 3)))
     moved = one.twists(place, rate, origin, 2)
     work = (pull * moved.linear).sum() + (own * moved.angular[:, 0]).sum()
     assert one.force(place, loads, origin) @ rate == pytest.approx(work, rel=1e-12)
@@ -90,7 +90,7 @@ def test_parts_that_press_on_each_other_work_on_each_joint_by_the_moment_of_a_se
     pressed = np.column_stack([level * long, *first])
     count = len(long)
     still = Reaction(force=np.zeros((count, 2)), moment=np.zeros((count, 1)), power=np.zeros(count))
-    loads = flow.FlowLoads(about=about, whole=still, parts=still, pressed=pressed)
+    loads = flow.FlowLoads(reference_point=about, total=still, parts=still, internal_pressure=pressed)
     turning = one.midline(straight).turning
     signs = turning[-1] - turning[0]  # by how much each coordinate turns the tail against the head
     assert np.abs(signs) == pytest.approx([0.0] * 3 + [1.0] * len(one.joints), abs=1e-12)

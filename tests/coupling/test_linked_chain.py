@@ -73,7 +73,7 @@ def test_the_work_of_a_force_is_that_of_its_links(body):
     off = states.position - ORIGIN - ABOUT
     power = float((pull * states.velocity).sum() + (own * states.spin).sum())
     parts = Reaction(force=pull, moment=own + np.cross(off, pull), power=np.zeros(count))
-    loads = flow.FlowLoads(about=ABOUT, whole=parts, parts=parts, pressed=np.zeros((count, 4)))
+    loads = flow.FlowLoads(reference_point=ABOUT, total=parts, parts=parts, internal_pressure=np.zeros((count, 4)))
     assert one.force(posture.place, loads, ORIGIN) @ posture.rate == pytest.approx(power, rel=1e-10)
     felt = one.felt(posture.place, loads, ORIGIN)
     assert felt[:, :3] == pytest.approx(pull * [-1.0, -1.0, 1.0])  # the flow is the world turned by half a turn
@@ -82,7 +82,7 @@ def test_the_work_of_a_force_is_that_of_its_links(body):
     modes = one.modes(posture.place, ORIGIN, 3)
     summed = sum(rate * mode.linear for rate, mode in zip(posture.rate, modes, strict=True))
     assert moving.linear == pytest.approx(summed, abs=1e-12)
-    assert moving.about == pytest.approx(states.position - ORIGIN)
+    assert moving.reference_points == pytest.approx(states.position - ORIGIN)
 
 
 def test_the_body_of_the_flow_is_the_robot_with_its_head_at_the_origin():

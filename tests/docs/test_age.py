@@ -20,7 +20,7 @@ def known(monkeypatch):
     age._answers.cache_clear()
 
     def become(state, code="abc"):
-        answer = Status(name="turning", state=state, why="", seconds=1.0, renew="", code=code)
+        answer = Status(name="turning", state=state, reason="", seconds=1.0, renew="", code=code)
         monkeypatch.setattr(stale, "status", lambda kept, **how: answer)
 
     yield become

@@ -104,8 +104,8 @@ def test_flags_have_both_sides():
     assert exceeds_tolerance(0.0, 1.01 * MAX_HEADING_CHANGE)
     assert exceeds_tolerance(np.nan, 0.0)
     assert exceeds_tolerance(0.0, np.nan)
-    assert not Rehearsal(rule_cycles=0.9 * MIN_JUDGED_CYCLES).judges("closed")
-    assert Rehearsal(rule_cycles=MIN_JUDGED_CYCLES).judges("closed")
+    assert not Rehearsal(rule_cycles=0.9 * MIN_JUDGED_CYCLES).is_long_enough("closed")
+    assert Rehearsal(rule_cycles=MIN_JUDGED_CYCLES).is_long_enough("closed")
 
 
 def test_the_same_trouble_with_the_same_seed_gives_the_same_bytes():

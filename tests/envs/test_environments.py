@@ -139,7 +139,7 @@ def test_an_action_is_the_last_commanded_angle():
     for _ in range(12):
         seen, *_ = env.step(action)
     np.testing.assert_allclose(envs.reading_columns(seen, "last_action"), action, atol=1e-6)
-    low, high = env.pack._low, env.pack._high
+    low, high = env.pack._lower_limits, env.pack._upper_limits
     angles = np.pi * envs.reading_columns(seen, "servo_position")[0]
     commanded = np.clip(env.pack.centre + CRAWL.span * action[0], low, high)
     arms = np.array(["yaw" in name for name in servo_names()])  # these carry no weight
@@ -241,7 +241,7 @@ def test_faults_are_drawn_from_all_that_are_named():
 def test_a_standing_robot_stays_up_unless_it_is_pushed_too_hard():
     pushed = envs.Pushes(most=40.0, earliest=0.2, latest=0.2)
     calm = envs.play(replace(STAND, pushes=None), envs.HoldStill(STAND), episodes=1, steps=60)
-    assert calm.lasted.tolist() == pytest.approx([3.0])
+    assert calm.durations.tolist() == pytest.approx([3.0])
     assert calm.returns[0] > 2.5
     env = gymnasium.make("suchus/Stand-v0", pushes=pushed).unwrapped
     env.reset(seed=1)
@@ -304,12 +304,12 @@ def test_a_snout_in_the_ground_is_a_fall_only_where_a_height_is_asked_for(least,
 
 def test_a_robot_of_another_size_stands_when_its_episode_begins_and_one_too_weak_is_refused():
     small = rescale(ROBOTS["caiman"], length_factor=0.3, mass_factor=0.027)
-    pack = Pack(envs.TASKS["Stand"].on(small), 1)
+    pack = Pack(envs.TASKS["Stand"].for_robot(small), 1)
     pack.restart([0], [np.random.default_rng(0)])
     assert pack.loop.sensors["snout_position"][0, 2] > 0.8 * stretched_length(small)
     weak = with_values(ROBOTS["caiman"], {"spine.pitch_servo.torque": 0.5})
     with pytest.raises(InvalidDesign, match=r"robot 'caiman' falls over as it stands up: its snout is 0\.\d+ m high"):
-        Pack(envs.TASKS["Stand"].on(weak), 1)
+        Pack(envs.TASKS["Stand"].for_robot(weak), 1)
 
 
 def test_a_robot_on_its_back_has_fallen():
@@ -424,7 +424,8 @@ def test_without_gymnasium_the_sentence_says_what_to_install():
 def test_the_page_lists_every_sense_as_it_is():
     page = DOCS.read_text()
     for sense in envs.SENSES:
-        row = f"| `{sense.name}` | {sense.columns.start} to {sense.columns.stop - 1} | {sense.scale} | {sense.what} |"
+        columns = f"{sense.columns.start} to {sense.columns.stop - 1}"
+        row = f"| `{sense.name}` | {columns} | {sense.scale} | {sense.description} |"
         assert row in page
 
 
@@ -484,17 +485,17 @@ def test_a_crank_turns_by_its_action_and_its_angle_is_given_within_a_turn():
 
 
 def test_a_task_follows_the_size_of_the_robot():
-    task = CRAWL.on(ROBOTS["salamander"])
+    task = CRAWL.for_robot(ROBOTS["salamander"])
     longer = ROBOTS["salamander"].length / ROBOTS["caiman"].length
     heavier = ROBOTS["salamander"].mass / ROBOTS["caiman"].mass
     assert (task.decision, task.timestep) == (0.025, 0.0025)
     assert task.rewards.forward == pytest.approx(CRAWL.rewards.forward / longer)
     assert task.rewards.work == pytest.approx(CRAWL.rewards.work / (heavier * longer))
     assert task.rewards.action_rate == CRAWL.rewards.action_rate
-    pushed = replace(CRAWL, pushes=envs.Pushes()).on(ROBOTS["strider"])
+    pushed = replace(CRAWL, pushes=envs.Pushes()).for_robot(ROBOTS["strider"])
     assert pushed.pushes.most == pytest.approx(15.0 * 3.0 / ROBOTS["caiman"].mass)
-    assert (pushed.pushes.where(pushed.robot), envs.Pushes().where(CRAWL.robot)) == ("front", "thorax")
-    assert CRAWL.on(ROBOTS["long_tail"]) == replace(CRAWL, robot=ROBOTS["long_tail"])
+    assert (pushed.pushes.pushed_body(pushed.robot), envs.Pushes().pushed_body(CRAWL.robot)) == ("front", "thorax")
+    assert CRAWL.for_robot(ROBOTS["long_tail"]) == replace(CRAWL, robot=ROBOTS["long_tail"])
     rates = {sense.name: sense.scale for sense in envs.senses(ROBOTS["salamander"])}
     assert rates["servo_velocity"] == f"{10 / np.sqrt(longer):.3g} rad/s"
 

@@ -36,9 +36,9 @@ def test_robots_swim_side_by_side_in_flows_of_their_own_as_each_does_alone():
 
 def test_a_flow_takes_the_place_of_the_lake_and_moves_what_it_sees():
     task = resolve_task("Swim", {"water": "space"})
-    assert (task.solved, task.lake) == (Space(), None)
+    assert (task.flow, task.lake) == (Space(), None)
     assert resolve_task("Swim", {"water": "sections"}).lake == Lake(level=0.5)
-    moved = Pack(resolve_task("Swim", {"water": WATER}), 1)._tanks.moved
+    moved = Pack(resolve_task("Swim", {"water": WATER}), 1)._tanks.is_lateral_servo
     names = [name for name, does in zip(layout(task.robot).servos, moved, strict=True) if does]
     assert names == ["spine_yaw_1", "spine_yaw_2", "spine_yaw_3", "tail_cable"]
 

@@ -125,7 +125,7 @@ def test_who_swims_to_the_goal_gets_more_than_who_rests_and_who_drifts_away_less
     assert swims.returns.min() > 0.8 * (10 * swims.approach[0] + 5)
     assert abs(rests.returns).max() < 0.5
     assert drifts.returns.max() < rests.returns.min() - 0.5
-    assert swims.lasted.max() < rests.lasted.min() == pytest.approx(3.5)
+    assert swims.durations.max() < rests.durations.min() == pytest.approx(3.5)
 
 
 def test_the_shelf_s_swim_fits_into_the_actions_and_the_steering_turns_both_ways():
@@ -139,7 +139,7 @@ def test_the_shelf_s_swim_fits_into_the_actions_and_the_steering_turns_both_ways
     envs.reading_columns(seen, "goal_direction", SWIM.robot)[:] = [1.0, 0.0, 0.0]
     straight = swim(seen)
     assert np.abs(straight).max() < 1.0
-    expected = cycle_targets(SWIM.robot, SWIM.swum, clock + SWIM.decision)
+    expected = cycle_targets(SWIM.robot, SWIM.swimming_gait, clock + SWIM.decision)
     np.testing.assert_allclose(np.array(centre) + SWIM.span * straight, expected, atol=1e-12)
     envs.reading_columns(seen, "goal_direction", SWIM.robot)[:] = [0.0, 1.0, 0.0]
     left = swim(seen)
@@ -165,7 +165,7 @@ def test_a_controller_feels_through_the_observation_what_the_robot_feels(name):
 def test_a_controller_of_the_shelf_swims_through_the_actions_with_its_heading_held():
     near = replace(SWIM, goal=replace(NEAR, bearing=0.0), jitter=0.0)
     centre = tuple(Pack(near, 1).centre)
-    control, gait = Swimming(heading=HeadingHold()), SWIM.swum
+    control, gait = Swimming(heading=HeadingHold()), SWIM.swimming_gait
     policy = envs.ControllerPolicy(near, centre, control, steps=100, gait=gait)
     played = envs.play(near, policy, episodes=1, steps=100)
     assert played.goal.all()
@@ -176,7 +176,7 @@ def test_a_controller_of_the_shelf_swims_through_the_actions_with_its_heading_he
 
 
 def test_the_clock_goes_with_the_swimming_motion():
-    slow = replace(SWIM.swum, period=2.0)
+    slow = replace(SWIM.swimming_gait, period=2.0)
     assert (SWIM.period, replace(SWIM, swim=slow).period) == (pytest.approx(1.0), pytest.approx(2.0))
     assert envs.TASKS["Crawl"].period == envs.TASKS["Crawl"].gait.period
 
@@ -186,7 +186,7 @@ def test_a_controller_of_the_shelf_comes_ashore_through_the_actions_and_gets_mor
     near = replace(SHORE, ground=Ground(uphill=steep), lake=Lake(level=1.1 * sin(steep)), goal=envs.Landing(beyond=0.1))
     centre = tuple(Pack(near, 1).centre)
     holds = Swimming(heading=HeadingHold())
-    control, steps = Amphibious(swim=near.swum, swimming=holds, heading=HeadingRule()), 400
+    control, steps = Amphibious(swim=near.swimming_gait, swimming=holds, heading=HeadingRule()), 400
     comes = envs.play(near, envs.ControllerPolicy(near, centre, control, steps=steps), episodes=1, steps=steps)
     rests = envs.play(near, envs.HoldStill(near), episodes=1, steps=40)
     assert comes.goal.all()
@@ -216,7 +216,7 @@ def test_a_robot_that_rolls_over_at_the_goal_has_not_reached_it():
     pack._goals[0] = pack.loop.sensors["centre_of_mass"][0, :2]
     pack.loop.batch.qpos[0, 3:7] = [0, 1, 0, 0]
     terms = pack.act(np.zeros((1, 19)), np.ones(1, dtype=bool))
-    assert (terms.fall[0], terms.goal[0], terms.over[0]) == (True, False, True)
+    assert (terms.fall[0], terms.goal[0], terms.is_over[0]) == (True, False, True)
     assert "it rolled over" in pack.causes[0]
 
 
@@ -235,7 +235,7 @@ def rigid():
 
 @pytest.mark.parametrize("name", ["swimmer", "pleurobot"])
 def test_any_body_that_floats_and_bends_swims_to_the_goal(name):
-    near = replace(SWIM.on(ROBOTS[name]), goal=replace(NEAR, bearing=0.0), jitter=0.0)
+    near = replace(SWIM.for_robot(ROBOTS[name]), goal=replace(NEAR, bearing=0.0), jitter=0.0)
     policy = envs.SwimToGoal(task=near, centre=tuple(Pack(near, 1).centre))
     swum = envs.play(near, policy, episodes=1, steps=100)
     rests = envs.play(near, envs.HoldStill(near), episodes=1, steps=100)
@@ -280,6 +280,6 @@ def test_a_goal_and_a_swim_that_cannot_be_are_refused():
         envs.Goal(distance=0.1, within=0.1)
     with pytest.raises(InvalidDesign, match="0 to 1000 m is allowed"):
         envs.Landing(beyond=-1.0)
-    wide = SWIM.swum.with_numbers(tail_bend=3.0)
+    wide = SWIM.swimming_gait.with_numbers(tail_bend=3.0)
     with pytest.raises(OutsideLimits, match="tail"):
         envs.CrocodileEnv("Swim", swim=wide)

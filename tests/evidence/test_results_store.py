@@ -63,7 +63,7 @@ def test_every_file_is_whole_and_on_the_list(name):
 
 def test_every_result_names_what_it_is_made_of():
     for kept in RESULTS.values():
-        assert set(kept.of) <= set(RESULTS), kept.name
+        assert set(kept.sources) <= set(RESULTS), kept.name
         assert all(module.startswith(("suchus.", "evidence.")) for module in kept.modules), kept.name
 
 

@@ -41,13 +41,13 @@ def edit(package, file, before, after):
 def test_a_comment_makes_nothing_old(kept, package):
     text = (package / "flow/output.py").read_text(encoding="utf-8")
     (package / "flow/output.py").write_text(f"# A comment.\n{text}\n# Another.\n", encoding="utf-8")
-    assert status(kept, package=package).why == "the same code"
+    assert status(kept, package=package).reason == "the same code"
 
 
 def test_other_code_that_does_the_same_is_current_and_without_a_probe_possibly_old(kept, package):
     (package / "flow/output.py").write_text("UNUSED = 1\n" + (package / "flow/output.py").read_text(encoding="utf-8"))
     assert status(kept, package=package).state == "current"
-    assert status(kept, package=package).why == "other code that does the same"
+    assert status(kept, package=package).reason == "other code that does the same"
     assert status(kept, package=package, by_probe=False).state == "possibly old"
     assert status(replace(kept, probe=None), package=package).state == "possibly old"
 
@@ -56,7 +56,7 @@ def test_a_probe_that_gives_other_numbers_makes_it_old_and_says_which(kept, pack
     (package / "flow/output.py").write_text("UNUSED = 1\n" + (package / "flow/output.py").read_text(encoding="utf-8"))
     answer = status(replace(kept, probe=lambda: {"speed": 0.2}), package=package)
     assert (answer.state, answer.seconds) == ("old", 90.0)
-    assert answer.why == "its probe gives 1 other number, as speed 0.2 for 0.1"
+    assert answer.reason == "its probe gives 1 other number, as speed 0.2 for 0.1"
 
 
 def test_a_probe_that_cannot_run_is_not_checked_here(kept, package):
@@ -66,23 +66,23 @@ def test_a_probe_that_cannot_run_is_not_checked_here(kept, package):
     (package / "flow/output.py").write_text("UNUSED = 1\n" + (package / "flow/output.py").read_text(encoding="utf-8"))
     answer = status(replace(kept, probe=lacking), package=package)
     assert answer.state == "not checked here"
-    assert "cannot run on this machine: ModuleNotFoundError: No module named 'cma'" in answer.why
+    assert "cannot run on this machine: ModuleNotFoundError: No module named 'cma'" in answer.reason
 
 
 def test_a_damaged_file_is_not_checked_here(kept, package):
     store.path_of("strokes").write_text("{")
     assert status(kept, package=package).state == "not checked here"
-    assert "is damaged" in status(kept, package=package).why
+    assert "is damaged" in status(kept, package=package).reason
 
 
 def answer(name, state):
-    return Status(name=name, state=state, why="so", seconds=60.0, renew=f"make {name}")
+    return Status(name=name, state=state, reason="so", seconds=60.0, renew=f"make {name}")
 
 
 def test_a_result_is_as_old_as_what_it_is_made_of():
     parts = [answer("claims", "current"), answer("verdicts", "current"), answer("turning", "old")]
     assert [one.state for one in with_parts(parts)] == ["current", "old", "old"]
-    assert with_parts(parts)[1].why == "turning, of which it is made, is"
+    assert with_parts(parts)[1].reason == "turning, of which it is made, is"
 
 
 def test_the_table_says_what_is_old_and_what_it_costs():

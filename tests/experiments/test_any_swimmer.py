@@ -57,13 +57,13 @@ def test_tail_and_trunk_swim_alone_where_both_bend(name, motions):
 def test_the_shore_takes_every_walker_in_a_gait_that_can_be_steered():
     shore = EXPERIMENTS["shore"].quick()
     for name in ("pleurobot", "salamander", "salamandra", "strider", "floating_caiman"):
-        asked = shore.on(ROBOTS[name])
+        asked = shore.for_robot(ROBOTS[name])
         assert asked.gait.has("steering")
         assert suits(asked.robot, asked.gait)
         assert suits(asked.robot, asked.wade)
         assert asked.air_released == (1.0 if name == "floating_caiman" else 0.0)
-    assert shore.on(ROBOTS["floating_caiman"]).gait == GAITS["semi_erect"]
-    assert shore.on(ROBOTS["strider"]).gait == GAITS["tripod"]
+    assert shore.for_robot(ROBOTS["floating_caiman"]).gait == GAITS["semi_erect"]
+    assert shore.for_robot(ROBOTS["strider"]).gait == GAITS["tripod"]
     with pytest.raises(UnsuitedRobot, match="shore needs limbs to walk on; robot 'swimmer' lacks that"):
         check_needs(ROBOTS["swimmer"], EXPERIMENTS["shore"].needs, "shore")
 
@@ -90,7 +90,7 @@ def test_the_pattern_generator_swims_whoever_bends_and_by_the_felt_load_whoever_
     [("swim_free", "swimmer"), ("swim_free", "pleurobot"), ("swim_free", hatchling), ("shore", "pleurobot")],
 )
 def test_it_answers(name, one):
-    asked = EXPERIMENTS[name].quick().on(robot_of(one))
+    asked = EXPERIMENTS[name].quick().for_robot(robot_of(one))
     outcome = asked.run()
     assert "nan" not in outcome.decides.split()
     assert sum(isfinite(measure.value) for measure in outcome.measures.values()) > 5

@@ -45,7 +45,7 @@ def robot_of(name):
 
 
 def shortest(name, robot):
-    experiment = replace(EXPERIMENTS[name].quick(), **LEAST[name]).on(robot)
+    experiment = replace(EXPERIMENTS[name].quick(), **LEAST[name]).for_robot(robot)
     return replace(experiment, timestep=coarse_step(robot)) if hasattr(experiment, "timestep") else experiment
 
 
@@ -55,10 +55,10 @@ def test_a_robot_without_what_is_needed_is_refused_in_a_sentence(name, robot):
     experiment, body = EXPERIMENTS[name].quick(), robot_of(robot)
     missing = lacking(body, experiment.needs)
     if not missing:
-        assert experiment.on(body).robot == body
+        assert experiment.for_robot(body).robot == body
         return
     with pytest.raises(UnsuitedRobot) as refused:
-        experiment.on(body)
+        experiment.for_robot(body)
     text = str(refused.value)
     assert text.startswith(f"{name} needs ")
     assert repr(body.name) in text
@@ -151,27 +151,31 @@ def test_of_a_robot_that_a_gait_of_the_shelf_suits_none_is_said_to_be_drafted(tm
 
 def test_which_gaits_another_robot_moves_in_is_said_with_their_period_in_its_size():
     asked = EXPERIMENTS["gait_diagram"]
-    assert gait_sentence(asked) == gait_sentence(asked.on(ROBOTS["caiman"])) == []
-    assert gait_sentence(asked.on(ROBOTS["strider"])) == ["strider moves in the gait tripod."]
-    (told,) = gait_sentence(asked.on(hatchling()))
+    assert gait_sentence(asked) == gait_sentence(asked.for_robot(ROBOTS["caiman"])) == []
+    assert gait_sentence(asked.for_robot(ROBOTS["strider"])) == ["strider moves in the gait tripod."]
+    (told,) = gait_sentence(asked.for_robot(hatchling()))
     assert told == "hatchling moves in the gait belly_crawl (a cycle in 2.18 s; 4 s in the catalog)."
-    (told,) = gait_sentence(EXPERIMENTS["turning"].on(hatchling()))
+    (told,) = gait_sentence(EXPERIMENTS["turning"].for_robot(hatchling()))
     assert told.startswith("hatchling moves in the gaits ")
     assert " and " in told
-    assert gait_sentence(EXPERIMENTS["leg_kinematics"]) == gait_sentence(EXPERIMENTS["floating"].on(hatchling())) == []
+    assert (
+        gait_sentence(EXPERIMENTS["leg_kinematics"])
+        == gait_sentence(EXPERIMENTS["floating"].for_robot(hatchling()))
+        == []
+    )
 
 
 def test_a_robot_that_floats_goes_ashore_itself_under_the_pattern_generator():
     asked = EXPERIMENTS["pattern_generator"]
-    floats = asked.on(ROBOTS["pleurobot"])
+    floats = asked.for_robot(ROBOTS["pleurobot"])
     longer = ROBOTS["pleurobot"].length / asked.swimmer.length
     assert (floats.swimmer, floats.swimmer_gait) == (ROBOTS["pleurobot"], default_gait(ROBOTS["pleurobot"]))
     assert floats.water_line == pytest.approx(longer * asked.water_line)
     assert floats.shore_time == pytest.approx(sqrt(longer) * asked.shore_time)
-    sinks = asked.on(ROBOTS["strider"])
+    sinks = asked.for_robot(ROBOTS["strider"])
     assert (sinks.swimmer, sinks.swimmer_gait) == (asked.swimmer, asked.swimmer_gait)
     assert (sinks.water_line, sinks.shore_time) == (asked.water_line, asked.shore_time)
-    assert asked.on(ROBOTS["salamander"]) == asked
+    assert asked.for_robot(ROBOTS["salamander"]) == asked
 
 
 def test_a_turn_is_measured_over_cycles_that_are_no_whole_number_of_samples():
@@ -238,7 +242,7 @@ def test_time_steps_divide_the_control_period_of_a_robot_of_another_size(name):
     for question in (EXPERIMENTS[name], EXPERIMENTS[name].quick()):
         if not hasattr(question, "robot") or lacking(small, question.needs):
             return
-        sized = question.on(small)
+        sized = question.for_robot(small)
         for field in (field.name for field in fields(sized) if "timestep" in field.name):
             steps = control_period(small) / np.atleast_1d(getattr(sized, field))
             assert steps == pytest.approx(np.round(steps), abs=1e-9), field
@@ -249,7 +253,7 @@ def test_time_steps_divide_the_control_period_of_a_robot_of_another_size(name):
 
 def test_a_robot_that_can_follow_the_gait_changes_nothing_else():
     here = EXPERIMENTS["terrain"].quick()
-    assert here.on(six()) == replace(here, robot=six())
+    assert here.for_robot(six()) == replace(here, robot=six())
 
 
 def test_the_six_joint_crocodile_crawls_with_spine_and_tail_of_its_own():
@@ -269,13 +273,13 @@ def test_every_question_can_be_asked_of_a_body_of_another_size(name, body):
     """Bounds of fields that grow with the body grow too: time steps, torques, lengths."""
     for question in (EXPERIMENTS[name], EXPERIMENTS[name].quick()):
         if not lacking(body(), question.needs):
-            asked = question.on(body())
+            asked = question.for_robot(body())
             assert getattr(asked, "robot", None) in (None, body())
 
 
 def test_a_time_step_is_at_most_the_control_period_of_the_robot():
     for name in ("joint_faults", "turning", "floating"):
-        asked = EXPERIMENTS[name].quick().on(giant())
+        asked = EXPERIMENTS[name].quick().for_robot(giant())
         assert replace(asked, timestep=control_period(giant())).timestep == 0.02
         with pytest.raises(InvalidDesign, match=rf"{name}.timestep is 0.04 s; 1e-05 to 0.02 s is allowed"):
             replace(asked, timestep=0.04)

@@ -126,7 +126,7 @@ def test_impossible_settings_are_refused(fields, message):
 
 def test_a_body_of_six_spine_joints_stands_up_in_the_experiment_too():
     longer = with_values(six(), {"spine.pitch_servo.torque": 9.0})
-    experiment = EXPERIMENTS["bipedal_reach"].quick().on(longer)
+    experiment = EXPERIMENTS["bipedal_reach"].quick().for_robot(longer)
     outcome = experiment.run()
     value = {name: measure.value for name, measure in outcome.measures.items()}
     assert outcome.verdicts == ()
@@ -139,5 +139,5 @@ def test_a_body_of_six_spine_joints_stands_up_in_the_experiment_too():
 def test_who_has_no_tables_or_cannot_stand_up_is_refused():
     for robot in (eight(), ROBOTS["salamander"]):
         with pytest.raises(UnsuitedRobot, match=r"^bipedal_reach needs the article's tables"):
-            EXPERIMENTS["bipedal_reach"].quick().on(robot)
+            EXPERIMENTS["bipedal_reach"].quick().for_robot(robot)
     assert lacking(six(), EXPERIMENTS["bipedal_reach"].needs) == []

@@ -43,7 +43,9 @@ def test_the_animal_bends_towards_its_hind_foot_that_swings(quick_outcome):
 
 def test_a_body_of_other_limbs_has_no_animal_beside_it():
     question = EXPERIMENTS["gait_diagram"].quick()
-    assert "animal" not in question.told({"x": 1.0} | _numbers(("LF", "RF")), legs=("LF", "RF"), animal_duty=0.8)
+    assert "animal" not in question.render_explanation(
+        {"x": 1.0} | _numbers(("LF", "RF")), legs=("LF", "RF"), animal_duty=0.8
+    )
 
 
 def _numbers(legs):

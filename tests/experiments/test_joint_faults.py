@@ -146,7 +146,7 @@ def test_every_repeat_is_another_one_and_the_same_in_every_cell(campaign, outcom
     assert len(np.unique(forward)) == forward.size
     runs = [Run(robot=CAIMAN, gait=CRAWL), Run(robot=CAIMAN, gait=GAITS["limbs_only"])]
     runs.append(Run(robot=CAIMAN, gait=CRAWL, faults=joint_failure(CAIMAN, CRAWL, "hind_yaw", "limp", "both")))
-    repeated = simulate(campaign._built(runs), duration=1.0 + CRAWL.period, timestep=campaign.timestep)
+    repeated = simulate(campaign._repeat_runs(runs), duration=1.0 + CRAWL.period, timestep=campaign.timestep)
     way = displacement(repeated).sel(xyz="x").values.reshape(len(runs), campaign.repeats)
     assert forward.sel(arm="coordinated").values.tolist() == way[0].tolist()
     assert forward.sel(arm="limbs_only").values.tolist() == way[1].tolist()

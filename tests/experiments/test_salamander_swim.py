@@ -75,9 +75,9 @@ def tracked(turn, ahead):
 @pytest.mark.parametrize("turn", [0.0, 0.1])
 def test_a_stiff_body_that_turns_about_its_root_swings_in_proportion_to_the_distance_from_it(turn):
     found = envelope(ROBOT, tracked(turn, 0.2), 0.0, 1.0)
-    assert found.place[[0, -1]] == pytest.approx([0.0, 1.0])
+    assert found.position[[0, -1]] == pytest.approx([0.0, 1.0])
     root = landmarks(ROBOT, np.zeros(len(layout(ROBOT).hinges))).snout[0] / ROBOT.length
-    assert found.swing == pytest.approx(2 * np.sin(turn) * np.abs(found.place - root), abs=1e-3)
+    assert found.swing == pytest.approx(2 * np.sin(turn) * np.abs(found.position - root), abs=1e-3)
 
 
 @pytest.fixture(scope="module")

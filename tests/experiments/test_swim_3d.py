@@ -62,7 +62,9 @@ def test_folded_limbs_are_the_robots_links_and_feet_beside_the_body_at_their_hip
     lengths = sorted(float(np.hypot(*np.subtract(one.end, one.start))) for one in limbs if one.start != one.end)
     links = [link.length for limb in place.limbs for link in limb.girdle.limb.links]
     assert lengths == pytest.approx(sorted(links))
-    assert sorted({one.at for one in limbs}) == pytest.approx([0.1625, 0.505])  # as far behind the snout as the hips
+    assert sorted({one.arc_position for one in limbs}) == pytest.approx(
+        [0.1625, 0.505]
+    )  # as far behind the snout as the hips
     table = pieces(ROBOT)
     axis = {body.name for body in place.bodies} - {segment.name for segment in place.robot.axis}
     there = [place.bodies[int(row)].name in axis for row in table[:, 0]]

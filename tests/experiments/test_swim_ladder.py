@@ -73,15 +73,15 @@ def test_a_rung_is_settled_over_the_most_cycles_whose_halves_agree():
 
     assert settle(half, 10) == SettledNumber(1.0, 1.0, 1.0, 0.0)  # the last six; the last eight hold a 9
     values[-1] = 1.0 + 3.5 * MAX_SETTLED_SPREAD
-    assert settle(half, 10).apart > MAX_SETTLED_SPREAD
-    assert settle(half, 10, scale=2.0).apart < MAX_SETTLED_SPREAD  # of what is twice as large
-    assert isnan(settle(half, MIN_SETTLED_CYCLES).apart)  # the first cycle does not count
+    assert settle(half, 10).relative_spread > MAX_SETTLED_SPREAD
+    assert settle(half, 10, scale=2.0).relative_spread < MAX_SETTLED_SPREAD  # of what is twice as large
+    assert isnan(settle(half, MIN_SETTLED_CYCLES).relative_spread)  # the first cycle does not count
 
 
 def test_both_starting_sides_count():
     found = settle(lambda a, b: [1.0, 1.0 + 1.1 * MAX_SETTLED_SPREAD], CYCLES)
     assert (found.low, found.high) == (1.0, 1.0 + 1.1 * MAX_SETTLED_SPREAD)
-    assert found.apart > MAX_SETTLED_SPREAD
+    assert found.relative_spread > MAX_SETTLED_SPREAD
 
 
 @pytest.mark.parametrize("drift", [0.0, 0.03])
@@ -136,17 +136,17 @@ def test_the_grids_of_a_kept_study_widen_three_dimensions():
 
 
 def test_the_study_of_grids_that_ships_is_of_todays_rules_body_and_water():
-    study = kept_grids(SWIMMING.climb())
+    study = kept_grids(SWIMMING.ladder_setting())
     assert study["cells"] == [68, 80, 96]
     assert {rule.measure for rule in RULES} <= set(study["measures"])
-    assert kept_grids(replace(SWIMMING, reynolds=6000.0).climb()) == {}
-    assert kept_grids(replace(SWIMMING, space_cells=80).climb()) == study
+    assert kept_grids(replace(SWIMMING, reynolds=6000.0).ladder_setting()) == {}
+    assert kept_grids(replace(SWIMMING, space_cells=80).ladder_setting()) == study
 
 
 def test_a_study_older_than_the_rules_is_refused_with_what_renews_it(monkeypatch):
     monkeypatch.setattr(ladder, "RULES", (replace(RULES[0], settled=0.2), *RULES[1:]))
     with pytest.raises(IncompatibleRecord, match=r"older than the rules.*python tools/ladder_grids.py FOLDER"):
-        kept_grids(SWIMMING.climb())
+        kept_grids(SWIMMING.ladder_setting())
 
 
 @pytest.fixture
@@ -174,7 +174,9 @@ def slices(cycles):
 
 
 def test_a_rung_that_cannot_run_says_so_and_the_others_speak(no_flow):
-    record = run_ladder(replace(SWIMMING.quick(), cycles=4).climb(), lambda stage, share: None, slices=slices(4))
+    record = run_ladder(
+        replace(SWIMMING.quick(), cycles=4).ladder_setting(), lambda stage, share: None, slices=slices(4)
+    )
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"slice_taken", "space"}
     assert unable["space"] == "Not run: the grid is too coarse."
@@ -206,7 +208,7 @@ def test_a_body_that_does_not_float_leaves_theories_and_the_slice(no_flow, monke
         raise InvalidDesign("nothing lets it float.")
 
     monkeypatch.setattr(ladder, "swum_in_sections", sinks)
-    climb = replace(SWIMMING.quick(), robot=ROBOTS["swimmer"]).climb()
+    climb = replace(SWIMMING.quick(), robot=ROBOTS["swimmer"]).ladder_setting()
     record = run_ladder(climb, lambda stage, share: None, slices=slices(2))
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"sections", "slice_taken", "space"}
@@ -218,7 +220,7 @@ def test_a_body_that_does_not_float_leaves_theories_and_the_slice(no_flow, monke
 
 
 def test_every_rung_is_asked_the_same_motions():
-    gait = SWIMMING.climb().fitted.gait
+    gait = SWIMMING.ladder_setting().wave_fit.gait
     whole, tail, trunk = motions(gait).values()
     assert (whole, tail, trunk) == (gait, gait.straightened("trunk"), gait.straightened("tail"))
 
@@ -227,7 +229,7 @@ def test_every_rung_is_asked_the_same_motions():
 def swum(monkeypatch):
     """Let theories swim alone, and note by the axes of the grid which swims are asked for."""
     asked, one = [], slices(8)
-    names = {motion: name for name, motion in motions(SWIMMING.quick().climb().fitted.gait).items()}
+    names = {motion: name for name, motion in motions(SWIMMING.quick().ladder_setting().wave_fit.gait).items()}
 
     def noted(robot, motion, setting, **named):
         asked.append((setting.axes, "held" if setting.tethered else names[motion]))
@@ -242,7 +244,7 @@ def swum(monkeypatch):
 
 
 def swum_of(**given):
-    return run_ladder(replace(SWIMMING.quick(), cycles=8).climb(), lambda stage, share: None, **given)
+    return run_ladder(replace(SWIMMING.quick(), cycles=8).ladder_setting(), lambda stage, share: None, **given)
 
 
 def test_nothing_swims_for_a_claim_on_which_the_rungs_before_disagree(swum):
@@ -271,5 +273,5 @@ def test_only_what_the_claims_are_read_of_swims(swum):
 
 def test_a_motion_that_the_servos_cannot_follow_is_no_swim_for_theories_to_judge(swum):
     with pytest.raises(OutsideLimits, match="tail_cable"):
-        replace(SWIMMING.quick(), frequency=3.0).measured(RULES[-1].needs)
+        replace(SWIMMING.quick(), frequency=3.0).simulate_measures(RULES[-1].needs)
     assert swum == []

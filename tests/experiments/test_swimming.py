@@ -37,8 +37,10 @@ def test_what_was_finished_is_kept_and_the_rest_goes_on(tmp_path, monkeypatch):
     assert {path.stem for path in tmp_path.iterdir()} >= {"slice_trunk_and_tail", "slice_tail_only"}
     outcome = experiment.run(lambda stage, share: seen.append((stage, share)))
     assert min(share for stage, share in seen if stage == "slice") > 0.07, "what was finished began anew"
-    assert {*outcome.kept} >= {*tmp_path.iterdir()} - {*others}, "what is kept is not known, and stays for ever"
-    assert not {*outcome.kept} & {*others}
+    assert {*outcome.checkpoint_files} >= {*tmp_path.iterdir()} - {*others}, (
+        "what is kept is not known, and stays for ever"
+    )
+    assert not {*outcome.checkpoint_files} & {*others}
     assert (tmp_path / "slice_trunk_and_tail.kept-swim").is_file(), "forgotten before anything is saved"
     assert outcome.films
     assert all(name.endswith(".gif") for name in outcome.films)

@@ -137,7 +137,7 @@ def test_an_episode_breaks_as_a_run_of_a_batch_does_to_the_byte(shelved):
     told, rows = pack.centre, [pack.centre]
     for number in range(8):
         action = 0.6 * np.sin(0.9 * number + np.arange(19))
-        goal = np.clip(pack.centre + task.span * action, pack._low, pack._high)
+        goal = np.clip(pack.centre + task.span * action, pack._lower_limits, pack._upper_limits)
         rows += [told + (k + 1) / 5 * (goal - told) for k in range(5)]
         told = goal
         pack.act(action[None], np.ones(1, dtype=bool))

@@ -33,7 +33,7 @@ def frames(path):
 
 @pytest.mark.parametrize("what", ["vorticity", "pressure"])
 def test_a_film_has_a_frame_for_each_interval_and_moves(what, tmp_path):
-    film = FieldFilm(every=0.1, what=what, speed=0.5)
+    film = FieldFilm(interval=0.1, field_name=what, speed=0.5)
     stirred(film)
     path = film.save(tmp_path / "stirred.gif")
     shown, duration = frames(path)
@@ -45,17 +45,17 @@ def test_a_film_has_a_frame_for_each_interval_and_moves(what, tmp_path):
 
 def test_what_is_no_film_is_refused(tmp_path):
     with pytest.raises(InvalidDesign, match="every of a film is 0"):
-        FieldFilm(every=0.0)
+        FieldFilm(interval=0.0)
     with pytest.raises(InvalidDesign, match="speed of a film is nan"):
-        FieldFilm(every=0.1, speed=float("nan"))
+        FieldFilm(interval=0.1, speed=float("nan"))
     with pytest.raises(InvalidDesign, match="limit of a film is 0"):
-        FieldFilm(every=0.1, limit=0.0)
+        FieldFilm(interval=0.1, limit=0.0)
     with pytest.raises(UnknownName, match="vorticity"):
-        FieldFilm(every=0.1, what="heat")
+        FieldFilm(interval=0.1, field_name="heat")
     with pytest.raises(InvalidDesign, match="holds no frame"):
-        FieldFilm(every=0.1).save(tmp_path / "none.gif")
+        FieldFilm(interval=0.1).save(tmp_path / "none.gif")
     with pytest.raises(InvalidDesign, match=r"the ending \.gif"):
-        FieldFilm(every=0.1).save(tmp_path / "none.mp4")
+        FieldFilm(interval=0.1).save(tmp_path / "none.mp4")
     box = flow.Grid.covering(*[(-1.0, 1.0)] * 3, cell=1 / 8)
     with pytest.raises(InvalidDesign, match="plane flows"):
-        flow.Simulation(flow.Setup(grid=box, viscosity=0.1)).run(0.1, watch=FieldFilm(every=0.1), progress=False)
+        flow.Simulation(flow.Setup(grid=box, viscosity=0.1)).run(0.1, watch=FieldFilm(interval=0.1), progress=False)

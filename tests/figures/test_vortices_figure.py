@@ -23,7 +23,7 @@ AHEAD = Viewpoint(azimuth=0.0, elevation=0.0, distance=10.0, target=(0.0, 0.0, 0
 
 
 def test_a_square_is_seen_where_and_as_large_as_perspective_says():
-    at, depth = AHEAD.seen(np.array([[0.0, 1.0, 0.5], [5.0, 1.0, 0.5]]), (400, 200))
+    at, depth = AHEAD.project(np.array([[0.0, 1.0, 0.5], [5.0, 1.0, 0.5]]), (400, 200))
     assert at == pytest.approx(np.array([[300.0, 150.0], [400.0, 200.0]]))
     assert depth == pytest.approx([10.0, 5.0])
     shown = picture(square(0.0, (0, 0, 0)), NOTHING, AHEAD, (400, 200))

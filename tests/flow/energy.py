@@ -71,11 +71,11 @@ class Spy:
         self.collect(stage, weight)
         inside = list(w.mu0 < 1)
         for touched, mu1 in zip(inside, w.mu1, strict=True):
-            touched[w.here] |= (mu1 != 0).any(axis=0)
-        dilatation_work = float((w.p[w.here].astype(float) * w.widening).sum())
-        copies = [list(vector.astype(float)) for vector in (stage.out, stage.blend)]
+            touched[w.window_slices] |= (mu1 != 0).any(axis=0)
+        dilatation_work = float((w.p[w.window_slices].astype(float) * w.widening).sum())
+        copies = [list(vector.astype(float)) for vector in (stage.result, stage.blend)]
         self.stages.append(
-            Stage(*copies, w.p.astype(float), dilatation_work, float(stage.dt), float(stage.keep), inside)
+            Stage(*copies, w.p.astype(float), dilatation_work, float(stage.dt), float(stage.blend_fraction), inside)
         )
 
 
@@ -115,10 +115,10 @@ def of_component(budget, k, stages, ends, base, nu, body):
     inner = np.s_[PAD:-PAD, PAD + 1 : -PAD] if k == 0 else np.s_[PAD + 1 : -PAD, PAD:-PAD]
     mean = 0.5 * (ends[0][k] + ends[1][k])
     budget.change += 0.5 * float((ends[1][k][inner] ** 2 - ends[0][k][inner] ** 2).sum())
-    for stage, (u, v) in zip(stages, (base, stages[0].out), strict=True):
+    for stage, (u, v) in zip(stages, (base, stages[0].result), strict=True):
         advection, laplacian = rates(u, v) if k == 0 else (r.T for r in rates(v.T, u.T))
         rise = np.diff(stage.pressure, axis=1 - k, prepend=0)
-        moved = (stage.out[k] - stage.keep * stage.blend[k]) / (1 - stage.keep)
+        moved = (stage.result[k] - stage.blend_fraction * stage.blend[k]) / (1 - stage.blend_fraction)
         given = moved - base[k] - stage.dt * (advection + nu * laplacian - rise)
         half = 0.5 * stage.dt
         budget.numerical -= half * float((mean * advection)[inner].sum())
@@ -150,11 +150,11 @@ def spent(setup, until):
     """Return the budget of a run from rest in a domain that nothing enters or leaves."""
     sim, budget = flow.Simulation(setup), Budget()
     spy = Spy(sim.water)
-    now, start = [sim.water.u.astype(float), sim.water.v.astype(float)], sim._log.held[:, 3].sum()
+    now, start = [sim.water.u.astype(float), sim.water.v.astype(float)], sim._log.region_contents[:, 3].sum()
     while sim.time < until * (1 - 1e-9):
         sim.advance(min(sim.next_step(), until - sim.time))
         now = of_step(budget, sim, spy, now)
-    budget.change -= float(sim._log.held[:, 3].sum() - start)
+    budget.change -= float(sim._log.region_contents[:, 3].sum() - start)
     for name in ("change", "viscous", "numerical", "immersion", "pressure", "strange", "cells"):
         setattr(budget, name, getattr(budget, name) * setup.grid.cell**2)
     record = sim.record

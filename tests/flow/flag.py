@@ -81,9 +81,9 @@ wwwold.mathematik.tu-dortmund.de/~featflow/en/benchmarks/cfdbenchmarking/fsi_ben
 class ParabolicInflow(flow.Inflow):
     """Water that enters as it flows in a channel and comes up to its speed little by little."""
 
-    def into(self, time, *places):
+    def inflow_velocity(self, time, *places):
         share = 0.5 * (1 - np.cos(np.pi * min(time / RAMP, 1.0)))
-        return share * super().into(time, *places)
+        return share * super().inflow_velocity(time, *places)
 
 
 @dataclass(frozen=True)
@@ -204,7 +204,7 @@ def channel(profile):
 def grids(cell, ratio, sides):
     """Return the cells of a set-up: one grid, or a patch of it ``ratio`` times as fine as the rest."""
     whole = flow.Grid.covering(*((0.0, size) for size in CHANNEL), cell=ratio * cell, sides=sides)
-    return {"grid": whole} if ratio == 1 else {"grid": whole.patch(*PATCH, ratio=ratio), "around": whole}
+    return {"grid": whole} if ratio == 1 else {"grid": whole.patch(*PATCH, ratio=ratio), "coarse_grid": whole}
 
 
 class Flag:
@@ -253,7 +253,7 @@ class Flag:
         self.turned, origin = turned, np.zeros(2)
         modes = self.chain.modes(self.posture.place, origin, 2)[3:]
         found = self.sim.added_mass("flag", modes)
-        inside = self.chain.unpressed(self.posture.place, found.pressed, origin)[:, 3:]
+        inside = self.chain.unpressed(self.posture.place, found.internal_pressure, origin)[:, 3:]
         self.added = found.matrix - 0.5 * (inside + inside.T)
 
     def step(self, longest=np.inf):
@@ -289,7 +289,7 @@ class Flag:
         made, size = 0, 1.0
         while True:
             middle = 0.5 * (began.place + posture.place)
-            found = self.chain.force(middle, self.sim.last("flag"), np.zeros(2))[3:]
+            found = self.chain.force(middle, self.sim.last_loads("flag"), np.zeros(2))[3:]
             left, whole = newton(push, found)
             weight = np.diag(whole)
             self.greatest = max(self.greatest, float(np.sqrt((found**2 / weight).sum())))
@@ -303,7 +303,7 @@ class Flag:
             self.path.go(start, began, start + h, posture)
             self.sim.accelerate({"flag": more})
         self.force, self.push, self.posture = found, push, posture
-        whole = self.sim.last("flag").whole.force
+        whole = self.sim.last_loads("flag").total.force
         self.rows.append([self.time, *self.beam.tip(posture.place[3:]), *whole, size, made])
         self._renew()
 

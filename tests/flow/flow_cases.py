@@ -93,7 +93,7 @@ def oscillating(cells, *, keulegan, stokes, periods, width, height, courant=0.8)
     grid = flow.Grid.covering((-width / 2, width / 2), (-height / 2, height / 2), cell=1 / cells)
     body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Oscillation(frequency=1.0, heave=(-amplitude, 0.0)))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / stokes, density=1.0, bodies=(body,), courant=courant))
-    record = sim.run(float(periods), progress=False).after(periods - 1.0)
+    record = sim.run(float(periods), progress=False).select_after(periods - 1.0)
     got = flow.morison(middle(record), record.force()[:, 0], frequency=1.0, speed=speed, diameter=1.0, density=1.0)
     return got, sim
 
@@ -127,7 +127,7 @@ def turning(cells, *, viscosity=0.05, swing=0.2, periods=1.0, width=3.0):
         return u, -u.T
 
     sim.water.u[:], sim.water.v[:] = exact(0.0)
-    late = sim.run(periods, progress=False).after(periods / 2)
+    late = sim.run(periods, progress=False).select_after(periods / 2)
     slope = -k * kv(0, k * a) / kv(1, k * a) - 2 / a  # of v at the wall, less v / a, over v
     scale = 2 * np.pi * a**2 * viscosity * speed * slope
     wanted = (scale * np.exp(1j * (rate * middle(late) - np.pi / 2))).real
@@ -146,7 +146,7 @@ def straight_foil(cells, reynolds, until):
     grid = flow.Grid.covering((-0.75, 2.25), (-0.75, 0.75), cell=1 / cells)
     body = flow.Body(shape=flow.Midline(spine=lambda time: spine))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / reynolds, density=1.0, stream=(1.0, 0.0), bodies=(body,)))
-    late = sim.run(until, progress=False).after(until - 1.0)
+    late = sim.run(until, progress=False).select_after(until - 1.0)
     return 2 * signals.mean(late.time, late.force()[:, 0])
 
 
@@ -175,7 +175,7 @@ def wavy_foil(cells, speed, cycles):
     body = flow.Body(shape=flow.Midline(spine=blunt))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 5000, density=1.0, stream=(1.0, 0.0), bodies=(body,)))
     period = 1 / speed
-    record = sim.run(cycles * period, progress=False).after((cycles - 1) * period)
+    record = sim.run(cycles * period, progress=False).select_after((cycles - 1) * period)
     return 2 * signals.mean(record.time, record.force()[:, 0]), 2 * signals.mean(record.time, record.column("power"))
 
 
@@ -272,7 +272,7 @@ def heaving_plate(cells, thick, *, angle=0.3, amplitude=0.1):
     grid = flow.Grid.covering((-0.8, 0.8), (-0.8, 0.8), cell=1 / cells)
     body = flow.Body(shape=flow.Plate(length=1.0, thick=thick), motion=motion)
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1 / 2000, density=1.0, bodies=(body,), coarse=True))
-    record = sim.run(1.0, progress=False).after(0.05)
+    record = sim.run(1.0, progress=False).select_after(0.05)
     phase = rate * middle(record)
     pushed = np.pi / 4 * amplitude * rate**2 * np.cos(phase)
     dragged = 0.5 * (amplitude * rate) ** 2 * np.sin(phase) * np.abs(np.sin(phase))
@@ -289,7 +289,7 @@ def in_patch(setup, whole, x, y, *, until, ratio=4, z=None):
     """
     fine = flow.Grid(cells=tuple(ratio * n for n in whole.cells), cell=whole.cell / ratio, origin=whole.origin)
     patch = whole.patch(x, y, z, ratio=ratio)
-    grids = {"grid": fine}, {"grid": patch, "around": whole}
+    grids = {"grid": fine}, {"grid": patch, "coarse_grid": whole}
     sims = [flow.Simulation(replace(setup, **those)) for those in grids]
     return [sim.run(until, progress=False) for sim in sims]
 

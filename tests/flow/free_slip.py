@@ -125,13 +125,13 @@ class SlipWater(Fluid):
     _distance = _normal = _bare = None
 
     def _measure(self, bodies, poses, time):
-        self.offset, here, h = 0.0, self._here(self.window), self.grid.cell
+        self.offset, here, h = 0.0, self._window_slices(self.window), self.grid.cell
         ends = [(s.start, s.stop) for s in reversed(here)]
         self._distance = np.empty(self.b.shape, self.dtype)
-        self._normal = np.empty((self.axes, *self.b.shape), self.dtype)
+        self._normal = np.empty((self.ndim, *self.b.shape), self.dtype)
         self.mu1[:] = 0
-        for c in range(self.axes):
-            points = [(self.grid.faces if c == d else self.grid.centres)(*ends[d], d) for d in range(self.axes)]
+        for c in range(self.ndim):
+            points = [(self.grid.faces if c == d else self.grid.centres)(*ends[d], d) for d in range(self.ndim)]
             f, self.owners[c], _ = measure_all(bodies, poses, points, time, h)
             near, far = f.distance / h, -(f.thickness + f.distance) / h
             along = np.delete(np.abs(np.stack(f.normal)), c, axis=0)
@@ -139,15 +139,15 @@ class SlipWater(Fluid):
             self.mu0[c][here] = self.passage[c][here] = share
             self.b[c], self._distance[c], self._normal[c] = f.velocity[c], near, np.stack(f.normal)
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
-        fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
+        fill_source(source, b, mu0, self._layout[0], self._near_layout, self.inner)
 
     def _in_space(self, a, ahead):
         """Return an array of the grid or window with a third axis, one plane thick where there are two."""
-        return a if self.axes == 3 else a.reshape(*a.shape[:ahead], 1, *a.shape[ahead:])
+        return a if self.ndim == 3 else a.reshape(*a.shape[:ahead], 1, *a.shape[ahead:])
 
     @property
     def _first(self):
-        return np.array((*(0,) * (3 - self.axes), *self.window[::2]))
+        return np.array((*(0,) * (3 - self.ndim), *self.window[::2]))
 
     def _unblended(self, u):
         """Turn u into w."""
@@ -181,7 +181,7 @@ class SlipWater(Fluid):
 
     def _stages(self, step, push, limits):
         self.solves, half, now = [], self.dtype(0.5), self.velocity
-        self.given[:] = 0
+        self.immersion_sums[:] = 0
         stage = PlannedStage(self._predicted, now, now, now, self.dtype(0), step)
         self._advance(stage, push)
         self._project(self._predicted, step, limits)
@@ -198,28 +198,56 @@ class SlipWater(Fluid):
         out, blend, base, rate = (self._flat(a) for a in stage[:4])
         place, raw, p, step = self._layout[0], self._flat(self._raw), self._flat(self.p), stage.dt
         advance(
-            out, blend, base, rate, p, raw, place, self._near, self.inner, self.repeats, step, self.nu, push, stage.keep
-        )  # fmt: skip
+            out,
+            blend,
+            base,
+            rate,
+            p,
+            raw,
+            place,
+            self._near_layout,
+            self.inner,
+            self.repeats,
+            step,
+            self.nu,
+            push,
+            stage.blend_fraction,
+        )
         if self.window[1] > self.window[0]:
-            here = self.here
+            here = self.window_slices
             self._bare = self._raw - (stage.base[:, *here] - self._blended[:, *here])
             _leave_divergence(self._in_space(self._raw, 1), self._in_space(stage.rate, 1), self._first, step)
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
-            for c in range(self.axes):
+            for c in range(self.ndim):
                 immerse(
-                    out[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near, self.inner, step,
-                    stage.keep,
-                )  # fmt: skip
-        self.border.fill(stage.out)
+                    out[c],
+                    blend[c],
+                    raw[c],
+                    b[c],
+                    mu0[c],
+                    passage[c],
+                    mu1[c],
+                    p,
+                    c,
+                    self._near_layout,
+                    self.inner,
+                    step,
+                    stage.blend_fraction,
+                )
+        self.border.fill(stage.result)
 
     def _collect(self, stage, weight):
         """Add up all that the window's momentum gains otherwise than by fluxes through its sides."""
         if self.window[1] <= self.window[0]:
             return
-        dt, keep, near, inner = float(stage.dt), float(stage.keep), self._near, self.inner
-        sums, p, everywhere = np.zeros_like(self.given), self._flat(self.p), np.zeros_like(self._flat(self.mu0))
-        out, blend, bare, mu1 = (self._flat(a) for a in (stage.out, stage.blend, self._bare, self.mu1))
+        dt, keep, near, inner = float(stage.dt), float(stage.blend_fraction), self._near_layout, self.inner
+        sums, p, everywhere = (
+            np.zeros_like(self.immersion_sums),
+            self._flat(self.p),
+            np.zeros_like(self._flat(self.mu0)),
+        )
+        out, blend, bare, mu1 = (self._flat(a) for a in (stage.result, stage.blend, self._bare, self.mu1))
         owners = [self._flat(owner) for owner in self.owners]
         for c, mean in enumerate(self.mean):
             add_immersion_impulse(
@@ -227,7 +255,7 @@ class SlipWater(Fluid):
                 dt, keep,
             )  # fmt: skip
         dilatation_work(sums, p, self._flat(self.source), np.stack(owners), near, inner, dt)
-        self.given += weight * sums
+        self.immersion_sums += weight * sums
 
 
 class SlipSetup(flow.Setup):

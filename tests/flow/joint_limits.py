@@ -128,7 +128,7 @@ class FreeLinks:
         kept, origin = sim.snapshot(), np.array(sim.frame[0])
         modes = swim.chain.modes(q, origin, 2)
         found = sim.added_mass(name, modes)
-        inside = swim.chain.unpressed(q, found.pressed, origin)
+        inside = swim.chain.unpressed(q, found.internal_pressure, origin)
         added = self.depth * (found.matrix - 0.5 * (inside + inside.T))
         a = self.more
         for _ in range(60):
@@ -136,7 +136,7 @@ class FreeLinks:
             swim.path.go(start, ChainState(q, v), start + h, end)
             sim.advance(h)
             middle = 0.5 * (q + end.place)
-            force = self.depth * swim.chain.force(middle, sim.last(name), np.array(sim.frame[0]))
+            force = self.depth * swim.chain.force(middle, sim.last_loads(name), np.array(sim.frame[0]))
             place, rate = q + 0.5 * h * v + 0.125 * h * h * a, v + 0.5 * h * a
             inertia = self.links.inertia(place)
             pushed = self.links.motions(place)[0][:, self.links.number(self.push.link)].T @ self.push.force

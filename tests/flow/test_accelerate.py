@@ -44,11 +44,11 @@ def ellipse(told, *, sides=None):
 
 
 def twist(pose, linear, spin):
-    return Twists(about=np.array([pose.position]), linear=np.array([linear]), angular=np.array([[spin]]))
+    return Twists(reference_points=np.array([pose.position]), linear=np.array([linear]), angular=np.array([[spin]]))
 
 
 def wrench(sim):
-    load = sim.last("body").whole
+    load = sim.last_loads("body").total
     return np.concatenate([load.force, load.moment])
 
 
@@ -87,7 +87,7 @@ def test_accelerated_after_a_step_is_a_step_to_another_velocity(change):
     pose = sim.pose("body")
     sim.accelerate({"body": twist(pose, change[:2], change[2])})
     ours, field = wrench(sim), sim.water.velocity.copy()
-    power = sim.last("body").whole.power
+    power = sim.last_loads("body").total.power
     sim.restore(kept)
     told.push = told.push + other / H
     sim.advance(H)
@@ -95,7 +95,7 @@ def test_accelerated_after_a_step_is_a_step_to_another_velocity(change):
     size = np.linalg.norm(exact - first)
     assert np.linalg.norm(ours - exact) < 0.05 * size  # 0.7 % along, 0.06 % aside, 4 % of the little that turns
     assert np.abs(field - sim.water.velocity).max() < 0.15 * np.abs(before - sim.water.velocity).max()
-    assert power == pytest.approx(sim.last("body").whole.power, rel=0.03)
+    assert power == pytest.approx(sim.last_loads("body").total.power, rel=0.03)
 
 
 def test_the_power_of_an_accelerated_step_is_force_times_velocity():
@@ -105,9 +105,9 @@ def test_the_power_of_an_accelerated_step_is_force_times_velocity():
         start = told.rate.copy()
         told.step(sim)
     change = np.array([0.05, -0.08, 0.2])
-    before = sim.last("body").whole.power
+    before = sim.last_loads("body").total.power
     sim.accelerate({"body": twist(sim.pose("body"), tuple(change[:2]), change[2])})
-    load = sim.last("body").whole
+    load = sim.last_loads("body").total
     mean = 0.5 * (start + told.rate + change)
     assert load.power == pytest.approx(-np.dot([*load.force, *load.moment], mean), rel=0.02)  # 24 cells a length
     assert abs(load.power - before) > 0.2 * abs(before)
@@ -116,7 +116,7 @@ def test_the_power_of_an_accelerated_step_is_force_times_velocity():
     told.rate = told.rate + change
     told.push = np.zeros(3)
     told.step(sim)
-    load = sim.last("body").whole
+    load = sim.last_loads("body").total
     assert load.power == pytest.approx(-np.dot([*load.force, *load.moment], told.rate), rel=0.02)
 
 
@@ -141,11 +141,11 @@ def test_what_cannot_be_accelerated_is_refused():
     with pytest.raises(OutsideLimits, match="before any step was taken; call advance first"):
         sim.accelerate({"body": more})
     with pytest.raises(OutsideLimits, match="before any step was taken; call advance"):
-        sim.last("body")
+        sim.last_loads("body")
     told.step(sim)
     with pytest.raises(UnknownName, match="nobody"):
         sim.accelerate({"nobody": more})
-    double = Twists(about=np.zeros((2, 2)), linear=np.zeros((2, 2)), angular=np.zeros((2, 1)))
+    double = Twists(reference_points=np.zeros((2, 2)), linear=np.zeros((2, 2)), angular=np.zeros((2, 1)))
     with pytest.raises(InvalidDesign, match="body is given the motions of 2 parts, and it has 1"):
         sim.accelerate({"body": double})
 
@@ -165,11 +165,13 @@ def test_a_slice_is_divided_at_its_cuts():
 
     (_, whole), (sim, cut) = run(()), run((0.3, 0.6))
     assert cut.force() == pytest.approx(whole.force(), rel=1e-9)
-    assert cut.along("force_y").sum(axis=1) == pytest.approx(whole.force()[:, 1], abs=1e-5)
-    assert cut.along("power").sum(axis=1) == pytest.approx(whole.column("power"), abs=1e-5)
-    assert cut.along("torque_behind")[:, 0] == pytest.approx(whole.torque()[:, 0], abs=1e-4)  # about the same point
-    assert np.abs(cut.along("force_y")).min(axis=0).min() > 0
-    assert sim.last("foil").parts.force.sum(axis=0) == pytest.approx(sim.last("foil").whole.force)
+    assert cut.part_series("force_y").sum(axis=1) == pytest.approx(whole.force()[:, 1], abs=1e-5)
+    assert cut.part_series("power").sum(axis=1) == pytest.approx(whole.column("power"), abs=1e-5)
+    assert cut.part_series("torque_behind")[:, 0] == pytest.approx(
+        whole.torque()[:, 0], abs=1e-4
+    )  # about the same point
+    assert np.abs(cut.part_series("force_y")).min(axis=0).min() > 0
+    assert sim.last_loads("foil").parts.force.sum(axis=0) == pytest.approx(sim.last_loads("foil").total.force)
     with pytest.raises(InvalidDesign, match="cuts of a midline"):
         flow.Midline(spine=lambda _: spine, cuts=(0.4, 0.2))
 
@@ -183,7 +185,7 @@ def test_the_middle_of_a_thick_slice_belongs_to_its_parts():
     body = flow.Body(shape=shape, motion=flow.Pose(), name="foil")
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=2e-3, bodies=(body,), coarse=True))
     for faces in held_faces(sim.water):
-        inside = faces.held > 0.5
+        inside = faces.body_fraction > 0.5
         x, row = faces.points[0, inside], faces.row[inside]
         assert x.size > 300
         assert row.tolist() == np.searchsorted([0.3, 0.6], x, side="right").tolist()

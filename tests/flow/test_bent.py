@@ -91,7 +91,7 @@ def test_velocities_are_the_rates_of_places_whatever_the_wave(high, wave, often,
         return x + 0.2 * high * np.sin(often * t) * y, y - high * np.sin(wave * x - often * t)
 
     body, step = flow.bend_shape(flow.Ellipse(length=1.0, width=0.3), waving), 1e-3
-    here, before, after = (body.bend.forth(body._corners, t) for t in (time, time - step, time + step))
+    here, before, after = (body.bend.map_to_bent(body._corners, t) for t in (time, time - step, time + step))
     seen, told = (after - before) / (2 * step), body.bend.velocity(here, time)
     np.testing.assert_allclose(told, seen, atol=1e-5 * (1 + often**3))
     np.testing.assert_allclose(body.bend(here, time), body._corners, atol=1e-8)

@@ -56,15 +56,15 @@ def test_bodies_that_meet_leave_with_the_speed_they_came_with():
     bodies = [
         flow.FreeBody(shape=ROUND, start=(x, 0.0), velocity=(u, 0.0), density=2.0) for x, u in ((0.0, 1.0), (1.3, -0.5))
     ]
-    swimmers, dt = [Swimmer.of(b) for b in bodies], 2e-3
+    swimmers, dt = [Swimmer.from_body(b) for b in bodies], 2e-3
     for swimmer in swimmers:
         swimmer.advance(0.0, dt, 1.0)
     least = np.inf
     for _ in range(400):
-        ahead = [flow.Pose(position=tuple(s.place[:2] + 0.5 * dt * s.rate[:2])) for s in swimmers]
+        ahead = [flow.Pose(position=tuple(s.coordinates[:2] + 0.5 * dt * s.rate[:2])) for s in swimmers]
         for swimmer, force in zip(swimmers, found(ahead), strict=True):
             swimmer.advance(0.0, dt, 1.0, force)
-        least = min(least, swimmers[1].place[0] - swimmers[0].place[0])
+        least = min(least, swimmers[1].coordinates[0] - swimmers[0].coordinates[0])
     assert 0.9 < least < 1.09
     speeds = [s.rate[0] for s in swimmers]
     assert speeds[0] + speeds[1] == pytest.approx(0.5, abs=1e-9)

@@ -69,7 +69,7 @@ def test_kinks_and_smooth_starts_are_no_contradictions(motion):
     watched = Consistency(MotionSource("body", motion, 0.5), 1 / 16)
     watched.start(0.0, 0.02)
     for k in range(100):
-        watched.look(0.02 * k, 0.02)
+        watched.check_step(0.02 * k, 0.02)
 
 
 def test_the_estimate_is_near_what_the_cases_were_off_by():

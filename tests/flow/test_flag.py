@@ -36,7 +36,7 @@ def test_the_first_mode_of_a_chain_is_that_of_a_clamped_beam(count, off):
 @pytest.mark.parametrize(("cells", "ratio"), [(32, 1), (80, 1), (128, 1), (256, 4)])
 def test_the_channel_is_as_wide_as_it_is_published(cells, ratio):
     made = grids(CHANNEL[1] / cells, ratio, channel(lambda y: y))
-    whole = made.get("around", made["grid"])
+    whole = made.get("coarse_grid", made["grid"])
     assert whole.origin == pytest.approx((0.0, 0.0))
     assert whole.size[1] == pytest.approx(CHANNEL[1])
     assert whole.size[0] >= CHANNEL[0] - 1e-9

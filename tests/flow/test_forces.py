@@ -110,7 +110,7 @@ def test_forces_do_not_jump_from_step_to_step():
     sim = flow.Simulation(
         flow.Setup(grid=grid, viscosity=5e-4, density=1.0, stream=(0.4, 0.0), bodies=(body,), tolerance=1e-6)
     )
-    late = sim.run(0.8, progress=False).after(0.3)
+    late = sim.run(0.8, progress=False).select_after(0.3)
     for axis in range(2):
         assert signals.noise(cases.middle(late), late.force()[:, axis], window=1 / 12) < 0.03
 

@@ -19,11 +19,11 @@ ADDED = np.diag([0.7, 0.9, 0.2])
 
 def inviscid(body, dt, count, *, added=ADDED):
     """Places and rates of a body in water that answers with an added mass and nothing else, shape (count, 6)."""
-    swimmer, rows = Swimmer.of(body), []
+    swimmer, rows = Swimmer.from_body(body), []
     for k in range(count):
         swimmer.advance(k * dt, dt, 1.0)
-        swimmer.added, swimmer.load = added, -added @ swimmer.push
-        rows.append([*swimmer.place, *swimmer.rate])
+        swimmer.added_mass, swimmer.load = added, -added @ swimmer.acceleration
+        rows.append([*swimmer.coordinates, *swimmer.rate])
     return np.array(rows)
 
 
@@ -61,12 +61,12 @@ def test_a_locked_degree_stays_to_the_byte():
         shape=CIRCLE, start=(0.1, 0.7), angle=0.3, density=3.0, free=(False, True, False), gravity=(1.0, -9.81),
         springs=(1.0, 2.0, 3.0), anchor=(0.0, 0.0, 0.0), force=force,
     )  # fmt: skip
-    swimmer = Swimmer.of(body)
+    swimmer = Swimmer.from_body(body)
     for k in range(50):
         swimmer.advance(0.01 * k, 0.01, 1.0)
-        swimmer.added, swimmer.load = np.full((3, 3), 0.1) + ADDED, np.array([1.0, 0.2, -0.4])
+        swimmer.added_mass, swimmer.load = np.full((3, 3), 0.1) + ADDED, np.array([1.0, 0.2, -0.4])
     start = np.array([0.1, 0.7, 0.3])
-    assert swimmer.place[[0, 2]].tobytes() == start[[0, 2]].tobytes()
+    assert swimmer.coordinates[[0, 2]].tobytes() == start[[0, 2]].tobytes()
     assert swimmer.rate[[0, 2]].tobytes() == np.zeros(2).tobytes()
     assert abs(swimmer.rate[1]) > 0.1
 
@@ -93,7 +93,7 @@ def test_a_free_body_that_cannot_be_is_refused(changes, part):
 
 @pytest.mark.parametrize("given", [(1.0, 2.0), (0.0, float("nan"), 0.0)])
 def test_a_force_that_is_none_says_when(given):
-    swimmer = Swimmer.of(flow.FreeBody(shape=CIRCLE, force=lambda time, state: given))
+    swimmer = Swimmer.from_body(flow.FreeBody(shape=CIRCLE, force=lambda time, state: given))
     with pytest.raises(InvalidDesign, match=r"the force of body at t = 0\.5 s is .*; give three finite numbers"):
         swimmer.advance(0.5, 0.01, 1.0)
 

@@ -8,10 +8,10 @@ from suchus import flow
 from suchus.core.errors import InvalidDesign
 
 LIMBS = (
-    flow.Capsule(at=0.3, start=(0.0, 0.12), end=(0.2, 0.12), radius=0.03),
-    flow.Capsule(at=0.3, start=(0.0, -0.12), end=(0.2, -0.12), radius=0.03),
-    flow.Capsule(at=0.6, start=(0.0, 0.05), end=(0.15, 0.08), radius=0.04),  # partly inside the trunk
-    flow.Capsule(at=0.6, start=(0.15, 0.08), end=(0.15, 0.08), radius=0.05),  # a ball on its end
+    flow.Capsule(arc_position=0.3, start=(0.0, 0.12), end=(0.2, 0.12), radius=0.03),
+    flow.Capsule(arc_position=0.3, start=(0.0, -0.12), end=(0.2, -0.12), radius=0.03),
+    flow.Capsule(arc_position=0.6, start=(0.0, 0.05), end=(0.15, 0.08), radius=0.04),  # partly inside the trunk
+    flow.Capsule(arc_position=0.6, start=(0.15, 0.08), end=(0.15, 0.08), radius=0.05),  # a ball on its end
 )
 
 
@@ -29,7 +29,7 @@ def outside(x, y, z):
     """How far points are from the straight body, from the formulas of its pieces; negative inside."""
     found = np.maximum(np.hypot(y, z) - 0.06, np.abs(x - 0.5) - 0.5)
     for limb in LIMBS:
-        a, b = (np.array([limb.at + p[0], p[1], 0.0]) for p in (limb.start, limb.end))
+        a, b = (np.array([limb.arc_position + p[0], p[1], 0.0]) for p in (limb.start, limb.end))
         axis, p = b - a, np.stack([x, y, z], axis=-1)
         share = np.clip((p - a) @ axis / max(axis @ axis, 1e-30), 0.0, 1.0)
         found = np.minimum(found, np.linalg.norm(p - a - share[..., None] * axis, axis=-1) - limb.radius)
@@ -77,15 +77,15 @@ def test_distance_and_normal_are_those_of_the_nearest_piece():
 def test_the_skin_of_the_union_has_its_area_and_stands_outside_of_it():
     skin, bare = (straight(limbs).markers(0.0, flow.Pose(), 0.01) for limbs in (LIMBS[:2], ()))
     extra = 2 * (2 * np.pi * 0.03 * 0.2 + 4 * np.pi * 0.03**2)
-    assert skin.share.sum() - bare.share.sum() == pytest.approx(extra, rel=1e-3)
+    assert skin.weight.sum() - bare.weight.sum() == pytest.approx(extra, rel=1e-3)
     whole = straight().markers(0.0, flow.Pose(), 0.005)
-    shown = whole.share > 0
+    shown = whole.weight > 0
     far = outside(*whole.points)
     assert np.abs(far[shown]).max() < 5e-4
     assert far[~shown].max() < 5e-4
     assert far[~shown].min() < -0.02
-    sunk = (whole.share == 0).sum()
-    assert 0 < sunk < 0.3 * whole.share.size
+    sunk = (whole.weight == 0).sum()
+    assert 0 < sunk < 0.3 * whole.weight.size
 
 
 def test_attached_pieces_move_with_their_section():
@@ -107,7 +107,7 @@ def test_attached_pieces_move_with_their_section():
     found = body.measure(*(np.array([p, p + 0.01]) for p in field_at), time, pose, 0.05)
     told = [float(part[0, 0, 0]) for part in found.velocity]
     assert told == pytest.approx(now.velocities[:, limbs][:, 3].tolist(), abs=1e-9)
-    assert found.part[0, 0, 0] == 1  # that of its section
+    assert found.part_index[0, 0, 0] == 1  # that of its section
 
 
 def test_the_momentum_of_the_pieces_of_a_bending_body_is_that_of_where_they_go():
@@ -131,7 +131,7 @@ def test_the_momentum_of_the_pieces_of_a_bending_body_is_that_of_where_they_go()
 def test_a_ball_beside_the_trunk_adds_its_own_tensor_of_inertia():
     """Two fifths of its mass times its radius squared about each axis, and what its place adds (Steiner)."""
     radius, place = 0.1, np.array([0.5, 0.3, 0.0])
-    ball = flow.Capsule(at=0.5, start=(0.0, 0.3), end=(0.0, 0.3), radius=radius)
+    ball = flow.Capsule(arc_position=0.5, start=(0.0, 0.3), end=(0.0, 0.3), radius=radius)
     whole, trunk = straight((ball,)).mass(0.0), straight(()).mass(0.0)
     volume = 4 / 3 * np.pi * radius**3
     middle = (trunk.volume * np.array(trunk.centre) + volume * place) / (trunk.volume + volume)
@@ -158,15 +158,15 @@ def test_a_turning_body_has_the_swirl_of_a_rigid_one():
     ("fields", "said"),
     [
         ({"radius": 0.0}, "radius"),
-        ({"at": np.nan}, "at of a capsule is nan"),
+        ({"arc_position": np.nan}, "arc_position of a capsule is nan"),
         ({"end": (np.inf, 0.0)}, "end of a capsule"),
     ],
 )
 def test_impossible_capsules_are_refused(fields, said):
     with pytest.raises(InvalidDesign, match=said):
-        flow.Capsule(**{"at": 0.3, "start": (0.0, 0.1), "end": (0.1, 0.1), "radius": 0.02} | fields)
+        flow.Capsule(**{"arc_position": 0.3, "start": (0.0, 0.1), "end": (0.1, 0.1), "radius": 0.02} | fields)
 
 
 def test_a_capsule_beyond_the_trunk_is_refused():
     with pytest.raises(InvalidDesign, match=r"attached at 1\.2 m of a trunk that is 1 m long"):
-        straight((flow.Capsule(at=1.2, start=(0.0, 0.1), end=(0.1, 0.1), radius=0.02),))
+        straight((flow.Capsule(arc_position=1.2, start=(0.0, 0.1), end=(0.1, 0.1), radius=0.02),))

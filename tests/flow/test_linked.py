@@ -33,7 +33,7 @@ def paddler():
     """A ball with a rod that paddles beside it."""
     ball = flow.Ellipsoid(length=0.3, width=0.2, height=0.16)
     return flow.Linked(
-        pieces=(flow.LinkPiece(link=0, shape=ball), flow.LinkPiece(link=1, shape=ROD, at=(OFF, 0.0, 0.0))),
+        pieces=(flow.LinkPiece(link=0, shape=ball), flow.LinkPiece(link=1, shape=ROD, position=(OFF, 0.0, 0.0))),
         motion=paddle,
     )
 
@@ -82,35 +82,35 @@ def test_a_piece_that_turns_about_its_joint_has_the_velocity_of_a_rigid_body():
     )  # fmt: skip
     found = body.measure(*window, time, pose, 4 * h)
     z, y, x = np.meshgrid(*window[::-1], indexing="ij")
-    own = np.array(pose.seen((x, y, z)))
+    own = np.array(pose.to_body_3d((x, y, z)))
     assert ((found.distance < 0) == inside(own.reshape(3, -1), time).reshape(x.shape)).all()
-    rod = (found.part == 1) & (found.distance < 3 * h)
+    rod = (found.part_index == 1) & (found.distance < 3 * h)
     assert rod.sum() > 100
     assert (~rod & (found.distance < 0)).sum() > 100
     axis = 2.0 * np.array([0.0, 0.6, 0.8])
     turning = np.cross(axis, np.moveaxis(own - HINGE[:, None, None, None], 0, -1))
-    expected = np.array(pose.rates((x, y, z))) + np.einsum("ij,...j->i...", pose.matrix, turning)
+    expected = np.array(pose.velocity_at((x, y, z))) + np.einsum("ij,...j->i...", pose.matrix, turning)
     assert np.array(found.velocity)[:, rod] == pytest.approx(expected[:, rod], abs=1e-12)
-    ball = (found.part == 0) & (found.distance < 3 * h)
-    assert np.array(found.velocity)[:, ball] == pytest.approx(np.array(pose.rates((x, y, z)))[:, ball], abs=1e-12)
+    ball = (found.part_index == 0) & (found.distance < 3 * h)
+    assert np.array(found.velocity)[:, ball] == pytest.approx(np.array(pose.velocity_at((x, y, z)))[:, ball], abs=1e-12)
     skin = body.markers(time, pose, h)
-    seen = np.array(pose.seen(skin.points))
+    seen = np.array(pose.to_body_3d(skin.points))
     turning = np.cross(axis, (seen - HINGE[:, None]).T).T
-    expected = np.array(pose.rates(skin.points)) + pose.matrix @ turning
-    assert skin.velocities[:, skin.part == 1] == pytest.approx(expected[:, skin.part == 1], abs=1e-12)
-    covered = np.where(skin.part == 0, rod_holds(seen, time), ellipsoid(seen))
-    assert ((skin.share == 0) == covered).all()
-    assert 0 < (skin.share == 0).sum() < 0.3 * skin.share.size
+    expected = np.array(pose.velocity_at(skin.points)) + pose.matrix @ turning
+    assert skin.velocities[:, skin.part_index == 1] == pytest.approx(expected[:, skin.part_index == 1], abs=1e-12)
+    covered = np.where(skin.part_index == 0, rod_holds(seen, time), ellipsoid(seen))
+    assert ((skin.weight == 0) == covered).all()
+    assert 0 < (skin.weight == 0).sum() < 0.3 * skin.weight.size
 
 
 def test_a_rod_of_a_link_is_the_capsule_of_a_trunk():
     wide = np.full(41, 0.04)
     s, none = np.linspace(0.0, 1.0, 41), np.zeros(41)
     spine = flow.MidlineState(x=s, y=none, heading=none, half_width=wide, x_rate=none, y_rate=none, heading_rate=none)
-    limb = flow.Capsule(at=0.5, start=(0.0, 0.2), end=(0.3, 0.2), radius=0.05)
+    limb = flow.Capsule(arc_position=0.5, start=(0.0, 0.2), end=(0.3, 0.2), radius=0.05)
     trunk = flow.Limbed(spine=lambda _: spine, half_height=wide, limbs=(limb,), deforms=False)
     one = flow.Linked(
-        pieces=(flow.LinkPiece(link=0, shape=ROD, at=(0.05, 0.0, 0.0)),),
+        pieces=(flow.LinkPiece(link=0, shape=ROD, position=(0.05, 0.0, 0.0)),),
         motion=lambda _: states([0.6, 0.2, 0.0], [0, 0, 0], [0, 0, 0], [0, 0, 0]),
     )
     window = [np.arange(a, b, 0.02) for a, b in ((0.4, 0.95), (0.1, 0.3), (-0.1, 0.1))]
@@ -165,7 +165,7 @@ def test_one_link_swims_as_its_piece_alone_does():
 
     alone = setup(flow.Body(shape=ball, motion=swing))
     linked = setup(flow.Body(shape=flow.Linked(pieces=(flow.LinkPiece(link=0, shape=ball),), motion=link)))
-    one, other = alone.last("body").whole, linked.last("body").whole
+    one, other = alone.last_loads("body").total, linked.last_loads("body").total
     assert np.abs(one.force).max() > 0.01
     assert other.force == pytest.approx(one.force, abs=1e-4 * np.abs(one.force).max())
     assert float(other.power) == pytest.approx(float(one.power), rel=1e-4)
@@ -173,15 +173,15 @@ def test_one_link_swims_as_its_piece_alone_does():
 
 def test_loads_on_the_links_add_up_and_do_the_power_s_work():
     sim = setup(flow.Body(shape=paddler()), steps=8)
-    loads, h = sim.last("body"), 0.01
-    assert loads.parts.force.sum(axis=0) == pytest.approx(loads.whole.force, abs=1e-9)
+    loads, h = sim.last_loads("body"), 0.01
+    assert loads.parts.force.sum(axis=0) == pytest.approx(loads.total.force, abs=1e-9)
     middle = paddle(sim.time - 0.5 * h)
     force, moment = loads.parts.force[1], loads.parts.moment[1]
-    at = middle.position[1] - loads.about
+    at = middle.position[1] - loads.reference_point
     own = moment - np.cross(at, force)
     work = float(force @ middle.velocity[1] + own @ middle.spin[1])
     assert work < 0.0
-    assert -work == pytest.approx(float(loads.whole.power), rel=1e-3)  # 4e-3 with the pressure inside the joint
+    assert -work == pytest.approx(float(loads.total.power), rel=1e-3)  # 4e-3 with the pressure inside the joint
     speed = middle.velocity[1] / np.linalg.norm(middle.velocity[1])
     assert force @ speed < 0.0  # the water pushes against the stroke
 

@@ -51,7 +51,9 @@ def test_the_distance_of_a_box_is_exact_in_any_attitude():
     x, y, z = window(shape, POSE)
     found = shape.measure(x, y, z, 0.0, POSE, REACH)
     wz, wy, wx = np.meshgrid(z, y, x, indexing="ij")
-    exact = in_box(*(part.ravel() for part in POSE.seen((wx, wy, wz))), np.array([0.4, 0.15, 0.25])).reshape(wx.shape)
+    exact = in_box(*(part.ravel() for part in POSE.to_body_3d((wx, wy, wz))), np.array([0.4, 0.15, 0.25])).reshape(
+        wx.shape
+    )
     near = np.abs(exact) < REACH
     np.testing.assert_allclose(found.distance[near], exact[near], atol=1e-12)
     np.testing.assert_array_equal(np.sign(found.distance[~near]), np.sign(exact[~near]))
@@ -60,7 +62,7 @@ def test_the_distance_of_a_box_is_exact_in_any_attitude():
     steep = near & (np.abs(exact) > 0.01) & (np.abs(sum(part**2 for part in slope) - 1) < 1e-6)
     for normal, part in zip(found.normal, slope[::-1], strict=True):
         np.testing.assert_allclose(normal[steep], part[steep], atol=1e-3)
-    for rate, part in zip(found.velocity, POSE.rates((wx, wy, wz)), strict=True):
+    for rate, part in zip(found.velocity, POSE.velocity_at((wx, wy, wz)), strict=True):
         np.testing.assert_allclose(rate, part, atol=1e-12)
 
 
@@ -101,12 +103,12 @@ def test_mass_and_skin_are_those_of_the_mesh(mesh):
     assert mass.volume == pytest.approx(moved.volume)
     assert mass.centre == pytest.approx(moved.center_mass)
     np.testing.assert_allclose(mass.moments, moved.moment_inertia, rtol=1e-9, atol=1e-12)
-    assert skin.share.sum() == pytest.approx(moved.area)
-    assert np.sqrt(skin.share).max() < 0.05
-    facing = skin.share * skin.normals
+    assert skin.weight.sum() == pytest.approx(moved.area)
+    assert np.sqrt(skin.weight).max() < 0.05
+    facing = skin.weight * skin.normals
     np.testing.assert_allclose(facing.sum(axis=1), 0.0, atol=1e-12)
     assert (facing * skin.points).sum() / 3 == pytest.approx(moved.volume)
-    np.testing.assert_allclose(skin.velocities, np.stack(POSE.rates(skin.points)), atol=1e-12)
+    np.testing.assert_allclose(skin.velocities, np.stack(POSE.velocity_at(skin.points)), atol=1e-12)
     off = shape.measure(*(np.array([p, p + 1e-3]) for p in skin.points[:, 7]), 0.0, POSE, 0.1).distance[0, 0, 0]
     assert abs(off) < 1e-12
 
@@ -125,10 +127,10 @@ def test_its_thickness_is_that_of_the_largest_ball_inside(mesh, thick):
 
 
 def test_it_knows_its_symmetries_and_whether_it_is_blunt():
-    assert of(BOX).even == (True, True, True)
-    assert elbow().even == (False, False, True)
-    assert not of(BOX).blunt
-    assert of(trimesh.creation.icosphere()).blunt
+    assert of(BOX).mirror_symmetry == (True, True, True)
+    assert elbow().mirror_symmetry == (False, False, True)
+    assert not of(BOX).is_compact
+    assert of(trimesh.creation.icosphere()).is_compact
 
 
 def test_a_sphere_of_triangles_is_pushed_as_a_sphere():

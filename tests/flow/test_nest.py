@@ -14,17 +14,17 @@ WHOLE = flow.Grid.covering((-3.0, 5.0), (-2.0, 2.0), cell=1 / 8)
 PATCH = WHOLE.patch((-1.5, 2.0), (-1.5, 1.5), ratio=2)
 CYLINDER = flow.Body(shape=flow.Cylinder(diameter=1.0))
 STREAM = flow.Setup(
-    grid=PATCH, around=WHOLE, viscosity=0.01, stream=(1.0, 0.0), bodies=(CYLINDER,), coarse=True, step=0.02
+    grid=PATCH, coarse_grid=WHOLE, viscosity=0.01, stream=(1.0, 0.0), bodies=(CYLINDER,), coarse=True, step=0.02
 )
 """A cylinder in a stream at a Reynolds number of 100, 16 fine cells across."""
 
 
 def uniform(setup: flow.Setup) -> flow.Setup:
     """Return the same flow on fine cells everywhere."""
-    around = setup.around
+    around = setup.coarse_grid
     ratio = round(around.cell / setup.grid.cell)
     cells = tuple(ratio * n for n in around.cells)
-    return replace(setup, grid=flow.Grid(cells=cells, cell=setup.grid.cell, origin=around.origin), around=None)
+    return replace(setup, grid=flow.Grid(cells=cells, cell=setup.grid.cell, origin=around.origin), coarse_grid=None)
 
 
 def ran(setup: flow.Setup, until: float) -> flow.Simulation:
@@ -36,18 +36,18 @@ def ran(setup: flow.Setup, until: float) -> flow.Simulation:
 
 def divergence(water) -> np.ndarray:
     """Return what leaves each cell of the domain [m/s]."""
-    cells = (slice(PAD, -PAD),) * water.axes
+    cells = (slice(PAD, -PAD),) * water.ndim
     total = np.zeros(tuple(reversed(water.grid.cells)))
     for d, part in enumerate(water.velocity):
-        at = water.axes - 1 - d
-        behind = tuple(slice(PAD + 1, 1 - PAD) if n == at else slice(PAD, -PAD) for n in range(water.axes))
+        at = water.ndim - 1 - d
+        behind = tuple(slice(PAD + 1, 1 - PAD) if n == at else slice(PAD, -PAD) for n in range(water.ndim))
         total += part[behind].astype(float) - part[cells]
     return total
 
 
 def place(sim: flow.Simulation) -> tuple[slice, slice]:
     """Return where the patch lies among the cells of the coarse water."""
-    grid, around = sim.setup.grid, sim.setup.around
+    grid, around = sim.setup.grid, sim.setup.coarse_grid
     ratio = round(around.cell / grid.cell)
     first = [round((a - b) / around.cell) for a, b in zip(grid.origin, around.origin, strict=True)]
     return tuple(slice(a, a + n // ratio) for a, n in zip(first[::-1], grid.cells[::-1], strict=True))
@@ -68,7 +68,7 @@ def test_its_force_is_that_of_fine_cells_everywhere(nested, fine):
     assert a[0] == pytest.approx(b[0], rel=3e-3)  # the impulse of the start
     assert np.sqrt(np.mean((a[10:] / b[10:] - 1) ** 2)) < 2e-3
     assert a[10:] == pytest.approx(b[10:], rel=5e-3)
-    coarse = ran(replace(STREAM, grid=WHOLE, around=None), 0.3).record.force()[10:, 0]
+    coarse = ran(replace(STREAM, grid=WHOLE, coarse_grid=None), 0.3).record.force()[10:, 0]
     assert np.abs(coarse / b[10 : len(coarse) + 10] - 1).min() > 0.01  # what coarse cells alone give would be noticed
 
 
@@ -76,9 +76,9 @@ def roughness(least: int | None) -> float:
     """Return the largest change of slope of the drag of a started cylinder from step to step over four of its mean."""
     whole = flow.Grid.covering((-2.5, 3.5), (-2.0, 2.0), cell=1 / 48)
     patch = whole.patch((-0.8, 2.0), (-0.85, 0.85), ratio=2)
-    sim = flow.Simulation(replace(STREAM, grid=patch, around=whole, viscosity=1e-3, step=None))
+    sim = flow.Simulation(replace(STREAM, grid=patch, coarse_grid=whole, viscosity=1e-3, step=None))
     if least is not None:
-        sim.water.coarse.least = least
+        sim.water.coarse.min_cycles = least
     for _ in range(60):
         sim.advance()
     drag = sim.record.force()[30:, 0]
@@ -100,7 +100,7 @@ def test_a_longer_patch_takes_more_cycles(longest, cycles):
 def test_water_at_the_speed_of_the_stream_stays_so(ratio):
     whole = flow.Grid.covering((0.0, 4.0), (0.0, 4.0), cell=1 / 8)
     setup = flow.Setup(
-        grid=whole.patch((1.0, 3.0), (1.0, 3.0), ratio=ratio), around=whole, viscosity=0.01, stream=(0.7, -0.4)
+        grid=whole.patch((1.0, 3.0), (1.0, 3.0), ratio=ratio), coarse_grid=whole, viscosity=0.01, stream=(0.7, -0.4)
     )
     sim = ran(setup, 0.2)
     for speed, *parts in zip((0.7, -0.4), sim.velocity, sim.domain.velocity, strict=True):
@@ -147,7 +147,7 @@ def vortices(n: int, *, patch: bool) -> float:
         return np.sin(k * x) * np.cos(k * y), -np.cos(k * x) * np.sin(k * y)
 
     setup = flow.Setup(
-        grid=whole.patch((0.3, 0.8), (0.25, 0.7), ratio=2) if patch else whole, around=whole if patch else None,
+        grid=whole.patch((0.3, 0.8), (0.25, 0.7), ratio=2) if patch else whole, coarse_grid=whole if patch else None,
         viscosity=viscosity, sides=flow.Sides.periodic(), start=start, courant=0.5, tolerance=1e-6,
     )  # fmt: skip
     sim = ran(setup, until)
@@ -172,7 +172,7 @@ def test_a_patch_may_end_on_walls_and_on_periodic_sides():
     whole = flow.Grid(cells=(16, 32), cell=1 / 16)
     patch = whole.patch((0.0, 1.0), (0.0, 1.0), ratio=2)
     setup = flow.Setup(
-        grid=patch, around=whole, sides=sides, viscosity=0.2, start=lambda x, y: (y - 1.0, 0.0 * y), coarse=True
+        grid=patch, coarse_grid=whole, sides=sides, viscosity=0.2, start=lambda x, y: (y - 1.0, 0.0 * y), coarse=True
     )  # fmt: skip
     sim = ran(setup, 0.1)
     for water, velocity in ((sim.water, sim.velocity), (sim.water.layers[-1], sim.domain.velocity)):
@@ -211,7 +211,7 @@ def test_a_body_that_is_accelerated_after_a_step_takes_the_water_along():
     for name, setup in (("patch", STREAM), ("fine", uniform(STREAM))):
         sim = flow.Simulation(replace(setup, stream=(0.0, 0.0), bodies=(moving(0.0),)))
         sim.advance(0.02)
-        push = flow.Twists(about=np.zeros((1, 2)), linear=np.array([[0.1, 0.0]]), angular=np.zeros((1, 1)))
+        push = flow.Twists(reference_points=np.zeros((1, 2)), linear=np.array([[0.1, 0.0]]), angular=np.zeros((1, 1)))
         sim.accelerate({"body": push})
         forces[name] = float(sim.record.force()[-1, 0])
     assert forces["patch"] == pytest.approx(forces["fine"], rel=3e-3)
@@ -224,13 +224,15 @@ def test_small_accelerations_count_as_much_as_large_ones(across):
     whole = flow.Grid.covering((0.0, 2.0), (0.0, 1.0), cell=1 / 24)
     body = flow.Body(shape=flow.Ellipse(length=0.4, width=0.25), motion=flow.Pose(position=(0.9, 0.48)), name="ellipse")
     setup = flow.Setup(
-        grid=whole.patch((0.4, 1.5), across, ratio=2), around=whole, viscosity=2e-3, bodies=(body,), coarse=True,
+        grid=whole.patch((0.4, 1.5), across, ratio=2), coarse_grid=whole, viscosity=2e-3, bodies=(body,), coarse=True,
         sides=flow.Sides(
             left=flow.Inflow(profile=lambda y: 6 * y * (1 - y)), right=flow.Outflow(), bottom=flow.Wall(),
             top=flow.Wall(),
         ),
     )  # fmt: skip
-    push = flow.Twists(about=np.array([[0.9, 0.48]]), linear=np.array([[0.02, 0.03]]), angular=np.array([[0.1]]))
+    push = flow.Twists(
+        reference_points=np.array([[0.9, 0.48]]), linear=np.array([[0.02, 0.03]]), angular=np.array([[0.1]])
+    )
     found = {}
     for name, one in (("patch", setup), ("fine", uniform(setup))):
         sim = flow.Simulation(one)
@@ -240,9 +242,9 @@ def test_small_accelerations_count_as_much_as_large_ones(across):
         for size in (1.0, 1e-3, 1e-6):
             sim.restore(begun)
             sim.advance(0.01)
-            before = sim.last("ellipse").whole
+            before = sim.last_loads("ellipse").total
             sim.accelerate({"ellipse": push * size})
-            after = sim.last("ellipse").whole
+            after = sim.last_loads("ellipse").total
             found[name, size] = np.array([*(after.force - before.force), *(after.moment - before.moment)]) / size
     for size in (1.0, 1e-3, 1e-6):
         assert found["patch", size] == pytest.approx(found["fine", 1.0], rel=5e-3, abs=5e-4)
@@ -285,9 +287,15 @@ def test_a_patch_ends_on_a_mirror_that_cuts_the_body():
     sides = flow.Sides(low=flow.Mirror())
     whole = flow.Grid.covering((-3.0, 3.0), (-3.0, 3.0), (0.0, 3.0), cell=1 / 4, sides=sides)
     setup = flow.Setup(
-        grid=whole.patch((-1.75, 1.75), (-1.75, 1.75), (0.0, 1.75), ratio=2), around=whole, sides=sides, viscosity=0.02,
-        stream=(1.0, 0.0, 0.0), bodies=(flow.Body(shape=flow.Sphere(diameter=0.8)),), coarse=True, step=0.05,
-    )  # fmt: skip
+        grid=whole.patch((-1.75, 1.75), (-1.75, 1.75), (0.0, 1.75), ratio=2),
+        coarse_grid=whole,
+        sides=sides,
+        viscosity=0.02,
+        stream=(1.0, 0.0, 0.0),
+        bodies=(flow.Body(shape=flow.Sphere(diameter=0.8)),),
+        coarse=True,
+        step=0.05,
+    )
     a, b = (ran(one, 0.3).record.force() for one in (setup, uniform(setup)))
     assert a[1:, 0] == pytest.approx(b[1:, 0], rel=0.01)
     assert np.abs(a[:, 2]).max() < 1e-4

@@ -61,8 +61,8 @@ def test_distance_is_that_to_the_nearest_marker_and_the_normal_its_slope(shape):
 @pytest.mark.parametrize("shape", MAKERS, indirect=True)
 def test_markers_close_and_enclose_the_area(shape):
     m = shape.markers(0.0, flow.Pose(), 0.01)
-    assert abs((m.normals[0] * m.share).sum()) < 1e-9
-    area = 0.5 * ((m.x * m.normals[0] + m.y * m.normals[1]) * m.share).sum()
+    assert abs((m.normals[0] * m.weight).sum()) < 1e-9
+    area = 0.5 * ((m.x * m.normals[0] + m.y * m.normals[1]) * m.weight).sum()
     assert area == pytest.approx(shape.mass(0.0).area, rel=0.01)
     grid = np.linspace(-1.4, 1.4, 141)
     inside = shape.distance(*np.meshgrid(grid, grid))[0] < 0
@@ -125,7 +125,7 @@ def test_what_is_painted_of_an_outline_is_its_distance(seed, angle, across):
     off = np.hypot(*(back - foot))[near]
     assert (np.abs(off) < 1e-12).mean() > 0.99  # but for points as near to two edges
     assert np.abs(shape.distance(*pose.to_body(*back))[0][near]).max() < 1e-12
-    assert all(np.array_equal(a, b) for a, b in zip(found.velocity, pose.carry(*points), strict=True))
+    assert all(np.array_equal(a, b) for a, b in zip(found.velocity, pose.velocity_in_plane(*points), strict=True))
     assert np.isinf(found.thickness).all()
 
 

@@ -56,7 +56,7 @@ def test_points_of_another_shape_are_refused():
 
 
 def test_a_rake_notes_the_water_in_a_run():
-    rake = flow.Rake(points=flow.line((-1.0, 0.5), (1.0, 0.5), 5), every=0.05)
+    rake = flow.Rake(points=flow.line((-1.0, 0.5), (1.0, 0.5), 5), interval=0.05)
     moving = flow.Rake(points=lambda time: np.array([[time, 0.0]]))
     sim = flow.Simulation(still_setup(bodies=(), stream=(0.5, 0.1), step=0.025))
     sim.run(0.2, watch=(rake, moving), progress=False)

@@ -17,17 +17,17 @@ class Swinging(flow.Side):
     rate: float
     travels = False, False
 
-    def along(self, time, axes):
-        return (self.speed * cos(self.rate * time), *(0.0,) * (axes - 2))
+    def wall_velocity(self, time, ndim):
+        return (self.speed * cos(self.rate * time), *(0.0,) * (ndim - 2))
 
 
 @dataclass(frozen=True)
 class Piston(flow.Side):
     speed: float
     rate: float
-    passes = True
+    is_permeable = True
 
-    def into(self, time, *places):
+    def inflow_velocity(self, time, *places):
         return self.speed * sin(self.rate * time)
 
 
@@ -90,15 +90,15 @@ def test_two_pistons_that_move_as_one_may_close_a_box():
 
 
 class Wrong(flow.Side):
-    passes = True
+    is_permeable = True
 
     def __init__(self, given, slides=None):
         self.given, self.slides = given, slides
 
-    def into(self, time, *places):
+    def inflow_velocity(self, time, *places):
         return self.given
 
-    def along(self, time, axes):
+    def wall_velocity(self, time, ndim):
         return self.slides
 
 

@@ -157,10 +157,10 @@ def test_a_leap_is_a_cell(shift):
 
     watched = Consistency(MotionSource("body", motion, 0.5), CELL)
     if shift < 1:
-        watched.look(0.095, 0.01)
+        watched.check_step(0.095, 0.01)
         return
     with pytest.raises(InvalidDesign, match="cannot leap"):
-        watched.look(0.095, 0.01)
+        watched.check_step(0.095, 0.01)
 
 
 @pytest.mark.parametrize("motion", [
@@ -172,7 +172,7 @@ def test_a_leap_is_a_cell(shift):
 def test_what_turns_starts_at_once_and_returns_does_not_leap(motion):
     watched = Consistency(MotionSource("body", motion, 0.5), 1 / 16)
     for k in range(400):
-        watched.look(0.0137 * k, 0.0137)
+        watched.check_step(0.0137 * k, 0.0137)
 
 
 def test_a_midline_may_count_its_heading_anew():
@@ -184,17 +184,17 @@ def test_a_midline_may_count_its_heading_anew():
 
     watched = Consistency(MidlineSource("eel", spine), CELL)
     for k in range(20):
-        watched.look(0.004 * k, 0.004)
+        watched.check_step(0.004 * k, 0.004)
 
 
 def test_an_added_mass_that_is_no_number_is_refused():
-    swimmer = Swimmer.of(flow.FreeBody(shape=OVAL, name="oval", free=(True, True, False)))
+    swimmer = Swimmer.from_body(flow.FreeBody(shape=OVAL, name="oval", free=(True, True, False)))
     mass = np.diag([1.0, 2.0, np.nan])
-    swimmer.take_added(mass, 0.0)
-    assert swimmer.added.tolist() == np.diag([1.0, 2.0, 0.0]).tolist()
+    swimmer.set_added_mass(mass, 0.0)
+    assert swimmer.added_mass.tolist() == np.diag([1.0, 2.0, 0.0]).tolist()
     mass[0, 1] = np.nan
     with pytest.raises(Diverged, match=r"t = 0.3 s the added mass of oval is nan in a degree of freedom"):
-        swimmer.take_added(mass, 0.3)
+        swimmer.set_added_mass(mass, 0.3)
 
 
 def test_a_body_that_begins_at_rest_in_thin_water_begins_with_a_step_in_which_it_goes_a_cell_at_most():
@@ -214,4 +214,4 @@ def test_a_body_that_begins_at_rest_in_thin_water_begins_with_a_step_in_which_it
     first = sim.next_step()
     assert 0.1 * CELL < motion(first).position[1] < CELL
     sim.run(first)
-    assert sim.last("body").whole.force[1] < 0.0
+    assert sim.last_loads("body").total.force[1] < 0.0

@@ -41,9 +41,9 @@ def test_distance_is_that_to_the_nearest_marker(shape):
 @pytest.mark.parametrize("shape", SHAPES)
 def test_normals_close_and_markers_enclose_the_area(shape):
     m = shape.markers(0.0, STILL, 0.01)
-    assert abs((m.normals[0] * m.share).sum()) < 1e-9
-    assert abs((m.normals[1] * m.share).sum()) < 1e-9
-    area = 0.5 * ((m.x * m.normals[0] + m.y * m.normals[1]) * m.share).sum()
+    assert abs((m.normals[0] * m.weight).sum()) < 1e-9
+    assert abs((m.normals[1] * m.weight).sum()) < 1e-9
+    area = 0.5 * ((m.x * m.normals[0] + m.y * m.normals[1]) * m.weight).sum()
     assert area == pytest.approx(shape.mass(0.0).area, rel=0.01)
     assert area > 0
 
@@ -94,12 +94,12 @@ def test_a_remembered_midline_is_where_it_is_asked_for_and_anew_once_it_is_forgo
     kept = CachedMidline(lambda time: replace(spine(time), half_width=eel["size"] * spine(time).half_width))
     here, there = flow.Pose(position=(0.1, 0.2), angle=0.3), flow.Pose(position=(0.1, 0.2), angle=0.4)
     for time, pose in ((0.1, here), (0.1, there), (0.2, there), (0.1, here)):
-        placed = kept.placed(time, pose)
-        np.testing.assert_array_equal(placed.rows, kept(time).placed(pose).rows)
-        assert kept.placed(time, replace(pose)) is placed
+        placed = kept.in_world(time, pose)
+        np.testing.assert_array_equal(placed.rows, kept(time).in_world(pose).rows)
+        assert kept.in_world(time, replace(pose)) is placed
     eel["size"] = 0.5
-    kept.forget()
-    np.testing.assert_array_equal(kept.placed(0.1, here).half_width, 0.5 * spine(0.1).half_width)
+    kept.clear()
+    np.testing.assert_array_equal(kept.in_world(0.1, here).half_width, 0.5 * spine(0.1).half_width)
 
 
 def test_a_step_makes_a_midline_once():
@@ -144,8 +144,8 @@ def test_a_turned_midline_is_the_turned_field(angle, px, py):
     m, n = shape.markers(0.2, STILL, 0.05), shape.markers(0.2, pose, 0.05)
     wx, wy = pose.to_world(m.x, m.y)
     assert (n.x, n.y) == (pytest.approx(wx), pytest.approx(wy))
-    vx, vy = pose.turn(*m.velocities)
-    cx, cy = pose.carry(wx, wy)
+    vx, vy = pose.rotate_in_plane(*m.velocities)
+    cx, cy = pose.velocity_in_plane(wx, wy)
     assert n.velocities[0] == pytest.approx(vx + cx, abs=1e-9)
     assert n.velocities[1] == pytest.approx(vy + cy, abs=1e-9)
 

@@ -29,12 +29,12 @@ NOTHING = 1e-12  # density of water that does nothing [kg/m^3]
 
 def alone(body, dt, count, *, added=None):
     """Rotation matrices and rates of a body in water that answers with an added mass at most, step by step."""
-    swimmer, matrices, rates = Swimmer.of(body), [], []
+    swimmer, matrices, rates = Swimmer.from_body(body), [], []
     for k in range(count):
         swimmer.advance(k * dt, dt, NOTHING)
         if added is not None:
-            swimmer.added, swimmer.load = added, -added @ swimmer.push
-        matrices.append(rotation.turn(swimmer.place[3:]))
+            swimmer.added_mass, swimmer.load = added, -added @ swimmer.acceleration
+        matrices.append(rotation.turn(swimmer.coordinates[3:]))
         rates.append(swimmer.rate)
     return np.array(matrices), np.array(rates)
 
@@ -88,18 +88,18 @@ def test_springs_about_unequal_axes_neither_gain_nor_lose():
     springs = (0.0, 0.0, 4.0, *stiffness)
     body = spun(BRICK, (0.9, -0.6, 0.5), springs=springs, anchor=(0.0, 0.0, 0.1, 0.5, -0.4, 0.6))
     dt, count, moments = 0.02, 300, BRICK.mass(0.0).moments
-    swimmer, energy = Swimmer.of(body), []
+    swimmer, energy = Swimmer.from_body(body), []
     anchor = Rotation.from_euler("ZYX", [0.5, -0.4, 0.6])
     for k in range(count):
         swimmer.advance(k * dt, dt, NOTHING)
-        turn = Rotation.from_matrix(rotation.turn(swimmer.place[3:])) * anchor.inv()
-        m = rotation.turn(swimmer.place[3:])
+        turn = Rotation.from_matrix(rotation.turn(swimmer.coordinates[3:])) * anchor.inv()
+        m = rotation.turn(swimmer.coordinates[3:])
         rate = m.T @ swimmer.rate[3:]
         energy.append(rate @ moments @ rate + stiffness @ turn.as_rotvec() ** 2)
     assert np.ptp(energy[20:]) < 5e-3 * energy[-1]  # by then the first step's impulse is repaid
-    height = swimmer.place[2]
+    height = swimmer.coordinates[2]
     assert abs(height) > 0
-    assert swimmer.place[:2] == pytest.approx(0.0)
+    assert swimmer.coordinates[:2] == pytest.approx(0.0)
 
 
 @pytest.mark.parametrize("axis", range(6))
@@ -119,11 +119,11 @@ def test_a_locked_degree_of_six_stays_to_the_byte():
         shape=BRICK, start=(0.1, 0.7, -0.2), angle=0.3, density=3.0, free=(False, True, True, False, False, True),
         gravity=(1.0, -9.81, 2.0), spin=0.4, force=lambda time, state: (1.0, 2.0, state.spin, 3.0, 4.0, np.sin(time)),
     )  # fmt: skip
-    swimmer = Swimmer.of(body)
+    swimmer = Swimmer.from_body(body)
     for k in range(30):
         swimmer.advance(0.01 * k, 0.01, 1.0)
-        swimmer.added, swimmer.load = 0.1 * np.ones((6, 6)) + np.eye(6), np.array([1.0, 0.2, -0.4, 0.1, 0.2, 0.3])
-    assert swimmer.place[[0, 3, 4]].tobytes() == np.array([0.1, 0.0, 0.0]).tobytes()
+        swimmer.added_mass, swimmer.load = 0.1 * np.ones((6, 6)) + np.eye(6), np.array([1.0, 0.2, -0.4, 0.1, 0.2, 0.3])
+    assert swimmer.coordinates[[0, 3, 4]].tobytes() == np.array([0.1, 0.0, 0.0]).tobytes()
     assert swimmer.rate[[0, 3, 4]].tobytes() == np.zeros(3).tobytes()
     assert (np.abs(swimmer.rate[[1, 2]]) > 0.1).all()
     assert abs(swimmer.rate[5] - 0.4) > 1e-3
@@ -132,7 +132,7 @@ def test_a_locked_degree_of_six_stays_to_the_byte():
 @pytest.mark.parametrize("shape", [BRICK, flow.Cylinder(diameter=1.0)])
 def test_a_body_whose_turning_is_locked_keeps_its_spin_in_its_pose(shape):
     body = flow.FreeBody(shape=shape, spin=0.4, free=(True, True, False))
-    swimmer = Swimmer.of(body)
+    swimmer = Swimmer.from_body(body)
     swimmer.advance(0.0, 0.1, 1.0)
     pose = swimmer.pose(shape.mass(0.0))
     assert pose.spin == 0.4
@@ -141,11 +141,13 @@ def test_a_body_whose_turning_is_locked_keeps_its_spin_in_its_pose(shape):
 
 def test_whole_turns_about_z_are_counted_and_their_spring_pulls_back_over_them():
     body = spun(BRICK, (0.0, 0.0, 9.0), springs=(0.0, 0.0, 0.0, 0.0, 0.0, 1e-3))
-    swimmer = Swimmer.of(body)
+    swimmer = Swimmer.from_body(body)
     for k in range(200):
         swimmer.advance(0.01 * k, 0.01, NOTHING)
     assert 6 * np.pi > swimmer.pose(BRICK.mass(0.0)).angle > 4 * np.pi
-    assert -swimmer._held(swimmer.place, np.array([0, 0, 0, 0, 0, 1.0]))[5] == pytest.approx(-swimmer.place[5])
+    assert -swimmer._spring_force(swimmer.coordinates, np.array([0, 0, 0, 0, 0, 1.0]))[5] == pytest.approx(
+        -swimmer.coordinates[5]
+    )
 
 
 def near(shape, pose, h, count=40):
@@ -167,7 +169,7 @@ def test_a_shape_in_any_attitude_is_the_upright_one_seen_from_another_side(name)
     matrix, still = TURNED.matrix, flow.Pose(position=(0.0, 0.0, 0.0))
     reached = 0
     for point in near(shape, TURNED, h):
-        here, there = ([np.array([at, at + h]) for at in p] for p in (point, TURNED.seen(point)))
+        here, there = ([np.array([at, at + h]) for at in p] for p in (point, TURNED.to_body_3d(point)))
         found, wanted = shape.measure(*here, 0.4, TURNED, 3 * h), shape.measure(*there, 0.4, still, 3 * h)
         at = (0, 0, 0)
         distance = float(wanted.distance[at])
@@ -177,11 +179,11 @@ def test_a_shape_in_any_attitude_is_the_upright_one_seen_from_another_side(name)
         assert found.distance[at] == pytest.approx(distance, abs=1e-9)
         normal, drift = ([float(part[at]) for part in vector] for vector in (wanted.normal, wanted.velocity))
         assert [float(part[at]) for part in found.normal] == pytest.approx(matrix @ normal, abs=1e-6)
-        rigid = np.array(TURNED.rates(point))
+        rigid = np.array(TURNED.velocity_at(point))
         assert [float(part[at]) for part in found.velocity] == pytest.approx(matrix @ drift + rigid, abs=1e-9)
         assert found.thickness[at] == pytest.approx(wanted.thickness[at], rel=1e-6)
-        if wanted.part is not None:
-            assert found.part[at] == wanted.part[at]
+        if wanted.part_index is not None:
+            assert found.part_index[at] == wanted.part_index[at]
     assert reached > 20
 
 
@@ -203,7 +205,7 @@ def test_a_skin_in_any_attitude_moves_as_it_says_and_fills_its_bounds(name):
     assert (bounds[:, 1] >= high - 1e-9).all()
     assert np.abs(bounds.T - [low, high]).max() < 0.02
     upright = shape.markers(time, flow.Pose(position=(0.0, 0.0, 0.0)), 0.02)
-    assert now.share == pytest.approx(upright.share)
+    assert now.weight == pytest.approx(upright.weight)
 
 
 def test_a_trunk_that_hardly_tilts_is_painted_as_the_upright_one():
@@ -224,7 +226,7 @@ def test_a_trunk_that_hardly_tilts_is_painted_as_the_upright_one():
 @given(st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(-3, 3), st.tuples(*[st.floats(-2, 2)] * 3))
 def test_a_pose_sees_the_points_that_it_places(yaw, pitch, roll, point):
     pose = flow.Pose(position=(0.1, 0.2, 0.3), angle=yaw, pitch=pitch, roll=roll)
-    assert pose.seen(pose.place(point)) == pytest.approx(point, abs=1e-12)
+    assert pose.to_body_3d(pose.to_world_3d(point)) == pytest.approx(point, abs=1e-12)
     assert pose.matrix == pytest.approx(Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_matrix(), abs=1e-12)
 
 
@@ -290,7 +292,7 @@ def test_what_is_not_wanted_of_the_added_mass_is_not_computed(monkeypatch):
     skin = SPHEROID.markers(0.0, flow.Pose(position=(0.0, 0.0, 0.0)), 0.1)
     whole = added_mass(sim.water, skin, (0.0, 0.0, 0.0), 1.0)
     assert len(solves) == 6
-    some = added_mass(sim.water, skin, (0.0, 0.0, 0.0), 1.0, 0, sim.swimmers["body"].go)
+    some = added_mass(sim.water, skin, (0.0, 0.0, 0.0), 1.0, 0, sim.swimmers["body"].is_free)
     assert len(solves) == 9
     kept = ~np.isnan(some)
     assert kept.sum() == 9
@@ -333,7 +335,7 @@ def test_a_sphere_that_is_dropped_falls_straight():
     sim = water(ball, steps=6, viscosity=1e-6, step=0.01)
     speed = np.stack([sim.record.column(name) for name in COLUMNS[2]], axis=1)
     gained = (speed[-1] - speed[2]) / (3 * 0.01)
-    mass = np.diag(sim.swimmers["body"].added)[:3] / (np.pi / 6)
+    mass = np.diag(sim.swimmers["body"].added_mass)[:3] / (np.pi / 6)
     assert mass == pytest.approx(0.5, abs=0.06)
     assert gained == pytest.approx(pull / (2.0 + mass), rel=0.02)
     turned = np.stack([sim.record.column(name) for name in TURNS[1]], axis=1)
@@ -384,15 +386,15 @@ def test_body_and_water_keep_momentum_and_angular_momentum(shape, velocity):
             moved[c] = cells[c]
             total[:3] += moved.sum(axis=(1, 2, 3))
             total[3:] += np.cross(np.stack([x, y, z]), moved, axis=0).sum(axis=(1, 2, 3))
-        inside = sim._log.held[0, :6].copy()  # about the grid's corner, in cells
+        inside = sim._log.region_contents[0, :6].copy()  # about the grid's corner, in cells
         inside[3:] = h * inside[3:] + np.cross(grid.origin, inside[:3])
         water_has = (total - inside) * h**3
-        state, matrix = swimmer.rate, rotation.turn(swimmer.place[3:])
+        state, matrix = swimmer.rate, rotation.turn(swimmer.coordinates[3:])
         inertia = 2.0 * shape.mass(0.0).inertia(matrix)
         own = inertia @ state
-        late = swimmer.span * (swimmer.load + swimmer.applied) + swimmer.owed - (own - swimmer.momentum)
+        late = swimmer.span * (swimmer.load + swimmer.applied) + swimmer.residual_impulse - (own - swimmer.momentum)
         own = own + late
-        own[3:] += np.cross(swimmer.place[:3], own[:3])
+        own[3:] += np.cross(swimmer.coordinates[:3], own[:3])
         return water_has, own
 
     sim.advance()
@@ -416,10 +418,10 @@ def test_what_a_mirror_would_break_is_locked():
     body = flow.FreeBody(shape=BRICK, density=2.0, gravity=(0.3, -1.0), angle=0.4)
     cut = {"grid": grid, "sides": flow.Sides(low=flow.Mirror()), "steps": 6}
     every, three = (water(replace(body, free=free), **cut) for free in (None, (True, True, True)))
-    assert every.swimmers["body"].go.tolist() == [True, True, False, False, False, True]
+    assert every.swimmers["body"].is_free.tolist() == [True, True, False, False, False, True]
     assert every.record.bodies.tobytes() == three.record.bodies.tobytes()
     whole = water(body, steps=6)
-    assert whole.swimmers["body"].go.all()
+    assert whole.swimmers["body"].is_free.all()
     for name in ("velocity_x", "velocity_y", "spin"):
         assert whole.record.column(name)[-1] == pytest.approx(every.record.column(name)[-1], rel=2e-3, abs=1e-5)
     assert np.abs([whole.record.column(name) for name in ("z", "pitch", "roll")]).max() < 1e-5
@@ -516,10 +518,10 @@ def test_what_only_space_has_is_refused_in_the_plane(changes, said):
     with pytest.raises(InvalidDesign, match=r"roll 0.1 rad .* in the plane a body has an angle and a spin alone"):
         flow.Setup(
             grid=flow.Grid(cells=(64, 64), cell=0.1, origin=(-3.2, -3.2)), viscosity=1.0, bodies=(turned,)
-        ).check()
+        ).check_bodies()
 
 
 def test_a_force_of_the_wrong_length_says_when():
-    swimmer = Swimmer.of(flow.FreeBody(shape=BRICK, force=lambda time, state: (1.0, 2.0, 3.0, 4.0)))
+    swimmer = Swimmer.from_body(flow.FreeBody(shape=BRICK, force=lambda time, state: (1.0, 2.0, 3.0, 4.0)))
     with pytest.raises(InvalidDesign, match=r"the force of body at t = 0\.5 s .* or six numbers"):
         swimmer.advance(0.5, 0.01, 1.0)

@@ -150,7 +150,7 @@ def test_a_part_of_a_force_becomes_the_whole():
     part = Reaction(force=np.array([1.0, 2.0, 3.0]), moment=np.array([6.0, 7.0, 4.0]), power=np.array(5.0))
 
     def told(cut):
-        whole = part.whole(cut)
+        whole = part.of_whole_body(cut)
         return whole.force.tolist(), whole.moment.tolist(), float(whole.power)
 
     assert told((False,) * 6) == ([1.0, 2.0, 3.0], [6.0, 7.0, 4.0], 5.0)
@@ -224,11 +224,11 @@ def test_values_of_one_window_are_found_in_another(ends):
     water = empty_water()
     old, new = (tuple(n for first, size in part for n in (first, first + size)) for part in (ends[:3], ends[3:]))
     whole = np.zeros((3, 20, 20, 20), np.float32)
-    water._look_at(old)
+    water._set_window(old)
     values = np.arange(1, water.b.size + 1, dtype=np.float32).reshape(water.b.shape)
-    whole[:, *water.here] = values
-    water._look_at(new)
-    assert np.array_equal(water._in_window(values, old), whole[:, *water.here])
+    whole[:, *water.window_slices] = values
+    water._set_window(new)
+    assert np.array_equal(water._in_window(values, old), whole[:, *water.window_slices])
 
 
 def test_the_force_on_a_body_that_starts_is_its_added_mass():
@@ -287,9 +287,9 @@ def test_an_ellipsoid_knows_the_distance_of_every_point(axes, direction, far):
     if np.linalg.norm(direction) < 0.1:
         return
     unit = np.array(direction) / np.linalg.norm(direction)
-    foot, normal = shape.half * unit, unit / shape.half
+    foot, normal = shape.half_extents * unit, unit / shape.half_extents
     normal = normal / np.linalg.norm(normal)
-    bend = shape.half.min() ** 2 / shape.half.max()  # smallest radius of curvature
+    bend = shape.half_extents.min() ** 2 / shape.half_extents.max()  # smallest radius of curvature
     reach = max(far, -0.9) * (bend if far < 0 else 1.0)
     lines = [np.array([at]) for at in foot + reach * normal]
     still = flow.Pose(position=(0.0, 0.0, 0.0))
@@ -353,8 +353,8 @@ def test_the_skin_of_an_ellipsoid_has_its_area_and_moves_with_it():
     pose = flow.Pose(position=(1.0, 2.0, 3.0), angle=0.4, velocity=(0.1, 0.2, 0.3), spin=2.0)
     shape = flow.Ellipsoid(length=2 * a, width=2 * b, height=2 * b)
     skin = shape.markers(0.0, pose, 0.02)
-    assert skin.share.sum() == pytest.approx(2 * np.pi * b**2 * (1 + a / (b * e) * np.arcsin(e)), rel=1e-3)
-    expected = [0.1 - 2.0 * (skin.points[1] - 2.0), 0.2 + 2.0 * (skin.points[0] - 1.0), np.full(skin.share.size, 0.3)]
+    assert skin.weight.sum() == pytest.approx(2 * np.pi * b**2 * (1 + a / (b * e) * np.arcsin(e)), rel=1e-3)
+    expected = [0.1 - 2.0 * (skin.points[1] - 2.0), 0.2 + 2.0 * (skin.points[0] - 1.0), np.full(skin.weight.size, 0.3)]
     assert skin.velocities == pytest.approx(np.array(expected))
     found = [(p.min(), p.max()) for p in skin.points]
     assert np.ravel(found) == pytest.approx(np.array(shape.bounds(0.0, pose)), abs=0.02)
@@ -485,7 +485,7 @@ def test_bad_input_is_one_sentence_with_the_remedy(make, part):
 
 def test_a_box_covers_what_was_asked_for():
     grid = flow.Grid.covering((-0.65, 1.15), (-0.35, 0.35), (0.0, 0.2), cell=1 / 96)
-    assert grid.axes == 3
+    assert grid.ndim == 3
     for low, size, (start, end) in zip(grid.origin, grid.size, ((-0.65, 1.15), (-0.35, 0.35), (0.0, 0.2)), strict=True):
         assert low <= start + 1e-12
         assert low + size >= end - 1e-12

@@ -43,9 +43,9 @@ def linear(axes=3, gradient=G):
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=list(SHAPES))
 def test_a_skin_is_closed_and_faces_the_water(shape):
     skin = shape.markers(0.3, POSE, 0.01)
-    facing = skin.share * skin.normals
+    facing = skin.weight * skin.normals
     np.testing.assert_allclose(np.linalg.norm(skin.normals, axis=0), 1.0, atol=1e-12)
-    assert np.abs(facing.sum(axis=1)).max() < 0.01 * skin.share.sum()
+    assert np.abs(facing.sum(axis=1)).max() < 0.01 * skin.weight.sum()
     assert (facing * skin.points).sum() / 3 == pytest.approx(shape.mass(0.3).volume, rel=0.02)  # Gauss
 
 
@@ -60,7 +60,7 @@ def test_normals_turn_with_the_spin_of_the_skin(shape):
             shape.markers(time + way * step, pose, 0.02) for way, pose in zip((-1, 0, 1), moving, strict=True)
         )
     rate = (after.normals - before.normals) / (2 * step)
-    sides = now.share > 0
+    sides = now.weight > 0
     np.testing.assert_allclose(rate[:, sides], np.cross(now.spins, now.normals, axis=0)[:, sides], atol=0.05)
 
 

@@ -84,7 +84,7 @@ def test_a_trunk_with_the_sections_of_an_ellipsoid_is_one(axes):
     mass, wanted = egg(*axes).mass(0.0), exact.mass(0.0)
     assert mass.volume == pytest.approx(wanted.volume, rel=2e-4)
     assert np.diag(mass.moments) == pytest.approx(np.diag(wanted.moments), rel=4e-4)
-    skins = [shape.markers(0.0, POSE, 0.5 * h).share.sum() for shape in (egg(*axes), exact)]
+    skins = [shape.markers(0.0, POSE, 0.5 * h).weight.sum() for shape in (egg(*axes), exact)]
     assert skins[0] == pytest.approx(skins[1], rel=2e-3)
 
 
@@ -103,7 +103,7 @@ def test_a_trunk_of_constant_section_is_a_cylinder_with_flat_ends(x, y, z):
         assert np.sign(found) == np.sign(exact)
         assert abs(found) >= reach - 1e-9
     assert trunk.volume(0.0) == pytest.approx(np.pi * radius**2)
-    assert trunk.markers(0.0, flow.Pose(), 0.02).share.sum() == pytest.approx(2 * np.pi * radius * 1.2, rel=5e-3)
+    assert trunk.markers(0.0, flow.Pose(), 0.02).weight.sum() == pytest.approx(2 * np.pi * radius * 1.2, rel=5e-3)
 
 
 def test_the_volume_of_a_bent_trunk_is_what_it_fills():
@@ -185,23 +185,23 @@ def test_a_body_gets_the_momentum_that_the_water_gives(swum):
 def test_the_parts_make_the_whole(swum):
     record = swum.record
     for name in ("force_x", "force_y", "torque", "power"):
-        whole, parts = record.column(name), record.along(name)
+        whole, parts = record.column(name), record.part_series(name)
         assert parts.shape == (20, 4)
         assert np.abs(parts.sum(axis=1) - whole).max() < 1e-9 * np.abs(parts).max()
     shape, pose = swum.setup.bodies[0].shape, swum.pose("body")
-    force = np.stack([record.along("force_x"), record.along("force_y")], axis=-1)[-1]
+    force = np.stack([record.part_series("force_x"), record.part_series("force_y")], axis=-1)[-1]
     about = np.array([record.column("x")[-1], record.column("y")[-1]])
-    for k, joint in enumerate(shape.at(swum.time, pose, np.array([0.0, *CUTS]))[:, :2]):
+    for k, joint in enumerate(shape.position_at(swum.time, pose, np.array([0.0, *CUTS]))[:, :2]):
         arm, behind = about - joint, force[k:].sum(axis=0)
-        torque = record.along("torque")[-1, k:].sum() + arm[0] * behind[1] - arm[1] * behind[0]
-        assert record.along("torque_behind")[-1, k] == pytest.approx(torque, abs=1e-9)
-    assert record.after(0.13).along("power").shape == (14, 4)
+        torque = record.part_series("torque")[-1, k:].sum() + arm[0] * behind[1] - arm[1] * behind[0]
+        assert record.part_series("torque_behind")[-1, k] == pytest.approx(torque, abs=1e-9)
+    assert record.select_after(0.13).part_series("power").shape == (14, 4)
     with pytest.raises(UnknownName):
-        record.along("force_z")
+        record.part_series("force_z")
     undivided = water(eel(taper=False))
     undivided.advance()
     with pytest.raises(OutsideLimits, match="is not divided"):
-        undivided.record.along("power")
+        undivided.record.part_series("power")
 
 
 def test_a_divided_body_swims_as_an_undivided_one_on_any_number_of_threads(swum):
@@ -254,7 +254,7 @@ def test_each_part_of_a_spheroid_that_starts_sideways_is_held_back_by_its_volume
     )  # fmt: skip
     for _ in range(2):
         sim.advance()
-    along = sim.record.along("force_y")[-1]
+    along = sim.record.part_series("force_y")[-1]
     ends = np.array([0.0, *cuts, 2.0]) - 1.0
     share = np.diff(ends - ends**3 / 3) / (4 / 3)
     assert along.sum() < 0
@@ -279,7 +279,7 @@ def test_a_heavy_sphere_begins_to_sink_with_its_mass_and_added_mass():
         sim.advance()
     speed = sim.record.column("velocity_x")
     push = (speed[-1] - speed[2]) / (3 * 0.01)
-    added = float(sim.swimmers["body"].added[0, 0]) / (np.pi / 6)
+    added = float(sim.swimmers["body"].added_mass[0, 0]) / (np.pi / 6)
     assert added == pytest.approx(0.5, abs=0.06)
     assert push == pytest.approx(-3.0 / (2.0 + added), rel=0.02)
     assert np.abs(sim.record.column("velocity_y")).max() < 1e-4
@@ -313,7 +313,7 @@ def test_what_does_not_fit_is_refused_in_use():
     across_y = flow.Sides(bottom=flow.Mirror())
     with pytest.raises(InvalidDesign, match="no images of each other"):
         water(egg(0.8, 0.3, 0.3), free=False, half=False, sides=across_y, grid=UPPER)
-    assert water(SPHERE, free=False, half=False, sides=across_y, grid=UPPER).thin == {"body": 0.0}
+    assert water(SPHERE, free=False, half=False, sides=across_y, grid=UPPER).thin_fractions == {"body": 0.0}
     body = flow.FreeBody(shape=flow.Cylinder(diameter=0.3), start=(0.5, 0.0, 0.0))
     with pytest.raises(InvalidDesign, match=r"starts at \(0.5, 0.0, 0.0\) m, and the grid has two axes"):
         flow.Setup(grid=flow.Grid(cells=(32, 32), cell=1 / 16), viscosity=0.01, bodies=(body,))

@@ -220,7 +220,7 @@ def test_friction_along_the_skin(cells, low):
 def test_duetsch_oscillating_cylinder():
     data = published("duetsch1998_force.csv")
     _, sim = cases.oscillating(24, keulegan=5.0, stokes=20.0, periods=5, width=8, height=6)
-    last = sim.record.after(4.0)
+    last = sim.record.select_after(4.0)
     phase, force = cases.middle(last) - 4.0, last.force()[:, 0] / 25
     off = np.interp(data["t_over_period"], phase, force, period=1.0) - data["force"]
     assert float(np.sqrt(np.mean(off**2))) / np.abs(data["force"]).max() < 0.06
@@ -281,7 +281,7 @@ def test_force_noise_of_a_held_eel():
                 bodies=(flow.Body(shape=shape),),
             )
         )  # fmt: skip
-        last = sim.run(2.0, progress=False).after(1.0)
+        last = sim.run(2.0, progress=False).select_after(1.0)
         for quantity, series in (
             ("along x", last.force()[:, 0]),
             ("along y", last.force()[:, 1]),
@@ -317,7 +317,7 @@ def test_free_eel(name, viscosity, sizes, cycles, between, gains):
         note(case, f"mean speed in cycle {cycles}, {cells} cells/L [L/T]", means[-1], "-",
              f"{cells} cells/L", "2.5 L x 1 L, moving", "IBAMR eel2d", cells=sizes[: len(speeds)], speed=speeds,
              cycle=means)  # fmt: skip
-    last = record.after(cycles - 1.0)
+    last = record.select_after(cycles - 1.0)
     grid = (f"{sizes[-1]} cells/L", "2.5 L x 1 L, moving")
     changes = np.abs(np.diff(speeds)) / np.array(speeds[1:])
     note(case, "change of speed, finest two grids", changes[-1], "at most 0.02", *grid, "-")

@@ -77,7 +77,7 @@ def drag(cells, reynolds, *, half=2.0, ahead=2.0, until=9.0, shape=SPHERE):
     setup = flow.Setup(
         grid=grid, viscosity=1 / reynolds, stream=(1.0, 0.0, 0.0), sides=sides, bodies=(body,), coarse=True
     )
-    record = flow.Simulation(setup).run(until, progress=False).after(until - 1)
+    record = flow.Simulation(setup).run(until, progress=False).select_after(until - 1)
     return float(record.coefficients(length=1.0, speed=1.0, area=np.pi / 4).drag.mean())
 
 
@@ -344,7 +344,7 @@ def test_momentum_of_body_and_water():
 
     def gained():
         cells = sim.water.velocity[:, PAD:-PAD, PAD:-PAD, PAD:-PAD].astype(float)
-        held = sim._log.held[0, :3]  # what the body's region holds is not the water's
+        held = sim._log.region_contents[0, :3]  # what the body's region holds is not the water's
         return (cells.sum(axis=(1, 2, 3)) - held) * sim.setup.grid.cell**3
 
     sim.advance()

@@ -57,7 +57,9 @@ def test_a_stream_that_starts_goes_around_a_cylinder_as_potential_flow():
 def test_the_water_never_leaves_a_cylinder():
     """After 16 diameters it goes on as in ideal water, and stays bounded; a real cylinder has 1.2 (Re 1e4 to 2e5)."""
     sim = past_a_cylinder(24, 16.0)
-    drag = 2 * float(np.average(sim.record.after(14.0).force()[:, 0], weights=sim.record.after(14.0).step))
+    drag = 2 * float(
+        np.average(sim.record.select_after(14.0).force()[:, 0], weights=sim.record.select_after(14.0).step)
+    )
     note("free slip", "drag of a cylinder after 16 diameters", drag, 0, "24 cells/D", "6 D x 6 D", "ideal water")
     print(f"cylinder after 16 diameters: drag {drag:.3f}, off potential flow by {off_potential_flow(sim):.3f}")
     assert abs(drag) < 0.1  # real: 1.2
@@ -109,7 +111,7 @@ def towed_spheroid(cells, slenderness=6.0):
     u = np.stack([at(component, 1.5, c) for c, component in enumerate(sim.water.velocity)])
     slip = np.sqrt(np.maximum((u**2).sum(axis=0) - ((u * normal).sum(axis=0)) ** 2, 0)).mean(axis=1)
     slip[[0, -1]] = 0.0
-    last = sim.record.after(0.75)
+    last = sim.record.select_after(0.75)
     exchanged = float(np.average(last.force()[:, 0], weights=last.step))
     return 2 * drag / area, 2 * exchanged / area, impulse, slip, (arc, girth, along, area)
 
@@ -148,7 +150,7 @@ def swung(cells, keulegan, periods=3):
         sim = flow.Simulation(
             flow.Setup(grid=grid, viscosity=HARDLY, bodies=(body,), tolerance=1e-4, step=0.35 * h / (reach * rate))
         )
-    record = sim.run(float(periods), progress=False).after(1.0)
+    record = sim.run(float(periods), progress=False).select_after(1.0)
     time = record.time - record.step / 2
     return flow.morison(time, record.force()[:, 0], frequency=1.0, speed=reach * rate, diameter=1.0, density=1.0)
 

@@ -49,16 +49,16 @@ class OnSpring:
 def swing(sim, told, inertia, spring, h):
     """Take a step in which the water's torque and the spring's make the acceleration; return the residual."""
     pose, load = told(told.time), 0.0
-    mode = Twists(about=np.array([pose.position]), linear=np.zeros((1, 2)), angular=np.ones((1, 1)))
+    mode = Twists(reference_points=np.array([pose.position]), linear=np.zeros((1, 2)), angular=np.ones((1, 1)))
     added = float(sim.added_mass("body", [mode]).matrix[0, 0])
     if len(sim.record.time):
-        load = sim.last("body").whole.torque
+        load = sim.last_loads("body").total.torque
     whole = inertia + added + 0.25 * h * h * spring
     middle = told.angle + 0.5 * h * told.rate
     told.push = (load + added * told.push - spring * middle) / whole
     sim.advance(h)
     for _ in range(3):
-        load = sim.last("body").whole.torque
+        load = sim.last_loads("body").total.torque
         left = inertia * told.push + spring * (middle + 0.25 * h * h * told.push) - load
         more = -left / whole
         told.push += more
@@ -143,7 +143,7 @@ def test_added_mass_of_bent_links():
     for k, (x, y, _) in enumerate(places):
         for linear, spin in (((1.0, 0.0), 0.0), ((0.0, 1.0), 0.0), ((0.0, 0.0), 1.0)):
             each = [resting_twists(1, 2) for _ in places]
-            each[k] = Twists(about=np.array([[x, y]]), linear=np.array([linear]), angular=np.array([[spin]]))
+            each[k] = Twists(reference_points=np.array([[x, y]]), linear=np.array([linear]), angular=np.array([[spin]]))
             modes.append(join_twists(each))
     outlines = [one.shape.markers(0.0, one.pose(0.0), grid.cell) for one in bodies]
     ours = generalised_added_mass(sim.water, outlines, modes, WATER).matrix
@@ -393,12 +393,12 @@ def test_a_step_that_is_taken_again():
         if corrected:
             more = swim.chain.twists(end.place, 0.1 * h * push, np.array(sim.frame[0]), 2)
             sim.accelerate({name: more})
-        loads = sim.last(name)
+        loads = sim.last_loads(name)
         return [
             sim.water.velocity.copy(),
             sim.water.p.copy(),
             loads.parts.force.copy(),
-            np.array(float(loads.whole.power)),
+            np.array(float(loads.total.power)),
         ]
 
     first = taken(pushes[0], corrected=True)

@@ -60,7 +60,9 @@ def test_an_aerofoil_has_the_drag_and_lift_of_fine_cells():
     setup = flow.Setup(grid=whole, viscosity=1e-3, stream=(1.0, 0.0), bodies=(aerofoil,), coarse=True)
     records = cases.in_patch(setup, whole, (-0.5, 2.0), (-0.6, 0.5), until=4.0, ratio=4)
     for axis, name in enumerate(("drag", "lift")):
-        fine, patch = (np.average(2 * r.after(3.0).force()[:, axis], weights=r.after(3.0).step) for r in records)
+        fine, patch = (
+            np.average(2 * r.select_after(3.0).force()[:, axis], weights=r.select_after(3.0).step) for r in records
+        )
         where = "128 cells/L, 32 around", "5.7 L x 2.8 L", "fine cells everywhere"
         off = note("patch: aerofoil at 10 degrees, Re 1000", f"mean {name}", patch, float(fine), *where)
         assert off < ASKED
@@ -72,9 +74,18 @@ def test_an_eel_swims_as_fast_as_in_fine_cells(behind):
     eel = flow.FreeBody(shape=flow.eel(1.0), name="eel")
     setup = flow.Setup(grid=whole, viscosity=0.785 / 5609, bodies=(eel,), follow="eel", coarse=True)
     fine, patch = cases.in_patch(setup, whole, (-0.7, 1.0 + behind), (-0.7, 0.7), until=4.0, ratio=2)
-    speeds = [-np.average(r.after(3.0).column("velocity_x"), weights=r.after(3.0).step) for r in (fine, patch)]
-    off = note("patch: free eel", f"speed in the fourth cycle, {behind:g} L of the wake in the patch [L/T]", speeds[1],
-               float(speeds[0]), "96 cells/L, 48 around", "7 L x 3.5 L", "fine cells everywhere")  # fmt: skip
+    speeds = [
+        -np.average(r.select_after(3.0).column("velocity_x"), weights=r.select_after(3.0).step) for r in (fine, patch)
+    ]
+    off = note(
+        "patch: free eel",
+        f"speed in the fourth cycle, {behind:g} L of the wake in the patch [L/T]",
+        speeds[1],
+        float(speeds[0]),
+        "96 cells/L, 48 around",
+        "7 L x 3.5 L",
+        "fine cells everywhere",
+    )
     assert off < ASKED
 
 
@@ -86,7 +97,17 @@ def test_a_sphere_has_the_drag_of_fine_cells():
         grid=whole, viscosity=0.01, stream=(1.0, 0.0, 0.0), bodies=(sphere,), sides=sides, coarse=True
     )  # fmt: skip
     fine, patch = cases.in_patch(setup, whole, (-1.25, 2.0), (0.0, 1.25), z=(0.0, 1.25), until=3.0, ratio=2)
-    drag = [np.average(8 / np.pi * r.after(2.0).force()[:, 0], weights=r.after(2.0).step) for r in (fine, patch)]
-    off = note("patch: sphere, Re 100", "drag at 2 to 3 D of travel", drag[1], float(drag[0]), "16 cells/D, 8 around",
-               "a quarter of 6.5 D x 5 D x 5 D", "fine cells everywhere")  # fmt: skip
+    drag = [
+        np.average(8 / np.pi * r.select_after(2.0).force()[:, 0], weights=r.select_after(2.0).step)
+        for r in (fine, patch)
+    ]
+    off = note(
+        "patch: sphere, Re 100",
+        "drag at 2 to 3 D of travel",
+        drag[1],
+        float(drag[0]),
+        "16 cells/D, 8 around",
+        "a quarter of 6.5 D x 5 D x 5 D",
+        "fine cells everywhere",
+    )
     assert off < ASKED

@@ -38,10 +38,16 @@ def series(degrees):
         outline = published(f"snake_{degrees}_outline")
         shape = flow.from_outline(np.stack([outline.values("x"), outline.values("y")], axis=1))
         whole = flow.Grid.covering((-2.5, 6.5), (-3.0, 3.0), cell=RATIO / CELLS)
-        sim = flow.Simulation(flow.Setup(
-            grid=whole.patch((-0.75, 1.45), (-0.65, 0.6), ratio=RATIO), around=whole, viscosity=1 / 2000, coarse=True,
-            stream=(1.0, 0.0), bodies=(flow.Body(shape=shape),),
-        ))  # fmt: skip
+        sim = flow.Simulation(
+            flow.Setup(
+                grid=whole.patch((-0.75, 1.45), (-0.65, 0.6), ratio=RATIO),
+                coarse_grid=whole,
+                viscosity=1 / 2000,
+                coarse=True,
+                stream=(1.0, 0.0),
+                bodies=(flow.Body(shape=shape),),
+            )
+        )
         sim.run(WINDOW[1], progress=False, checkpoint=stopped)
         record = sim.record
         np.savez_compressed(done, time=middles(record), step=record.step, force=record.force())

@@ -67,7 +67,7 @@ def test_a_patch_and_a_slice_in_space_take_the_same_wall():
     for cells, where in ((32, "plane"), (12, "space")):
         with layered(True):
             sim = cylinder("towed", 1e4, cells, where)
-            assert sim.setup.around is not None
+            assert sim.setup.coarse_grid is not None
             for _ in range(2):
                 sim.advance()
         assert isinstance(sim.water, flow.nest.Nested)

@@ -157,9 +157,9 @@ class LinkedSwimmer:
         for made in range(6):
             acts = np.zeros(3)
             for name in NAMES:
-                load = sim.last(name)
-                (x, y), (fx, fy) = load.about, load.whole.force
-                acts += [fx, fy, float(load.whole.torque) + x * fy - y * fx]
+                load = sim.last_loads(name)
+                (x, y), (fx, fy) = load.reference_point, load.total.force
+                acts += [fx, fy, float(load.total.torque) + x * fy - y * fx]
             found = self._about(end, acts)
             missing = self._about(end, before - self._momentum(end)) / h + found
             size, full = (float(np.sqrt((part**2 / np.diag(whole)).sum())) for part in (missing, found))
@@ -186,6 +186,6 @@ class LinkedSwimmer:
 
 def _twists(places, moving):
     return [
-        Twists(about=place[None, :2], linear=move[None, :2], angular=move[None, 2:])
+        Twists(reference_points=place[None, :2], linear=move[None, :2], angular=move[None, 2:])
         for place, move in zip(places, moving, strict=True)
     ]

@@ -119,8 +119,8 @@ class Layered:
         self.along = np.array(pose.velocity[:2])
         count = round(2 * np.pi * self.radius / h)
         self.angles, self.spacing = 2 * np.pi * np.arange(count) / count, 2 * np.pi * self.radius / count
-        ends, self._around = [(s.start, s.stop) for s in reversed(self.here)], []
-        for c in range(self.axes):
+        ends, self._around = [(s.start, s.stop) for s in reversed(self.window_slices)], []
+        for c in range(self.ndim):
             points = [(self.grid.faces if c == d else self.grid.centres)(*ends[d], d) for d in (0, 1)]
             x, y = np.meshgrid(points[0] - self.centre[0], points[1] - self.centre[1])
             r = np.maximum(np.hypot(x, y), 1e-9)
@@ -133,16 +133,16 @@ class Layered:
         """Return the water's velocity against the body, ``GAP`` cells off it, shape (axis, ring, point) [m/s]."""
         out = self.radius + GAP * self.grid.cell
         ring = self.centre[:, None] + out * np.stack([np.cos(self.angles), np.sin(self.angles)])
-        if self.axes == 3:
-            first, end = self.here[0].start, self.here[0].stop
+        if self.ndim == 3:
+            first, end = self.window_slices[0].start, self.window_slices[0].stop
             high = self.grid.centres(first, end, 2)
             ring = np.concatenate([np.tile(ring, high.size), np.repeat(high, ring.shape[1])[None]])
-        found, steps, places = np.empty((self.axes, ring.shape[1])), steps_of(self.p), padded(ring, self.grid)
+        found, steps, places = np.empty((self.ndim, ring.shape[1])), steps_of(self.p), padded(ring, self.grid)
         for c, component in enumerate(self.velocity):
             shifted = places.copy()
             shifted[c] += 0.5
             interpolate(component.reshape(-1), steps, shifted, found[c])
-        found = found.reshape(self.axes, -1, self.angles.size)
+        found = found.reshape(self.ndim, -1, self.angles.size)
         for _ in range(SMOOTHED):
             found = 0.5 * found + 0.25 * (np.roll(found, 1, axis=2) + np.roll(found, -1, axis=2))
         found[:2] -= self.along[:, None, None]
@@ -155,18 +155,18 @@ class Layered:
         h = self.grid.cell
         share, self.stress = layers(turning, self.spacing, float(self.nu) * h, GAP * h)
         self.slip = share * turning
-        gone = [self.slip, share * outward, share * beside[2] if self.axes == 3 else None]
+        gone = [self.slip, share * outward, share * beside[2] if self.ndim == 3 else None]
         self.b = self._bare.copy()
         for c, (low, high, part, off, x, y) in enumerate(self._around):
             slip, across, up = (None if g is None else g[:, low] + part * (g[:, high] - g[:, low]) for g in gone)
             more = (across * off * x - slip * y, across * off * y + slip * x, up)[c]
-            self.b[c] += more if self.axes == 3 else more[0]
+            self.b[c] += more if self.ndim == 3 else more[0]
         self._fill_source()
         super().step(dt, stream, push, limits, time)
 
     def _fill_source(self):
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
-        fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
+        fill_source(source, b, mu0, self._layout[0], self._near_layout, self.inner)
 
 
 class LayeredFluid(Layered, Fluid):
@@ -181,12 +181,12 @@ class LayeredNested(Layered, Nested):
         super()._fill_source()
         ratio, coarse = self.ratio, self.coarse
         fine = np.zeros(self.p.shape)
-        fine[self.here] = self.source
-        inner = fine[(slice(PAD, -PAD),) * self.axes]
+        fine[self.window_slices] = self.source
+        inner = fine[(slice(PAD, -PAD),) * self.ndim]
         split = [part for n in inner.shape for part in (n // ratio, ratio)]
         net = np.zeros(coarse.p.shape)
-        net[self._cells] = inner.reshape(split).sum(axis=tuple(range(1, 2 * self.axes, 2))) / ratio ** (self.axes - 1)
-        coarse.source[:] = net[coarse.here]
+        net[self._cells] = inner.reshape(split).sum(axis=tuple(range(1, 2 * self.ndim, 2))) / ratio ** (self.ndim - 1)
+        coarse.source[:] = net[coarse.window_slices]
 
 
 class Column(SpaceShape):
@@ -214,7 +214,7 @@ class Column(SpaceShape):
         velocity = np.array((*pose.velocity, 0.0)[:3])[:, None] + np.zeros((3, count))
         return flow.markers.Markers(
             points=np.array((*pose.position, 0.0)[:3])[:, None] + 0.5 * self.diameter * normals,
-            share=np.full(count, np.pi * self.diameter / count), velocities=velocity, normals=normals,
+            weight=np.full(count, np.pi * self.diameter / count), velocities=velocity, normals=normals,
             spins=np.zeros((3, count)),
         )  # fmt: skip
 
@@ -288,7 +288,7 @@ def cylinder(case, reynolds, cells, where):
     sides = flow.Sides(low=flow.Mirror(), high=flow.Mirror()) if space else flow.Sides()
     whole = flow.Grid.covering(*ends, *span, cell=1 / coarse, sides=sides)
     ratio = cells // coarse
-    grids = {"grid": whole} if ratio == 1 else {"grid": whole.patch(*patched, *span, ratio=ratio), "around": whole}
+    grids = {"grid": whole} if ratio == 1 else {"grid": whole.patch(*patched, *span, ratio=ratio), "coarse_grid": whole}
     shape = Column(diameter=1.0) if space else flow.Cylinder(diameter=1.0)
     start = None
     if space:  # what makes the wake one in space is a ripple of a hundredth of the speed
@@ -309,7 +309,7 @@ def cylinder(case, reynolds, cells, where):
 
 def read(case, reynolds, record, span, since):
     """Return what is compared: mean drag, rms lift and Strouhal number, or drag and inertia by Morison's equation."""
-    late = record.after(since)
+    late = record.select_after(since)
     time, force = late.time - late.step / 2, late.force() / span
     if case == "towed":
         drag, lift = 2 * force[:, 0], 2 * force[:, 1]

@@ -604,7 +604,7 @@ def flows(self: Range, dice: Random) -> None:
         setup[dice.choice([f.name for f in fields(flow.Setup)])] = dice.choice((*THINGS, (0.0, math.nan), (1.0,)))
     made = flow.Setup(**setup)
     finite([made.grid.x[:3], made.grid.y[:3]])
-    made.check()
+    made.check_bodies()
     span, cell = ((0, 1), 0.1) if dice.random() < 0.5 else (dice.choice(THINGS), dice.choice(THINGS))
     flow.Grid.covering(span, (0.0, 1.0), cell=cell)
 

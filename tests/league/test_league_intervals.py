@@ -65,7 +65,7 @@ def test_an_expensive_rung_takes_the_widest_interval_where_the_one_that_it_takes
         rungs={
             "fall": Predictor(words="", work=fell, draws=40),
             "film": Predictor(words="", work=partial(broken, NotConverged("no film.")), draws=4),
-            "guess": Predictor(words="", work=guess, draws=0, like="film"),
+            "guess": Predictor(words="", work=guess, draws=0, interval_source="film"),
         }
     )
     found, refused = predicted(wild, {name: _answers((wild, name), lambda *_: None) for name in wild.rungs})
@@ -82,7 +82,7 @@ def test_a_rung_without_an_interval_and_a_number_without_a_source_are_refused():
     with pytest.raises(InvalidDesign, match="must lie in the range"):
         stone(height=(2.0, 0.5, 1.5))
     with pytest.raises(InvalidDesign, match="draws none"):
-        stone(rungs={"film": Predictor(words="", work=fell, draws=0, like="film")})
+        stone(rungs={"film": Predictor(words="", work=fell, draws=0, interval_source="film")})
 
 
 def _measured(value, low, high):
@@ -111,12 +111,17 @@ def test_of_several_numbers_the_worst_decides():
     assert judged(three, _measured((1.0, 2.0), (1.0, 2.0), (1.0, 2.0))).word == "within"
     found = judged(three, _measured((1.0, 4.0), (1.0, 4.0), (1.0, 4.0)))
     assert found.word == "missed"
-    assert found.off == pytest.approx(0.5)
+    assert found.ratio == pytest.approx(0.5)
 
 
 def test_contestants_are_found_by_their_names():
     family = ContestantFamily(
-        name="stone", asked=(1.0, 2.5), low=0.5, high=6.0, what="metres", made=lambda h: stone(f"stone_{h:g}")
+        name="stone",
+        default_parameters=(1.0, 2.5),
+        low=0.5,
+        high=6.0,
+        parameter_label="metres",
+        create=lambda h: stone(f"stone_{h:g}"),
     )
     shelf = {"stone": family, "stone_old": SingleContestant(stone("stone_old"))}
     assert every(shelf) == ("stone_1", "stone_2.5", "stone_old")
@@ -133,7 +138,7 @@ def test_contestants_are_found_by_their_names():
 def test_some_models_are_asked_and_the_others_are_named():
     some = stone().asking(["formula", "slice"])
     assert list(some.rungs) == ["formula"]
-    assert some.left_out == {"film": "it was not asked"}
+    assert some.excluded_models == {"film": "it was not asked"}
     assert stone().asking([]) == stone()
     with pytest.raises(InvalidDesign, match="takes the interval of formula"):
         stone().asking(["film"])

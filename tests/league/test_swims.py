@@ -60,7 +60,7 @@ def test_sections_have_no_word_of_a_beat_that_servos_cannot_be_commanded(ticks, 
 
     monkeypatch.setattr(swims, "sections", lambda swimmers, **_: ["swum"] * len(swimmers))
     monkeypatch.setattr(swims, "_sound", lambda *_: {"speed": 1.0})
-    asked = SwimTask(build=build, read=lambda *_: {})
+    asked = SwimTask(build=build, read_quantities=lambda *_: {})
     if refused:
         with pytest.raises(OutsideLimits, match=r"15 times a cycle at .* Hz; 16 are needed"):
             swims._by_sections(asked, [{}], lambda *_: None)

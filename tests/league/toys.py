@@ -31,8 +31,8 @@ def stone(name="stone", height=(1.0, 0.5, 1.5), source="a ruler", rungs=None) ->
     return Contestant(
         name=name,
         title="A stone falls",
-        about="From a table.",
-        given={"height": Given(value=height[0], low=height[1], high=height[2], unit="m", source=source)},
+        description="From a table.",
+        inputs={"height": Given(value=height[0], low=height[1], high=height[2], unit="m", source=source)},
         predicts={
             "speed": Quantity(unit="m/s", words="speed at the ground"),
             "times": Quantity(unit="m", words="heights"),
@@ -40,7 +40,7 @@ def stone(name="stone", height=(1.0, 0.5, 1.5), source="a ruler", rungs=None) ->
         rungs=rungs
         or {
             "formula": Predictor(words="a formula", work=fell, draws=200),
-            "film": Predictor(words="a film", work=slow, draws=0, like="formula"),
+            "film": Predictor(words="a film", work=slow, draws=0, interval_source="formula"),
         },
     )
 

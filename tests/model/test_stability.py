@@ -20,7 +20,7 @@ def test_the_longest_step_is_a_time_of_the_body():
 
 def test_shorter_steps_hold_the_joints_and_longer_ones_do_not():
     robot = giant()
-    asked = EXPERIMENTS["death_roll"].quick().on(robot)
+    asked = EXPERIMENTS["death_roll"].quick().for_robot(robot)
     run = asked._floating_run(asked._roll(), "trunk", "vacuum")
     longest = longest_step(robot)
     assert 0.0005 < longest < 0.001
@@ -32,7 +32,7 @@ def test_shorter_steps_hold_the_joints_and_longer_ones_do_not():
 
 def test_a_robot_that_is_nearly_as_stiff_rolls_in_the_same_steps():
     asked = EXPERIMENTS["death_roll"].quick()
-    assert asked.on(ROBOTS["long_tail"]).timesteps == asked.timesteps
+    assert asked.for_robot(ROBOTS["long_tail"]).timesteps == asked.timesteps
 
 
 def test_a_run_without_ground_that_is_asked_for_no_step_takes_one_that_holds_it():

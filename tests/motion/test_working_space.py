@@ -124,4 +124,4 @@ def test_how_the_tail_is_driven_changes_nothing(robot, standing):
 
 def test_a_body_of_another_spine_is_refused():
     with pytest.raises(UnsuitedRobot, match="working_space needs the article's spine of 5 joints; robot 'six' lacks"):
-        EXPERIMENTS["working_space"].on(six())
+        EXPERIMENTS["working_space"].for_robot(six())

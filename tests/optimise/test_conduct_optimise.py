@@ -218,8 +218,8 @@ def test_the_command_leaves_the_same_files_when_it_is_given_again(page, tmp_path
 
 def test_arms_of_one_have_no_comparison(small):
     assert [arm.name for arm in small.arms] == ["best"]
-    assert small.of(small.arms[0]) is small
-    assert small.of(Arm(name="other")).arms == (Arm(name="other"),)
+    assert small.for_arm(small.arms[0]) is small
+    assert small.for_arm(Arm(name="other")).arms == (Arm(name="other"),)
 
 
 @pytest.mark.parametrize("name", ["salamander", "swimmer"])
@@ -253,7 +253,7 @@ def test_a_check_shakes_no_servo_and_builds_robots_of_the_design():
     tried = {condition.tells: _run_under_condition(run, condition) for condition in CONDITIONS}
     built = {one.zero_error for one in tried.values() if one.zero_error}
     assert {one.noise for one in tried.values()} == {0.0}
-    assert len(built) == sum(condition.built is not None for condition in CONDITIONS) == 2
+    assert len(built) == sum(condition.tolerance_seed is not None for condition in CONDITIONS) == 2
     assert tried["2 ms"] == run
     assert tried["foot friction 1.0"].ground.friction_scale == 1.25
     assert tried["a robot as built, seed 1"].robot != run.robot

@@ -75,8 +75,8 @@ def test_the_front_is_what_nothing_betters_in_both(small):
     history = tried.assign(score=("candidate", np.zeros(5)))
     found = SearchResult(spec=spec, start=tried.isel(candidate=[0]), history=history)
     assert set(found.front) == {0, 1, 3}  # 2 is bettered by 3; 4 breaks a limit
-    assert set(found.chosen) == {0, 1, 3}
-    areas = found.covered()
+    assert set(found.chosen_indices) == {0, 1, 3}
+    areas = found.covered_areas()
     assert (np.diff(areas) >= 0).all()
     assert areas[0] == pytest.approx(1.0)  # from nothing to one start, from one start's cost to two
 

@@ -55,11 +55,11 @@ def test_shares_and_values_are_the_same_thing(small):
 
 def test_what_an_arm_sets_does_not_vary_in_it(small):
     arm = Arm(name="straight", values={"gait.trunk_bend": 0.0})
-    alone = small.of(arm)
+    alone = small.for_arm(arm)
     assert [v.field for v in alone.vary] == ["gait.stroke"]
     assert value_at(alone.run, "gait.trunk_bend") == 0.0
     assert alone.arms == (Arm(name="straight"),)
-    assert alone.of(alone.arms[0]) == alone
+    assert alone.for_arm(alone.arms[0]) == alone
 
 
 @pytest.mark.parametrize("name", READY)
@@ -72,7 +72,7 @@ def test_ready_made_searches_can_be_and_start_within_their_ranges(name):
 
 def test_the_crawls_arms_have_the_same_legs_ranges_and_budget():
     spec = READY["crawl"]()
-    free, bare = (spec.of(arm) for arm in spec.arms)
+    free, bare = (spec.for_arm(arm) for arm in spec.arms)
     legs = [v for v in free.vary if v in bare.vary]
     assert legs == list(bare.vary)
     assert len(legs) == 8
@@ -131,5 +131,5 @@ def test_what_a_ready_made_search_begins_with_can_be_steered(name):
     """Before a candidate is simulated its control plans a single tick."""
     spec = READY[name]()
     for arm in spec.arms:
-        run = spec.of(arm).run
+        run = spec.for_arm(arm).run
         run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))

@@ -107,7 +107,7 @@ def test_standing_feet_lie_flat_and_balls_stay(robot, crawled):
 def test_feet_hang_on_ankles_and_nothing_else_does(robot):
     surface, bodies = skin_with_ankles(robot), len(skin(robot).bones)
     on_foot = surface.indices[:, 0] >= bodies
-    away = surface.vertices - surface.rest[surface.indices[:, 0]]
+    away = surface.vertices - surface.rest_origins[surface.indices[:, 0]]
     for i, leg in enumerate(LEGS):
         radius = robot.leg(leg).foot_radius
         assert np.linalg.norm(away[surface.indices[:, 0] == bodies + i], axis=1).max() < 6 * radius

@@ -20,7 +20,7 @@ SHORE = result(
 
 def test_rows_go_from_land_to_depth_and_only_where_both_numbers_are_there():
     rows = metres({"other": result(way=(1.0, "m")), "shore": SHORE})
-    assert [(row.where, row.speed, row.work, row.cost) for row in rows] == [
+    assert [(row.terrain, row.speed, row.work, row.cost) for row in rows] == [
         ("on level dry land", "0.1 m/s", "30 J/m", "0.86"),
         ("at a depth that is held", "0.16 m/s", "7.5 J/m", ""),
     ]

@@ -125,12 +125,12 @@ def test_article_ours_and_animal_stand_side_by_side(make):
     results = {"displacement": load_result(make("displacement"))}
     rows = {row.animal.key: row for row in compare_with_animals(CAIMAN, results)}
     assert set(rows) == {"tail_length", "tail_mass", "mass", "speed", "stride_share"}
-    assert (rows["speed"].ours, rows["speed"].article, rows["speed"].seen) == (
+    assert (rows["speed"].robot_text, rows["speed"].article, rows["speed"].animal_text) == (
         "0.1 m/s",
         "0.091 m/s",
         "0.15 to 4.35 m/s",
     )
-    assert rows["stride_share"].ours == "0.75"
+    assert rows["stride_share"].robot_text == "0.75"
     assert rows["tail_mass"].article == ""
     page = render_page(list(results.values()), [])
     for row in rows.values():
@@ -144,7 +144,7 @@ def test_the_tail_of_any_body_stands_beside_the_animals(name):
     marks = landmarks(robot, np.zeros(len(layout(robot).hinges)))
     behind = marks.feet[-1, 0] - marks.tail[0]  # a leg stands straight out from its hip
     mass = sum(shape.mass for part in robot.axis if part.name.startswith("tail") for shape in part.shapes)
-    told = [float(rows[key].ours.split()[0]) for key in ("tail_length", "tail_mass")]
+    told = [float(rows[key].robot_text.split()[0]) for key in ("tail_length", "tail_mass")]
     assert told == pytest.approx([behind / robot.length, mass / robot.mass], abs=0.006)
 
 

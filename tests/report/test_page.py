@@ -335,11 +335,11 @@ def test_another_robot_has_a_page_of_its_own_without_the_claims_of_the_article(r
 
 
 def test_wide_figures_take_the_whole_page_and_others_half(result, tmp_path):
-    assert [picture.wide for picture in result.pictures] == [False, False]
+    assert [picture.is_wide for picture in result.pictures] == [False, False]
     shutil.copytree(result.folder, tmp_path / "question")
     file = tmp_path / "question" / "first.svg"
     file.write_text(re.sub(r'width="[\d.]+pt"', 'width="900pt"', file.read_text(), count=1))
-    assert [picture.wide for picture in load_result(file.parent).pictures] == [True, False]
+    assert [picture.is_wide for picture in load_result(file.parent).pictures] == [True, False]
     shutil.copy(file, tmp_path / "question" / "second.svg")
     assert render_outcome_page(load_result(file.parent)).count('class="across"') == 1
 

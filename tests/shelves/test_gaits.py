@@ -128,12 +128,12 @@ def test_a_quarter_of_a_body_walks_alike_at_half_the_period():
 
 def test_questions_with_several_gaits_ask_all_of_them_in_the_size_of_the_body():
     asked, body = EXPERIMENTS["speed_range"], hatchling()
-    gaits = asked.on(body).gaits
+    gaits = asked.for_robot(body).gaits
     assert [gait.name for gait in gaits] == [gait.name for gait in asked.gaits]
     assert [gait.period / of.period for gait, of in zip(gaits, asked.gaits, strict=True)] == pytest.approx(
         [(body.length / asked.robot.length) ** 0.5] * len(gaits), rel=0.01
     )
-    assert [gait.name for gait in asked.on(ROBOTS["strider"]).gaits] == ["tripod"]
+    assert [gait.name for gait in asked.for_robot(ROBOTS["strider"]).gaits] == ["tripod"]
 
 
 def test_limbs_that_turn_about_other_axes_than_those_of_a_gaits_maker_get_a_gait_drafted(tmp_path):

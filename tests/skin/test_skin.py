@@ -28,12 +28,12 @@ def check_closed(found):
     there, back = edges @ [len(found.vertices), 1], edges @ [1, len(found.vertices)]
     assert len(np.unique(there)) == len(there)
     assert np.array_equal(np.sort(there), np.sort(back))
-    assert np.array_equal(found.part[edges[:, 0]], found.part[edges[:, 1]])
+    assert np.array_equal(found.part_index[edges[:, 0]], found.part_index[edges[:, 1]])
 
 
 def volumes(found, vertices):
     a, b, c = np.moveaxis(vertices[found.faces], 1, 0)
-    return np.bincount(found.part[found.faces[:, 0]], weights=np.einsum("fi,fi->f", a, np.cross(b, c)) / 6)
+    return np.bincount(found.part_index[found.faces[:, 0]], weights=np.einsum("fi,fi->f", a, np.cross(b, c)) / 6)
 
 
 @pytest.fixture(scope="module", params=sorted(ROBOTS))
@@ -87,7 +87,7 @@ def test_a_joint_is_shared_half_and_half_and_left_half_a_segment_away():
 def test_zero_posture_is_rest(shelf):
     found = skin(shelf)
     still = np.tile(STILL, (len(found.bones), 1))
-    assert np.allclose(found.vertices, found.posed(found.rest, still), rtol=0, atol=1e-15)
+    assert np.allclose(found.vertices, found.posed(found.rest_origins, still), rtol=0, atol=1e-15)
 
 
 def test_bones_are_the_bodies_of_the_model(shelf, shaken):
@@ -137,7 +137,7 @@ def test_the_volume_is_that_of_an_animal_of_this_mass(animal):
 
 def test_a_plain_skin_encloses_axis_limbs_and_feet_within_the_bodys_length(shelf):
     found, place = skin(shelf), layout(shelf)
-    span = np.ptp(found.vertices[found.part == 0, 0])
+    span = np.ptp(found.vertices[found.part_index == 0, 0])
     assert span == pytest.approx(shelf.length, rel=0.03)
     hung = {found.bones[bone] for bone in np.unique(found.indices[found.weights > 0.5])}
     assert {body.name for body in place.bodies} - hung <= {"neck"}  # a short segment may share all of its skin
@@ -151,7 +151,9 @@ def standing_out(robot, found, vertices, data):
     for i in range(3):
         np.add.at(normals, found.faces[:, i], areas)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    bulk = [found.part == part for part in np.flatnonzero(np.bincount(found.part) > 70)]  # no scutes, teeth, eyes
+    bulk = [
+        found.part_index == part for part in np.flatnonzero(np.bincount(found.part_index) > 70)
+    ]  # no scutes, teeth, eyes
     skins = [(vertices[own], normals[own], cKDTree(vertices[own])) for own in bulk]
     rng, model, out = np.random.default_rng(0), data.model, {}
     for i in range(model.ngeom):

@@ -19,23 +19,25 @@ def points():
 
 def test_one_that_decides_everything_has_all_of_the_variance(points):
     index = first_order(points, np.exp(5 * points[:, 1]))
-    assert index.share[1] == pytest.approx(1 - 1 / 64, abs=0.01)  # eight bins leave an eighth of an eighth within
-    assert abs(index.share[[0, 2, 3]]).max() < 0.02
+    assert index.variance_fraction[1] == pytest.approx(
+        1 - 1 / 64, abs=0.01
+    )  # eight bins leave an eighth of an eighth within
+    assert abs(index.variance_fraction[[0, 2, 3]]).max() < 0.02
     assert (index.low[[0, 2, 3]] <= 0.005).all()
     assert index.low[1] > 0.9
 
 
 def test_a_sum_is_shared_and_a_valley_is_seen(points):
     both = first_order(points, points[:, 0] + points[:, 2])
-    assert both.share[[0, 2]] == pytest.approx([0.5, 0.5], abs=0.06)
+    assert both.variance_fraction[[0, 2]] == pytest.approx([0.5, 0.5], abs=0.06)
     valley = first_order(points, abs(points[:, 3] - 0.5))
-    assert valley.share[3] > 0.9  # where a rank correlation is about zero
-    assert both.low[0] < both.share[0] < both.high[0]
+    assert valley.variance_fraction[3] > 0.9  # where a rank correlation is about zero
+    assert both.low[0] < both.variance_fraction[0] < both.high[0]
 
 
 def test_nothing_decides_what_never_changes_or_was_seen_too_rarely(points):
-    assert first_order(points, np.ones(2000)).share.tolist() == [0.0] * 4
-    assert first_order(points[:20], points[:20, 0]).share.tolist() == [0.0] * 4
+    assert first_order(points, np.ones(2000)).variance_fraction.tolist() == [0.0] * 4
+    assert first_order(points[:20], points[:20, 0]).variance_fraction.tolist() == [0.0] * 4
 
 
 def test_intervals_of_shares_are_wilsons():
@@ -126,5 +128,5 @@ def test_a_full_disk_is_a_sentence_and_what_was_finished_is_kept(robot, crawl_ga
 
 def test_what_hardly_ever_changes_is_resampled_without_a_warning(points, recwarn):
     index = first_order(points[:100], np.r_[1.0, np.zeros(99)])
-    assert np.isfinite([index.share, index.low, index.high]).all()
+    assert np.isfinite([index.variance_fraction, index.low, index.high]).all()
     assert not recwarn.list

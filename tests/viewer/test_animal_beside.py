@@ -67,7 +67,7 @@ def test_its_cycle_takes_as_long_as_the_robots(take, tracks):
 
 def test_it_begins_to_the_left_of_the_robot_and_walks_where_the_robot_faces(take, tracks):
     animal = place_animal(tracks, take)
-    first, last = animal.at(0.0), animal.at(1e6)
+    first, last = animal.keypoints_at(0.0), animal.keypoints_at(1e6)
     assert first[:, 1].mean() - take.origin[1] == pytest.approx(0.35 * CAIMAN.length, abs=0.15 * CAIMAN.length)
     assert last[0, 0] - first[0, 0] > 2 * animal.scale * LIZARD.stride
     assert abs(last[0, 1] - first[0, 1]) < 0.1 * CAIMAN.length
@@ -110,7 +110,7 @@ def test_lines_and_feet_are_drawn_where_the_animal_is(take, tracks):
 
     animal = place_animal(tracks, take)
     drawn.DrawnAnimal(SimpleNamespace(add_line_segments=node, add_icosphere=node), "/w", animal).show(2.0)
-    place = animal.at(2.0)
+    place = animal.keypoints_at(2.0)
     assert made["/w/lines"].points.shape == (len(animal.bones), 2, 3)
     np.testing.assert_allclose(made["/w/lines"].points[0], place[list(animal.bones[0])], atol=1e-6)
     np.testing.assert_allclose(made["/w/foot_3"].position, place[animal.feet[3]])

@@ -114,9 +114,9 @@ def turn(page: Any, knob: str, then: float, done: Callable[[], object]) -> None:
 
 def stands_still(session: Session) -> bool:
     """Return whether no time passes in a walk; a page may finish a picture that it has begun."""
-    before = session.look().time
+    before = session.instant().time
     sleep(0.5)
-    return session.look().time == before
+    return session.instant().time == before
 
 
 def shown(page: Any, what: str) -> str:
@@ -201,19 +201,19 @@ def test_walks_in_two_browsers_do_not_disturb_each_other(tabs, watched, tmp_path
     assert other.settings.broken == ()
 
     for session in (mine, other):
-        session.put("speed", 2.0)
+        session.set_number("speed", 2.0)
     mine.reset()
     for session in (mine, other):
-        wait_for(lambda session=session: session.look().time > 4.0)
-    lame, sound = (look.forward / (look.time - 1.0) for look in (mine.look(), other.look()))
+        wait_for(lambda session=session: session.instant().time > 4.0)
+    lame, sound = (look.forward / (look.time - 1.0) for look in (mine.instant(), other.instant()))
     assert lame < 0.9 * sound
 
     first.get_by_label("pause").evaluate("box => box.click()")  # a busy browser shows a walk of some seconds ago
     wait_for(lambda: shown(first, "state") == "paused")
-    wait_for(lambda: shown(first, "forward") == f"{mine.look().forward:+.3f} m")
+    wait_for(lambda: shown(first, "forward") == f"{mine.instant().forward:+.3f} m")
     assert stands_still(mine)
-    before = other.look().time
-    wait_for(lambda: other.look().time > before)
+    before = other.instant().time
+    wait_for(lambda: other.instant().time > before)
 
     second.close()
     wait_for(lambda: watched.viewer.watching == 1)
@@ -257,7 +257,7 @@ def test_one_browser_too_many_is_told_so(watched):
     crowd = SimpleNamespace(client_id=10**6, gui=SimpleNamespace(add_markdown=told.append))
     watched.viewer._pages = {1: None, 2: None}
     try:
-        watched.viewer._come(crowd)
+        watched.viewer._connect_client(crowd)
     finally:
         watched.viewer._pages = {}
     assert "All 2 places are taken" in told[0]

@@ -19,26 +19,26 @@ WAVE = crocodile_swim()
 def afloat(seconds: float, **settings: float) -> Session:
     session = Session(ROBOT, CRAWL, swim=WAVE)
     for name, value in settings.items():
-        assert session.put(name, value) == ""
+        assert session.set_number(name, value) == ""
     session.advance(seconds)
-    assert not session.look().trouble
+    assert not session.instant().trouble
     return session
 
 
 def height(session: Session) -> float:
-    return float(session.look().now["centre_of_mass"][2])
+    return float(session.instant().state["centre_of_mass"][2])
 
 
 def test_it_floats_at_the_surface_and_says_how_much_of_it_is_under():
     session = afloat(0.4)
-    look = session.look()
+    look = session.instant()
     assert look.level == 0.6
     assert height(session) == pytest.approx(0.6, abs=0.08)
-    assert float(look.now["share_under"]) == pytest.approx(0.95, abs=0.03)
+    assert float(look.state["share_under"]) == pytest.approx(0.95, abs=0.03)
     page = status(look, session.settings, rate=1.0, notice="", paused=False)
     assert "under water" in page
     session.advance(1.0)
-    assert "swimming" in status(session.look(), session.settings, rate=1.0, notice="", paused=False)
+    assert "swimming" in status(session.instant(), session.settings, rate=1.0, notice="", paused=False)
 
 
 def test_it_follows_the_level_and_sinks_without_its_air():
@@ -57,22 +57,22 @@ def test_it_walks_where_it_is_told_to_and_swims_again():
     assert np.abs(asked[1] - asked[0]).max() > 0.5  # limbs on the ground, or back along the body
     session.reset()
     session.advance(0.05)
-    assert session.look().level == 0.6
+    assert session.instant().level == 0.6
 
 
 def test_a_robot_without_air_keeps_its_air_and_is_told_why():
     session = Session(ROBOTS["caiman"], CRAWL, swim=WAVE)
-    assert "no air that it could let out" in session.put("air_fraction", 50.0)
+    assert "no air that it could let out" in session.set_number("air_fraction", 50.0)
     assert session.settings.air_fraction == 1.0
 
 
 def test_on_dry_land_there_is_no_water():
     session = Session(ROBOT, CRAWL)
-    assert session.put("level", 300.0) == ""
+    assert session.set_number("level", 300.0) == ""
     session.advance(0.05)
-    assert session.look().level is None
-    assert "share_under" not in session.look().now
-    assert "under water" not in status(session.look(), session.settings, rate=1.0, notice="", paused=False)
+    assert session.instant().level is None
+    assert "share_under" not in session.instant().state
+    assert "under water" not in status(session.instant(), session.settings, rate=1.0, notice="", paused=False)
 
 
 def test_a_live_swim_is_the_swim_of_a_batch():

@@ -41,7 +41,7 @@ GAIT = replace(CRAWL, period=1.0)
 def walked(*, gait: Gait = GAIT, lost: str = "", seconds: float = 3.0) -> Session:
     session = Session(ROBOT, gait)
     if lost:
-        assert session.lose(lost, "limp") == ""
+        assert session.break_part(lost, "limp") == ""
     session.advance(seconds)
     return session
 
@@ -93,57 +93,57 @@ def test_whatever_is_typed_the_gait_stays_one_that_can_be_walked(name, value):
 @pytest.mark.parametrize(("value", "left"), [(99.0, 4.0), (-3, 0.05), ("fast", 1.0), (nan, 1.0), (inf, 1.0)])
 def test_a_wrong_speed_is_clamped_and_said(value, left):
     session = Session(ROBOT, GAIT)
-    assert "playback speed" in session.put("speed", value)
+    assert "playback speed" in session.set_number("speed", value)
     assert session.settings.speed == left
 
 
 def test_every_plain_knob_is_a_field_of_the_settings():
     session = Session(ROBOT, GAIT)
     for name, knob in _PLAIN.items():
-        assert session.put(name, knob.high) == ""
+        assert session.set_number(name, knob.high) == ""
         assert getattr(session.settings, name) == pytest.approx(knob.high * knob.scale)
     session.advance(0.1)
-    assert not session.look().trouble
+    assert not session.instant().trouble
 
 
 def test_a_watched_walk_is_the_walk_of_a_batch(sound):
     record = simulate([sound._live.run], duration=3.0, timestep=0.005).isel(run=0)
     way = record.centre_of_mass.sel(xyz="x")
-    assert sound.look().forward == pytest.approx(float(way[-1] - way.sel(time=1.0)), abs=1e-6)
+    assert sound.instant().forward == pytest.approx(float(way[-1] - way.sel(time=1.0)), abs=1e-6)
 
 
 def test_a_limp_joint_changes_the_displacement(sound, lame):
-    assert abs(lame.look().forward - sound.look().forward) > 0.01
+    assert abs(lame.instant().forward - sound.instant().forward) > 0.01
 
 
 def test_mirrored_commands_give_a_mirrored_walk():
-    left = walked(lost="LF_yaw", seconds=2.5).look()
-    right = walked(gait=GAIT.mirrored(), lost="RF_yaw", seconds=2.5).look()
+    left = walked(lost="LF_yaw", seconds=2.5).instant()
+    right = walked(gait=GAIT.mirrored(), lost="RF_yaw", seconds=2.5).instant()
     assert left.forward == pytest.approx(right.forward, abs=1e-4)
-    assert left.aside == pytest.approx(-right.aside, abs=1e-4)
+    assert left.lateral_displacement == pytest.approx(-right.lateral_displacement, abs=1e-4)
 
 
 def test_a_reset_keeps_what_is_broken(lame):
     session = walked(lost="LF_yaw", seconds=0.1)
     session.reset()
     session.advance(3.0)
-    assert session.look().forward == pytest.approx(lame.look().forward, abs=2e-3)
+    assert session.instant().forward == pytest.approx(lame.instant().forward, abs=2e-3)
 
 
 def test_what_is_left_of_a_control_period_passes_next_time():
     session = Session(ROBOT, GAIT)
     for _ in range(5):
         session.advance(0.006)  # a control period is 0.01 s
-    assert session.look().time == pytest.approx(0.03)
+    assert session.instant().time == pytest.approx(0.03)
 
 
 def test_the_heading_loop_answers_a_turn(lame):
     session = Session(ROBOT, GAIT)
     assert session.switch("heading", True) == ""
     assert session.settings.control.heading is not None
-    session.lose("LF_yaw", "limp")
+    session.break_part("LF_yaw", "limp")
     session.advance(3.0)
-    assert session.look().aside != pytest.approx(lame.look().aside, abs=1e-4)
+    assert session.instant().lateral_displacement != pytest.approx(lame.instant().lateral_displacement, abs=1e-4)
 
 
 def test_sessions_do_not_disturb_each_other(sound):
@@ -152,18 +152,18 @@ def test_sessions_do_not_disturb_each_other(sound):
         one.advance(0.1)
         other.advance(0.1)
         other.tune("stroke", 5.0)
-        other.lose("RH_knee", "locked")
-    assert one.look().forward == sound.look().forward
-    assert other.look().forward != one.look().forward
+        other.break_part("RH_knee", "locked")
+    assert one.instant().forward == sound.instant().forward
+    assert other.instant().forward != one.instant().forward
 
 
 def test_the_limbs_alone_walk_as_the_control_group_does():
     session = Session(ROBOT, CRAWL)
     session.switch("spine", False)
     session.switch("tail", False)
-    assert replace(session.settings.walked(ROBOT), name="limbs_only") == GAITS["limbs_only"]
+    assert replace(session.settings.walking_gait(ROBOT), name="limbs_only") == GAITS["limbs_only"]
     session.switch("tail", True)
-    assert replace(session.settings.walked(ROBOT), name="tail_drag") == GAITS["tail_drag"]
+    assert replace(session.settings.walking_gait(ROBOT), name="tail_drag") == GAITS["tail_drag"]
 
 
 def test_rules_that_cannot_coordinate_a_gait_are_refused_with_a_sentence():
@@ -171,43 +171,43 @@ def test_rules_that_cannot_coordinate_a_gait_are_refused_with_a_sentence():
     assert "diagonal" in session.switch("coordination", True)
     assert not session.settings.coordination
     session.advance(0.1)
-    assert not session.look().trouble
+    assert not session.instant().trouble
 
 
-@pytest.mark.parametrize(("name", "way"), [("uphill", "forward"), ("sideways", "aside")])
+@pytest.mark.parametrize(("name", "way"), [("uphill", "forward"), ("sideways", "lateral_displacement")])
 def test_a_slope_takes_effect_at_once_and_is_slid_down(name, way, sound):
     session = Session(ROBOT, GAIT)
-    assert session.put(name, 15.0) == ""
+    assert session.set_number(name, 15.0) == ""
     session.advance(3.0)
-    assert getattr(session.look(), way) < getattr(sound.look(), way) - 0.01
+    assert getattr(session.instant(), way) < getattr(sound.instant(), way) - 0.01
 
 
 def test_repaired_joints_are_no_longer_listed():
     session = Session(ROBOT, GAIT)
-    session.lose("LF_yaw", "limp")
-    session.lose("LF_yaw", "locked")
-    session.lose("RH_pitch", "limp")
+    session.break_part("LF_yaw", "limp")
+    session.break_part("LF_yaw", "locked")
+    session.break_part("RH_pitch", "limp")
     assert session.settings.broken == (Locked("LF_yaw"), Limp("RH_pitch"))
-    session.mend("LF_yaw")
+    session.repair_part("LF_yaw")
     assert session.settings.broken == (Limp("RH_pitch"),)
-    session.mend()
+    session.repair_part()
     assert session.settings.broken == ()
-    assert "LF_wrist" in session.lose("LF_wrist", "limp")
-    assert "Did you mean 'slow'" in session.lose("LF_yaw", "slo")
-    assert "0.001 to 7.873 rad/s" in session.lose("LF_yaw", "slow", speed=9.0)
+    assert "LF_wrist" in session.break_part("LF_wrist", "limp")
+    assert "Did you mean 'slow'" in session.break_part("LF_yaw", "slo")
+    assert "0.001 to 7.873 rad/s" in session.break_part("LF_yaw", "slow", speed=9.0)
     assert session.settings.broken == ()
 
 
 def test_every_fault_of_the_shelf_can_be_let_happen_and_is_there_after_a_reset():
     session = Session(ROBOT, GAIT)
-    assert session.lose("LF_yaw", "slow", speed=0.5) == ""
-    assert session.lose("LF", "lost_foot") == ""
-    assert session.lose("foot_pressure", "deaf") == ""
+    assert session.break_part("LF_yaw", "slow", speed=0.5) == ""
+    assert session.break_part("LF", "lost_foot") == ""
+    assert session.break_part("foot_pressure", "deaf") == ""
     session.reset()
     session.advance(0.1)
     assert [fault.name for fault in session.settings.broken] == ["slow LF_yaw", "lost_foot LF", "deaf foot_pressure"]
-    assert np.all(session.look().now["foot_force"][0] == 0.0)
-    assert "LF yaw slow, LF lost foot" in status(session.look(), session.settings, rate=1.0, notice="", paused=False)
+    assert np.all(session.instant().state["foot_force"][0] == 0.0)
+    assert "LF yaw slow, LF lost foot" in status(session.instant(), session.settings, rate=1.0, notice="", paused=False)
 
 
 def test_the_force_of_a_push_is_told_beside_the_weight_of_whom_it_pushes():
@@ -224,18 +224,18 @@ def test_a_push_lasts_as_long_as_it_says():
     session.advance(0.5)
     session.push()
     session.advance(0.15)
-    assert session.look().pushed == pytest.approx((0.0, 15.0, 0.0), abs=1e-9)
+    assert session.instant().push_force == pytest.approx((0.0, 15.0, 0.0), abs=1e-9)
     session.advance(0.1)
-    assert session.look().pushed is None
-    assert session.look().now["centre_of_mass"][1] > 0.005
+    assert session.instant().push_force is None
+    assert session.instant().state["centre_of_mass"][1] > 0.005
 
 
 def test_a_reset_begins_the_same_walk_anew(sound):
     session = walked(seconds=1.5)
     session.reset()
-    assert session.look().time == 0.0
+    assert session.instant().time == 0.0
     session.advance(3.0)
-    assert session.look().forward == sound.look().forward
+    assert session.instant().forward == sound.instant().forward
 
 
 def test_a_walk_that_comes_apart_says_so_and_can_be_begun_anew(tmp_path, monkeypatch):
@@ -243,11 +243,11 @@ def test_a_walk_that_comes_apart_says_so_and_can_be_begun_anew(tmp_path, monkeyp
     session = walked(seconds=0.3)
     session._live._loop.batch.qvel[0, 3] = nan
     session.advance(0.5)
-    assert "diverged at 0.3" in session.look().trouble
+    assert "diverged at 0.3" in session.instant().trouble
     session.advance(0.5)
     session.reset()
     session.advance(0.2)
-    assert not session.look().trouble
+    assert not session.instant().trouble
 
 
 def test_the_plots_reach_back_a_few_seconds(sound):
@@ -276,23 +276,23 @@ def test_every_robot_walks_live_and_is_drawn_pushed_and_broken(name):
     session.push()
     for one in (session, calm):
         one.advance(15 * period)
-    now = session.look()
-    assert now.pushed == pytest.approx((0.0, session.settings.force, 0.0), abs=1e-6)
-    moved = now.now["centre_of_mass"][1] - calm.look().now["centre_of_mass"][1]
+    now = session.instant()
+    assert now.push_force == pytest.approx((0.0, session.settings.force, 0.0), abs=1e-6)
+    moved = now.state["centre_of_mass"][1] - calm.instant().state["centre_of_mass"][1]
     assert moved > (1e-3 * robot.length if place.limbs else 0.0)  # friction all but holds a body that lies on its belly
     part = place.servos[0]
-    assert session.lose(part, "limp") == ""
+    assert session.break_part(part, "limp") == ""
     session.advance(2 * period)
-    assert not session.look().trouble
+    assert not session.instant().trouble
     table = session.table()
     assert set(table) == set(columns(place.limb_names))
     posture = BodyPoses(robot)
-    posture.put(session.look().now)
+    posture.set_state(session.instant().state)
     bones = posture.bones(None)
     for piece in pieces(robot, 2):
         assert set(piece.bones) <= set(bones)
     for servo in (*place.servos, *place.limb_names):
-        assert np.linalg.norm(posture.part(servo) - session.look().now["position"]) < robot.length
+        assert np.linalg.norm(posture.part_position(servo) - session.instant().state["position"]) < robot.length
     assert gait_bars(robot, table).count('<text x="2"') == len(place.limbs)
     assert [line.column for line in plans(robot)[2].lines] == [*place.limb_names, "tail", "belly"]
 
@@ -314,8 +314,8 @@ def test_both_ends_of_the_sliders_of_another_body_leave_a_gait_that_it_can_walk(
     assert session.tune("trunk_offset", 1.0) == ""
     assert session.settings.gait.number("trunk_offset") == pytest.approx(np.radians(1.0))
     assert session.switch("spine", False) == ""
-    assert session.settings.walked(robot).number("trunk_bend") == 0.0
-    assert session.settings.walked(robot).number("trunk_offset") == session.settings.gait.number("trunk_offset")
+    assert session.settings.walking_gait(robot).number("trunk_bend") == 0.0
+    assert session.settings.walking_gait(robot).number("trunk_offset") == session.settings.gait.number("trunk_offset")
 
 
 def test_a_smaller_crocodile_has_the_sliders_of_its_gait_and_lower_bumps():
@@ -337,7 +337,7 @@ def test_a_body_without_limbs_is_watched_but_has_no_heading_loop():
     assert "needs limbs to walk on; robot 'swimmer' lacks that" in session.switch("heading", True)
     assert session.settings.heading is False
     session.advance(0.05)
-    assert not session.look().trouble
+    assert not session.instant().trouble
 
 
 def test_a_saved_gait_reads_back_as_the_gait_that_is_walked(tmp_path):
@@ -348,7 +348,7 @@ def test_a_saved_gait_reads_back_as_the_gait_that_is_walked(tmp_path):
     (tmp_path / file.name).write_bytes(file.content)
     read_back = read_design(tmp_path / file.name, Gait, GAITS)
     assert file.name == "belly_crawl_tuned.toml"
-    assert read_back == replace(session.settings.walked(ROBOT), name="belly_crawl_tuned")
+    assert read_back == replace(session.settings.walking_gait(ROBOT), name="belly_crawl_tuned")
     assert (read_back.number("stroke"), read_back.number("trunk_bend")) == (pytest.approx(0.25), 0.0)
 
 

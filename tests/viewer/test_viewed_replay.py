@@ -35,8 +35,8 @@ def test_a_record_gives_a_take_for_every_run(walk):
     assert [take.label for take in found] == ["0: belly_crawl", "1: limbs_only"]
     assert found[0].end == pytest.approx(1.5)
     record = found[0].record
-    np.testing.assert_array_equal(found[0].at(0.71)["position"], record.position.sel(time=0.7, method="nearest"))
-    np.testing.assert_array_equal(found[0].at(99.0)["position"], record.position.isel(time=-1))
+    np.testing.assert_array_equal(found[0].sample_at(0.71)["position"], record.position.sel(time=0.7, method="nearest"))
+    np.testing.assert_array_equal(found[0].sample_at(99.0)["position"], record.position.isel(time=-1))
     assert set(found[0].table()) == set(columns(LEGS))
     assert found[0].table()["forward"][20] == pytest.approx(0.0, abs=1e-9)  # at one second the walk begins
 
@@ -45,8 +45,8 @@ def test_bodies_stand_where_the_record_says(walk):
     take = takes(walk)[0]
     posture = BodyPoses(take.robot)
     for time in (0.0, 1.2):
-        now = take.at(time)
-        posture.put(now)
+        now = take.sample_at(time)
+        posture.set_state(now)
         np.testing.assert_allclose(posture.body("pelvis")[0], now["position"], atol=1e-12)
         feet = [number for number in posture.geoms() if posture.model.geom(number).name.endswith("_foot")]
         found = {posture.model.geom(number).name: posture.geom(number)[0] for number in feet}
@@ -87,7 +87,7 @@ def test_a_take_says_where_the_water_stands_and_a_dry_one_that_there_is_none(tmp
 def test_the_camera_follows_a_swimmer_up_and_down_and_a_walker_along_the_ground(visible, height, follow, below):
     water = None if visible is None else SimpleNamespace(visible=visible)
     seen = SimpleNamespace(_world=SimpleNamespace(), _water=water, _size=1.0)
-    stage.WalkScene.place(seen, {"centre_of_mass": np.array([2.0, 0.0, height])}, (0.0, 0.0), follow=follow)
+    stage.WalkScene.set_pose(seen, {"centre_of_mass": np.array([2.0, 0.0, height])}, (0.0, 0.0), follow=follow)
     np.testing.assert_allclose(seen._world.position, [-2.0 if follow else 0.0, 0.0, -below], atol=1e-12)
 
 
@@ -110,10 +110,10 @@ def test_feet_that_stand_do_not_dip_into_the_ground(relief):
     (piece,) = pieces(robot, 1)
     feet = piece.weights[:, [name.endswith("ankle") for name in piece.bones]].sum(axis=1) > 0.5
     for sample in (100, 120, 140):
-        posture.put({name: values.values[0, sample] for name, values in record[list(_VARIABLES)].items()})
+        posture.set_state({name: values.values[0, sample] for name, values in record[list(_VARIABLES)].items()})
         at = np.zeros_like(piece.vertices)
         for i, (place, turn) in enumerate(posture.bones(relief)[name] for name in piece.bones):
-            at += piece.weights[:, i : i + 1] * (place + rotate(turn, piece.vertices - piece.rest[i]))
+            at += piece.weights[:, i : i + 1] * (place + rotate(turn, piece.vertices - piece.rest_origins[i]))
         dip = heights(relief, at[:, 0], at[:, 1]) - at[:, 2]
         assert -0.003 < dip[feet].max() < 0.005
 

@@ -26,7 +26,7 @@ def test_the_surface_lies_where_the_field_has_the_chosen_value(level, lower):
 
 @pytest.mark.parametrize(("asked", "found"), [(0.1, 1.2), (1.3, 1.3), (15.9, 15.9), (17.0, 16.0), (float("nan"), 4.0)])
 def test_a_value_outside_what_was_kept_is_set_to_the_nearest(asked, found):
-    assert VortexFilm(ringed()).within(asked) == pytest.approx(found)
+    assert VortexFilm(ringed()).clip_level(asked) == pytest.approx(found)
 
 
 def test_large_surfaces_are_taken_of_blocks(monkeypatch):
@@ -44,7 +44,7 @@ def test_a_record_on_disk_is_recognised_by_its_vortices(tmp_path):
     film = vortex_film(save(ringed(), tmp_path / "swim.nc"))
     assert film is not None
     assert film.phase == pytest.approx([1 / 3, 2 / 3, 1.0])
-    assert film.about() == "64 cells a length, f L² / ν = 7000"
+    assert film.description() == "64 cells a length, f L² / ν = 7000"
     assert vortex_film(save(ringed().drop_vars("vortices"), tmp_path / "plane.nc")) is None
 
 
@@ -135,7 +135,7 @@ def test_steps_pause_go_round_and_show_one_frame_at_a_time(page):
         assert page._pause.value
         assert page.frame == frame
         assert page._frame.value == frame + 1
-        assert [number for number, surface in page._made.items() if surface.visible] == [frame]
+        assert [number for number, surface in page._surfaces.items() if surface.visible] == [frame]
     assert page._client.scene.add_mesh_trimesh.call_count == 3  # what was shown once is kept
 
 
@@ -149,7 +149,7 @@ def test_the_body_moves_with_the_frames(page):
 
 def test_another_value_of_q_takes_the_old_surfaces_away(page):
     page.show()
-    old = dict(page._made)
+    old = dict(page._surfaces)
     page._level.value = 6.0
     page.show()
     old[0].remove.assert_called_once()
@@ -158,7 +158,7 @@ def test_another_value_of_q_takes_the_old_surfaces_away(page):
     assert np.ptp(made.vertices[:, 0]) == pytest.approx(2 * CORE * (2.0 - 6.0 / 4.0), abs=0.01)
     page._halves.value = "none"
     page.show()
-    assert page._made == {}
+    assert page._surfaces == {}
 
 
 def test_colours_of_the_surfaces_are_those_of_the_bar(page):

@@ -31,14 +31,14 @@ def test_it_takes_pictures_while_the_robot_moves_and_ends_with_it():
         begun, end = len(taken), monotonic() + 30.0
         while len(taken) < begun + 5 and monotonic() < end:
             body.step()
-            page.look()
+            page.send_state()
             sleep(0.01)
         assert len(taken) >= begun + 5
         page._process.kill()
         page._process.join()
         for _ in range(20):
             sleep(0.01)
-            page.look()  # whoever moves the robot does not mind
+            page.send_state()  # whoever moves the robot does not mind
     finally:
         page.stop()
     assert not page._process.is_alive()

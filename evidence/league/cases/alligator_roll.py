@@ -45,11 +45,11 @@ contestant = SingleContestant(
     Contestant(
         name="alligator_roll",
         title="The death roll of an alligator of 0.29 m",
-        about="The article's robot at the length of a young alligator, limbs folded back, without ground and "
+        description="The article's robot at the length of a young alligator, limbs folded back, without ground and "
         "gravity. Trunk "
         "and tail bend around the body once in a cycle, as far as the animal's head and tail do or the robot's joints "
         "allow; what turns it is that the angular momentum stays zero.",
-        given={
+        inputs={
             "length": known(0.29, "m", _FISH),
             "trunk": Given(
                 value=radians(49.2),
@@ -93,6 +93,6 @@ contestant = SingleContestant(
                 words="rigid bodies in water, MuJoCo's drag of ellipsoids", work=partial(rolled, WATER), draws=10
             ),
         },
-        left_out={"sections, slice, space": "they know no roll of a body that bends around itself"},
+        excluded_models={"sections, slice, space": "they know no roll of a body that bends around itself"},
     )
 )

@@ -57,10 +57,10 @@ contestant = SingleContestant(
     Contestant(
         name="alligator_slope",
         title="An alligator walks up and down 15 degrees",
-        about="The article's robot, whose length and mass are those of a young alligator, in its high walk and "
+        description="The article's robot, whose length and mass are those of a young alligator, in its high walk and "
         "its belly "
         "crawl on an even slope of 15 degrees, up, down and level, with the same motion of all joints.",
-        given={
+        inputs={
             "length": Given(
                 value=1.0,
                 low=0.46,
@@ -88,6 +88,6 @@ contestant = SingleContestant(
             gait: Predictor(words=f"rigid bodies with contacts, {words}", work=partial(walked, gait), draws=12)
             for gait, words in (("high_walk", "the high walk"), ("belly_crawl", "the belly crawl"))
         },
-        left_out={"theories of swimming, slice, space": "it walks"},
+        excluded_models={"theories of swimming, slice, space": "it walks"},
     )
 )

@@ -122,17 +122,17 @@ contestant = SingleContestant(
     Contestant(
         name="amphibot",
         title="AmphiBot swims from rest, steadily, and coasts",
-        about="A limbless robot of the EPFL, seven segments and six yaw joints, at the surface of still fresh "
+        description="A limbless robot of the EPFL, seven segments and six yaw joints, at the surface of still fresh "
         "water, free. "
         "The angles of its joints are those that its motors reported: period 0.688 s, 29.3 degrees of lag from "
         "joint to "
         "joint, amplitudes of 27 to 30 degrees.",
-        given=_given() | {"joints": known(float(_JOINTS), "-", _REPOSITORY)},
+        inputs=_given() | {"joints": known(float(_JOINTS), "-", _REPOSITORY)},
         predicts={
             "steady_speed": Quantity(unit="m/s", words="steady speed along its path"),
             "first_periods": Quantity(unit="m/s", words="mean speed in each of the first four periods from rest"),
             "coast_down": Quantity(unit="1/m", words="k in dU/dt = -k U^2, its motors holding their posture"),
         },
-        rungs=rungs(SwimTask(build=build, read=read, cycles=12, coasts=True)),
+        rungs=rungs(SwimTask(build=build, read_quantities=read, cycles=12, coasts=True)),
     )
 )

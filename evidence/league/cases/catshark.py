@@ -132,18 +132,22 @@ def at(speed: float) -> Contestant:
     return Contestant(
         name=f"catshark_{speed:g}",
         title=f"A catshark holds {speed:g} body lengths a second",
-        about="Young small-spotted catsharks (Scyliorhinus canicula) of some 0.17 m in a flume. Amplitudes and "
+        description="Young small-spotted catsharks (Scyliorhinus canicula) of some 0.17 m in a flume. Amplitudes and "
         "wavelength of "
         "their midlines are those filmed; between and beyond the four filmed speeds they are interpolated, and kept. "
         "The frequency is the one at which each model swims that fast.",
-        given=given,
+        inputs=given,
         predicts={
             "tailbeat": Quantity(unit="Hz", words="frequency of the tail's beat that holds the speed"),
             "strouhal": Quantity(unit="-", words="frequency times the tail's way from side to side over the speed"),
             "power": Quantity(unit="W", words="mean power of the body on the water"),
         },
         rungs={"law": _LAW}
-        | rungs(SwimTask(build=build, read=read, cycles=12, resolved_cycles=6, held=held, start=_start(speed))),
+        | rungs(
+            SwimTask(
+                build=build, read_quantities=read, cycles=12, resolved_cycles=6, target_speed=held, start=_start(speed)
+            )
+        ),
     )
 
 
@@ -166,5 +170,10 @@ def _wavelength(film: dict[str, np.ndarray], speed: float) -> Given:
 
 
 contestant = ContestantFamily(
-    name="catshark", asked=(1.25, 2.0, 3.0, 5.0), low=0.5, high=6.0, what="body lengths a second", made=partial(at)
+    name="catshark",
+    default_parameters=(1.25, 2.0, 3.0, 5.0),
+    low=0.5,
+    high=6.0,
+    parameter_label="body lengths a second",
+    create=partial(at),
 )

@@ -92,15 +92,15 @@ _GIVEN = {
         value=0.25, low=0.1, high=0.4, unit="-", source="lungs lie above the bones: by how much is not published"
     ),
 }  # fmt: skip
-_ASKED = {name: rung for name, rung in rungs(SwimTask(build=build, read=read)).items() if name != "reactive"}
+_ASKED = {name: rung for name, rung in rungs(SwimTask(build=build, read_quantities=read)).items() if name != "reactive"}
 contestant = SingleContestant(
     Contestant(
         name="salamander",
         title="A salamander swims at 2.6 to 3.8 Hz",
-        about="Pleurodeles waltl at its own length, mass and volume, limbs folded back, in fresh water; the "
+        description="Pleurodeles waltl at its own length, mass and volume, limbs folded back, in fresh water; the "
         "angles of its "
         "axial joints are the mean cycle that was filmed.",
-        given=_GIVEN
+        inputs=_GIVEN
         | fresh(
             drag=(1.1, 0.8, 1.8),
             rub=(1.5, 1.0, 3.0),
@@ -121,6 +121,6 @@ contestant = SingleContestant(
             "resistive": replace(_ASKED["resistive"], work=partial(by_theory, resistive), draws=16),
             "sections": replace(_ASKED["sections"], work=by_sections, draws=12),
         },
-        left_out={"reactive": "the model's tail ends in a point, at which nothing is shed"},
+        excluded_models={"reactive": "the model's tail ends in a point, at which nothing is shed"},
     )
 )

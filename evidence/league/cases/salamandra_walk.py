@@ -46,12 +46,12 @@ contestant = SingleContestant(
     Contestant(
         name="salamandra_walk",
         title="Salamandra robotica walks",
-        about="The salamander robot of the EPFL with four cranks for legs, 0.85 m long, on even ground, the "
+        description="The salamander robot of the EPFL with four cranks for legs, 0.85 m long, on even ground, the "
         "standing wave of "
         "the walking animal on its axis. Its dimensions are those of the public model; a table of its speeds "
         "could not be "
         "read here, so that the prediction stands sealed without a measurement.",
-        given={
+        inputs={
             "friction": Given(
                 value=0.8, low=0.5, high=1.0, unit="-", source="rubber feet on a floor: not published, range of rubber"
             ),
@@ -73,6 +73,6 @@ contestant = SingleContestant(
             "stride": Quantity(unit="body length", words="stride at 0.67 Hz"),
         },
         rungs={"contacts": Predictor(words="rigid bodies with contacts", work=walked, draws=10)},
-        left_out={"theories of swimming, slice, space": "it walks"},
+        excluded_models={"theories of swimming, slice, space": "it walks"},
     )
 )

@@ -82,10 +82,10 @@ contestant = SingleContestant(
     Contestant(
         name="swimming_law",
         title="The law of swimming over all swimmers of the shelf",
-        about="Re = U L / nu over Sw = omega A L / nu, A the way of the tail from side to side, of every robot "
+        description="Re = U L / nu over Sw = omega A L / nu, A the way of the tail from side to side, of every robot "
         "of the shelf "
         "that swims, at half, once and twice its frequency, by each theory in thin and in thick water.",
-        given={
+        inputs={
             "cross_drag": Given(value=1.1, low=0.8, high=1.8, unit="-", source="ellipses across, Hoerner 1965"),
             "thickening": Given(value=3.0, low=1.0, high=5.0, unit="-", source="range of docs/water.md"),
             "thick": Given(
@@ -112,7 +112,7 @@ contestant = SingleContestant(
             "resistive": Predictor(words="resistive theory (Taylor 1952)", work=partial(law, resistive), draws=6),
             "reactive": Predictor(words="reactive theory (Lighthill 1971)", work=partial(law, reactive), draws=6),
         },
-        left_out={
+        excluded_models={
             "sections": "many bodies of many sizes at many frequencies, whose servos and trim differ",
             "slice, space": "a range of Reynolds numbers that no grid carries",
         },

@@ -58,10 +58,10 @@ contestant = SingleContestant(
     Contestant(
         name="tunabot",
         title="Tunabot at 15 Hz",
-        about="A robot fish of 0.255 m that swims freely, its tail beating at 15 Hz. Length and frequency are "
+        description="A robot fish of 0.255 m that swims freely, its tail beating at 15 Hz. Length and frequency are "
         "published; "
         "outline and amplitude are not in what could be read, and have wide ranges.",
-        given={
+        inputs={
             "length": known(0.255, "m", _ZHU),
             "frequency": known(15.0, "Hz", _ZHU),
             "wide": Given(value=1.0, low=0.85, high=1.15, unit="-", source=f"factor on the width, {_TUNA}"),
@@ -92,6 +92,6 @@ contestant = SingleContestant(
             "speed": Quantity(unit="body length/s", words="speed at 15 Hz"),
             "power": Quantity(unit="W", words="mean power of the body on the water"),
         },
-        rungs=rungs(SwimTask(build=build, read=read, cycles=16, resolved_cycles=6)),
+        rungs=rungs(SwimTask(build=build, read_quantities=read, cycles=16, resolved_cycles=6)),
     )
 )  # fmt: skip

@@ -14,6 +14,18 @@ from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, Modul
 
 import numpy as np
 
+FORMER_NAMES: dict[str, dict[str, str]] = {
+    "BendingMap": {"map_to_rest": "back", "difference_time": "tick"},
+    "BentMesh": {"rest_shape": "still"},
+    "BentOutline": {"rest_shape": "still"},
+    "Capsule": {"arc_position": "at"},
+    "LinkPiece": {"position": "at", "quaternion": "turn"},
+    "Setup": {"coarse_grid": "around"},
+}
+"""First name of each field that was renamed, by class.
+
+Fingerprints are taken of the first name, so that checkpoints from before the change still match their setup."""
+
 
 def fingerprint(setup: object) -> str:
     """Return what two simulations must share for one to go on from the other's checkpoint.
@@ -78,7 +90,8 @@ class _Walk:
             self._word("array", f"{value.dtype.str}{value.shape}")
             self._word("numbers", np.ascontiguousarray(value).tobytes())
         elif is_dataclass(value) and not isinstance(value, type):
-            field_values = {f.name: getattr(value, f.name) for f in fields(value)}
+            former_names = FORMER_NAMES.get(type(value).__qualname__, {})
+            field_values = {former_names.get(f.name, f.name): getattr(value, f.name) for f in fields(value)}
             self._parts(type(value).__qualname__, {**field_values, **_class_of(value)})
         elif isinstance(value, dict):
             self._parts("dict", {repr(key): item for key, item in value.items()})

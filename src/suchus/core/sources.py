@@ -2,7 +2,8 @@
 
 A project is a folder with a ``suchus.toml``. Its sub-folders ``robots``, ``gaits``, ``faults``, ``experiments``,
 ``controllers``, ``measures``, ``protocols`` and ``commands`` hold files as the catalogs of the package do.
-``suchus.toml`` names files that stand elsewhere in the folder. A file is read, or a module run, when its name is asked for.
+``suchus.toml`` names files that stand elsewhere in the folder. A file is read, or a module run, when its name is asked
+for.
 
 Modules of a project are imported as modules of the catalog, ``suchus.sim.faults.tired``, so that values travel between
 processes as pickles, and a file means the same in the package and in a project.

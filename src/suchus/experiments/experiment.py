@@ -163,7 +163,7 @@ class SimulationResult:
     """Animated GIFs, by file name; see ``figures.film``."""
     replays: Mapping[str, Replay] = field(default_factory=dict)
     """Replays of runs, by file name ending in .html."""
-    kept: tuple[Path, ...] = ()
+    checkpoint_files: tuple[Path, ...] = ()
     """Checkpoint files; the caller removes them after saving the outcome."""
 
 
@@ -215,9 +215,9 @@ class Experiment(ABC):
     """Whether ``suchus reproduce`` runs it; False for what takes minutes and judges none of the article's claims."""
     follows_gait: ClassVar[bool] = True
     """Whether the joints must be able to follow the gait; False where whether they can is a part of the question."""
-    judged_with: ClassVar[tuple[str, ...]] = ("robot",)
+    judged_settings: ClassVar[tuple[str, ...]] = ("robot",)
     """Fields that must be as in the catalog for a verdict: another robot is not judged by the article's metres."""
-    judged_from: ClassVar[Mapping[str, float]] = {}
+    judged_minima: ClassVar[Mapping[str, float]] = {}
     """Fields, and the least number (of a tuple: the least length) with which a run can answer what is judged."""
 
     @property
@@ -259,7 +259,7 @@ class Experiment(ABC):
                 tables=simulated.tables,
                 films=simulated.films,
                 replays=simulated.replays,
-                kept=simulated.kept,
+                checkpoint_files=simulated.checkpoint_files,
                 decides=" ".join(self.explain(numbers).split()),
                 unjudged=unjudged,
                 seconds=seconds(),
@@ -297,7 +297,7 @@ class Experiment(ABC):
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return every number, computed from the record alone; ``Measures`` refuse two numbers with the same name."""
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures, with the values of a full run.
 
         By default all runs are simulated; subclasses leave out runs that the wanted measures do not need.
@@ -319,9 +319,9 @@ class Experiment(ABC):
             InvalidDesign: there is no such file.
             BrokenFile: it cannot be filled in: a measure that it names is missing, or it cannot be read.
         """
-        return self.told(measures)
+        return self.render_explanation(measures)
 
-    def told(self, measures: Mapping[str, float], **further: Any) -> str:
+    def render_explanation(self, measures: Mapping[str, float], **further: Any) -> str:
         """Return the template ``explanation.md``, filled in with measures and other values; see ``explain``."""
         folder = Path(getattr(sys.modules[type(self).__module__], "__file__", None) or ".").parent
         try:
@@ -349,7 +349,7 @@ class Experiment(ABC):
     def quick(self) -> "Experiment":
         """Return the same question, small enough for a test."""
 
-    def on(self, robot: Robot) -> Self:
+    def for_robot(self, robot: Robot) -> Self:
         """Return the same question for another robot.
 
         Where the robot is of about the same size, walks in the same gait and can follow the gaits, nothing else
@@ -381,9 +381,9 @@ class Experiment(ABC):
                 sized[name] = (
                     tuple(step_ratio * step for step in value) if isinstance(value, tuple) else step_ratio * value
                 )
-        return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
+        return replace(self, robot=robot, **(sized | self.gaits_for_robot(robot)))  # type: ignore[type-var]
 
-    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+    def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
         """Return the fields that hold gaits, for a robot of another size or one that cannot follow the present gaits.
 
         They are the present gaits in the robot's size if it can follow them all and its own gait is the same one.
@@ -412,12 +412,12 @@ class Experiment(ABC):
         if not self.rules():
             return ""
         default = type(self)()
-        for name in self.judged_with:
+        for name in self.judged_settings:
             if hasattr(self, name) and getattr(self, name) != getattr(default, name):
                 current_text, required_text = (_short_name(getattr(question, name)) for question in (self, default))
                 current_text = f"another {current_text}" if current_text == required_text else current_text
                 return f"Not judged: {name} is {current_text}, and its claims are judged with {required_text}."
-        for name, minimum in self.judged_from.items():
+        for name, minimum in self.judged_minima.items():
             value = getattr(self, name)
             count = len(value) if isinstance(value, tuple) else value
             if count < minimum:

@@ -22,15 +22,19 @@ class AddedMass(NamedTuple):
 
     matrix: np.ndarray
     """Added mass, shape (mode, mode): the force in mode i is ``-matrix[i, k]`` per unit acceleration of mode k."""
-    pressed: np.ndarray
-    """Integral of the pressure inside the parts and its first moments, as ``log.FlowLoads.pressed`` but about the
-    origin of the grid's frame, shape (mode, row, 1 + axis)."""
+    internal_pressure: np.ndarray
+    """Integral of the pressure inside the parts and its first moments, as ``log.FlowLoads.internal_pressure`` but
+    about the origin of the grid's frame, shape (mode, row, 1 + axis)."""
 
 
 def added_mass(
-    water: Fluid, markers: Markers, reference_point: tuple[float, ...], density: float, body: int = 0,
+    water: Fluid,
+    markers: Markers,
+    reference_point: tuple[float, ...],
+    density: float,
+    body: int = 0,
     requested_modes: Sequence[bool] | np.ndarray | None = None,
-) -> np.ndarray:  # fmt: skip
+) -> np.ndarray:
     """Return the added mass for accelerations along each axis and about a point: (3, 3) in the plane, (6, 6) in space.
 
     In space the order is along x, y and z, then about x, y and z. The force of mode k is ``-Ma[:, k]`` per unit
@@ -52,19 +56,19 @@ def added_mass(
     Raises:
         NotConverged: the pressure solver got stuck.
     """
-    axes, mirror_cuts = water.axes, water.cut[body]
+    ndim, mirror_cuts = water.ndim, water.mirror_cuts[body]
     mode_mask = symmetric(mirror_cuts)
     if requested_modes is not None:  # in open water the body's whole momentum counts, that along other axes too
-        unbounded = water.layers[-1].border.water is not None and axes == 3
+        unbounded = water.layers[-1].border.water is not None and ndim == 3
         request_mask = [
-            bool(is_requested) or (unbounded and k < axes) for k, is_requested in enumerate(requested_modes)
+            bool(is_requested) or (unbounded and k < ndim) for k, is_requested in enumerate(requested_modes)
         ]
         mode_mask = [keep and is_requested for keep, is_requested in zip(mode_mask, request_mask, strict=True)]
     modes = [mode for mode, keep in zip(_rigid(water, reference_point, body), mode_mask, strict=True) if keep]
     responses = _ModeResponses.solve(water, modes, _RESIDUAL_TOLERANCE, sides_held=False)
-    volume, mode_block = water.grid.cell**axes, np.ix_(mode_mask, mode_mask)
+    volume, mode_block = water.grid.cell**ndim, np.ix_(mode_mask, mode_mask)
     matrix = np.full((len(mode_mask), len(mode_mask)), np.nan)
-    shore = water.layers[-1].grid.cell ** axes
+    shore = water.layers[-1].grid.cell ** ndim
     open_water_mass = _in_open_water(
         volume * responses.fixed_side_mass,
         volume * responses.region_mass,
@@ -100,13 +104,13 @@ def generalised_added_mass(
     for rows in water.rows:
         body_rows = slice(rows.start, rows.stop)
         body_modes.append([_body_motion(mode, body_rows) for mode in modes])
-    rim = _rim(water, outlines, body_modes, water.cut)
+    rim = _rim(water, outlines, body_modes, water.mirror_cuts)
     responses.fixed_side_mass += _joint_work(water, modes, responses.joint_correction)
-    times = 2 ** max(sum(mirror_cuts) for mirror_cuts in water.cut)
+    times = 2 ** max(sum(mirror_cuts) for mirror_cuts in water.mirror_cuts)
     h = water.grid.cell
     corner = np.array(water.grid.origin)
-    matrix: np.ndarray = times * density * (h**water.axes * responses.fixed_side_mass + rim)
-    pressed = times * density * h ** (water.axes + 1) * responses.pressed
+    matrix: np.ndarray = times * density * (h**water.ndim * responses.fixed_side_mass + rim)
+    pressed = times * density * h ** (water.ndim + 1) * responses.internal_pressure
     pressed[..., 1:] = h * pressed[..., 1:] + pressed[..., :1] * corner
     return AddedMass(0.5 * (matrix + matrix.T), pressed)
 
@@ -119,13 +123,17 @@ def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndar
         modes: motions of all parts.
         joint_correction: see ``_ModeResponses``.
     """
-    axes, h, corner = water.axes, water.grid.cell, np.array(water.grid.origin)
-    turns = len(ROTATION_PLANES[axes])
-    moves = np.array([
-        np.concatenate([replace(mode, about=mode.about - corner).at_origin(), h * mode.angular], axis=1)
-        for mode in modes
-    ])  # fmt: skip
-    return np.asarray(np.einsum("irc,jrc->ij", moves, joint_correction[:, :, : axes + turns]))
+    ndim, h, corner = water.ndim, water.grid.cell, np.array(water.grid.origin)
+    turns = len(ROTATION_PLANES[ndim])
+    moves = np.array(
+        [
+            np.concatenate(
+                [replace(mode, reference_points=mode.reference_points - corner).at_origin(), h * mode.angular], axis=1
+            )
+            for mode in modes
+        ]
+    )
+    return np.asarray(np.einsum("irc,jrc->ij", moves, joint_correction[:, :, : ndim + turns]))
 
 
 def symmetric(mirror_cuts: tuple[bool, ...]) -> list[bool]:
@@ -152,19 +160,19 @@ def _rigid(water: Fluid, reference_point: tuple[float, ...], body: int) -> list[
         reference_point: point that the rotations are about [m].
         body: which body, counted from 0 [-].
     """
-    axes, rows, modes = water.axes, water.rows[body], []
-    turns = len(ROTATION_PLANES[axes])
-    for k in range(axes + turns):
-        mode = resting_twists(len(water.given), axes)
-        mode.about[:] = reference_point
-        (mode.linear if k < axes else mode.angular)[rows.start : rows.stop, k if k < axes else k - axes] = 1.0
+    ndim, rows, modes = water.ndim, water.rows[body], []
+    turns = len(ROTATION_PLANES[ndim])
+    for k in range(ndim + turns):
+        mode = resting_twists(len(water.immersion_sums), ndim)
+        mode.reference_points[:] = reference_point
+        (mode.linear if k < ndim else mode.angular)[rows.start : rows.stop, k if k < ndim else k - ndim] = 1.0
         modes.append(mode)
     return modes
 
 
 def _body_motion(mode: Twists, rows: slice) -> Twists:
     """Return the motion of the parts of one body."""
-    return Twists(about=mode.about[rows], linear=mode.linear[rows], angular=mode.angular[rows])
+    return Twists(reference_points=mode.reference_points[rows], linear=mode.linear[rows], angular=mode.angular[rows])
 
 
 @dataclass(slots=True)
@@ -179,10 +187,12 @@ class _ModeResponses:
     """Potential along each side, mode by mode [m/s^2 cells]."""
     inward: list[list[np.ndarray]]
     """Acceleration that each mode induces on each side; empty in bounded water [m/s^2]."""
-    pressed: np.ndarray
+    internal_pressure: np.ndarray
     """Integral of the potential inside each part, mode by mode; see ``Fluid.pressures``."""
     joint_correction: np.ndarray
-    """Correction that removes the push of the potential between links, (mode, row, ...); see ``Fluid.across``."""
+    """Correction that removes the push of the potential between links, (mode, row, ...).
+
+    See ``Fluid.joint_pressure_sums``."""
 
     @classmethod
     def solve(cls, water: Fluid, modes: Sequence[Twists], limit: float, *, sides_held: bool) -> "_ModeResponses":
@@ -194,28 +204,31 @@ class _ModeResponses:
             limit: divergence that may be left, relative to the accelerations [-].
             sides_held: whether the sides are held; then nothing is computed for sides that move as in open water.
         """
-        faces, axes = held_faces(water), water.axes
-        shape = tuple(s.stop - s.start for s in water.here)
+        faces, ndim = held_faces(water), water.ndim
+        shape = tuple(s.stop - s.start for s in water.window_slices)
         rises, moves, side_potentials, inward, part_pressures, joint_corrections = [], [], [], [], [], []
         for mode in modes:
             face_accelerations = [
-                mode.at(component_faces.row, component_faces.points)[c] for c, component_faces in enumerate(faces)
+                mode.velocity_at(component_faces.row, component_faces.points)[c]
+                for c, component_faces in enumerate(faces)
             ]
             scale = max(float(np.abs(acceleration).max(initial=0.0)) for acceleration in face_accelerations) or 1.0
-            acceleration_field = np.zeros((axes, *shape))
+            acceleration_field = np.zeros((ndim, *shape))
             for c, (component_faces, acceleration) in enumerate(zip(faces, face_accelerations, strict=True)):
-                acceleration_field[c].ravel()[component_faces.place] = component_faces.closed * acceleration / scale
+                acceleration_field[c].ravel()[component_faces.face_indices] = (
+                    component_faces.closed_fraction * acceleration / scale
+                )
             x = water.potential(acceleration_field, limit)
             side_potentials.append([scale * line.astype(np.float64) for line in water.along_sides(x)])
             rises.append(
                 [scale * face_differences(water, x, component_faces, c) for c, component_faces in enumerate(faces)]
             )
             part_pressures.append(water.pressures(x, scale))
-            joint_corrections.append(water.across(x, scale))
-            inward.append([] if sides_held else [scale * side for side in water.answer(acceleration_field)])
+            joint_corrections.append(water.joint_pressure_sums(x, scale))
+            inward.append([] if sides_held else [scale * side for side in water.side_accelerations(acceleration_field)])
             moves.append(
                 [
-                    component_faces.closed * acceleration
+                    component_faces.closed_fraction * acceleration
                     for component_faces, acceleration in zip(faces, face_accelerations, strict=True)
                 ]
             )
@@ -224,7 +237,10 @@ class _ModeResponses:
             for responses in (
                 rises,
                 [
-                    [m.at(component_faces.row, component_faces.points)[c] for c, component_faces in enumerate(faces)]
+                    [
+                        m.velocity_at(component_faces.row, component_faces.points)[c]
+                        for c, component_faces in enumerate(faces)
+                    ]
                     for m in modes
                 ],
             )
@@ -253,9 +269,9 @@ def _rim(
     """
     total = np.zeros((len(modes[0]), len(modes[0])))
     for outline, body_modes, ends in zip(outlines, modes, mirror_cuts, strict=True):
-        skin = water.offset * water.grid.cell * 0.5 ** sum(ends) * outline.share
+        skin = water.offset * water.grid.cell * 0.5 ** sum(ends) * outline.weight
         row = part_indices(outline)
-        moves = np.array([mode.at(row, outline.points) for mode in body_modes])
+        moves = np.array([mode.velocity_at(row, outline.points) for mode in body_modes])
         total += np.einsum("icm,jcm,m->ij", moves, moves, skin)
     return total
 

@@ -41,59 +41,59 @@ class _PressureWater(Fluid):
         return self._solve(_LIMITS)[0]
 
 
-def precompile(axes: int, dtype: type) -> None:
+def precompile(ndim: int, dtype: type) -> None:
     """Compile the kernels of a flow with a body if no flow of this kind has run with these sources on this machine.
 
     Nothing is compiled here if only one thread may be used, if the cache folder cannot be written to, or if another
     process has started to compile. The flow then compiles its kernels itself.
 
     Args:
-        axes: of the grid, 2 or 3.
+        ndim: of the grid, 2 or 3.
         dtype: type of the fields.
     """
     folder = compiled.FOLDER
     if folder is None or numba.config.DISABLE_JIT or threads.count() == 1:
         return
     try:
-        (folder / f"begun-{axes}-{dtype.__name__}").touch(exist_ok=False)
+        (folder / f"begun-{ndim}-{dtype.__name__}").touch(exist_ok=False)
     except OSError:  # most often the file exists: another process compiles
         return
     function = compile_solver.__name__
-    script = f"from {__name__} import {function}; {function}({axes}, '{dtype.__name__}')"
+    script = f"from {__name__} import {function}; {function}({ndim}, '{dtype.__name__}')"
     command = [sys.executable, "-c", script]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as solver_process:
         try:
-            _step(_NoPressureWater(*_domain(axes), dtype))
+            _step(_NoPressureWater(*_domain(ndim), dtype))
             solver_process.wait()
         finally:
             with suppress(OSError):
                 solver_process.kill()
 
 
-def compile_solver(axes: int, name: str) -> None:
+def compile_solver(ndim: int, name: str) -> None:
     """Compile the pressure solver.
 
     Args:
-        axes: axes of the grid, 2 or 3.
+        ndim: axes of the grid, 2 or 3.
         name: name of the fields' type, ``float32`` or ``float64``.
     """
-    water = _PressureWater(*_domain(axes), getattr(np, name))
+    water = _PressureWater(*_domain(ndim), getattr(np, name))
     _place_body(water)
     water.solve()
 
 
-def _domain(axes: int) -> tuple[Grid, Sides, float]:
-    return Grid.covering(*[(-2.0, 2.0)] * axes, cell=4.0 / _CELLS), Sides(), 0.05
+def _domain(ndim: int) -> tuple[Grid, Sides, float]:
+    return Grid.covering(*[(-2.0, 2.0)] * ndim, cell=4.0 / _CELLS), Sides(), 0.05
 
 
 def _place_body(water: Fluid) -> None:
-    shape = Cylinder(diameter=1.0) if water.axes == 2 else Sphere(diameter=1.0)
-    water.place([Body(shape=shape)], [Pose().along(water.axes)], 0.0)
+    shape = Cylinder(diameter=1.0) if water.ndim == 2 else Sphere(diameter=1.0)
+    water.place([Body(shape=shape)], [Pose().in_dimensions(water.ndim)], 0.0)
 
 
 def _step(water: Fluid) -> None:
     """Take one step of a small flow, which compiles every kernel of a step."""
-    zero_velocity = (0.0,) * water.axes
+    zero_velocity = (0.0,) * water.ndim
     _place_body(water)
     water.step(0.01, zero_velocity, zero_velocity, _LIMITS)
     water.fastest()

@@ -46,13 +46,13 @@ Back = Callable[..., Sequence[np.ndarray]]
 class BendingMap:
     """A map that bends a shape, and what follows from it."""
 
-    back: Back
+    map_to_rest: Back
     """The map."""
-    axes: int
+    ndim: int
     """Number of axes, 2 or 3."""
     size: float
     """Greatest extent of the still shape [m]."""
-    tick: float
+    difference_time: float
     """Time over which the map is differentiated [s]."""
 
     def __call__(self, places: np.ndarray, time: float) -> np.ndarray:
@@ -65,10 +65,10 @@ class BendingMap:
         Raises:
             InvalidDesign: the map gives something that is no place.
         """
-        coordinates = self.back(*places, time)
-        if len(coordinates) != self.axes:
+        coordinates = self.map_to_rest(*places, time)
+        if len(coordinates) != self.ndim:
             raise InvalidDesign(
-                f"the map that bends the body gives {len(coordinates)} coordinates; {self.axes} are needed."
+                f"the map that bends the body gives {len(coordinates)} coordinates; {self.ndim} are needed."
             )
         still_points: np.ndarray = np.stack(
             [np.broadcast_to(np.asarray(row, float), places[0].shape) for row in coordinates]
@@ -89,8 +89,8 @@ class BendingMap:
             time: when [s].
         """
         step, columns = _STEP * self.size, []
-        for d in range(self.axes):
-            offset = np.zeros((self.axes, *(1,) * (places.ndim - 1)))
+        for d in range(self.ndim):
+            offset = np.zeros((self.ndim, *(1,) * (places.ndim - 1)))
             offset[d] = step
             columns.append((self(places + offset, time) - self(places - offset, time)) / (2 * step))
         return np.moveaxis(np.stack(columns, axis=1), (0, 1), (-2, -1))
@@ -103,12 +103,12 @@ class BendingMap:
             time: when [s].
             tick: time over which the map is differentiated; None is that of the map [s].
         """
-        half = 0.5 * (tick or self.tick)
+        half = 0.5 * (tick or self.difference_time)
         goes = (self(places, time + half) - self(places, time - half)) / (2 * half)
         rates = np.linalg.solve(self.gradient(places, time), np.moveaxis(goes, 0, -1)[..., None])[..., 0]
         return -np.moveaxis(rates, -1, 0)
 
-    def forth(self, still_points: np.ndarray, time: float) -> np.ndarray:
+    def map_to_bent(self, still_points: np.ndarray, time: float) -> np.ndarray:
         """Return the positions of points of the still shape in the body's frame, shape (axis, point) [m].
 
         Args:
@@ -130,7 +130,7 @@ class BendingMap:
                         f"{point_text(places[:, is_inverted][:, 0])} m; bend it less."
                     )
                 return places
-            slope[is_inverted] = np.eye(self.axes)
+            slope[is_inverted] = np.eye(self.ndim)
             step = np.linalg.solve(slope, residual.T[..., None])[..., 0].T
             size = np.sqrt((step**2).sum(axis=0))
             places -= step * np.minimum(1.0, _MAX_STEP * self.size / np.maximum(size, 1e-300))
@@ -153,16 +153,16 @@ class BendingMap:
                 time.
         """
         full_tick_velocity = self.velocity(places, time)
-        half_tick_velocity = self.velocity(places, time, 0.5 * self.tick)
+        half_tick_velocity = self.velocity(places, time, 0.5 * self.difference_time)
         fastest = float(np.abs(half_tick_velocity).max())
         if (
             np.abs(full_tick_velocity - half_tick_velocity).max() > MAX_VELOCITY_CHANGE * fastest
-            and fastest * self.tick > _POSITION_TOLERANCE * self.size
+            and fastest * self.difference_time > _POSITION_TOLERANCE * self.size
         ):
             raise InvalidDesign(
                 f"at t = {time:.4g} s the map that bends the body gives {np.abs(full_tick_velocity).max():.4g} m/s "
-                f"over a tick of {self.tick:.3g} s and {fastest:.4g} m/s over half of it: it leaps, or is too fast for "
-                f"it. Give a smooth map, or a shorter tick."
+                f"over a tick of {self.difference_time:.3g} s and {fastest:.4g} m/s over half of it: it leaps, or is "
+                f"too fast for it. Give a smooth map, or a shorter tick."
             )
         return full_tick_velocity
 
@@ -171,14 +171,16 @@ class BendingMap:
 class BentOutline(Shape):
     """A plane shape that a map bends; see ``bend_shape``."""
 
-    still: Solid
+    rest_shape: Solid
     """The shape that it bends."""
     bend: BendingMap
     """The map."""
     _corners: np.ndarray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_corners", np.stack([np.array(row, float) for row in self.still.outline(CORNERS)]))
+        object.__setattr__(
+            self, "_corners", np.stack([np.array(row, float) for row in self.rest_shape.outline(CORNERS)])
+        )
 
     @property
     def rigid(self) -> bool:
@@ -192,9 +194,11 @@ class BentOutline(Shape):
         flat = 1e-9 * self.bend.size
         d, nx, ny = paint_outline(corners, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), flat)
         wx, wy = np.meshgrid(x, y)
-        vx, vy = (np.array(np.broadcast_to(v, d.shape)) for v in pose.carry(wx, wy))
+        vx, vy = (np.array(np.broadcast_to(v, d.shape)) for v in pose.velocity_in_plane(wx, wy))
         is_near = d < reach
-        bend_velocity = pose.turn(*self.bend.velocity(np.stack(pose.to_body(wx[is_near], wy[is_near])), time))
+        bend_velocity = pose.rotate_in_plane(
+            *self.bend.velocity(np.stack(pose.to_body(wx[is_near], wy[is_near])), time)
+        )
         vx[is_near] += bend_velocity[0]
         vy[is_near] += bend_velocity[1]
         return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
@@ -204,18 +208,20 @@ class BentOutline(Shape):
         corners = _bent_corners(self, time)
         perimeter = float(np.hypot(*(np.roll(corners, -1, axis=1) - corners)).sum())
         still_points = np.stack(
-            [np.array(row, float) for row in self.still.outline(max(32, int(np.ceil(perimeter / spacing))))]
+            [np.array(row, float) for row in self.rest_shape.outline(max(32, int(np.ceil(perimeter / spacing))))]
         )
-        vertices = self.bend.forth(still_points, time)
+        vertices = self.bend.map_to_bent(still_points, time)
         rates = self.bend.check(vertices, time)
         next_vertices, next_rates = np.roll(vertices, -1, axis=1), np.roll(rates, -1, axis=1)
         edges, rate_change = next_vertices - vertices, next_rates - rates
         edge_lengths = np.hypot(*edges)
         points = np.stack(pose.to_world(*(0.5 * (vertices + next_vertices))))
-        velocities = np.stack(pose.carry(*points)) + np.stack(pose.turn(*(0.5 * (rates + next_rates))))
+        velocities = np.stack(pose.velocity_in_plane(*points)) + np.stack(
+            pose.rotate_in_plane(*(0.5 * (rates + next_rates)))
+        )
         return Markers(
-            points=points, share=edge_lengths, velocities=velocities,
-            normals=np.stack(pose.turn(*(np.stack([edges[1], -edges[0]]) / edge_lengths))),
+            points=points, weight=edge_lengths, velocities=velocities,
+            normals=np.stack(pose.rotate_in_plane(*(np.stack([edges[1], -edges[0]]) / edge_lengths))),
             spins=(pose.spin + (edges[0] * rate_change[1] - edges[1] * rate_change[0]) / edge_lengths**2)[None],
             station=np.cumsum(edge_lengths) - edge_lengths / 2, side=np.zeros(edge_lengths.size),
         )  # fmt: skip
@@ -227,7 +233,7 @@ class BentOutline(Shape):
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return that of the still shape."""
-        return self.still.thickness(0.0)
+        return self.rest_shape.thickness(0.0)
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments of the corners' polygon, and the momentum of what bends in it."""
@@ -253,12 +259,12 @@ class BentOutline(Shape):
 class BentMesh(SpaceShape):
     """A closed mesh that a map bends; see ``bend_shape``."""
 
-    still: TriangleMesh
+    rest_shape: TriangleMesh
     """The mesh that it bends."""
     bend: BendingMap
     """The map."""
 
-    even = (False, False, False)
+    mirror_symmetry = (False, False, False)
 
     @property
     def rigid(self) -> bool:
@@ -271,15 +277,15 @@ class BentMesh(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window, as far as ``reach``."""
-        frame, faces = pose.along(3), self.still.faces
+        frame, faces = pose.in_dimensions(3), self.rest_shape.faces
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         window_field = np.zeros((4, z.size, y.size, x.size))
         h = float(x[1] - x[0]) if x.size > 1 else float(reach)
-        corners = np.stack(frame.place(self._corners_at(time)), axis=1)
+        corners = np.stack(frame.to_world_3d(self._corners_at(time)), axis=1)
         normals = np.ascontiguousarray(pseudo_normals(corners, faces))
         paint_mesh(window_field, px, py, pz, np.ascontiguousarray(corners[faces]), normals, float(reach), h)
         wz, wy, wx = np.meshgrid(pz, py, px, indexing="ij")
-        rates = [np.array(np.broadcast_to(rate, window_field[0].shape)) for rate in frame.rates((wx, wy, wz))]
+        rates = [np.array(np.broadcast_to(rate, window_field[0].shape)) for rate in frame.velocity_at((wx, wy, wz))]
         is_near = window_field[0] < reach
         bend_velocity = self._velocity(np.stack([wx[is_near], wy[is_near], wz[is_near]]), time, frame)
         for rate, component in zip(rates, bend_velocity, strict=True):
@@ -299,26 +305,28 @@ class BentMesh(SpaceShape):
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
-        frame, corners = pose.along(3), self._corners_at(time)
+        frame, corners = pose.in_dimensions(3), self._corners_at(time)
         self.bend.check(corners, time)
-        points, share, normals = face_centres(np.stack(frame.place(corners), axis=1)[self.still.faces], spacing)
-        velocities = np.stack(frame.rates(points)) + self._velocity(points, time, frame)
+        points, share, normals = face_centres(
+            np.stack(frame.to_world_3d(corners), axis=1)[self.rest_shape.faces], spacing
+        )
+        velocities = np.stack(frame.velocity_at(points)) + self._velocity(points, time, frame)
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
-        return Markers(points=points, share=share, velocities=velocities, normals=normals, spins=spins)
+        return Markers(points=points, weight=share, velocities=velocities, normals=normals, spins=spins)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the corners."""
-        corners = np.stack(pose.along(3).place(self._corners_at(time)))
+        corners = np.stack(pose.in_dimensions(3).to_world_3d(self._corners_at(time)))
         return tuple(np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1).ravel().tolist())
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return that of the still mesh."""
-        return self.still.thickness(0.0)
+        return self.rest_shape.thickness(0.0)
 
     @property
-    def blunt(self) -> bool:
+    def is_compact(self) -> bool:
         """Whether the still mesh is about as long along each axis."""
-        return self.still.blunt
+        return self.rest_shape.is_compact
 
     def volume(self, time: float) -> float:
         """Return the volume."""
@@ -326,7 +334,7 @@ class BentMesh(SpaceShape):
 
     def mass(self, time: float) -> SpaceMass:
         """Return volume, centre and moments of the bent mesh, and the momentum of what bends in it."""
-        faces = self._corners_at(time).T[self.still.faces]
+        faces = self._corners_at(time).T[self.rest_shape.faces]
         mesh_mass = mass_of_mesh(faces)
         centre = np.array(mesh_mass.centre)[:, None]
         corners = faces.transpose(1, 2, 0) - centre  # of tetrahedra from the centre
@@ -357,8 +365,8 @@ class BentMesh(SpaceShape):
 @lru_cache(maxsize=16)
 def _bent_corners(shape: BentOutline | BentMesh, time: float) -> np.ndarray:
     """Return the corners of a bent shape in the body's frame, shape (axis, corner) [m]; the last results are cached."""
-    still_corners = shape._corners if isinstance(shape, BentOutline) else shape.still.vertices.T
-    corners = shape.bend.forth(still_corners, time)
+    still_corners = shape._corners if isinstance(shape, BentOutline) else shape.rest_shape.vertices.T
+    corners = shape.bend.map_to_bent(still_corners, time)
     corners.flags.writeable = False
     return corners
 
@@ -387,7 +395,7 @@ def bend_shape(shape: Any, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME)
         raise InvalidDesign(f"tick is {tick} s; a positive time is needed, short for what the map does.")
     if isinstance(shape, TriangleMesh):
         size = float(np.ptp(shape.vertices, axis=0).max())
-        mesh = BentMesh(still=shape, bend=BendingMap(back, 3, size, tick))
+        mesh = BentMesh(rest_shape=shape, bend=BendingMap(back, 3, size, tick))
         mesh.bounds(0.0, Pose())
         return mesh
     if not isinstance(shape, Solid):
@@ -396,6 +404,6 @@ def bend_shape(shape: Any, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME)
             f"Ellipse, or a closed mesh."
         )
     size = float(np.ptp(np.stack(shape.outline(CORNERS)), axis=1).max())
-    outline = BentOutline(still=shape, bend=BendingMap(back, 2, size, tick))
+    outline = BentOutline(rest_shape=shape, bend=BendingMap(back, 2, size, tick))
     outline.bounds(0.0, Pose())
     return outline

@@ -33,7 +33,7 @@ class Body:
         return self.motion if isinstance(self.motion, Pose) else self.motion(time)
 
     @property
-    def still(self) -> bool:
+    def is_static(self) -> bool:
         """Whether neither shape nor pose ever change."""
         moving = not isinstance(self.motion, Pose) or any(self.motion.velocity) or self.motion.spins.any()
         return self.shape.rigid and not moving
@@ -57,7 +57,7 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple
         pose: its pose.
         grid: the grid.
         time: when [s].
-        mirrors: whether there is a mirror at the low and at the high end of each axis; see ``Sides.mirrors``. Empty:
+        mirrors: whether there is a mirror at the low and at the high end of each axis; see ``Sides.has_mirror``. Empty:
             there are none.
 
     Raises:
@@ -65,8 +65,8 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple
     """
     bounds = body.shape.bounds(time, pose)
     ends, h, margin = list(zip(bounds[::2], bounds[1::2], strict=True)), grid.cell, (REACH + 2) * grid.cell
-    mirrors, window = mirrors or (False,) * (2 * grid.axes), []
-    for d in reversed(range(grid.axes)):
+    mirrors, window = mirrors or (False,) * (2 * grid.ndim), []
+    for d in reversed(range(grid.ndim)):
         (lower_bound, upper_bound), start, end = ends[d], grid.origin[d], grid.origin[d] + grid.size[d]
         end_cuts = (
             mirrors[2 * d] and lower_bound < start < upper_bound,
@@ -122,10 +122,10 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
         InvalidDesign: its halves differ, its middle lies off the plane, it moves through the plane, or its axes are
             oblique to it.
     """
-    frame, name = pose.along(3), "xyz"[axis]
+    frame, name = pose.in_dimensions(3), "xyz"[axis]
     alignment = np.abs(frame.matrix[axis])  # cosines between the body's axes and the mirror's normal
     upright = float(alignment.max()) > 1 - SYMMETRY_TOLERANCE**2
-    if isinstance(body.shape, SpaceShape) and upright and not body.shape.even[int(alignment.argmax())]:
+    if isinstance(body.shape, SpaceShape) and upright and not body.shape.mirror_symmetry[int(alignment.argmax())]:
         raise InvalidDesign(
             f"the Mirror at {name} = {plane:.4g} m cuts {body.name}, whose two halves there are no images of each "
             f"other; move the body or the grid, or take another side. A Trunk may be cut across z."
@@ -154,11 +154,11 @@ def cuts(window: Window, grid: Grid) -> tuple[bool, ...]:
     return tuple(end for pair in pairs for end in pair)
 
 
-def unite(windows: list[Window], axes: int) -> Window:
+def unite(windows: list[Window], ndim: int) -> Window:
     """Return the smallest window around all; an empty one around none."""
     if not windows:
-        return (PAD,) * (2 * axes)
-    return tuple((max if k % 2 else min)(w[k] for w in windows) for k in range(2 * axes))
+        return (PAD,) * (2 * ndim)
+    return tuple((max if k % 2 else min)(w[k] for w in windows) for k in range(2 * ndim))
 
 
 def rows_of(bodies: list[AnyBody]) -> list[range]:
@@ -202,7 +202,7 @@ def measure_all(
         measure: Callable[..., Field | SpaceField] = body.shape.measure
         f = measure(*points, time, pose, (REACH + (len(points) == 2)) * h)
         body_field = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
-        part_index = getattr(f, "part", None)
+        part_index = getattr(f, "part_index", None)
         if nearest_field is None:
             nearest_field = body_field
             owner = owner if part_index is None else part_index.astype(np.int8)

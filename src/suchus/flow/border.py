@@ -19,6 +19,9 @@ from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
 BALANCE_TOLERANCE = 1e-6
 """Largest net inflow, over the flow through all sides: the rounding error of single precision [-]."""
 
+_CHANGING = {"prescribed": "prescribed", "induced": "induced", "seen": "previous_induced"}
+"""Arrays of an edge that change, by their key in a checkpoint."""
+
 _MIRRORED, _PRESCRIBED, _FREE_OF_VORTICITY, _ZERO_GRADIENT = range(4)
 """Conditions for the velocity along a side beyond it: mirrored about a value, that value, no vorticity, no gradient."""
 
@@ -175,56 +178,56 @@ class Edge:
     """Kind of the side."""
     axis: int
     """Axis of the normal: 0 is x, 1 is y, 2 is z."""
-    low: bool
+    is_lower_side: bool
     """Whether the side is at the smallest coordinate."""
     cells: int
     """Cells along the normal [-]."""
-    places: list[np.ndarray]
+    face_coordinates: list[np.ndarray]
     """Coordinates of the side's faces along it, in the order of the axes, shapes of ``prescribed`` [m]."""
     prescribed: np.ndarray
     """Velocity into the domain on the side's faces, the last axis first [m/s]."""
     unbounded: bool
     """Whether the side is one of an unbounded domain."""
-    leaves: float = 0.0
+    convective_weight: float = 0.0
     """Weight of the convective outflow condition in this step; the rest of the velocity follows the far water [-]."""
-    slides: tuple[float, ...] | None = None
+    wall_velocity: tuple[float, ...] | None = None
     """Velocity of the wall along the other axes, for a side with friction; else None [m/s]."""
     induced: np.ndarray = field(init=False)
     """Velocity into the domain that the flow inside induces on the side, at the end of the last step [m/s]."""
-    seen: np.ndarray = field(init=False)
+    previous_induced: np.ndarray = field(init=False)
     """The same one step earlier [m/s]."""
     order: tuple[int, ...] = field(init=False)
     """Axes of an array of the padded grid, that across the side first [-]."""
 
     def __post_init__(self) -> None:
-        self.induced, self.seen = np.zeros(self.prescribed.shape), np.zeros(self.prescribed.shape)
+        self.induced, self.previous_induced = np.zeros(self.prescribed.shape), np.zeros(self.prescribed.shape)
         normal_axis = self.prescribed.ndim - self.axis
         self.order = (normal_axis, *(k for k in range(1 + self.prescribed.ndim) if k != normal_axis))
 
     @property
     def sign(self) -> int:
         """+1 if the inward normal points along the axis, else -1."""
-        return 1 if self.low else -1
+        return 1 if self.is_lower_side else -1
 
     @property
     def face(self) -> int:
         """Index of the side's faces along the normal."""
-        return PAD if self.low else PAD + self.cells
+        return PAD if self.is_lower_side else PAD + self.cells
 
     @property
-    def inside(self) -> tuple[slice, ...]:
+    def domain_slices(self) -> tuple[slice, ...]:
         """The part of a plane or line parallel to the side that lies in the domain."""
         return (slice(PAD, -PAD),) * self.prescribed.ndim
 
     def normal(self, velocity: np.ndarray) -> np.ndarray:
         """Return the velocity along the normal, normal index first."""
-        return self.across(velocity[self.axis])
+        return self.with_normal_first(velocity[self.axis])
 
-    def across(self, a: np.ndarray) -> np.ndarray:
+    def with_normal_first(self, a: np.ndarray) -> np.ndarray:
         """Return an array of the padded grid with the normal index first."""
         return a.transpose(self.order)  # np.moveaxis takes ten times as long
 
-    def asked(self, time: float) -> tuple[tuple[float, ...] | None, np.ndarray | None]:
+    def side_velocities(self, time: float) -> tuple[tuple[float, ...] | None, np.ndarray | None]:
         """Return the velocity of the wall along the side and the velocity of the water through it, at a time [s].
 
         The first is None without friction, the second is None where the side prescribes none [m/s].
@@ -232,15 +235,15 @@ class Edge:
         Raises:
             InvalidDesign: the side gives something that is no velocity.
         """
-        slides, inflow = self.side.along(time, 1 + self.prescribed.ndim), None
+        slides, inflow = self.side.wall_velocity(time, 1 + self.prescribed.ndim), None
         side_text = f"the {self.name} side, a {type(self.side).__name__},"
         if slides is not None and not (np.shape(slides) == (self.prescribed.ndim,) and np.isfinite(slides).all()):
             raise InvalidDesign(
                 f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; along() gives one finite "
                 f"number for each other axis, or None."
             )
-        if self.side.passes and not self.side.opens:
-            inflow = np.asarray(self.side.into(time, *self.places))
+        if self.side.is_permeable and not self.side.is_open:
+            inflow = np.asarray(self.side.inflow_velocity(time, *self.face_coordinates))
             if inflow.shape not in ((), self.prescribed.shape) or not np.isfinite(inflow).all():
                 raise InvalidDesign(
                     f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; into() "
@@ -255,14 +258,14 @@ class Edge:
             time: when [s].
             outward: component of the far stream along the outward normal, over its speed [-].
         """
-        self.leaves = self.side.carries(outward)
-        self.slides, inflow = self.asked(time)
+        self.convective_weight = self.side.outflow_fraction(outward)
+        self.wall_velocity, inflow = self.side_velocities(time)
         if inflow is not None:
             self.prescribed[:] = inflow
 
     def fastest(self, time: float) -> float:
         """Return the fastest speed that the side itself imposes at a time [m/s]."""
-        slides, inflow = self.asked(time)
+        slides, inflow = self.side_velocities(time)
         return max(0.0 if slides is None else length(slides), 0.0 if inflow is None else float(np.abs(inflow).max()))
 
     def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
@@ -273,19 +276,21 @@ class Edge:
             stream: velocity of the far water [m/s].
         """
         n, f, step = self.normal(velocity), self.face, self.sign
-        inner = PAD if self.low else PAD + self.cells - 1
+        inner = PAD if self.is_lower_side else PAD + self.cells - 1
         tangential_axes = (1 - self.axis,) if len(velocity) == 2 else [d for d in range(3) if d != self.axis]
         if isinstance(self.side, Periodic):
-            lines = [n, *(self.across(velocity[d]) for d in tangential_axes)]
+            lines = [n, *(self.with_normal_first(velocity[d]) for d in tangential_axes)]
             for k in range(1, PAD + 1):
-                ghost, source = (f - k, f - k + self.cells) if self.low else (f + k - 1, f + k - 1 - self.cells)
+                ghost, source = (
+                    (f - k, f - k + self.cells) if self.is_lower_side else (f + k - 1, f + k - 1 - self.cells)
+                )
                 for a in lines:
                     a[ghost] = a[source]
             return
-        straight = not self.side.passes or (self.unbounded and not self.leaves)
+        straight = not self.side.is_permeable or (self.unbounded and not self.convective_weight)
         condition, value = self._tangential_condition(0, tangential_axes[0], step, stream)
         if len(tangential_axes) == 1:
-            tangential = self.across(velocity[tangential_axes[0]])
+            tangential = self.with_normal_first(velocity[tangential_axes[0]])
             _fill_side(n, tangential, f, inner, step, self.prescribed, straight, condition, n.dtype.type(value))
         else:
             values = tuple(
@@ -306,9 +311,9 @@ class Edge:
             step: 1 at the low end of the normal's axis and -1 at the high end.
             stream: velocity of the far water [m/s].
         """
-        if self.slides is not None:
-            return _MIRRORED, self.slides[k]
-        if self.unbounded and not self.leaves:
+        if self.wall_velocity is not None:
+            return _MIRRORED, self.wall_velocity[k]
+        if self.unbounded and not self.convective_weight:
             return _FREE_OF_VORTICITY, 0.0
         if isinstance(self.side, Stream) and step * stream[self.axis] > 0:
             return _PRESCRIBED, stream[axis]
@@ -327,16 +332,16 @@ class Border:
     """Velocity of the far water at the end of the step [m/s]."""
     steps: int = 0
     """Steps prepared so far [-]."""
-    span: float = 0.0
+    last_step: float = 0.0
     """Length of the last step [cells per (m/s)]."""
 
     @classmethod
-    def of(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
+    def for_grid(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
         """Return the border of a grid."""
-        edges, unbounded = [], sides.unbounded(grid.axes)
-        for k, (name, side) in enumerate(zip(NAMES, sides.around(grid.axes), strict=False)):
+        edges, unbounded = [], sides.unbounded(grid.ndim)
+        for k, (name, side) in enumerate(zip(NAMES, sides.of_axes(grid.ndim), strict=False)):
             axis = k // 2
-            if not side.ends:
+            if not side.is_domain_end:
                 continue
             prescribed: np.ndarray = np.zeros([n for d, n in enumerate(grid.cells) if d != axis][::-1], dtype)
             places = np.meshgrid(*(grid.centres(PAD, PAD + n, d) for d, n in enumerate(grid.cells) if d != axis))
@@ -346,25 +351,23 @@ class Border:
             edges.append(edge)
         water: OpenWater | FarField | None = None
         if unbounded:
-            water = OpenWater.around(grid) if grid.axes == 2 else FarField(grid, sides.mirrors(3))
-        return cls(edges=edges, water=water, stream=(0.0,) * grid.axes)
+            water = OpenWater.for_grid(grid) if grid.ndim == 2 else FarField(grid, sides.has_mirror(3))
+        return cls(edges=edges, water=water, stream=(0.0,) * grid.ndim)
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all that changes, by name."""
         edges = {
-            f"edge{k}.{name}": getattr(e, name)
-            for k, e in enumerate(self.edges)
-            for name in ("prescribed", "induced", "seen")
+            f"edge{k}.{key}": getattr(e, name) for k, e in enumerate(self.edges) for key, name in _CHANGING.items()
         }
-        return {**edges, "stream": np.array(self.stream), "prepared": np.array([self.steps, self.span])}
+        return {**edges, "stream": np.array(self.stream), "prepared": np.array([self.steps, self.last_step])}
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
         """Set all that changes."""
         for k, edge in enumerate(self.edges):
-            for name in ("prescribed", "induced", "seen"):
-                getattr(edge, name)[:] = state[f"edge{k}.{name}"]
+            for key, name in _CHANGING.items():
+                getattr(edge, name)[:] = state[f"edge{k}.{key}"]
         self.stream = tuple(state["stream"].tolist())
-        self.steps, self.span = int(state["prepared"][0]), float(state["prepared"][1])
+        self.steps, self.last_step = int(state["prepared"][0]), float(state["prepared"][1])
 
     def fastest(self, time: float) -> float:
         """Return the fastest speed that a side itself imposes at a time, a wall or an inflow [m/s]."""
@@ -393,36 +396,36 @@ class Border:
             edge.impose(time, -edge.sign * stream[edge.axis] / size)
         if self.steps == 0:
             for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
-                edge.induced[:] = edge.seen[:] = induced
-        growth = dt / self.span if self.span else 0.0
+                edge.induced[:] = edge.previous_induced[:] = induced
+        growth = dt / self.last_step if self.last_step else 0.0
         for edge in self.edges:
-            extrapolation = growth * (edge.induced - edge.seen)
-            if edge.side.opens:
+            extrapolation = growth * (edge.induced - edge.previous_induced)
+            if edge.side.is_open:
                 inflow = edge.sign * stream[edge.axis] + edge.induced + extrapolation
-                if edge.leaves:
+                if edge.convective_weight:
                     rise = (
                         edge.sign * (stream[edge.axis] - previous_stream[edge.axis])
                         if isinstance(edge.side, Stream)
                         else 0.0
                     )
                     outflow = self._convective_outflow(edge, velocity, dt) + (rise + extrapolation)
-                    inflow = edge.leaves * outflow + (1 - edge.leaves) * inflow
+                    inflow = edge.convective_weight * outflow + (1 - edge.convective_weight) * inflow
                 edge.prescribed[:] = inflow
-            edge.seen[:] = edge.induced
+            edge.previous_induced[:] = edge.induced
             edge.induced += extrapolation
-        self.steps, self.span = self.steps + 1, dt
+        self.steps, self.last_step = self.steps + 1, dt
         self._balance()
         self._refuse_gain(time)
 
     def _refuse_gain(self, time: float) -> None:
         """Refuse a net flow through the sides where no side can balance it."""
-        if any(e.leaves or e.unbounded for e in self.edges):
+        if any(e.convective_weight or e.unbounded for e in self.edges):
             return
         side_inflows = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
         net = sum(float(p.sum(dtype=np.float64)) for p in side_inflows)
         gross_flow = sum(float(np.abs(p).sum(dtype=np.float64)) for p in side_inflows)
         if abs(net) > BALANCE_TOLERANCE * gross_flow:
-            side_names = ", ".join(e.name for e in self.edges if e.side.passes)
+            side_names = ", ".join(e.name for e in self.edges if e.side.is_permeable)
             imbalance_text = "enters and cannot leave" if net > 0 else "leaves and none enters"
             raise InvalidDesign(
                 f"at t = {time:.4g} s {100 * abs(net) / gross_flow:.3g} % of the water that passes the domain's sides "
@@ -447,7 +450,7 @@ class Border:
             edge.prescribed += rise.astype(edge.prescribed.dtype)
             edge.induced[:] = induced
             if self.steps == 1:
-                edge.seen[:] = induced
+                edge.previous_induced[:] = induced
             change = max(change, float(np.abs(rise).max()))
         self._balance()
         return change
@@ -455,7 +458,11 @@ class Border:
     def _induced(self, velocity: np.ndarray, window: Window) -> list[np.ndarray]:
         if self.water is None:
             return [np.zeros(e.prescribed.shape) for e in self.edges]
-        return self.water.inward(velocity, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])
+        return self.water.inward(
+            velocity,
+            window,
+            [Fading(e.axis, e.is_lower_side, e.convective_weight) for e in self.edges if e.convective_weight],
+        )
 
     @staticmethod
     def _convective_outflow(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
@@ -467,8 +474,8 @@ class Border:
             dt: length of the step [cells per (m/s)].
         """
         n = edge.normal(velocity)
-        side_velocity = edge.sign * n[edge.face][edge.inside]
-        inner = edge.sign * n[edge.face + edge.sign][edge.inside]
+        side_velocity = edge.sign * n[edge.face][edge.domain_slices]
+        inner = edge.sign * n[edge.face + edge.sign][edge.domain_slices]
         speed = max(-float(side_velocity.mean(dtype=np.float64)), 0.0)
         outflow: np.ndarray = side_velocity - min(speed * dt, 1.0) * (side_velocity - inner)
         return outflow
@@ -479,14 +486,14 @@ class Border:
         Sides that carry water out take the difference; without them the unbounded sides take it.
         """
         net, open_area = 0.0, 0.0
-        free = any(e.leaves for e in self.edges)
+        free = any(e.convective_weight for e in self.edges)
         for edge in self.edges:
             if not isinstance(edge.side, Periodic):
                 net += float(edge.prescribed.sum(dtype=np.float64))
-                open_area += edge.prescribed.size * (edge.leaves if free else float(edge.unbounded))
+                open_area += edge.prescribed.size * (edge.convective_weight if free else float(edge.unbounded))
         if open_area:
             for edge in self.edges:
-                fraction = edge.leaves if free else float(edge.unbounded)
+                fraction = edge.convective_weight if free else float(edge.unbounded)
                 if fraction:
                     edge.prescribed -= fraction * net / open_area
 

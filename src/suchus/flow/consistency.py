@@ -43,7 +43,7 @@ _COMPARISON_FRACTION = 0.01  # fraction of a step over which positions are compa
 class CoordinateSeries(NamedTuple):
     """Coordinates of a body at some times, each of shape (time, coordinate)."""
 
-    places: np.ndarray
+    coordinates: np.ndarray
     """Coordinates less those at the first time [m, rad]."""
     rates: np.ndarray
     """Their declared rates [m/s, rad/s]."""
@@ -56,13 +56,13 @@ class CoordinateSeries(NamedTuple):
 class RateSource(Protocol):
     """A source of coordinates and their rates."""
 
-    def at(self, times: Sequence[float]) -> CoordinateSeries:
+    def sample(self, times: Sequence[float]) -> CoordinateSeries:
         """Return the coordinates and rates at some times [s]."""
 
-    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
+    def error_text(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return a sentence with the declared and the measured rate of a coordinate, and the remedy."""
 
-    def place(self, index: int) -> str:
+    def label(self, index: int) -> str:
         """Return the name of a coordinate for messages."""
 
 
@@ -79,28 +79,28 @@ class MotionSource(NamedTuple):
     """Name of the body."""
     motion: Motion
     """Its motion."""
-    reach: float
+    bounding_radius: float
     """Distance of the body's surface from the origin of its frame [m]."""
 
-    def at(self, times: Sequence[float]) -> CoordinateSeries:
+    def sample(self, times: Sequence[float]) -> CoordinateSeries:
         """Return positions and angles, in space rotation vectors from the first pose, and their rates."""
         poses = [self.motion(time) for time in times]
-        axes = len(poses[0].position)
+        ndim = len(poses[0].position)
         places = np.array([[*p.position, *_turn(poses[0], p)] for p in poses])
-        rates = np.array([[*p.velocity, *([p.spin] if axes == 2 else p.spins)] for p in poses])
-        turns = (np.arange(places.shape[1]) >= axes).astype(int)
-        return CoordinateSeries(places - places[0], rates, np.where(turns, self.reach, 1.0), turns)
+        rates = np.array([[*p.velocity, *([p.spin] if ndim == 2 else p.spins)] for p in poses])
+        turns = (np.arange(places.shape[1]) >= ndim).astype(int)
+        return CoordinateSeries(places - places[0], rates, np.where(turns, self.bounding_radius, 1.0), turns)
 
-    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
+    def error_text(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates and the remedy."""
-        axes = 2 if declared_rate.size == 3 else 3
-        turning = index >= axes
+        ndim = 2 if declared_rate.size == 3 else 3
+        turning = index >= ndim
         rate_name, position_name = (
-            ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
+            ("spin", "angle" if ndim == 2 else "attitude") if turning else ("velocity", "position")
         )
 
         def numbers(rate: np.ndarray) -> str:
-            parts, unit = (rate[axes:], "rad/s") if turning else (rate[:axes], "m/s")
+            parts, unit = (rate[ndim:], "rad/s") if turning else (rate[:ndim], "m/s")
             text = ", ".join(f"{component:.4g}" for component in parts)
             return f"({text}) {unit}" if parts.size > 1 else f"{text} {unit}"
 
@@ -109,7 +109,7 @@ class MotionSource(NamedTuple):
             f"changes by {numbers(measured_rate)}; give a Pose whose {rate_name} is the rate of its {position_name}."
         )
 
-    def place(self, index: int) -> str:  # noqa: ARG002 - a midline says which station it is
+    def label(self, index: int) -> str:  # noqa: ARG002 - a midline says which station it is
         """Return which body it is."""
         return self.name
 
@@ -122,13 +122,15 @@ class MidlineSource(NamedTuple):
     spine: Callable[[float], MidlineState]
     """Its midline at every time [s]."""
 
-    def at(self, times: Sequence[float]) -> CoordinateSeries:
+    def sample(self, times: Sequence[float]) -> CoordinateSeries:
         """Return position, heading and half-width of the stations, one after the other, and their rates.
 
         Raises:
             InvalidDesign: the number of stations changes.
         """
-        reference, *later_states = (np.concatenate([state.rows, [state.swell]]) for state in map(self.spine, times))
+        reference, *later_states = (
+            np.concatenate([state.rows, [state.half_width_rates]]) for state in map(self.spine, times)
+        )
         for time, later_state in zip(times[1:], later_states, strict=True):
             if later_state.shape != reference.shape:
                 raise InvalidDesign(
@@ -143,7 +145,7 @@ class MidlineSource(NamedTuple):
         kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
         return CoordinateSeries(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
 
-    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
+    def error_text(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst station and the remedy."""
         row, station = divmod(index, declared_rate.size // 4)
         quantity, unit = ("x", "y", "heading", "half_width")[row], "rad/s" if row == 2 else "m/s"
@@ -153,7 +155,7 @@ class MidlineSource(NamedTuple):
             f"{quantity}_rate is the rate of its {quantity}."
         )
 
-    def place(self, index: int) -> str:
+    def label(self, index: int) -> str:
         """Return which station it is."""
         return f"station {index % self.spine(0.0).x.size} of the midline of {self.name}"
 
@@ -165,24 +167,24 @@ class LinkSource(NamedTuple):
     """Name of the body."""
     motion: Callable[[float], LinkStates]
     """The links at every time [s]."""
-    reach: np.ndarray
+    bounding_radii: np.ndarray
     """Distance of each link's surface from its origin, shape (link,) [m]."""
 
-    def at(self, times: Sequence[float]) -> CoordinateSeries:
+    def sample(self, times: Sequence[float]) -> CoordinateSeries:
         """Return positions of the links and their rotation vectors from the first time, and their rates."""
         states = [self.motion(time) for time in times]
-        reference, count = states[0], len(self.reach)
+        reference, count = states[0], len(self.bounding_radii)
         turns = [rotation.vectors(state.matrix @ np.swapaxes(reference.matrix, 1, 2)) for state in states]
         places = np.array(
             [[*(s.position - reference.position).ravel(), *t.ravel()] for s, t in zip(states, turns, strict=True)]
         )
         rates = np.array([[*s.velocity.ravel(), *s.spin.ravel()] for s in states])
-        arms = np.concatenate([np.ones(3 * count), np.repeat(self.reach, 3)])
+        arms = np.concatenate([np.ones(3 * count), np.repeat(self.bounding_radii, 3)])
         return CoordinateSeries(places, rates, arms, np.repeat([0, 1], 3 * count))
 
-    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
+    def error_text(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst link and the remedy."""
-        turning = index >= 3 * len(self.reach)
+        turning = index >= 3 * len(self.bounding_radii)
         rate_name, position_name, unit = ("spin", "matrix", "rad/s") if turning else ("velocity", "position", "m/s")
         return (
             f"the motion of {self.name} gives link {self._link(index)} the {rate_name} {declared_rate[index]:.4g} "
@@ -190,38 +192,38 @@ class LinkSource(NamedTuple):
             f"give LinkStates whose {rate_name} is the rate of the {position_name}."
         )
 
-    def place(self, index: int) -> str:
+    def label(self, index: int) -> str:
         """Return which link it is."""
         return f"link {self._link(index)} of {self.name}"
 
     def _link(self, index: int) -> int:
-        return index % (3 * len(self.reach)) // 3
+        return index % (3 * len(self.bounding_radii)) // 3
 
 
 @dataclass(slots=True)
 class Consistency:
     """Checks the rates of one motion or bending body, step by step."""
 
-    told: RateSource
+    source: RateSource
     """The motion or body."""
     cell: float
     """Side of a cell [m]."""
-    every: int = 1
+    check_interval: int = 1
     """Steps between two comparisons of the rates [-]; leaps are looked for in every step."""
-    top: float = 0.0
+    max_speed: float = 0.0
     """Fastest speed so far, of either kind [m/s]."""
-    strikes: int = 0
+    consecutive_errors: int = 0
     """Times in a row that rates and positions disagreed [-]."""
     steps: int = 0
     """Steps looked at [-]."""
-    slack: float = 0.0
+    max_half_step_distance: float = 0.0
     """Largest distance that the rates covered in half a step so far [m]."""
     drift: np.ndarray = field(default_factory=lambda: np.zeros(1))
     """Displacement of each coordinate minus the integral of its rate [m]."""
     path: np.ndarray = field(default_factory=lambda: np.zeros(1))
     """Length of the path of each coordinate [m]."""
 
-    def longest(self, time: float, dt: float) -> float:
+    def max_first_step(self, time: float, dt: float) -> float:
         """Return the longest first step in which no point moves farther than a cell [s]; ``dt`` for a body that leaps.
 
         The speed at the start does not bound the step of a body that starts from rest.
@@ -232,8 +234,8 @@ class Consistency:
         """
         step = dt
         for _ in range(_HALVINGS):
-            series = self.told.at((time, *(time + fraction * step for fraction in (1 / 3, 1 / 2, 1))))
-            if np.abs(series.places * series.arms).max() <= MAX_POSITION_ERROR * self.cell:
+            series = self.source.sample((time, *(time + fraction * step for fraction in (1 / 3, 1 / 2, 1))))
+            if np.abs(series.coordinates * series.arms).max() <= MAX_POSITION_ERROR * self.cell:
                 return step
             step /= 2
         return dt
@@ -252,9 +254,9 @@ class Consistency:
             range(MAX_CONSECUTIVE_ERRORS)
         ):  # last at the start of the step, so that the message is about the start
             self._compare(time + k * dt / MAX_CONSECUTIVE_ERRORS, dt)
-        self.strikes = 0
+        self.consecutive_errors = 0
 
-    def look(self, time: float, dt: float) -> None:
+    def check_step(self, time: float, dt: float) -> None:
         """Compare rates and positions at the start of a step and over all of it.
 
         Args:
@@ -264,15 +266,15 @@ class Consistency:
         Raises:
             InvalidDesign: they disagree for the third time in a row, or the body is not where its rates lead.
         """
-        if self.steps % self.every == 0:
+        if self.steps % self.check_interval == 0:
             self._compare(time, dt)
         self.steps += 1
-        series = self.told.at((time, time + dt))
-        displacement, rate_displacement = series.places[1] * series.arms, 0.5 * dt * series.rates * series.arms
-        self.slack = max(self.slack, float(np.abs(rate_displacement).max()))
+        series = self.source.sample((time, time + dt))
+        displacement, rate_displacement = series.coordinates[1] * series.arms, 0.5 * dt * series.rates * series.arms
+        self.max_half_step_distance = max(self.max_half_step_distance, float(np.abs(rate_displacement).max()))
         deviation = displacement - rate_displacement.sum(axis=0)
         self.drift, self.path = self.drift + deviation, self.path + np.abs(displacement)
-        tolerance = MAX_POSITION_ERROR * self.cell + self.slack
+        tolerance = MAX_POSITION_ERROR * self.cell + self.max_half_step_distance
         is_inconsistent = (np.abs(deviation) > tolerance) | (
             np.abs(self.drift) > np.maximum(tolerance, RATE_TOLERANCE * self.path)
         )
@@ -280,7 +282,7 @@ class Consistency:
             return
         worst_index = int(np.where(is_inconsistent, np.abs(self.drift), 0.0).argmax())
         raise InvalidDesign(
-            f"at t = {time + dt:.4g} s {self.told.place(worst_index)} is {abs(self.drift[worst_index]):.3g} m away "
+            f"at t = {time + dt:.4g} s {self.source.label(worst_index)} is {abs(self.drift[worst_index]):.3g} m away "
             f"from where its rates have led it ({abs(deviation[worst_index]):.3g} m in the last step of {dt:.3g} s; a "
             f"cell is {self.cell:.3g} m): a body cannot leap. Give places without jumps and rates that are theirs, or, "
             f"if they are right and only fast, a smaller step."
@@ -297,28 +299,28 @@ class Consistency:
             InvalidDesign: they disagree for the third time in a row.
         """
         span = _COMPARISON_FRACTION * dt
-        series = self.told.at([time + k * span for k in range(3)])
-        declared_rate, measured_rate = series.rates[0], (4 * series.places[1] - series.places[2]) / (2 * span)
+        series = self.source.sample([time + k * span for k in range(3)])
+        declared_rate, measured_rate = series.rates[0], (4 * series.coordinates[1] - series.coordinates[2]) / (2 * span)
         declared_speed, measured_speed, rate_error = (
             np.abs(rate * series.arms) for rate in (declared_rate, measured_rate, declared_rate - measured_rate)
         )
         sizes = np.array(
             [np.maximum(declared_speed, measured_speed)[series.kinds == k].max() for k in range(series.kinds.max() + 1)]
         )
-        self.top = max(self.top, float(sizes.max()))
+        self.max_speed = max(self.max_speed, float(sizes.max()))
         min_speed = max(
             MIN_RATE_RATIO * float(sizes.max()),
-            RATE_TOLERANCE * MIN_SPEED_RATIO * self.top,
+            RATE_TOLERANCE * MIN_SPEED_RATIO * self.max_speed,
             DISTANCE_TOLERANCE * self.cell / dt,
         )
         excess = rate_error / np.maximum(RATE_TOLERANCE * sizes, min_speed)[series.kinds]
         if not (excess > 1).any():
-            self.strikes = 0
+            self.consecutive_errors = 0
             return
-        self.strikes += 1
-        if self.strikes >= MAX_CONSECUTIVE_ERRORS:
+        self.consecutive_errors += 1
+        if self.consecutive_errors >= MAX_CONSECUTIVE_ERRORS:
             raise InvalidDesign(
-                f"at t = {time:.4g} s {self.told.sentence(int(excess.argmax()), declared_rate, measured_rate)}"
+                f"at t = {time:.4g} s {self.source.error_text(int(excess.argmax()), declared_rate, measured_rate)}"
             )
 
 

@@ -79,7 +79,7 @@ def _pushes(contact: BodyContact, outline: Markers, other_outline: Markers) -> n
     k = (outline.x > other_outline.x.min() - contact.gap) & (outline.x < other_outline.x.max() + contact.gap)
     k &= (outline.y > other_outline.y.min() - contact.gap) & (outline.y < other_outline.y.max() + contact.gap)
     dx, dy = outline.x[k, None] - other_outline.x, outline.y[k, None] - other_outline.y
-    half = other_outline.share / 2
+    half = other_outline.weight / 2
     normal_x, normal_y = other_outline.normals
     edge_offset = np.clip(dy * normal_x - dx * normal_y, -half, half)
     rx, ry = dx + edge_offset * normal_y, dy - edge_offset * normal_x
@@ -87,5 +87,5 @@ def _pushes(contact: BodyContact, outline: Markers, other_outline: Markers) -> n
     nearest_pair = (np.arange(nearest_edge.size), nearest_edge)
     nx, ny = normal_x[nearest_edge], normal_y[nearest_edge]
     distance = np.copysign(np.hypot(rx[nearest_pair], ry[nearest_pair]), rx[nearest_pair] * nx + ry[nearest_pair] * ny)
-    push = contact.pressure * np.maximum(1 - distance / contact.gap, 0.0) ** 2 * outline.share[k]
+    push = contact.pressure * np.maximum(1 - distance / contact.gap, 0.0) ** 2 * outline.weight[k]
     return np.stack([outline.x[k], outline.y[k], push * nx, push * ny])

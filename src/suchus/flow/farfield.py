@@ -178,9 +178,9 @@ class Fading:
 
     axis: int
     """Axis of the side's normal: 0 is x, 1 is y."""
-    low: bool
+    is_lower_side: bool
     """Whether the side is at the smallest coordinate."""
-    share: float
+    fraction: float
     """Share of the vorticity that is faded out [-]."""
 
 
@@ -192,7 +192,7 @@ class OpenWater:
     """Cells along x and y."""
     points: np.ndarray = field(init=False)
     """Points of the sides where the velocity is summed up, side after side, shape (2, point) [cells]."""
-    between: list[tuple[np.ndarray, np.ndarray]] = field(init=False)
+    interpolation: list[tuple[np.ndarray, np.ndarray]] = field(init=False)
     """Which points of a side each face takes, and their weights, per side, each of shape (4, face) [-]."""
     middles: tuple[np.ndarray, np.ndarray] = field(init=False)
     """Middles of the blocks (x, y), each of shape (row, column) [cells]."""
@@ -206,17 +206,17 @@ class OpenWater:
         self.blocks = np.zeros((4, rows, columns))
         x, y = np.meshgrid(*(SIDE * np.arange(n) + 0.5 * (SIDE - 1) for n in (columns, rows)))
         self.middles = x, y
-        points, self.between = [], []
+        points, self.interpolation = [], []
         for axis, coordinate in ((0, 0), (0, nx), (1, 0), (1, ny)):
             cell_count = self.cells[1 - axis]
             knots = np.linspace(0.5, cell_count - 0.5, max(-(-cell_count // SIDE), 3) + 1)
-            self.between.append(cubic(knots, np.arange(cell_count) + 0.5))
+            self.interpolation.append(cubic(knots, np.arange(cell_count) + 0.5))
             pair = np.full(knots.size, float(coordinate)), knots
             points.append(np.array(pair if axis == 0 else pair[::-1]))
         self.points = np.concatenate(points, axis=1)
 
     @classmethod
-    def around(cls, grid: Grid) -> "OpenWater":
+    def for_grid(cls, grid: Grid) -> "OpenWater":
         """Return the open water around a grid."""
         return cls(grid.cells)
 
@@ -251,7 +251,7 @@ class OpenWater:
             induced_velocity: at the points of the sides, shape (2, point) [m/s].
         """
         sides, start = [], 0
-        for (index, weight), axis, sign in zip(self.between, (0, 0, 1, 1), (1, -1, 1, -1), strict=True):
+        for (index, weight), axis, sign in zip(self.interpolation, (0, 0, 1, 1), (1, -1, 1, -1), strict=True):
             end = start + int(index[-1, -1]) + 1
             sides.append(sign * (weight * induced_velocity[axis, start:end][index]).sum(axis=0))
             start = end
@@ -272,16 +272,18 @@ class OpenWater:
         middle = axial[0] if axis == 0 else axial[:, 0]
         body_start, body_stop = (window[2], window[3]) if axis == 0 else (window[0], window[1])
         clearance = (
-            (body_start if fading.low else cells + 2 * PAD - body_stop) - PAD if body_stop > body_start else cells
+            (body_start if fading.is_lower_side else cells + 2 * PAD - body_stop) - PAD
+            if body_stop > body_start
+            else cells
         )
         length = max(min(FADE_FRACTION * cells, clearance), SIDE)
 
         def weight(position: np.ndarray) -> np.ndarray:
             """Return the fraction of the strength that stays, at positions along the axis [cells]."""
             fraction = np.minimum(
-                np.maximum((position if fading.low else cells - position) / length, 0.0), 1.0
+                np.maximum((position if fading.is_lower_side else cells - position) / length, 0.0), 1.0
             )  # clip is slow
-            weights: np.ndarray = 1 - fading.share * (1 - fraction**2 * (3 - 2 * fraction))
+            weights: np.ndarray = 1 - fading.fraction * (1 - fraction**2 * (3 - 2 * fraction))
             return weights
 
         fading_fraction = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
@@ -289,7 +291,7 @@ class OpenWater:
         size = np.abs(vortex) * (fading_fraction if axis == 0 else fading_fraction[:, None])
         centre = float((size * lateral).sum() / size.sum()) if size.sum() > 0 else 0.0
         defect = -(vortex * (lateral - centre) + moment).sum(axis=axis) / SIDE
-        turn = 1 if (axis == 0) != fading.low else -1
+        turn = 1 if (axis == 0) != fading.is_lower_side else -1
         source = turn * fading_fraction * defect
         positions = np.array([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
         zeros = np.zeros(middle.size)
@@ -306,9 +308,9 @@ class Face:
 
     axis: int
     """Axis of its normal: 0 is x, 1 is y, 2 is z."""
-    low: bool
+    is_lower_side: bool
     """Whether the face is at the smaller coordinate."""
-    along: tuple[int, int]
+    tangential_axes: tuple[int, int]
     """The two axes in it, the later one first, as the arrays have them."""
     spans: tuple[tuple[int, int], ...]
     """First and last cell face of the surface along each axis [-]."""
@@ -322,14 +324,14 @@ class Face:
     @property
     def cells(self) -> np.ndarray:
         """Cells of each panel, shape (panel along one axis, along the other) [-]."""
-        return np.outer(*(self.sizes[d] for d in self.along))
+        return np.outer(*(self.sizes[d] for d in self.tangential_axes))
 
     @property
     def middles(self) -> np.ndarray:
         """Middles of the panels, shape (3, panel) [cells]."""
         panels = zip(self.spans, self.starts, self.sizes, strict=True)
         lines = [start + starts + 0.5 * sizes for (start, _), starts, sizes in panels]
-        lines[self.axis] = np.array([float(self.spans[self.axis][0 if self.low else 1])])
+        lines[self.axis] = np.array([float(self.spans[self.axis][0 if self.is_lower_side else 1])])
         return points_of(lines)
 
     def velocities(self, velocity: np.ndarray, leaving: float) -> np.ndarray:
@@ -339,20 +341,20 @@ class Face:
             velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
             leaving: share of the wake's flux that is left out [-].
         """
-        face_index = PAD + self.spans[self.axis][0 if self.low else 1]
+        face_index = PAD + self.spans[self.axis][0 if self.is_lower_side else 1]
         components, rises = [np.empty(0)] * 3, {}
         for d in range(3):
             planes = np.moveaxis(velocity[d], 2 - self.axis, 0)[face_index - 1 : face_index + 1]
-            face_planes = planes[:, *(self._padded_span(e, d) for e in self.along)].astype(np.float64)
+            face_planes = planes[:, *(self._padded_span(e, d) for e in self.tangential_axes)].astype(np.float64)
             if d == self.axis:
                 components[d] = face_planes[1]
                 continue
-            n = 1 + self.along.index(d)  # of cells from their two faces
+            n = 1 + self.tangential_axes.index(d)  # of cells from their two faces
             face_planes = 0.5 * (np.delete(face_planes, 0, axis=n) + np.delete(face_planes, -1, axis=n))
             components[d], rises[d] = 0.5 * (face_planes[0] + face_planes[1]), face_planes[1] - face_planes[0]
         if leaving:
             components[self.axis] = components[self.axis] - leaving * self._flux(components[self.axis], rises)
-        first_starts, second_starts = (self.starts[d] for d in self.along)
+        first_starts, second_starts = (self.starts[d] for d in self.tangential_axes)
         sums = [
             np.add.reduceat(np.add.reduceat(component, first_starts, axis=0), second_starts, axis=1)
             for component in components
@@ -374,7 +376,7 @@ class Face:
                 [m/s].
         """
         flux = np.zeros(normal.shape)
-        for n, d in enumerate(self.along):
+        for n, d in enumerate(self.tangential_axes):
             arm = np.arange(*self.spans[d]) + 0.5 - self.centre[d]
             flux += 0.5 * np.expand_dims(arm, 1 - n) * (rises[d] - np.gradient(normal, axis=n))
         return flux
@@ -397,7 +399,7 @@ class FarField:
     """The faces of the surface."""
     matrices: list[np.ndarray] = field(init=False)
     """Per face: velocity into the domain in the knots of its side per velocity on all panels, shape (knot, 3 panel)."""
-    between: list[tuple[np.ndarray, np.ndarray]] = field(init=False)
+    interpolation: list[tuple[np.ndarray, np.ndarray]] = field(init=False)
     """Which knots the middles of the cells along each axis take, and their weights, each of shape (4, cell) [-]."""
 
     def __post_init__(self) -> None:
@@ -406,7 +408,7 @@ class FarField:
         cell_count = np.prod([n * (1 + any(pair)) for n, pair in zip(cells, ends, strict=True)], dtype=float)
         panel = max(MIN_PANEL_CELLS, round(cell_count ** (1 / 3) / PANELS))
         knots = [np.linspace(0.5, n - 0.5, max(ceil(n / (KNOT * panel)), 3) + 1) for n in cells]
-        self.between = [cubic(axis_knots, np.arange(n) + 0.5) for axis_knots, n in zip(knots, cells, strict=True)]
+        self.interpolation = [cubic(axis_knots, np.arange(n) + 0.5) for axis_knots, n in zip(knots, cells, strict=True)]
         spans = []
         for n, (has_low_mirror, has_high_mirror) in zip(cells, ends, strict=True):
             margin = min(
@@ -437,11 +439,11 @@ class FarField:
             knots: positions along each axis where the velocity is summed up [cells].
         """
         axis, lines = side.axis, list(knots)
-        lines[axis] = np.array([0.0 if side.low else float(self.grid.cells[axis])])
+        lines[axis] = np.array([0.0 if side.is_lower_side else float(self.grid.cells[axis])])
         points, parts = points_of(lines), []
         for face in self.faces:
             normal = np.zeros(3)
-            normal[face.axis] = -1.0 if face.low else 1.0
+            normal[face.axis] = -1.0 if face.is_lower_side else 1.0
             induced = np.zeros((points.shape[1], 3, face.cells.size))
             for (
                 signs,
@@ -454,7 +456,7 @@ class FarField:
                     induced[:, j] += weight * (normal[j] * r[axis] - normal[axis] * r[j] + (j == axis) * past)
             parts.append(induced)
         matrix = np.concatenate(parts, axis=2).reshape(points.shape[1], -1)
-        return (matrix if side.low else -matrix).astype(np.float32)
+        return (matrix if side.is_lower_side else -matrix).astype(np.float32)
 
     def _images(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return signs and shifts that map a point to its images, the point itself among them."""
@@ -480,8 +482,10 @@ class FarField:
 
         The order is that of ``sides.NAMES``, in each array the last axis first.
         """
-        leaving = {(fading.axis, fading.low): fading.share for fading in fadings}
-        panel_velocities = [face.velocities(velocity, leaving.get((face.axis, face.low), 0.0)) for face in self.faces]
+        leaving = {(fading.axis, fading.is_lower_side): fading.fraction for fading in fadings}
+        panel_velocities = [
+            face.velocities(velocity, leaving.get((face.axis, face.is_lower_side), 0.0)) for face in self.faces
+        ]
         strength = np.concatenate(panel_velocities, axis=1)
         cells = np.concatenate([face.cells.ravel() for face in self.faces])
         for d in range(3):  # a uniform stream adds nothing to the integral
@@ -491,8 +495,8 @@ class FarField:
         cells_along = self.grid.cells[::-1]
         sides = [np.zeros([n for d, n in enumerate(cells_along) if d != 2 - k // 2]) for k in range(6)]
         for face, matrix in zip(self.faces, self.matrices, strict=True):
-            (a, weight_a), (b, weight_b) = (self.between[d] for d in face.along)
+            (a, weight_a), (b, weight_b) = (self.interpolation[d] for d in face.tangential_axes)
             knots = np.einsum("ps,s->p", matrix, flat).astype(np.float64).reshape(int(a[-1, -1]) + 1, -1)
             lines = (weight_a[:, :, None] * knots[a]).sum(axis=0)
-            sides[2 * face.axis + (not face.low)] = (weight_b * lines[:, b]).sum(axis=1)
+            sides[2 * face.axis + (not face.is_lower_side)] = (weight_b * lines[:, b]).sum(axis=1)
         return sides

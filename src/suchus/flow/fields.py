@@ -54,10 +54,10 @@ class Fields:
         Args:
             a: field on the faces before the cells, padded, shape (axis, ...).
         """
-        axes, cells = len(a), slice(PAD, -PAD)
+        ndim, cells = len(a), slice(PAD, -PAD)
         for d, component in enumerate(a):
-            upper_slices = tuple(slice(PAD + 1, 1 - PAD) if axes - 1 - n == d else cells for n in range(axes))
-            yield component[(cells,) * axes], component[upper_slices]
+            upper_slices = tuple(slice(PAD + 1, 1 - PAD) if ndim - 1 - n == d else cells for n in range(ndim))
+            yield component[(cells,) * ndim], component[upper_slices]
 
     @property
     def pressure(self) -> np.ndarray:
@@ -86,35 +86,35 @@ class Fields:
 
         Shape (ny, nx) in the plane; in space the component comes first, (3, nz, ny, nx).
         """
-        if self.water.axes == 2:
+        if self.water.ndim == 2:
             return self._vorticity_about(0, 1)
         return np.stack([self._vorticity_about(d, e) for d, e in ((1, 2), (2, 0), (0, 1))])
 
     def _vorticity_about(self, d: int, e: int) -> np.ndarray:
         """Return the vorticity at the cell centres about the axis of the turn from axis ``d`` to axis ``e`` [1/s]."""
         velocity = self.water.velocity
-        axes = len(velocity)
-        cells = [slice(PAD, 1 - PAD) if axes - 1 - n in (d, e) else slice(PAD, -PAD) for n in range(axes)]
+        ndim = len(velocity)
+        cells = [slice(PAD, 1 - PAD) if ndim - 1 - n in (d, e) else slice(PAD, -PAD) for n in range(ndim)]
 
         def corners(a: np.ndarray, back: int) -> np.ndarray:
             """Return the values at the low corners, or one cell before them along an axis."""
-            return a[tuple(slice(PAD - 1, -PAD) if axes - 1 - n == back else s for n, s in enumerate(cells))]
+            return a[tuple(slice(PAD - 1, -PAD) if ndim - 1 - n == back else s for n, s in enumerate(cells))]
 
         u, v = velocity[d], velocity[e]
         spin = (corners(v, -1) - corners(v, d)) - (corners(u, -1) - corners(u, e))
-        spin = np.moveaxis(spin, (axes - 1 - e, axes - 1 - d), (0, 1))
+        spin = np.moveaxis(spin, (ndim - 1 - e, ndim - 1 - d), (0, 1))
         sums = (spin[1:, 1:] + spin[1:, :-1]) + (spin[:-1, 1:] + spin[:-1, :-1])
-        values: np.ndarray = np.moveaxis(sums, (0, 1), (axes - 1 - e, axes - 1 - d)) / (4 * self.water.grid.cell)
+        values: np.ndarray = np.moveaxis(sums, (0, 1), (ndim - 1 - e, ndim - 1 - d)) / (4 * self.water.grid.cell)
         return values
 
     @property
-    def fluid_share(self) -> np.ndarray:
+    def fluid_fraction(self) -> np.ndarray:
         """Volume fraction of the fluid in the cells, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
         faces = list(self._faces(self.water.mu0))
         total: np.ndarray = faces[0][0] + faces[0][1]
         for lower_faces, upper_faces in faces[1:]:
             total = total + lower_faces + upper_faces
-        return 0.5 / self.water.axes * total
+        return 0.5 / self.water.ndim * total
 
 
 class _Domain(Fields):

@@ -62,7 +62,7 @@ class Surface:
     def load(self, reference_point: tuple[float, ...]) -> Load:
         """Return the integral over the outline or the skin, torque about a point [m]."""
         m = self.markers
-        push, rub = -self.pressure * m.normals * m.share, self.shear * m.share
+        push, rub = -self.pressure * m.normals * m.weight, self.shear * m.weight
         force, arms = push + rub, m.points - np.array(reference_point)[:, None]
         return Load(
             pressure=tuple(push.sum(axis=1).tolist()),
@@ -97,8 +97,8 @@ def sample(water: Fluid, markers: Markers, density: float) -> Surface:
     steps = steps_of(water.p)
     wall_pressure(water.p.reshape(-1), steps, places, normals, WALL_POINT_SPACING, pressure)
     wall_shear(
-        water.velocity.reshape(water.axes, -1), steps, places, normals, np.ascontiguousarray(markers.velocities),
-        np.ascontiguousarray(markers.spins) * water.grid.cell, np.array(ROTATION_PLANES[water.axes]),
+        water.velocity.reshape(water.ndim, -1), steps, places, normals, np.ascontiguousarray(markers.velocities),
+        np.ascontiguousarray(markers.spins) * water.grid.cell, np.array(ROTATION_PLANES[water.ndim]),
         WALL_POINT_SPACING, shear,
     )  # fmt: skip
     level = water.level
@@ -114,11 +114,11 @@ def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
         velocity: on the faces before the cells, shape (axis, ...) [m/s].
         box: padded cell indices, first and end along each axis, the last axis first.
     """
-    axes = len(velocity)
-    total = np.zeros(axes)
+    ndim = len(velocity)
+    total = np.zeros(ndim)
     for c, component in enumerate(velocity):
-        n = axes - 1 - c
-        faces = component[tuple(slice(box[2 * m], box[2 * m + 1] + (m == n)) for m in range(axes))]
+        n = ndim - 1 - c
+        faces = component[tuple(slice(box[2 * m], box[2 * m + 1] + (m == n)) for m in range(ndim))]
         ends = np.take(faces, (0, -1), axis=n)
         total[c] = faces.sum(dtype=np.float64) - 0.5 * ends.sum(dtype=np.float64)
     return total
@@ -133,27 +133,27 @@ def boundary_flux(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int
         nu: viscosity [m/s cells].
         box: as for ``momentum``.
     """
-    axes = len(velocity)
-    total = np.zeros(axes)
-    for d in range(axes):
-        for end, outward_sign in ((box[2 * (axes - 1 - d)], -1.0), (box[2 * (axes - 1 - d) + 1], 1.0)):
+    ndim = len(velocity)
+    total = np.zeros(ndim)
+    for d in range(ndim):
+        for end, outward_sign in ((box[2 * (ndim - 1 - d)], -1.0), (box[2 * (ndim - 1 - d) + 1], 1.0)):
 
             def at_side(
                 a: np.ndarray, shift: tuple[tuple[int, int], ...] = (), d: int = d, end: int = end
             ) -> np.ndarray:
                 """Return the values at the cells behind this side, some cells further along some axes."""
                 offsets, places = dict(shift), []
-                for n in range(axes):
-                    offset = offsets.get(axes - 1 - n, 0)
+                for n in range(ndim):
+                    offset = offsets.get(ndim - 1 - n, 0)
                     extent = slice(box[2 * n] + offset, box[2 * n + 1] + offset)
-                    places.append(end + offset if n == axes - 1 - d else extent)
+                    places.append(end + offset if n == ndim - 1 - d else extent)
                 return np.asarray(a[tuple(places)], np.float64)
 
             normal_velocity, normal = at_side(velocity[d]), velocity[d]
             stretch = at_side(normal, ((d, 1),)) - at_side(normal, ((d, -1),))
             push = 0.5 * (at_side(p, ((d, -1),)) + at_side(p))
             total[d] += outward_sign * (nu * stretch - normal_velocity**2 - push).sum()
-            for c in set(range(axes)) - {d}:
+            for c in set(range(ndim)) - {d}:
                 tangential = velocity[c]
                 before_side = at_side(tangential, ((d, -1),)) + at_side(tangential, ((d, -1), (c, 1)))
                 behind_side = at_side(tangential) + at_side(tangential, ((c, 1),))
@@ -168,7 +168,7 @@ class ControlVolume:
 
     box: tuple[int, ...]
     """Padded cell indices, first and end along each axis, the last axis first."""
-    before: np.ndarray | None = None
+    last_balance: np.ndarray | None = None
     """Momentum of water and bodies, and flow through the sides, at the last step, shape (3, axis)."""
 
     def force(self, water: Fluid, dt: float, push: tuple[float, ...], density: float) -> tuple[float, ...]:
@@ -185,18 +185,18 @@ class ControlVolume:
         h = water.grid.cell
         balance = np.array(
             [
-                momentum(water.velocity, self.box), momentum(water.carried, self.box),
+                momentum(water.velocity, self.box), momentum(water.weighted_body_velocity, self.box),
                 boundary_flux(water.velocity, water.p, float(water.nu), self.box),
             ]
         )  # fmt: skip
-        previous_balance, self.before = self.before, balance
+        previous_balance, self.last_balance = self.last_balance, balance
         if previous_balance is None:
-            return (float("nan"),) * water.axes
+            return (float("nan"),) * water.ndim
         cells = np.prod(np.subtract(self.box[1::2], self.box[::2]))
         body_cells = (1 - water.mu0[0]).sum(dtype=np.float64)
         rate = (balance[0] - balance[1] - previous_balance[0] + previous_balance[1]) / dt
         body = (cells - body_cells) * np.array(push)
-        total = density * h ** (water.axes - 1) * (0.5 * (balance[2] + previous_balance[2]) + h * (body - rate))
+        total = density * h ** (water.ndim - 1) * (0.5 * (balance[2] + previous_balance[2]) + h * (body - rate))
         return tuple(total.tolist())
 
 
@@ -275,30 +275,30 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
         places: positions of the markers in padded indices, shape (axis, marker).
         normals: outward normals, shape (axis, marker).
         walls: velocities of the wall, shape (axis, marker) [m/s].
-        spins: angular velocities of the wall about the axes of ``turns`` [m/s per cell].
+        spins: angular velocities of the wall about the ndim of ``turns`` [m/s per cell].
         turns: the two axes across each axis of rotation, shape (turn, 2).
         gap: distance of the points [cells].
         shear: array to write to, shape (axis, marker) [m/s per cell].
     """
-    axes = places.shape[0]
-    spot, wall_velocity = np.empty(axes), np.empty(axes)
+    ndim = places.shape[0]
+    spot, wall_velocity = np.empty(ndim), np.empty(ndim)
     for m in range(places.shape[1]):
-        for c in range(axes):
+        for c in range(ndim):
             shear[c, m] = 0.0
         for k in range(1, 4):
             weight = (3.0, -1.5, 1.0 / 3.0)[k - 1] / gap
-            for d in range(axes):
+            for d in range(ndim):
                 wall_velocity[d] = walls[d, m]
             for n in range(turns.shape[0]):
                 first_axis, second_axis = turns[n, 0], turns[n, 1]
                 wall_velocity[first_axis] -= spins[n, m] * k * gap * normals[second_axis, m]
                 wall_velocity[second_axis] += spins[n, m] * k * gap * normals[first_axis, m]
-            for c in range(axes):
-                for d in range(axes):
+            for c in range(ndim):
+                for d in range(ndim):
                     spot[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
                 shear[c, m] += weight * (interpolate_at(velocity[c], steps, spot) - wall_velocity[c])
         normal_shear = 0.0
-        for d in range(axes):
+        for d in range(ndim):
             normal_shear += shear[d, m] * normals[d, m]
-        for d in range(axes):
+        for d in range(ndim):
             shear[d, m] -= normal_shear * normals[d, m]

@@ -93,7 +93,7 @@ class FreeBody:
             )
 
     @property
-    def still(self) -> bool:
+    def is_static(self) -> bool:
         """False: a free body can always move."""
         return False
 

@@ -96,7 +96,7 @@ class Grid:
         if not (isfinite(self.cell) and self.cell > 0):
             raise InvalidDesign(f"cell is {self.cell} m; a cell has a positive side. Give the side in metres.")
         if len(self.origin) != len(self.cells) or not all(isfinite(place) for place in self.origin):
-            count = "two" if self.axes == 2 else "three"
+            count = "two" if self.ndim == 2 else "three"
             raise InvalidDesign(f"the origin is {show(self.origin)} m; {count} finite numbers are needed.")
         size = _times(self.cells)
         if max(self.cells) > MAX_CELLS_PER_SIDE:
@@ -104,7 +104,7 @@ class Grid:
                 f"the grid has {show(self.cells)} cells; up to {MAX_CELLS_PER_SIDE} along each side are allowed."
             )
         if min(self.cells) < 8:
-            raise InvalidDesign(f"the grid has {size} cells; at least {_times((8,) * self.axes)} are needed.")
+            raise InvalidDesign(f"the grid has {size} cells; at least {_times((8,) * self.ndim)} are needed.")
         coarsest = _coarsest(self.cells)
         if max(coarsest) > (MAX_CHANNEL_CELLS if min(coarsest) <= MAX_CHANNEL_WIDTH else MAX_COARSEST_CELLS):
             raise InvalidDesign(
@@ -154,7 +154,7 @@ class Grid:
         cells = _fitting(tuple(max(8, ceil(side / cell - POSITION_TOLERANCE)) for side in lengths))
         origin = []
         for d, ((start, _), n, side) in enumerate(zip(pairs, cells, lengths, strict=True)):
-            is_low_held, is_high_held = (False, False) if sides is None else sides.held(len(pairs))[d]
+            is_low_held, is_high_held = (False, False) if sides is None else sides.is_fixed(len(pairs))[d]
             if is_low_held and is_high_held and abs(n * cell - side) > POSITION_TOLERANCE * cell:
                 raise InvalidDesign(
                     f"along {'xyz'[d]} both sides are held, {side:.6g} m apart, and {n} cells of {cell:.6g} m, as "
@@ -181,8 +181,8 @@ class Grid:
             InvalidDesign: another number of axes, no numbers, another ratio, or a place outside this grid.
         """
         pairs = (x, y) if z is None else (x, y, z)
-        if len(pairs) != self.axes:
-            raise InvalidDesign(f"the grid has {self.axes} axes and the patch {len(pairs)}; give a pair for each axis.")
+        if len(pairs) != self.ndim:
+            raise InvalidDesign(f"the grid has {self.ndim} axes and the patch {len(pairs)}; give a pair for each axis.")
         if not _are_pairs(pairs):
             raise InvalidDesign(
                 f"the patch is {_times(tuple(show(pair) for pair in pairs))} m; give a pair of finite numbers for each "
@@ -215,7 +215,7 @@ class Grid:
         return Grid(cells=tuple(ratio * n for n in coarse_cells), cell=self.cell / ratio, origin=origin)  # type: ignore[arg-type]
 
     @property
-    def axes(self) -> int:
+    def ndim(self) -> int:
         """Number of dimensions: 2 in the plane, 3 in space [-]."""
         return len(self.cells)
 
@@ -248,19 +248,19 @@ class Grid:
         return self.origin[axis] + self.cell * (np.arange(start, end) - PAD + 0.5)
 
 
-def numbers_per_cell(axes: int) -> float:
+def numbers_per_cell(ndim: int) -> float:
     """Return how many numbers are kept per cell of a grid with so many axes; those of the coarser levels count too [-].
 
     They are: the velocity three times, pressure, and the bodies' fraction of each face; three work arrays; and, on all
     levels, solution, right side, inverse diagonal and faces. Arrays of the window around the bodies come on top.
     """
-    return 3 * axes + 1 + axes + 3 + (3 + axes) / (1 - 0.5**axes)
+    return 3 * ndim + 1 + ndim + 3 + (3 + ndim) / (1 - 0.5**ndim)
 
 
 def needed_memory(grid: Grid, dtype: type) -> int:
     """Return the memory of all fields of a grid [bytes]."""
     cells = float(np.prod([n + 2.0 * PAD for n in grid.cells]))
-    return int(cells * numbers_per_cell(grid.axes) * np.dtype(dtype).itemsize)
+    return int(cells * numbers_per_cell(grid.ndim) * np.dtype(dtype).itemsize)
 
 
 def check_memory(grid: Grid, dtype: type) -> None:
@@ -272,7 +272,7 @@ def check_memory(grid: Grid, dtype: type) -> None:
     need, have = needed_memory(grid, dtype), large.memory()
     if have is None:
         return
-    cell = grid.cell * (need / (large.MAX_MEMORY_FRACTION * have)) ** (1 / grid.axes)
+    cell = grid.cell * (need / (large.MAX_MEMORY_FRACTION * have)) ** (1 / grid.ndim)
     large.check_memory(
         f"a grid of {' x '.join(map(str, grid.cells))} cells",
         need,

@@ -32,7 +32,7 @@ class Capsule:
         InvalidDesign: on creation, for a radius that is not positive or a point that is not two finite numbers.
     """
 
-    at: float
+    arc_position: float
     """Arc length of the section, from the first station [m]."""
     start: tuple[float, float]
     """Middle of one end, from the midline in that section [m]."""
@@ -43,11 +43,11 @@ class Capsule:
 
     def __post_init__(self) -> None:
         check_positive("radius", self.radius)
-        for name in ("at", "start", "end"):
+        for name in ("arc_position", "start", "end"):
             if not np.isfinite(getattr(self, name)).all():
                 raise InvalidDesign(f"{name} of a capsule is {show(getattr(self, name))} m; give finite numbers.")
 
-    def placed(self, spine: MidlineState) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    def end_motion(self, spine: MidlineState) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
         """Return the capsule's ends, the velocity of the first end and the rate of turning, in the midline's frame.
 
         Shapes: (2,) [m], (2,) [m], (2,) [m/s] and a number [rad/s].
@@ -56,7 +56,7 @@ class Capsule:
             spine: midline of the trunk.
         """
         x, y, heading, u, v, turn = (
-            float(np.interp(self.at, spine.arc, profile))
+            float(np.interp(self.arc_position, spine.arc, profile))
             for profile in (spine.x, spine.y, spine.heading, spine.x_rate, spine.y_rate, spine.heading_rate)
         )
         tangent, normal = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
@@ -66,9 +66,9 @@ class Capsule:
 
     def distance(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState) -> np.ndarray:
         """Return the signed distance from points, pz from the plane of the midline [m]."""
-        return self.reach(px, py, pz, spine)[1] - self.radius
+        return self.offsets_from_axis(px, py, pz, spine)[1] - self.radius
 
-    def reach(
+    def offsets_from_axis(
         self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState
     ) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
         """Return the vectors from the capsule's axis to points, and their lengths [m].
@@ -79,7 +79,7 @@ class Capsule:
             pz: distance of the points from the plane of the midline [m].
             spine: midline of the trunk.
         """
-        start, end, *_ = self.placed(spine)
+        start, end, *_ = self.end_motion(spine)
         axis = end - start
         square = float(axis @ axis)
         fraction = (
@@ -122,10 +122,10 @@ class Limbed(Trunk):
         Trunk.__post_init__(self)
         spine = self._spine(0.0)
         for limb in self.limbs:
-            if not 0 <= limb.at <= spine.arc[-1]:
+            if not 0 <= limb.arc_position <= spine.arc[-1]:
                 raise InvalidDesign(
-                    f"a capsule is attached at {limb.at:.4g} m of a trunk that is {spine.arc[-1]:.4g} m long; "
-                    "attach it between its ends."
+                    f"a capsule is attached at {limb.arc_position:.4g} m of a trunk that is {spine.arc[-1]:.4g} m "
+                    "long; attach it between its ends."
                 )
         straight = _straight(spine)
         lumps = [self._lump(straight, limb, self.limbs[:i]) for i, limb in enumerate(self.limbs)]
@@ -148,7 +148,7 @@ class Limbed(Trunk):
         ))  # fmt: skip
         z, y, x = (coordinate.ravel() for coordinate in np.meshgrid(z, y, x, indexing="ij"))
         cell_volume = float(np.prod((*(upper_bound - lower_bound), 2 * limb.radius))) / x.size  # both halves
-        arc = limb.at + x
+        arc = limb.arc_position + x
         is_outside = limb.distance(arc, y, z, straight) < 0
         is_outside &= ~self._holds(arc, y, z, straight)
         for earlier_limb in earlier_limbs:
@@ -185,7 +185,7 @@ class Limbed(Trunk):
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window."""
         window_field = Trunk.measure(self, x, y, z, time, pose, reach)
-        spine, frame = self.placed(time, pose)
+        spine, frame = self.midline_and_frame(time, pose)
         for limb in self.limbs:
             self._add(window_field, limb, spine, frame, (z, y, x), reach)
         return window_field
@@ -209,8 +209,8 @@ class Limbed(Trunk):
             axes: coordinates of the window along z, y and x [m].
             reach: distance up to which the field counts [m].
         """
-        start, end, rate, turn = limb.placed(spine)
-        ends = [np.array(frame.place((*end_point, 0.0))) for end_point in (start, end)]
+        start, end, rate, turn = limb.end_motion(spine)
+        ends = [np.array(frame.to_world_3d((*end_point, 0.0))) for end_point in (start, end)]
         lower_bound, upper_bound = (pick(*ends)[::-1] for pick in (np.minimum, np.maximum))
         max_distance = limb.radius + reach
         box = tuple(
@@ -218,8 +218,8 @@ class Limbed(Trunk):
             for axis, a, b in zip(axes, lower_bound, upper_bound, strict=True)
         )  # fmt: skip
         wz, wy, wx = np.meshgrid(*(axis[s] for axis, s in zip(axes, box, strict=True)), indexing="ij")
-        px, py, pz = frame.seen((wx, wy, wz))
-        offsets, size = limb.reach(px, py, pz, spine)
+        px, py, pz = frame.to_body_3d((wx, wy, wz))
+        offsets, size = limb.offsets_from_axis(px, py, pz, spine)
         distance = size - limb.radius
         trunk = window_field.distance[box]
         is_nearer = distance < trunk
@@ -236,7 +236,7 @@ class Limbed(Trunk):
         limb_velocity = rotate_vectors(
             frame.matrix, (rate[0] - turn * (py - start[1]), rate[1] + turn * (px - start[0]), 0 * px)
         )
-        velocity = [a + b for a, b in zip(limb_velocity, frame.rates((wx, wy, wz)), strict=True)]
+        velocity = [a + b for a, b in zip(limb_velocity, frame.velocity_at((wx, wy, wz)), strict=True)]
         values = [
             (window_field.distance, distance), (window_field.thickness, np.where(sunk, np.inf, 2 * limb.radius)),
             *zip(window_field.normal, normal, strict=True),
@@ -244,21 +244,21 @@ class Limbed(Trunk):
         ]  # fmt: skip
         for target, value in values:
             target[box] = np.where(is_nearer, value, target[box])
-        if window_field.part is not None:
-            window_field.part[box] = np.where(is_nearer, self._part_index(limb), window_field.part[box])
+        if window_field.part_index is not None:
+            window_field.part_index[box] = np.where(is_nearer, self._part_index(limb), window_field.part_index[box])
 
     def _part_index(self, limb: Capsule) -> int:
-        return int(np.searchsorted(self.cuts, limb.at, side="right"))
+        return int(np.searchsorted(self.cuts, limb.arc_position, side="right"))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return points over trunk and capsules; points inside the body have no area."""
-        spine, frame = self.placed(time, pose)
+        spine, frame = self.midline_and_frame(time, pose)
         skin = self._skin(spine, spacing)
-        points, share, rates = [skin.points], [skin.share.copy()], [skin.velocities]
+        points, share, rates = [skin.points], [skin.weight.copy()], [skin.velocities]
         normals, spins = [skin.normals], [skin.spins]
-        part_indices = [skin.part] if skin.part is not None else []
+        part_indices = [skin.part_index] if skin.part_index is not None else []
         for limb in self.limbs:
-            start, end, rate, turn = limb.placed(spine)
+            start, end, rate, turn = limb.end_motion(spine)
             length = float(np.hypot(*np.subtract(limb.end, limb.start)))
             local, facing, area = around_rod(length, limb.radius, spacing)
             axis = end - start
@@ -279,17 +279,17 @@ class Limbed(Trunk):
                     )
                     area[is_inside] = 0.0
         local_markers = Markers(
-            points=np.concatenate(points, axis=1), share=np.concatenate(share),
+            points=np.concatenate(points, axis=1), weight=np.concatenate(share),
             velocities=np.concatenate(rates, axis=1), normals=np.concatenate(normals, axis=1),
-            spins=np.concatenate(spins, axis=1), part=np.concatenate(part_indices) if part_indices else None,
+            spins=np.concatenate(spins, axis=1), part_index=np.concatenate(part_indices) if part_indices else None,
         )  # fmt: skip
         return in_world(local_markers, frame)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the body."""
-        box, (spine, frame) = list(Trunk.bounds(self, time, pose)), self.placed(time, pose)
+        box, (spine, frame) = list(Trunk.bounds(self, time, pose)), self.midline_and_frame(time, pose)
         for limb in self.limbs:
-            end_points = (frame.place((*end, 0.0)) for end in limb.placed(spine)[:2])
+            end_points = (frame.to_world_3d((*end, 0.0)) for end in limb.end_motion(spine)[:2])
             for d, ends in enumerate(zip(*end_points, strict=True)):
                 box[2 * d] = min(box[2 * d], float(min(ends)) - limb.radius)
                 box[2 * d + 1] = max(box[2 * d + 1], float(max(ends)) + limb.radius)
@@ -301,9 +301,9 @@ class Limbed(Trunk):
         volume, centre, rate = [trunk.volume], [np.array(trunk.centre)], [np.array(trunk.centre_rate)]
         moments, swirl = trunk.moments, trunk.swirl[2]
         for limb, lump in zip(self.limbs, self.lumps, strict=True):
-            ball = Capsule(at=limb.at, start=lump.centre, end=lump.centre, radius=limb.radius)
-            place, _, speed, turn = ball.placed(spine)
-            matrix = Pose(angle=float(np.interp(limb.at, spine.arc, spine.heading))).matrix
+            ball = Capsule(arc_position=limb.arc_position, start=lump.centre, end=lump.centre, radius=limb.radius)
+            place, _, speed, turn = ball.end_motion(spine)
+            matrix = Pose(angle=float(np.interp(limb.arc_position, spine.arc, spine.heading))).matrix
             volume.append(lump.volume)
             centre.append(np.append(place, 0.0))
             rate.append(np.append(speed, 0.0))

@@ -36,11 +36,11 @@ class Spherocylinder(SpaceShape):
             check_positive("length", self.length)
 
     @property
-    def half(self) -> Float[np.ndarray, "3"]:
+    def half_extents(self) -> Float[np.ndarray, "3"]:
         """Half of the box around it [m]."""
         return np.array([0.5 * self.length + self.radius, self.radius, self.radius])
 
-    def holds(self, points: np.ndarray) -> np.ndarray:
+    def contains(self, points: np.ndarray) -> np.ndarray:
         """Return which points of its own frame lie inside, shape (3, ...) [m]."""
         x, y, z = points
         axial_excess = np.maximum(np.abs(x) - 0.5 * self.length, 0.0)
@@ -48,30 +48,30 @@ class Spherocylinder(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:  # noqa: ARG002
         """Return the field on the points of a window."""
-        frame = pose.along(3)
+        frame = pose.in_dimensions(3)
         world = x, y[:, None], z[:, None, None]
-        px, py, pz = frame.seen(world)
+        px, py, pz = frame.to_body_3d(world)
         dx = px - np.clip(px, -0.5 * self.length, 0.5 * self.length)
         size = np.sqrt(dx * dx + py * py + pz * pz)
         safe = np.maximum(size, 1e-12 * self.radius)
         normal = rotate_vectors(frame.matrix, (dx / safe, py / safe, pz / safe))
-        u, v, w = (np.broadcast_to(component, size.shape) for component in frame.rates(world))
+        u, v, w = (np.broadcast_to(component, size.shape) for component in frame.velocity_at(world))
         return SpaceField(size - self.radius, normal, (u, v, w), np.full(size.shape, 2 * self.radius))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:  # noqa: ARG002
         """Return points on rings along it and over its round ends."""
-        frame = pose.along(3)
+        frame = pose.in_dimensions(3)
         local, facing, areas = around_rod(self.length, self.radius, spacing)
-        points = np.stack(frame.place(local - np.array([[0.5 * self.length], [0.0], [0.0]])))
+        points = np.stack(frame.to_world_3d(local - np.array([[0.5 * self.length], [0.0], [0.0]])))
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(
-            points=points, share=areas, velocities=np.stack(frame.rates(points)),
+            points=points, weight=areas, velocities=np.stack(frame.velocity_at(points)),
             normals=np.stack(rotate_vectors(frame.matrix, facing)), spins=spins,
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:  # noqa: ARG002
         """Return the box around it."""
-        frame = pose.along(3)
+        frame = pose.in_dimensions(3)
         reach = (0.5 * self.length * np.abs(frame.matrix[:, 0]) + self.radius).tolist()
         return tuple(p + direction * r for p, r in zip(frame.position, reach, strict=True) for direction in (-1.0, 1.0))
 
@@ -80,9 +80,9 @@ class Spherocylinder(SpaceShape):
         return np.zeros(1), np.full(1, 2 * self.radius)
 
     @property
-    def blunt(self) -> bool:
+    def is_compact(self) -> bool:
         """Whether it is about as long as thick."""
-        return is_blunt(self.half)
+        return is_blunt(self.half_extents)
 
     def volume(self, time: float) -> float:  # noqa: ARG002
         """Return the volume."""
@@ -121,9 +121,9 @@ class LinkPiece:
     """Which link, counted from 0 [-]."""
     shape: Spherocylinder | Ellipsoid
     """The shape in its own frame."""
-    at: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Origin of that frame in the link's [m]."""
-    turn: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+    quaternion: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     """Quaternion that turns that frame into the link's, scalar first [-]."""
 
 
@@ -131,14 +131,14 @@ class LinkPiece:
 class Linked(SpaceShape):
     """The union of rigid pieces on links, each of which has its own position, attitude, velocity and spin.
 
-    Each link is a part of its own in ``Simulation.last``. Links that turn against each other at a joint should overlap
-    there, as the round ends of rods do: to the water they are one body.
+    Each link is a part of its own in ``Simulation.last_loads``. Links that turn against each other at a joint should
+    overlap there, as the round ends of rods do: to the water they are one body.
 
     Raises:
         InvalidDesign: on creation, without pieces, or where the links that they name are not those of ``motion``.
     """
 
-    even: ClassVar[tuple[bool, bool, bool]] = (False, False, False)
+    mirror_symmetry: ClassVar[tuple[bool, bool, bool]] = (False, False, False)
     jointed: ClassVar[bool] = True
 
     pieces: tuple[LinkPiece, ...]
@@ -168,7 +168,7 @@ class Linked(SpaceShape):
 
     def poses(self, time: float, pose: Pose) -> list[Pose]:
         """Return the pose of each piece in the world."""
-        frame, links = pose.along(3), self.motion(time)
+        frame, links = pose.in_dimensions(3), self.motion(time)
         return [_piece_pose(piece, links, frame) for piece in self.pieces]
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
@@ -178,7 +178,7 @@ class Linked(SpaceShape):
             np.full(size, reach), tuple(np.zeros((3, *size))), tuple(np.zeros((3, *size))), np.full(size, np.inf),
             np.zeros(size, np.int8),
         )  # fmt: skip
-        assert window_field.part is not None
+        assert window_field.part_index is not None
         for piece, piece_pose in zip(self.pieces, self.poses(time, pose), strict=True):
             lower_bound, upper_bound = (np.array(ends)[::-1] for ends in _corners(piece.shape.bounds(time, piece_pose)))
             box = tuple(
@@ -206,7 +206,7 @@ class Linked(SpaceShape):
             ]  # fmt: skip
             for target, value in values:
                 target[box] = np.where(is_nearer, value, target[box])
-            window_field.part[box] = np.where(is_nearer, piece.link, window_field.part[box])
+            window_field.part_index[box] = np.where(is_nearer, piece.link, window_field.part_index[box])
         return window_field
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
@@ -214,13 +214,13 @@ class Linked(SpaceShape):
         piece_poses, skins = self.poses(time, pose), []
         for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
             skin = piece.shape.markers(time, piece_pose, spacing)
-            areas = np.where(self._is_covered(skin.points, piece_poses, k, time), 0.0, skin.share)
-            skins.append(replace(skin, share=areas, part=np.full(areas.shape, piece.link)))
+            areas = np.where(self._is_covered(skin.points, piece_poses, k, time), 0.0, skin.weight)
+            skins.append(replace(skin, weight=areas, part_index=np.full(areas.shape, piece.link)))
         array_names = ("points", "velocities", "normals", "spins")
         return Markers(
             **{name: np.concatenate([getattr(skin, name) for skin in skins], axis=1) for name in array_names},
-            share=np.concatenate([skin.share for skin in skins]),
-            part=np.concatenate([skin.part for skin in skins if skin.part is not None]),
+            weight=np.concatenate([skin.weight for skin in skins]),
+            part_index=np.concatenate([skin.part_index for skin in skins if skin.part_index is not None]),
         )
 
     def _is_covered(
@@ -252,7 +252,7 @@ class Linked(SpaceShape):
                 or (upper_bound < a).any()
             ):
                 continue
-            is_inside |= piece.shape.holds(np.array(piece_pose.seen(points)))
+            is_inside |= piece.shape.contains(np.array(piece_pose.to_body_3d(points)))
         return is_inside
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
@@ -266,7 +266,7 @@ class Linked(SpaceShape):
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the pieces' lengths one after the other, and the thickness of each."""
-        lengths = np.array([2 * float(piece.shape.half.max()) for piece in self.pieces])
+        lengths = np.array([2 * float(piece.shape.half_extents.max()) for piece in self.pieces])
         thicknesses = np.array([float(piece.shape.thickness(time)[1][0]) for piece in self.pieces])
         ends = np.concatenate([[0.0], lengths.cumsum()])
         return np.column_stack([ends[:-1], ends[1:]]).ravel(), np.repeat(thicknesses, 2)
@@ -283,10 +283,10 @@ class Linked(SpaceShape):
         piece_poses, points, rates, volumes = self.poses(time, Pose()), [], [], []
         for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
             inner, point_volume = _volume_samples(piece.shape)
-            world = np.array(piece_pose.place(inner))
+            world = np.array(piece_pose.to_world_3d(inner))
             is_outside = ~self._is_covered(world, piece_poses, k, time, earlier_only=True)
             points.append(world[:, is_outside])
-            rates.append(np.array(piece_pose.rates(world))[:, is_outside])
+            rates.append(np.array(piece_pose.velocity_at(world))[:, is_outside])
             volumes.append(np.full(int(is_outside.sum()), point_volume))
         positions = np.concatenate(points, axis=1)
         velocities = np.concatenate(rates, axis=1)
@@ -298,12 +298,12 @@ class Linked(SpaceShape):
         return SpaceMass(volume=float(v.sum()), centre=x, centre_rate=y, moments=tensor((v * arms) @ arms.T), swirl=z)
 
     @cached_property
-    def reach(self) -> Float[np.ndarray, " link"]:
+    def bounding_radii(self) -> Float[np.ndarray, " link"]:
         """Distance of each link's surface from its origin [m]."""
         distances = np.zeros(self.parts)
         for piece in self.pieces:
             distances[piece.link] = max(
-                distances[piece.link], float(np.linalg.norm(piece.at) + np.linalg.norm(piece.shape.half))
+                distances[piece.link], float(np.linalg.norm(piece.position) + np.linalg.norm(piece.shape.half_extents))
             )
         return distances
 
@@ -316,11 +316,11 @@ def _corners(bounds: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
 @lru_cache(maxsize=128)
 def _volume_samples(shape: Spherocylinder | Ellipsoid) -> tuple[np.ndarray, float]:
     """Return points of a regular lattice inside a shape, in its own frame [m], and the volume per point [m^3]."""
-    half = shape.half
+    half = shape.half_extents
     step = 2 * float(half.min()) / _MIN_POINTS_ACROSS
     lines = [(np.arange(n) + 0.5) * 2 * a / n - a for a, n in ((a, int(np.ceil(2 * a / step))) for a in half)]
     points = np.stack(np.meshgrid(*lines, indexing="ij")).reshape(3, -1)
-    points = points[:, shape.holds(points)]
+    points = points[:, shape.contains(points)]
     return points, shape.volume(0.0) / points.shape[1]
 
 
@@ -334,11 +334,11 @@ def _piece_pose(piece: LinkPiece, links: LinkStates, frame: Pose) -> Pose:
     """
     k, outer = piece.link, frame.matrix
     link_matrix = links.matrix[k]
-    arm = link_matrix @ np.array(piece.at)
+    arm = link_matrix @ np.array(piece.position)
     spin, rate = links.spin[k], links.velocity[k] + np.cross(links.spin[k], arm)
-    position = np.array(frame.place(links.position[k] + arm))
-    velocity = outer @ rate + np.array(frame.rates(position))
-    yaw, pitch, roll = rotation.attitude(outer @ link_matrix @ rotation.matrix(np.array(piece.turn)))
+    position = np.array(frame.to_world_3d(links.position[k] + arm))
+    velocity = outer @ rate + np.array(frame.velocity_at(position))
+    yaw, pitch, roll = rotation.attitude(outer @ link_matrix @ rotation.matrix(np.array(piece.quaternion)))
     p, q, r = (outer @ spin + frame.spins).tolist()
     (x, y, z), (u, v, w) = position.tolist(), velocity.tolist()
     return Pose(position=(x, y, z), angle=yaw, pitch=pitch, roll=roll, velocity=(u, v, w), spin_x=p, spin_y=q, spin=r)

@@ -25,15 +25,15 @@ MAX_SPEED_RATIO = 100.0
 class FlowLoads:
     """Loads of the water on one body in one step."""
 
-    about: np.ndarray
+    reference_point: np.ndarray
     """Point of the torques, in the frame of the grid, shape (axis,) [m]."""
-    whole: Reaction
+    total: Reaction
     """On the whole body, mean over the step."""
     parts: Reaction
     """On each of its parts, along the first axis; of a body that is not divided the whole."""
-    pressed: np.ndarray
+    internal_pressure: np.ndarray
     """What the pressure does inside the parts, where there is no water: its integral over each and its first moments
-    about ``about``, shape (part, 1 + axis), 0 in a body that is not divided [N, N m; N m, N m2].
+    about ``reference_point``, shape (part, 1 + axis), 0 in a body that is not divided [N, N m; N m, N m2].
 
     By this pressure the parts push each other; it is no load of the water. Rigid parts do work against it where the
     body bends."""
@@ -47,7 +47,7 @@ class Log:
     """Set-up of the simulation."""
     rows: list[np.ndarray] = field(default_factory=list)
     """One row per step."""
-    held: np.ndarray = field(init=False)
+    region_contents: np.ndarray = field(init=False)
     """Contents of the region of each part of each body at the end of the last step; see ``momentum.add_contents``."""
     controls: list[ControlVolume] = field(default_factory=list)
     """Boxes whose momentum is followed."""
@@ -55,16 +55,18 @@ class Log:
     """Force from the first box, step by step [N/m, N]."""
 
     def __post_init__(self) -> None:
-        self.held = np.zeros((0, contents_of(self.setup.grid.axes)))
+        self.region_contents = np.zeros((0, contents_of(self.setup.grid.ndim)))
 
-    def hold(self, water: Fluid, outlines: Sequence[Markers]) -> None:
+    def store_contents(self, water: Fluid, outlines: Sequence[Markers]) -> None:
         """Store the contents of the placed bodies' regions; of a body that mirrors cut, the part inside the domain."""
         grid = self.setup.grid
         body_contents = [
             0.5 ** sum(mirror_cuts) * skin_contents(outline, water.offset, grid.origin, grid.cell, len(rows))
-            for outline, mirror_cuts, rows in zip(outlines, water.cut, water.rows, strict=True)
+            for outline, mirror_cuts, rows in zip(outlines, water.mirror_cuts, water.rows, strict=True)
         ]
-        self.held = water.contents() - np.concatenate([np.zeros((0, contents_of(grid.axes))), *body_contents])
+        self.region_contents = water.contents() - np.concatenate(
+            [np.zeros((0, contents_of(grid.ndim))), *body_contents]
+        )
 
     def reactions(
         self, water: Fluid, outlines: Sequence[Markers], reference_points: list[tuple[float, ...]], dt: float,
@@ -78,13 +80,15 @@ class Log:
             reference_points: point of the torques of each body, in the frame of the grid [m].
             dt: length of the step [s].
             push: uniform acceleration of the water [m/s^2].
-            previous_contents: ``held`` at the start of the step.
+            previous_contents: ``region_contents`` at the start of the step.
         """
         grid, loads = self.setup.grid, []
-        self.hold(water, outlines)
-        for rows, point, mirror_cuts in zip(water.rows, reference_points, water.cut, strict=True):
+        self.store_contents(water, outlines)
+        for rows, point, mirror_cuts in zip(water.rows, reference_points, water.mirror_cuts, strict=True):
             position = np.array(point)
-            body_sums = [sums[rows.start : rows.stop] for sums in (water.given, previous_contents, self.held)]
+            body_sums = [
+                sums[rows.start : rows.stop] for sums in (water.immersion_sums, previous_contents, self.region_contents)
+            ]
             sums = (
                 body_sums
                 if len(rows) == 1
@@ -98,12 +102,12 @@ class Log:
                 origin=grid.origin,
                 h=grid.cell,
                 density=self.setup.density,
-            ).whole(mirror_cuts)
+            ).of_whole_body(mirror_cuts)
             body_action, parts = actions[0], actions if len(rows) == 1 else actions[1:]
-            scale = 2 ** sum(mirror_cuts) * self.setup.density * grid.cell ** (grid.axes + 1) / dt
-            pressed = scale * water.pressed[rows.start : rows.stop]
+            scale = 2 ** sum(mirror_cuts) * self.setup.density * grid.cell ** (grid.ndim + 1) / dt
+            pressed = scale * water.internal_pressure_sums[rows.start : rows.stop]
             pressed[:, 1:] = grid.cell * pressed[:, 1:] - pressed[:, :1] * (position - np.array(grid.origin))
-            loads.append(FlowLoads(about=position, whole=body_action, parts=parts, pressed=pressed))
+            loads.append(FlowLoads(reference_point=position, total=body_action, parts=parts, internal_pressure=pressed))
         return loads
 
     def control(self, water: Fluid, dt: float, push: tuple[float, ...]) -> None:
@@ -139,7 +143,7 @@ class Log:
     @property
     def record(self) -> Record:
         """The time series so far."""
-        bodies, names = self.setup.bodies, COLUMNS if self.setup.grid.axes == 2 else SPACE_COLUMNS
+        bodies, names = self.setup.bodies, COLUMNS if self.setup.grid.ndim == 2 else SPACE_COLUMNS
         counts = [
             len(rows) if _is_divided(body) else 1 for body, rows in zip(bodies, rows_of(list(bodies)), strict=True)
         ]
@@ -199,7 +203,7 @@ def part_columns(
     assert isinstance(body.shape, Trunk | Midline)
     power = acts.power - force @ frame
     rear_force, rear_moment = (load[::-1].cumsum(axis=0)[::-1] for load in (force, torque))
-    ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(reference_point)
+    ends = body.shape.position_at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(reference_point)
     if len(reference_point) == 2:
         joint = rear_moment[:, 0] - (ends[:, 0] * rear_force[:, 1] - ends[:, 1] * rear_force[:, 0])
     else:  # the midline bends about the body's z

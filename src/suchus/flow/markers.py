@@ -11,7 +11,7 @@ class Markers:
 
     points: np.ndarray
     """Where, shape (axis, marker) [m]."""
-    share: np.ndarray
+    weight: np.ndarray
     """Length of outline or area of skin per marker, shape (marker,) [m, m^2]."""
     velocities: np.ndarray
     """Velocity of the surface, shape (axis, marker) [m/s]."""
@@ -19,7 +19,7 @@ class Markers:
     """Outward normal, shape (axis, marker) [-]."""
     spins: np.ndarray
     """Angular velocity of the surface there, about z in the plane, shape (1, marker), else (3, marker) [rad/s]."""
-    part: np.ndarray | None = None
+    part_index: np.ndarray | None = None
     """Index of the body's part that each belongs to, shape (marker,); None for a body of one part [-]."""
     station: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Where along a plane body: arc length of the midline, or of the outline where there is no midline; empty in
@@ -39,11 +39,11 @@ class Markers:
         y: np.ndarray = self.points[1]
         return y
 
-    def of(self, mask: np.ndarray) -> "Markers":
+    def select(self, mask: np.ndarray) -> "Markers":
         """Return the markers that a mask of shape (marker,) selects."""
         station, side = (array[mask] if array.size else array for array in (self.station, self.side))
         return Markers(
-            points=self.points[:, mask], share=self.share[mask], velocities=self.velocities[:, mask],
+            points=self.points[:, mask], weight=self.weight[mask], velocities=self.velocities[:, mask],
             normals=self.normals[:, mask], spins=self.spins[:, mask],
-            part=None if self.part is None else self.part[mask], station=station, side=side,
+            part_index=None if self.part_index is None else self.part_index[mask], station=station, side=side,
         )  # fmt: skip

@@ -75,7 +75,7 @@ class TriangleMesh(SpaceShape):
         object.__setattr__(self, "_max_thickness", self._max_ball_diameter())
 
     @property
-    def even(self) -> tuple[bool, bool, bool]:  # type: ignore[override]
+    def mirror_symmetry(self) -> tuple[bool, bool, bool]:  # type: ignore[override]
         """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
         tree, tolerance = KDTree(self.vertices), _SYMMETRY_TOLERANCE * float(np.ptp(self.vertices, axis=0).max())
         mirrored = [self.vertices * np.where(np.arange(3) == d, -1, 1) for d in range(3)]
@@ -84,7 +84,7 @@ class TriangleMesh(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window, as far as ``reach``."""
-        frame = pose.along(3)
+        frame = pose.in_dimensions(3)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         window_field = np.zeros((4, z.size, y.size, x.size))
         h = float(x[1] - x[0]) if x.size > 1 else float(reach)
@@ -95,7 +95,7 @@ class TriangleMesh(SpaceShape):
         )  # fmt: skip
         u, v, w = (
             np.ascontiguousarray(np.broadcast_to(rate, window_field[0].shape))
-            for rate in frame.rates((px, py[:, None], pz[:, None, None]))
+            for rate in frame.velocity_at((px, py[:, None], pz[:, None, None]))
         )
         return SpaceField(
             window_field[0],
@@ -106,20 +106,20 @@ class TriangleMesh(SpaceShape):
 
     def _world_vertices(self, frame: Pose) -> np.ndarray:
         """Return the corners in the world, shape (vertex, 3) [m]."""
-        return np.stack(frame.place(self.vertices.T), axis=1)
+        return np.stack(frame.to_world_3d(self.vertices.T), axis=1)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
-        frame = pose.along(3)
+        frame = pose.in_dimensions(3)
         points, areas, normals = face_centres(self._world_vertices(frame)[self.faces], spacing)
         spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(
-            points=points, share=areas, velocities=np.stack(frame.rates(points)), normals=normals, spins=spins
+            points=points, weight=areas, velocities=np.stack(frame.velocity_at(points)), normals=normals, spins=spins
         )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the corners."""
-        vertices = self._world_vertices(pose.along(3))
+        vertices = self._world_vertices(pose.in_dimensions(3))
         return tuple(np.stack([vertices.min(axis=0), vertices.max(axis=0)], axis=1).ravel().tolist())
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
@@ -141,7 +141,7 @@ class TriangleMesh(SpaceShape):
         return 2 * float(depth.max())
 
     @property
-    def blunt(self) -> bool:
+    def is_compact(self) -> bool:
         """Whether it is about as long along each axis."""
         return is_blunt(np.ptp(self.vertices, axis=0))
 

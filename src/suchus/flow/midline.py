@@ -63,7 +63,7 @@ class MidlineState:
         return np.array(rows, np.float64)  # np.stack takes four times as long
 
     @property
-    def swell(self) -> np.ndarray:
+    def half_width_rates(self) -> np.ndarray:
         """Rate of the half-width, zero if it is constant [m/s]."""
         return np.zeros(self.x.size) if self.half_width_rate is None else self.half_width_rate.astype(np.float64)
 
@@ -85,11 +85,11 @@ class MidlineState:
         cap = np.sqrt(np.maximum(min_half_width**2 - np.maximum(min_half_width - inward, 0.0) ** 2, 0.0))
         return replace(self, half_width=np.maximum(self.half_width, cap))
 
-    def placed(self, pose: Pose) -> "MidlineState":
+    def in_world(self, pose: Pose) -> "MidlineState":
         """Return the midline in the world."""
         x, y = pose.to_world(self.x, self.y)
-        vx, vy = pose.turn(self.x_rate, self.y_rate)
-        cx, cy = pose.carry(x, y)
+        vx, vy = pose.rotate_in_plane(self.x_rate, self.y_rate)
+        cx, cy = pose.velocity_in_plane(x, y)
         return replace(
             self, x=x, y=y, heading=self.heading + pose.angle, x_rate=vx + cx, y_rate=vy + cy,
             heading_rate=self.heading_rate + pose.spin,
@@ -119,7 +119,7 @@ def check_cuts(cuts: tuple[float, ...], body_kind: str) -> None:
 class CachedMidline:
     """A midline over time that caches its last states: a step needs the midline at the same times often."""
 
-    LAST = 4
+    MAX_CACHED_TIMES = 4
     """Number of times that are cached [-]."""
 
     def __init__(self, spine: Callable[[float], MidlineState]) -> None:
@@ -133,18 +133,18 @@ class CachedMidline:
             for attribute in fields(state):
                 if (values := getattr(state, attribute.name)) is not None:
                     object.__setattr__(state, attribute.name, values.copy())
-            if len(self._states) == self.LAST:
+            if len(self._states) == self.MAX_CACHED_TIMES:
                 del self._states[next(iter(self._states))]
             self._states[time] = state
         return self._states[time]
 
-    def placed(self, time: float, pose: Pose) -> MidlineState:
+    def in_world(self, time: float, pose: Pose) -> MidlineState:
         """Return the midline at a time [s] in the world; its arrays are to be read only."""
         if self._world_state is None or self._world_state[:2] != (time, pose):
-            self._world_state = time, pose, self(time).placed(pose)
+            self._world_state = time, pose, self(time).in_world(pose)
         return self._world_state[2]
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Clear the cache, because the body has changed."""
         self._states.clear()
         self._world_state = None
@@ -159,7 +159,8 @@ class Midline(Shape):
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths, from the first station, at which the body is divided into the parts of ``Record.along`` [m]."""
+    """Arc lengths, from the first station, at which the body is divided into the parts of ``Record.part_series``
+    [m]."""
 
     def __post_init__(self) -> None:
         check_cuts(self.cuts, "midline")
@@ -177,15 +178,15 @@ class Midline(Shape):
     def _world_midline(self, time: float, pose: Pose) -> MidlineState:
         """Return the midline at a time in the world."""
         spine = self.spine
-        return spine.placed(time, pose) if isinstance(spine, CachedMidline) else spine(time).placed(pose)
+        return spine.in_world(time, pose) if isinstance(spine, CachedMidline) else spine(time).in_world(pose)
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window."""
         midline = self._world_midline(time, pose)
         h = (x[-1] - x[0]) / (x.size - 1)
-        field = Field(*paint(midline.rows, midline.swell, x[0], y[0], h, x.size, y.size, float(reach)))
+        field = Field(*paint(midline.rows, midline.half_width_rates, x[0], y[0], h, x.size, y.size, float(reach)))
         if self.cuts:
-            field.part = self._nearest_parts(midline, x, y, field.distance < reach)
+            field.part_index = self._nearest_parts(midline, x, y, field.distance < reach)
         return field
 
     def _nearest_parts(self, midline: MidlineState, x: np.ndarray, y: np.ndarray, is_near: np.ndarray) -> np.ndarray:
@@ -206,7 +207,7 @@ class Midline(Shape):
         part_index[rows, columns] = np.searchsorted(self.cuts, midline.arc[k] + axial_offset, side="right")
         return part_index
 
-    def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
+    def position_at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
         """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
         midline = self._world_midline(time, pose)
         return np.column_stack([np.interp(arc, midline.arc, line) for line in (midline.x, midline.y)])
@@ -230,11 +231,11 @@ class Midline(Shape):
         s = station[edge] * (1 - fraction) + np.roll(station, -1)[edge] * fraction
         side = np.where(edge < n - 1, -1.0, np.where((edge >= n) & (edge < 2 * n - 1), 1.0, 0.0))
         guess = np.where(edge < n, edge, 2 * n - 1 - edge)
-        vx, vy, spin = sections(point, guess, midline.rows, midline.swell)
+        vx, vy, spin = sections(point, guess, midline.rows, midline.half_width_rates)
         part_index = np.searchsorted(self.cuts, s, side="right") if self.cuts else None
         return Markers(
-            points=point, share=length[edge] / count, velocities=np.array([vx, vy]), normals=normal, spins=spin[None],
-            part=part_index, station=s, side=side,
+            points=point, weight=length[edge] / count, velocities=np.array([vx, vy]), normals=normal, spins=spin[None],
+            part_index=part_index, station=s, side=side,
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:

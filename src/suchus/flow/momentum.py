@@ -20,14 +20,14 @@ from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.slab import row_length
 
 
-def sums_of(axes: int) -> int:
+def sums_of(ndim: int) -> int:
     """Return the number of sums per body: momentum, angular momentum (in the plane only about z), energy."""
-    return axes + len(ROTATION_PLANES[axes]) + 1
+    return ndim + len(ROTATION_PLANES[ndim]) + 1
 
 
-def contents_of(axes: int) -> int:
+def contents_of(ndim: int) -> int:
     """Return the number of sums per body's region: the sums of its motion, its volume and its first moments."""
-    return sums_of(axes) + 1 + axes
+    return sums_of(ndim) + 1 + ndim
 
 
 @kernel_part
@@ -126,10 +126,10 @@ def _add_to_owners(sums, column, owners, o, index, columns, contribution):
         columns: cells along a row of the window.
         contribution: of the cell.
     """
-    axes = len(owners)
-    face_contribution = contribution / (2 * axes)
-    for d in range(axes):
-        slab_step, cell_step = (1 if d == axes - 1 else 0), (0 if d == axes - 1 else 1 if d == 0 else columns)
+    ndim = len(owners)
+    face_contribution = contribution / (2 * ndim)
+    for d in range(ndim):
+        slab_step, cell_step = (1 if d == ndim - 1 else 0), (0 if d == ndim - 1 else 1 if d == 0 else columns)
         sums[owners[d, o, index], column] += face_contribution
         sums[owners[d, o + slab_step, index + cell_step], column] += face_contribution
 
@@ -277,7 +277,7 @@ def add_contents(sums, b, mu0, owner, component, layout, near_layout, inner):
     n0, n1 = near_layout[w + 2] if slab_axis > 1 else 0, near_layout[3 * slab_axis + 2]
     r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (0, 1)
     c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
-    axes = slab_axis + 1
+    ndim = slab_axis + 1
     for j in range(layout[w], layout[w + 1]):
         for row in range(r0, r1):
             for i in range(c0, c1):
@@ -289,7 +289,7 @@ def add_contents(sums, b, mu0, owner, component, layout, near_layout, inner):
                 m = owner[o, index]
                 x = i - PAD + (0.0 if component == 0 else 0.5)
                 y = (row if slab_axis > 1 else j) - PAD + (0.0 if component == 1 else 0.5)
-                momentum, axis_fraction = body_fraction * b[o, index], body_fraction / axes
+                momentum, axis_fraction = body_fraction * b[o, index], body_fraction / ndim
                 sums[m, component] += momentum
                 if component == 0:
                     sums[m, turn] += -y * momentum
@@ -319,18 +319,18 @@ def skin_contents(
         h: cell [m].
         count: parts of the body, the rows of the result, shape (part, ``contents_of``) [-].
     """
-    axes = len(origin)
-    w = offset * markers.share / h ** (axes - 1)
+    ndim = len(origin)
+    w = offset * markers.weight / h ** (ndim - 1)
     position = [(p - start) / h for p, start in zip(markers.points, origin, strict=True)]
     v = markers.velocities
     square = v[0] ** 2 + v[1] ** 2
-    if axes == 3:
+    if ndim == 3:
         square = square + v[2] ** 2
-    angular = (position[a] * v[b] - position[b] * v[a] for a, b in ROTATION_PLANES[axes])
+    angular = (position[a] * v[b] - position[b] * v[a] for a, b in ROTATION_PLANES[ndim])
     columns = (*v, *angular, 0.5 * square, np.ones(w.size), *position)
-    if count == 1 or markers.part is None:
+    if count == 1 or markers.part_index is None:
         return (w * np.array(columns)).sum(axis=1)[None]
-    return np.stack([np.bincount(markers.part, w * column, count) for column in columns], axis=1)
+    return np.stack([np.bincount(markers.part_index, w * column, count) for column in columns], axis=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -354,7 +354,7 @@ class Reaction:
         """Return the loads on one or some of several bodies or parts."""
         return Reaction(force=self.force[index], moment=self.moment[index], power=self.power[index])
 
-    def whole(self, mirror_cuts: tuple[bool, ...]) -> "Reaction":
+    def of_whole_body(self, mirror_cuts: tuple[bool, ...]) -> "Reaction":
         """Return the load on the whole body, if mirrors cut it and this is the load on the part in the domain.
 
         Forces through a mirror, and torques about the axes in it, vanish.
@@ -390,15 +390,15 @@ def reaction(
         h: cell [m].
         density: of the water [kg/m^3].
     """
-    axes, turns = len(origin), ROTATION_PLANES[len(origin)]
-    energy = axes + len(turns)
+    ndim, turns = len(origin), ROTATION_PLANES[len(origin)]
+    energy = ndim + len(turns)
     change = end_contents[..., : energy + 1] - start_contents[..., : energy + 1]
     mean_contents = 0.5 * (end_contents + start_contents)
     centre = (reference_point - np.array(origin)) / h
     size, first_moments = mean_contents[..., energy + 1, None], mean_contents[..., energy + 2 :]
-    force = (change[..., :axes] - impulse[..., :axes]) / dt - size * np.array(push)
+    force = (change[..., :ndim] - impulse[..., :ndim]) / dt - size * np.array(push)
     moment = [
-        (change[..., axes + n] - impulse[..., axes + n]) / dt
+        (change[..., ndim + n] - impulse[..., ndim + n]) / dt
         - (first_moments[..., a] * push[b] - first_moments[..., b] * push[a])
         - (centre[a] * force[..., b] - centre[b] * force[..., a])
         for n, (a, b) in enumerate(turns)

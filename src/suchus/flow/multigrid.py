@@ -81,9 +81,9 @@ def level(store, layout, inner, kind, k):
 @kernel_part
 def faces_of(store, layout, inner, k):
     """Return the coefficients of the faces on level ``k``, shape (axis, slab, cell)."""
-    (slab_count, length), axes = _shape(layout, k, inner), len(inner) + 1
+    (slab_count, length), ndim = _shape(layout, k, inner), len(inner) + 1
     start = layout[k, 0] + FACES * slab_count * length
-    return store[start : start + axes * slab_count * length].reshape(axes, slab_count, length)
+    return store[start : start + ndim * slab_count * length].reshape(ndim, slab_count, length)
 
 
 @kernel_part
@@ -322,7 +322,7 @@ def _live_mean(b, dinv, inner):
 
 
 @kernel_part
-def _relaxation_factors(cells, axes):
+def _relaxation_factors(cells, ndim):
     """Return the relaxation factor of each step on the coarsest level, and the weight of its Jacobi steps.
 
     Chebyshev's semi-iteration for eigenvalues from that of the smoothest error along the longest side up to 2. It takes
@@ -330,9 +330,9 @@ def _relaxation_factors(cells, axes):
 
     Args:
         cells: of the longest side.
-        axes: of the grid.
+        ndim: of the grid.
     """
-    min_eigenvalue = (1.0 - np.cos(np.pi / cells)) / axes
+    min_eigenvalue = (1.0 - np.cos(np.pi / cells)) / ndim
     middle = 1.0 + 0.5 * min_eigenvalue
     ratio = (1.0 - 0.5 * min_eigenvalue) / middle
     steps = int(np.ceil(np.arccosh(1.0 / MAX_RESIDUAL_RATIO) / np.arccosh(1.0 / ratio)))
@@ -508,13 +508,13 @@ def _joined(face, j, k, axis, inner):
         axis: which axis.
         inner: strides within a slab.
     """
-    axes = len(inner) + 1
+    ndim = len(inner) + 1
     dj, dk = (1, 0) if axis == len(inner) else (0, signed(inner[axis]))
     parallel_sum, series_sum = face.dtype.type(0), face.dtype.type(0)
     for m in range(2 ** len(inner)):
         fj, fk = j, k
         for n in range(len(inner)):
-            side_axis = (axis + 1 + n) % axes
+            side_axis = (axis + 1 + n) % ndim
             if m >> n & 1:
                 fj += 1 if side_axis == len(inner) else 0
                 fk += 0 if side_axis == len(inner) else signed(inner[side_axis])

@@ -56,7 +56,7 @@ _SHIFT = -0.8  # of the wall's offset in cells, over the cell: see ``immerse.wal
 class CoarseSide(Side):
     """The side of a patch beyond which the coarser cells continue."""
 
-    ends: ClassVar[bool] = False
+    is_domain_end: ClassVar[bool] = False
 
 
 def locate_patch(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
@@ -72,9 +72,9 @@ def locate_patch(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
     Raises:
         InvalidDesign: the cells of both do not fit, or the patch reaches out of the domain.
     """
-    if coarse_grid.axes != grid.axes:
+    if coarse_grid.ndim != grid.ndim:
         raise InvalidDesign(
-            f"the patch has {grid.axes} axes and the grid around it {coarse_grid.axes}; give both the same."
+            f"the patch has {grid.ndim} axes and the grid around it {coarse_grid.ndim}; give both the same."
         )
     ratio = round(coarse_grid.cell / grid.cell)
     low_corner = [(a - b) / coarse_grid.cell for a, b in zip(grid.origin, coarse_grid.origin, strict=True)]
@@ -116,7 +116,7 @@ def patch_sides(grid: Grid, coarse_grid: Grid, sides: Sides) -> Sides:
         for k, margin in enumerate((start, m - start - n // ratio)):
             name = NAMES[2 * d + k]
             side: Side = getattr(sides, name)
-            shared = margin == 0 and not side.opens and not side.passes
+            shared = margin == 0 and not side.is_open and not side.is_permeable
             if not shared and margin < MIN_SIDE_CLEARANCE:
                 raise InvalidDesign(
                     f"the patch comes within {margin * coarse_grid.cell:.4g} m of the {name} side of the domain; keep "
@@ -231,11 +231,11 @@ def _interpolate(coarse, runs, first_cells, weights, taps, values):  # type: ign
 class RimStencil(NamedTuple):
     """Interpolation stencil of one velocity component around a patch; see ``_interpolate``."""
 
-    places: np.ndarray
+    flat_indices: np.ndarray
     """Flat indices of the values in the padded patch."""
     runs: np.ndarray
     """Runs of consecutive values along the rows."""
-    first: np.ndarray
+    first_cells: np.ndarray
     """First coarse index of a box."""
     weights: np.ndarray
     """Weights of the coarse values."""
@@ -270,15 +270,18 @@ class Rim:
         """
         self._dtype = dtype
         ratio, corner = locate_patch(patch, coarse_grid)
-        axes = patch.axes
+        ndim = patch.ndim
         shape = tuple(n + 2 * PAD for n in reversed(patch.cells))
-        is_coarse_side, repeats = [isinstance(side, CoarseSide) for side in sides.around(axes)], sides.repeats(axes)
+        is_coarse_side, repeats = (
+            [isinstance(side, CoarseSide) for side in sides.of_axes(ndim)],
+            sides.is_periodic(ndim),
+        )
         self._stencils = []
-        for c in range(axes):
+        for c in range(ndim):
             is_rim, is_excluded = np.zeros(shape, bool), np.zeros(shape, bool)
             for d, n in enumerate(patch.cells):
-                rim_lines = np.moveaxis(is_rim, axes - 1 - d, 0)
-                excluded_lines = np.moveaxis(is_excluded, axes - 1 - d, 0)
+                rim_lines = np.moveaxis(is_rim, ndim - 1 - d, 0)
+                excluded_lines = np.moveaxis(is_excluded, ndim - 1 - d, 0)
                 low_end, high_end = slice(0, PAD + (c == d and not repeats[d])), slice(PAD + n, None)
                 for end, is_coarse in zip((low_end, high_end), is_coarse_side[2 * d :], strict=False):
                     if is_coarse:
@@ -300,20 +303,20 @@ class Rim:
             ratio: fine cells along a coarse cell [-].
             corner: coarse cell in the low corner of the patch, x first [-].
         """
-        axes = len(shape)
-        flat = 3 - axes  # of a plane the first of three axes is a single place
+        ndim = len(shape)
+        flat = 3 - ndim  # of a plane the first of three axes is a single place
         first_cells, taps = np.zeros((3, max(shape)), unsigned), np.ones(3, unsigned)
         weights: np.ndarray = np.zeros((3, max(shape), 4), self._dtype)
         weights[:flat, 0, 0] = 1
         for axis, n in enumerate(shape):
-            d = axes - 1 - axis
+            d = ndim - 1 - axis
             coarse_cells, axis_weights = _weights(np.arange(n), ratio, on_faces=c == d)
             first_cells[flat + axis, :n] = coarse_cells[:, 0] + corner[d] + PAD
             taps[flat + axis] = axis_weights.shape[1]
             weights[flat + axis, :n, : axis_weights.shape[1]] = axis_weights
         return RimStencil(places, _runs(places, (1,) * flat + shape), first_cells, weights, taps)
 
-    def read(self, coarse: np.ndarray) -> list[np.ndarray]:
+    def interpolate(self, coarse: np.ndarray) -> list[np.ndarray]:
         """Return the velocity around the patch, interpolated from the coarse faces, one array for each component [m/s].
 
         Args:
@@ -321,16 +324,16 @@ class Rim:
         """
         values = []
         for component, stencil in zip(coarse, self._stencils, strict=True):
-            rim_values: np.ndarray = np.empty(stencil.places.size, self._dtype)
+            rim_values: np.ndarray = np.empty(stencil.flat_indices.size, self._dtype)
             slabs = component if component.ndim == 3 else component[None]
-            _interpolate(slabs, stencil.runs, stencil.first, stencil.weights, stencil.taps, rim_values)
+            _interpolate(slabs, stencil.runs, stencil.first_cells, stencil.weights, stencil.taps, rim_values)
             values.append(rim_values)
         return values
 
     def write(self, velocity: np.ndarray, values: Sequence[np.ndarray]) -> None:
         """Write interpolated values, see ``read``, to the padded velocity of the patch."""
         for component, stencil, rim_values in zip(velocity, self._stencils, values, strict=True):
-            component.reshape(-1)[stencil.places] = rim_values
+            component.reshape(-1)[stencil.flat_indices] = rim_values
 
 
 class Nested(Fluid):
@@ -361,7 +364,7 @@ class Nested(Fluid):
         super().__init__(grid, sides_of_patch, viscosity, dtype, scheme, integrator)
         self.coarse = Fluid(coarse_grid, sides, viscosity, dtype, scheme, integrator)
         self.ratio, corner = locate_patch(grid, coarse_grid)
-        self.coarse.least = min_pressure_cycles(max(grid.cells) // self.ratio)
+        self.coarse.min_cycles = min_pressure_cycles(max(grid.cells) // self.ratio)
         self._rim = Rim(grid, coarse_grid, sides_of_patch, dtype)
         self._values: list[np.ndarray] = []  # around the patch, as they were last read
         self._previous_values: list[np.ndarray] = []  # a round of the first step earlier
@@ -371,10 +374,10 @@ class Nested(Fluid):
         )  # fmt: skip
         self._faces = []
         for c, is_periodic in enumerate(self.repeats):
-            face_slices, axis = list(self._cells), grid.axes - 1 - c
+            face_slices, axis = list(self._cells), grid.ndim - 1 - c
             face_slices[axis] = slice(face_slices[axis].start + (not is_periodic), face_slices[axis].stop)
             self._faces.append(tuple(face_slices))
-        self._shares = any(not isinstance(side, CoarseSide) for side in sides_of_patch.around(grid.axes))
+        self._has_domain_sides = any(not isinstance(side, CoarseSide) for side in sides_of_patch.of_axes(grid.ndim))
         self._push: tuple[float, ...] = ()
         self._span = 0.0
         self._coarse_acceleration: np.ndarray = np.zeros(0)
@@ -422,9 +425,9 @@ class Nested(Fluid):
         """Refuse bodies that come too near to where the coarser cells begin."""
         if self.window[1] <= self.window[0]:
             return
-        min_clearance, sides = MIN_BODY_CLEARANCE * self.ratio, self.sides.around(self.axes)
+        min_clearance, sides = MIN_BODY_CLEARANCE * self.ratio, self.sides.of_axes(self.ndim)
         for d, n in enumerate(self.grid.cells):
-            start, end = self.window[2 * (self.axes - 1 - d) : 2 * (self.axes - d)]
+            start, end = self.window[2 * (self.ndim - 1 - d) : 2 * (self.ndim - d)]
             for k, clearance in enumerate((start - PAD, n + PAD - end)):
                 if isinstance(sides[2 * d + k], CoarseSide) and clearance < min_clearance:
                     names, missing = ", ".join(body.name for body in bodies), min_clearance - clearance
@@ -438,7 +441,7 @@ class Nested(Fluid):
 
     def _surround(self, velocity: np.ndarray, coarse: np.ndarray) -> None:
         """Write the velocity on and beyond the sides of the patch, by that on the coarse faces."""
-        self._values = self._rim.read(coarse)
+        self._values = self._rim.interpolate(coarse)
         self._rim.write(velocity, self._values)
         self.border.fill(velocity)
 
@@ -450,7 +453,7 @@ class Nested(Fluid):
     def _replace(self, fine: np.ndarray, coarse: np.ndarray) -> None:
         """Let the coarse velocity inside the patch be the mean of the fine one, and fit sides that both share."""
         self._give(fine, coarse)
-        if self._shares:
+        if self._has_domain_sides:
             self.coarse.border.fill(coarse)
 
     def _average(self, fine: np.ndarray, coarse: np.ndarray, face_axis: int | None = None) -> None:
@@ -461,11 +464,11 @@ class Nested(Fluid):
             coarse: where they go; the coarse cells of the patch, or the faces between them.
             face_axis: the axis that the faces lie across; None for cells.
         """
-        spans = [1 if d == face_axis else self.ratio for d in reversed(range(self.axes))]
+        spans = [1 if d == face_axis else self.ratio for d in reversed(range(self.ndim))]
         inner = face_axis is not None and not self.repeats[face_axis]  # the first face lies on a side
-        starts = [PAD + self.ratio * (d == face_axis and inner) for d in reversed(range(self.axes))]
-        steps = [self.ratio] * self.axes
-        if self.axes == 2:
+        starts = [PAD + self.ratio * (d == face_axis and inner) for d in reversed(range(self.ndim))]
+        steps = [self.ratio] * self.ndim
+        if self.ndim == 2:
             fine, coarse, spans, starts, steps = fine[None], coarse[None], [1, *spans], [0, *starts], [1, *steps]
         average(fine, coarse, tuple(starts), tuple(steps), tuple(spans))
 
@@ -479,7 +482,7 @@ class Nested(Fluid):
         mean = np.empty_like(coarse_pressure)
         self._average(self.p, mean)
         rise = coarse_pressure - mean
-        core = rise[(slice(1, -1),) * self.axes]
+        core = rise[(slice(1, -1),) * self.ndim]
         level = self.dtype((rise.sum(dtype=np.float64) - core.sum(dtype=np.float64)) / (rise.size - core.size))
         self.p += level
         coarse_pressure[:] = mean + level
@@ -498,26 +501,26 @@ class Nested(Fluid):
 
     def _plan(self, span: float) -> list[PlannedStage]:
         pairs = zip(super()._plan(span), self.coarse._plan(self._span), strict=True)
-        return [stage._replace(beyond=coarse_stage) for stage, coarse_stage in pairs]
+        return [stage._replace(coarse_stage=coarse_stage) for stage, coarse_stage in pairs]
 
     def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
         """Take one stage on both grids: fine advance, coarse advance and pressure, then the fine pressure."""
-        coarse, coarse_stage = self.coarse, stage.beyond
+        coarse, coarse_stage = self.coarse, stage.coarse_stage
         self._advance(stage, push)
         coarse._advance(coarse_stage, self._push)
-        self._replace(stage.out, coarse_stage.out)
+        self._replace(stage.result, coarse_stage.result)
         coarse._project(
-            coarse_stage.out,
-            coarse_stage.solved,
+            coarse_stage.result,
+            coarse_stage.pressure_duration,
             (COARSE_TOLERANCE_RATIO * limits[0], COARSE_TOLERANCE_RATIO * limits[1]),
         )
-        self._surround(stage.out, coarse_stage.out)
-        self._project(stage.out, stage.solved, limits)
-        self._replace(stage.out, coarse_stage.out)
+        self._surround(stage.result, coarse_stage.result)
+        self._project(stage.result, stage.pressure_duration, limits)
+        self._replace(stage.result, coarse_stage.result)
         self._give_pressure()
 
     def _hear(self, stage: PlannedStage) -> float:
-        return self.coarse._hear(stage.beyond)
+        return self.coarse._hear(stage.coarse_stage)
 
     @property
     def _learns(self) -> bool:
@@ -544,9 +547,9 @@ class Nested(Fluid):
     def _coarsened(self, face_values: np.ndarray) -> np.ndarray:
         """Return values on the faces of the fine window, averaged onto those of the coarse window, (axis, ...)."""
         fine, coarse = np.zeros(self.velocity.shape), np.zeros(self.coarse.velocity.shape)
-        fine[:, *self.here] = face_values
+        fine[:, *self.window_slices] = face_values
         self._give(fine, coarse)
-        return coarse[:, *self.coarse.here]
+        return coarse[:, *self.coarse.window_slices]
 
     def potential(self, acceleration: np.ndarray, limit: float) -> np.ndarray:
         """Return the pressure that answers a body acceleration on the patch; see ``Fluid``."""
@@ -554,7 +557,7 @@ class Nested(Fluid):
         self.coarse.potential(self._coarse_acceleration, COARSE_TOLERANCE_RATIO * limit)
         return self._answering(acceleration, self._side_velocity(self._coarse_acceleration), limit)
 
-    def press(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
+    def apply_velocity_change(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
         """Add a velocity change to the water on both grids, with the pressure that it causes; see ``Fluid``.
 
         Only the change is solved for on both grids. The step leaves a divergence; beside it, a change ten thousand
@@ -566,7 +569,7 @@ class Nested(Fluid):
             limit: mean divergence that may be left [m/s per cell].
         """
         span = self.dtype(dt / self.grid.cell)
-        self.coarse.press(self._coarsened(velocity_change), dt, COARSE_TOLERANCE_RATIO * limit)
+        self.coarse.apply_velocity_change(self._coarsened(velocity_change), dt, COARSE_TOLERANCE_RATIO * limit)
         x = self._answering(velocity_change, self._side_velocity(self._coarsened(velocity_change)), limit)
         self._answer_with(velocity_change, dt)
         self._surround(self.velocity, self.coarse.velocity)
@@ -580,7 +583,7 @@ class Nested(Fluid):
             acceleration: argument of that ``potential``, on the faces of the coarse window, shape (axis, ...).
         """
         velocity = np.zeros(self.velocity.shape)
-        self._rim.write(velocity, self._rim.read(self.coarse._gained(acceleration)))
+        self._rim.write(velocity, self._rim.interpolate(self.coarse._gained(acceleration)))
         return velocity
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
@@ -588,7 +591,7 @@ class Nested(Fluid):
         del x
         return self.coarse.along_sides(self.coarse._x.reshape(self.coarse.p.shape))
 
-    def answer(self, acceleration: np.ndarray) -> list[np.ndarray]:
+    def side_accelerations(self, acceleration: np.ndarray) -> list[np.ndarray]:
         """Return the acceleration into the domain on each side that ``potential``'s last answer induces."""
         del acceleration
-        return self.coarse.answer(self._coarse_acceleration)
+        return self.coarse.side_accelerations(self._coarse_acceleration)

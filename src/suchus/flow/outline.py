@@ -61,7 +61,7 @@ class Polygon(Solid):
         h = float(x[-1] - x[0]) / (x.size - 1)
         outline = np.stack(pose.to_world(*self._outline_points))
         d, nx, ny = paint_outline(outline, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), self._flat)
-        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(*np.meshgrid(x, y)))
+        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.velocity_in_plane(*np.meshgrid(x, y)))
         return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
 
     @property

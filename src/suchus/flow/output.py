@@ -38,12 +38,12 @@ def snapshot(sim: Fields) -> xr.Dataset:
     """
     grid, (position, drift) = sim.water.grid, sim.frame
     velocity = np.stack([w + d for w, d in zip(sim.velocity, drift, strict=True)])
-    names = tuple("xyz"[: grid.axes])
+    names = tuple("xyz"[: grid.ndim])
     cells = names[::-1]
-    spin = cells if grid.axes == 2 else ("component", *cells)
+    spin = cells if grid.ndim == 2 else ("component", *cells)
     values = {
         "velocity": (("component", *cells), velocity), "pressure": (cells, sim.pressure),
-        "vorticity": (spin, sim.vorticity_at_centres), "fluid_share": (cells, sim.fluid_share),
+        "vorticity": (spin, sim.vorticity_at_centres), "fluid_share": (cells, sim.fluid_fraction),
     }  # fmt: skip
     coords: dict[str, object] = {
         name: (name, getattr(grid, name) + shift, {"units": "m"}) for name, shift in zip(names, position, strict=True)
@@ -73,7 +73,7 @@ def save_vti(sim: Fields, path: Path | str) -> None:
 def _vti(sim: Fields) -> bytes:
     """Return the content of a VTK ImageData file with all fields, the numbers as raw little-endian floats."""
     data, grid, frame = snapshot(sim), sim.water.grid, sim.frame[0]
-    flat, h = grid.axes == 2, float(grid.cell)
+    flat, h = grid.ndim == 2, float(grid.cell)
     x, y, z = (*(float(value) for value in np.array(grid.origin) + frame), 0)[:3]
     nx, ny, nz = (*grid.cells, 0)[:3]
     arrays, blocks, offset = [], [], 0
@@ -176,7 +176,7 @@ def _add_to_netcdf(sim: Fields, path: Path) -> None:
             raise UnreadableFile(
                 f"{path} holds no fields of this run, so none are added to it; give another name or delete it."
             ) from error
-    for name in (*"xyz"[: sim.water.grid.axes], "time"):
+    for name in (*"xyz"[: sim.water.grid.ndim], "time"):
         new[name].attrs["units"] = "s" if name == "time" else "m"
     _write(path, bytes(new.to_netcdf(engine="h5netcdf")))
 

@@ -42,14 +42,14 @@ def patch_layouts(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
         layout: of the levels.
         repeats: which axes are periodic.
     """
-    rows, offset, axes = [], 0, layout.shape[1] // 3
-    rim, pairs = RIM[axes - 2], SMOOTHING_PAIRS[axes - 2]
-    includes_mirror = [axes == 3 and not is_periodic for is_periodic in reversed(repeats)]
+    rows, offset, ndim = [], 0, layout.shape[1] // 3
+    rim, pairs = RIM[ndim - 2], SMOOTHING_PAIRS[ndim - 2]
+    includes_mirror = [ndim == 3 and not is_periodic for is_periodic in reversed(repeats)]
     for k, level_layout in enumerate(layout.tolist()):
-        begin, end = level_layout[1 + axes :: 2], level_layout[2 + axes :: 2]
+        begin, end = level_layout[1 + ndim :: 2], level_layout[2 + ndim :: 2]
         if end[0] > begin[0]:
             begin = [max(a - rim, PAD - extra_cell) for a, extra_cell in zip(begin, includes_mirror, strict=True)]
-            ends = zip(end, level_layout[1 : 1 + axes], includes_mirror, strict=True)
+            ends = zip(end, level_layout[1 : 1 + ndim], includes_mirror, strict=True)
             end = [min(b + rim, n + PAD + extra_cell) for b, n, extra_cell in ends]
         window = list(zip(begin, end, strict=True))
         rows.append([offset, *(value for pair in window for value in pair), pairs[min(k, len(pairs) - 1)]])

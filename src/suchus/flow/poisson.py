@@ -311,9 +311,9 @@ class Solve:
 
     cycles: int
     """Iterations [-]."""
-    mean: float
+    mean_divergence: float
     """Mean of the remaining divergence [m/s per cell]."""
-    largest: float
+    max_divergence: float
     """Largest remaining divergence [m/s per cell]."""
 
 
@@ -325,11 +325,11 @@ def levels(cells: tuple[int, ...]) -> np.ndarray:
     Args:
         cells: number of cells along x, y (and z).
     """
-    rows, offset, axes = [], 0, len(cells)
+    rows, offset, ndim = [], 0, len(cells)
     sizes = np.array(cells[::-1], dtype=np.int64)
     while True:
-        rows.append([offset, *sizes, *[PAD] * (2 * axes)])
-        offset += (FACES + axes) * int(np.prod(sizes + 2 * PAD))
+        rows.append([offset, *sizes, *[PAD] * (2 * ndim)])
+        offset += (FACES + ndim) * int(np.prod(sizes + 2 * PAD))
         if (sizes % 2).any() or sizes.min() <= 4:
             return np.array(rows, dtype=np.int64)
         sizes //= 2
@@ -342,12 +342,12 @@ def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
         layout: of the levels; see ``levels``.
         dtype: precision of the fields.
     """
-    axes = layout.shape[1] // 3
-    sizes = (layout[:, 1 : 1 + axes] + 2 * PAD).prod(axis=1)
-    store = np.zeros(layout[-1, 0] + (FACES + axes) * sizes[-1], dtype)
+    ndim = layout.shape[1] // 3
+    sizes = (layout[:, 1 : 1 + ndim] + 2 * PAD).prod(axis=1)
+    store = np.zeros(layout[-1, 0] + (FACES + ndim) * sizes[-1], dtype)
     for start, size in zip(layout[:, 0], sizes, strict=True):
-        store[start + DINV * size : start + (DINV + 1) * size] = 0.5 / axes
-        store[start + FACES * size : start + (FACES + axes) * size] = 1
+        store[start + DINV * size : start + (DINV + 1) * size] = 0.5 / ndim
+        store[start + FACES * size : start + (FACES + ndim) * size] = 1
     return store
 
 
@@ -358,11 +358,11 @@ def place_window(layout: np.ndarray, window: Window) -> None:
         layout: of the levels; see ``slab``.
         window: padded indices, first and end along each axis, the last axis first.
     """
-    axes = layout.shape[1] // 3
+    ndim = layout.shape[1] // 3
     start, end = ([value - PAD for value in window[k::2]] for k in (0, 1))
     for row in layout:
-        cells = row[1 : 1 + axes].tolist()
+        cells = row[1 : 1 + ndim].tolist()
         bounds = [(max(a, 0) + PAD, min(b, n) + PAD) for a, b, n in zip(start, end, cells, strict=True)]
-        row[1 + axes :] = [value for pair in bounds for value in pair]
+        row[1 + ndim :] = [value for pair in bounds for value in pair]
         if end[0] > start[0]:
             start, end = [a // 2 - 1 for a in start], [(b + 1) // 2 + 1 for b in end]

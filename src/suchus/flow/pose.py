@@ -68,11 +68,11 @@ class Pose:
     spin_y: float = 0.0
     """In space, angular velocity about y [rad/s]."""
 
-    def along(self, axes: int) -> "Pose":
+    def in_dimensions(self, ndim: int) -> "Pose":
         """Return the same pose with position and velocity of a domain with 2 or 3 axes; a missing z is 0.
 
         Args:
-            axes: number of axes of the domain, 2 or 3.
+            ndim: number of axes of the domain, 2 or 3.
 
         Raises:
             InvalidDesign: another number of components, an infinite number, or pitch or roll in the plane.
@@ -81,14 +81,14 @@ class Pose:
         if not isfinite(sum(self.position) + sum(self.velocity) + turns):
             self._refuse_endless()
         position, velocity = (
-            (*vector, 0.0) if len(vector) == 2 and axes == 3 else vector for vector in (self.position, self.velocity)
+            (*vector, 0.0) if len(vector) == 2 and ndim == 3 else vector for vector in (self.position, self.velocity)
         )
-        if len(position) != axes or len(velocity) != axes:
+        if len(position) != ndim or len(velocity) != ndim:
             raise InvalidDesign(
                 f"a pose has the position {show(self.position)} m and the velocity {show(self.velocity)} m/s; "
-                f"{'two numbers are needed in the plane' if axes == 2 else 'three numbers are needed in space'}."
+                f"{'two numbers are needed in the plane' if ndim == 2 else 'three numbers are needed in space'}."
             )
-        if axes == 2 and not self.in_plane:
+        if ndim == 2 and not self.in_plane:
             raise InvalidDesign(
                 f"a pose has pitch {self.pitch:.4g} rad, roll {self.roll:.4g} rad and the spins {self.spin_x:.4g} and "
                 f"{self.spin_y:.4g} rad/s; in the plane a body has an angle and a spin alone. Leave the others 0."
@@ -126,7 +126,7 @@ class Pose:
         """Angular velocity about x, y and z, shape (3,) [rad/s]."""
         return np.array([self.spin_x, self.spin_y, self.spin])
 
-    def place(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
+    def to_world_3d(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
         """Return points of the body's frame in the world frame, in space, component by component [m].
 
         Args:
@@ -134,22 +134,26 @@ class Pose:
         """
         x, y, z = (
             coordinate + origin
-            for coordinate, origin in zip(rotate_vectors(self.matrix, points), self.along(3).position, strict=True)
-        )  # fmt: skip
+            for coordinate, origin in zip(
+                rotate_vectors(self.matrix, points), self.in_dimensions(3).position, strict=True
+            )
+        )
         return x, y, z
 
-    def seen(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
+    def to_body_3d(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
         """Return points of the world frame in the body's frame, in space, component by component [m]."""
-        relative = [coordinate - origin for coordinate, origin in zip(points, self.along(3).position, strict=True)]
+        relative = [
+            coordinate - origin for coordinate, origin in zip(points, self.in_dimensions(3).position, strict=True)
+        ]
         return rotate_vectors(self.matrix.T, relative)
 
-    def rates(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
+    def velocity_at(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
         """Return the velocity of the rigid motion at points in space, component by component [m/s].
 
         Args:
             points: x, y and z in the world frame, shape (3, ...) [m].
         """
-        pose = self.along(3)
+        pose = self.in_dimensions(3)
         relative = [coordinate - origin for coordinate, origin in zip(points, pose.position, strict=True)]
         x, y, z = (
             linear + rotational for linear, rotational in zip(pose.velocity, cross(pose.spins, relative), strict=True)
@@ -158,7 +162,7 @@ class Pose:
 
     def to_world(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return points of the body's frame in the world [m]."""
-        wx, wy = self.turn(x, y)
+        wx, wy = self.rotate_in_plane(x, y)
         return wx + self.position[0], wy + self.position[1]
 
     def to_body(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -167,12 +171,12 @@ class Pose:
         dx, dy = x - self.position[0], y - self.position[1]
         return c * dx + s * dy, c * dy - s * dx
 
-    def turn(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def rotate_in_plane(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return directions of the body's frame in the world frame, in the plane."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         return c * x - s * y, s * x + c * y
 
-    def carry(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def velocity_in_plane(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the velocity of the rigid motion at points in the plane [m/s].
 
         Args:

@@ -49,14 +49,14 @@ def sample_water(water: Fluid, points: np.ndarray, frame: np.ndarray, density: f
     Raises:
         InvalidDesign: a point that is not in the domain.
     """
-    positions, axes = np.atleast_2d(np.asarray(points, float)), water.axes
-    if positions.ndim != 2 or positions.shape[1] != axes:
+    positions, ndim = np.atleast_2d(np.asarray(points, float)), water.ndim
+    if positions.ndim != 2 or positions.shape[1] != ndim:
         raise InvalidDesign(
-            f"the points have the shape {np.shape(points)}; give one row ({', '.join('xyz'[:axes])}) for each point."
+            f"the points have the shape {np.shape(points)}; give one row ({', '.join('xyz'[:ndim])}) for each point."
         )
     local = positions - frame[0]
     _check(water.layers[-1].grid, positions, local, frame[0])
-    pressure, velocity = np.empty(len(positions)), np.empty((axes, len(positions)))
+    pressure, velocity = np.empty(len(positions)), np.empty((ndim, len(positions)))
     for layer in reversed(water.layers):  # the finest layer that holds a point counts
         indices = np.flatnonzero(_is_inside(layer.grid, local))
         places, steps = padded(local[indices].T, layer.grid), steps_of(layer.p)
@@ -121,7 +121,7 @@ class Rake:
 
     points: RakePoints
     """Positions of the points; a function of time for a rake that travels [m]."""
-    every: float | None = None
+    interval: float | None = None
     """Interval of the samples [s]; None samples after every step."""
     _times: list[float] = field(default_factory=list)
     _samples: list[Sample] = field(default_factory=list)
@@ -131,7 +131,7 @@ class Rake:
         """Record the water at the points if the interval has passed."""
         if sim.time < self._due:
             return
-        self._due = due_after(sim.time, self.every)
+        self._due = due_after(sim.time, self.interval)
         self._samples.append(sim.probe(self.points(sim.time) if callable(self.points) else self.points))
         self._times.append(sim.time)
 

@@ -83,16 +83,16 @@ class Record:
     """Parts of each body, 0 for one that is not divided [-]."""
 
     @property
-    def axes(self) -> int:
+    def ndim(self) -> int:
         """Number of dimensions: 2 in the plane, 3 in space [-]."""
         return 3 if "force_z" in self.columns else 2
 
     @property
     def units(self) -> dict[str, str]:
         """The unit of each column, as CF conventions write it; forces in the plane are per metre of depth."""
-        force, torque = ("N", "N m") if self.axes == 3 else ("N m-1", "N")
+        force, torque = ("N", "N m") if self.ndim == 3 else ("N m-1", "N")
         unit_by_column = {**_UNITS, **dict.fromkeys(("torque", "torque_x", "torque_y"), torque)}
-        unit_by_column["power"] = "W" if self.axes == 3 else "W m-1"
+        unit_by_column["power"] = "W" if self.ndim == 3 else "W m-1"
         return {n: unit_by_column.get(n, "m s-1" if n.startswith("velocity") else force) for n in self.columns}
 
     def column(self, name: str, body: str | int = 0) -> np.ndarray:
@@ -109,7 +109,7 @@ class Record:
             raise UnknownName("column", str(name), self.columns)
         return self.bodies[:, self._number(body), self.columns.index(name)]
 
-    def along(self, name: str, body: str | int = 0) -> np.ndarray:
+    def part_series(self, name: str, body: str | int = 0) -> np.ndarray:
         """Return a time series of each part of a divided body, front to back, shape (step, part).
 
         Args:
@@ -148,7 +148,7 @@ class Record:
         Args:
             body: its name or number.
         """
-        return np.stack([self.column(f"force_{a}", body) for a in "xyz"[: self.axes]], axis=1)
+        return np.stack([self.column(f"force_{a}", body) for a in "xyz"[: self.ndim]], axis=1)
 
     def torque(self, body: str | int = 0) -> np.ndarray:
         """Return the torque of the water on a body, mean over each step.
@@ -159,7 +159,7 @@ class Record:
         Args:
             body: its name or number.
         """
-        names = ("torque_x", "torque_y", "torque") if self.axes == 3 else ("torque",)
+        names = ("torque_x", "torque_y", "torque") if self.ndim == 3 else ("torque",)
         return np.stack([self.column(name, body) for name in names], axis=1)
 
     def attitude(self, body: str | int = 0) -> np.ndarray:
@@ -171,7 +171,7 @@ class Record:
         Raises:
             OutsideLimits: in the plane.
         """
-        if self.axes == 2:
+        if self.ndim == 2:
             raise OutsideLimits("a body in the plane has no attitude but its angle; take column('angle').")
         angles = [self.column(name, body) for name in ("angle", "pitch", "roll")]
         quaternions = [rotation.from_angles(*step_angles) for step_angles in zip(*angles, strict=True)]
@@ -201,7 +201,7 @@ class Record:
             UnknownName: there is no such body.
             OutsideLimits: a reference that is not a positive number, an area in the plane or none in space.
         """
-        if (area is None) != (self.axes == 2):
+        if (area is None) != (self.ndim == 2):
             message = "a body in the plane has no area; leave it out" if area else "in space an area is needed; give it"
             raise OutsideLimits(f"the area of the reference is {area}: {message}.")
         size = length if area is None else area
@@ -231,7 +231,7 @@ class Record:
             [self.column(f"pressure_{a}", body) + self.column(f"shear_{a}", body) for a in ("x", "y")], axis=1
         )
 
-    def after(self, time: float) -> "Record":
+    def select_after(self, time: float) -> "Record":
         """Return the record of the steps that end after a time [s]."""
         k = self.time > time
         return Record(

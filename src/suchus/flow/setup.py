@@ -48,8 +48,9 @@ class Setup:
     """
 
     grid: Grid
-    """The cells of the domain; with ``around``, the fine cells of a patch around the bodies, see ``Grid.patch``."""
-    around: Grid | None = None
+    """The cells of the domain; with ``coarse_grid``, the fine cells of a patch around the bodies, see
+    ``Grid.patch``."""
+    coarse_grid: Grid | None = None
     """Coarse cells of the whole domain, in which ``grid`` is a patch; None if ``grid`` is the whole domain."""
     viscosity: float
     """Kinematic viscosity of the water [m^2/s]."""
@@ -130,23 +131,23 @@ class Setup:
             self.scheme.check()
         if self.follow is not None:
             x, y, z = (*self.follow_axes, False)[:3]
-            self.sides.check_travel(self.grid.axes, (x, y, z), self.follow)
-        if self.around is not None:
-            patch_sides(self.grid, self.around, self.sides)
-            check_memory(self.around, self.dtype)
+            self.sides.check_travel(self.grid.ndim, (x, y, z), self.follow)
+        if self.coarse_grid is not None:
+            patch_sides(self.grid, self.coarse_grid, self.sides)
+            check_memory(self.coarse_grid, self.dtype)
         check_memory(self.grid, self.dtype)
 
     def _check_dimension(self) -> None:
         """Refuse plane bodies in a grid in space, and bodies in space in a plane grid."""
-        axes = self.grid.axes
-        self.sides.check(axes)
+        ndim = self.grid.ndim
+        self.sides.check(ndim)
         for body in self.bodies:
-            if isinstance(body, FreeBody) and axes == 2:
+            if isinstance(body, FreeBody) and ndim == 2:
                 body.check_plane()
-            if body.shape.axes == axes:
+            if body.shape.ndim == ndim:
                 continue
             shape = type(body.shape).__name__
-            if axes == 3:
+            if ndim == 3:
                 raise InvalidDesign(
                     f"{body.name} is a {shape}, which is plane, and the grid has three axes; give a shape in space, "
                     f"say a Sphere, or a grid of two axes."
@@ -155,7 +156,7 @@ class Setup:
                 f"{body.name} is a {shape}, which is a shape in space, and the grid has two axes; give the grid a "
                 f"third pair, or a plane shape."
             )
-        if axes == 3 and self.contact is not None:
+        if ndim == 3 and self.contact is not None:
             raise InvalidDesign("contact acts between plane outlines, and the grid has three axes; leave it None.")
 
     @property
@@ -163,16 +164,16 @@ class Setup:
         """Type of the fields."""
         return np.float32 if self.precision == "single" else np.float64
 
-    def far(self, time: float) -> tuple[float, ...]:
+    def far_velocity(self, time: float) -> tuple[float, ...]:
         """Return the velocity of the far water at a time [s], along every axis [m/s]."""
         if callable(self.stream):
             stream = self.stream(time)
             self._check_stream(stream, f" at t = {time:.4g} s")
         else:
             stream = self.stream
-        return stream if len(stream) == self.grid.axes else (*stream, 0.0)
+        return stream if len(stream) == self.grid.ndim else (*stream, 0.0)
 
-    def began(self, component: int, grid: Grid) -> np.ndarray | float:
+    def initial_velocity(self, component: int, grid: Grid) -> np.ndarray | float:
         """Return one component of the initial velocity of the water on all faces across its axis [m/s].
 
         Args:
@@ -183,14 +184,14 @@ class Setup:
             InvalidDesign: ``start`` returns something else than a velocity.
         """
         if self.start is None:
-            return self.far(0.0)[component]
+            return self.far_velocity(0.0)[component]
         ends = [n + 2 * PAD for n in grid.cells]
         coordinates = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
         points = np.meshgrid(*coordinates[::-1], indexing="ij")[::-1]
         velocities = self.start(*points)
-        if len(velocities) != self.grid.axes:
+        if len(velocities) != self.grid.ndim:
             raise InvalidDesign(
-                f"start gives {len(velocities)} velocities; one along each of {self.grid.axes} axes counts."
+                f"start gives {len(velocities)} velocities; one along each of {self.grid.ndim} axes counts."
             )
         velocity = np.asarray(velocities[component], float)
         if velocity.shape not in ((), points[0].shape) or not np.isfinite(velocity).all():
@@ -201,12 +202,12 @@ class Setup:
         return velocity
 
     def _check_stream(self, stream: Any, time_text: str) -> None:
-        allowed = [(2,), (self.grid.axes,)]
+        allowed = [(2,), (self.grid.ndim,)]
         if np.shape(stream) not in allowed or not np.isfinite(np.asarray(stream, float)).all():
-            needs = "two finite velocities (x, y)" if self.grid.axes == 2 else "finite velocities (x, y) or (x, y, z)"
+            needs = "two finite velocities (x, y)" if self.grid.ndim == 2 else "finite velocities (x, y) or (x, y, z)"
             raise InvalidDesign(f"stream is {show(stream)}{time_text}; give {needs} in m/s.")
 
-    def check(self) -> dict[str, float]:
+    def check_bodies(self) -> dict[str, float]:
         """Return, for each body, the fraction of its length that is too thin for the grid.
 
         Raises:
@@ -215,20 +216,20 @@ class Setup:
         """
         thin_fractions = {}
         for body in self.bodies:
-            pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
-            pose = pose.along(self.grid.axes)
+            pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.from_body(body).pose(body.shape.mass(0.0))
+            pose = pose.in_dimensions(self.grid.ndim)
             window = window_of(body, pose, self.grid, 0.0, self._mirrors)
             if isinstance(body, FreeBody):
                 self._check_weight(body, cuts(window, self.grid))
             thin_fractions[body.name] = thin_fraction(body, self.grid, 0.0)
-            self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
+            self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far_velocity(0.0), 0.0)
         return thin_fractions
 
     @property
     def _mirrors(self) -> tuple[bool, ...]:
-        """Whether there is a mirror at the ends of the axes of ``grid``; see ``Sides.mirrors``."""
-        sides = self.sides if self.around is None else patch_sides(self.grid, self.around, self.sides)
-        return sides.mirrors(self.grid.axes)
+        """Whether there is a mirror at the ends of the axes of ``grid``; see ``Sides.has_mirror``."""
+        sides = self.sides if self.coarse_grid is None else patch_sides(self.grid, self.coarse_grid, self.sides)
+        return sides.has_mirror(self.grid.ndim)
 
     def _check_weight(self, body: FreeBody, mirror_cuts: tuple[bool, ...]) -> None:
         """Refuse gravity that would move a body through a mirror that cuts it.
@@ -280,8 +281,8 @@ class Setup:
         )
         if not self.coarse and cells * slack**0.5 < min_cells:
             layer = cells * self.grid.cell
-            million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.axes / 1e6
-            size = f" (this domain then takes {million_cells:.3g} million cells)" if self.grid.axes == 3 else ""
+            million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.ndim / 1e6
+            size = f" (this domain then takes {million_cells:.3g} million cells)" if self.grid.ndim == 3 else ""
             raise InvalidDesign(
                 f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
@@ -317,4 +318,4 @@ class Setup:
 
 
 def _has_blunt_shape(body: Body | FreeBody) -> bool:
-    return isinstance(body.shape, SpaceShape) and body.shape.blunt
+    return isinstance(body.shape, SpaceShape) and body.shape.is_compact

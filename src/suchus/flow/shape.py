@@ -35,7 +35,7 @@ class Field:
     """Velocity of the body along y, extended likewise [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
-    part: np.ndarray | None = None
+    part_index: np.ndarray | None = None
     """Index of the body's part to which a point belongs; None for a body of one part [-]."""
 
     @property
@@ -52,7 +52,7 @@ class Field:
 class Shape(ABC):
     """A body's shape in its own frame, in the plane; it may change with time."""
 
-    axes: ClassVar[int] = 2
+    ndim: ClassVar[int] = 2
 
     @abstractmethod
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
@@ -127,18 +127,22 @@ class Solid(Shape):
         """Return distance, normal and velocity on the points of a window; see ``Shape``."""
         wx, wy = np.meshgrid(x, y)
         d, nx, ny = self.distance(*pose.to_body(wx, wy))
-        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy))
-        return Field(d, *pose.turn(nx, ny), vx, vy, np.full(d.shape, np.inf))
+        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.velocity_in_plane(wx, wy))
+        return Field(d, *pose.rotate_in_plane(nx, ny), vx, vy, np.full(d.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return markers at the centres of the outline's edges; see ``Shape``."""
         centres, normal, length = _edges(self, spacing)
         points = np.stack(pose.to_world(*centres))
         return Markers(
-            points=points, share=length, velocities=np.stack(pose.carry(*points)), normals=np.stack(pose.turn(*normal)),
-            spins=np.full((1, length.size), pose.spin), station=np.cumsum(length) - length / 2,
+            points=points,
+            weight=length,
+            velocities=np.stack(pose.velocity_in_plane(*points)),
+            normals=np.stack(pose.rotate_in_plane(*normal)),
+            spins=np.full((1, length.size), pose.spin),
+            station=np.cumsum(length) - length / 2,
             side=np.zeros(length.size),
-        )  # fmt: skip
+        )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""

@@ -22,19 +22,19 @@ class Side:
 
     __slots__ = ()
 
-    passes: ClassVar[bool] = False
-    """Whether water can go through the side; water that enters must leave by a side that ``opens``."""
-    opens: ClassVar[bool] = False
+    is_permeable: ClassVar[bool] = False
+    """Whether water can go through the side; water that enters must leave by a side that ``is_open``."""
+    is_open: ClassVar[bool] = False
     """Whether the flow through the side balances that through the others; the position of such a side is arbitrary."""
-    ends: ClassVar[bool] = True
+    is_domain_end: ClassVar[bool] = True
     """Whether the domain ends here; beyond the side of a patch it may continue in coarser cells."""
     travels: ClassVar[tuple[bool, bool]] = False, True
     """Whether the side may travel with the grid: across itself, and along itself."""
 
-    def into(self, time: float, *places: np.ndarray) -> np.ndarray | float:
+    def inflow_velocity(self, time: float, *places: np.ndarray) -> np.ndarray | float:
         """Return the velocity into the domain, a number or one for each point [m/s].
 
-        It is called only if the side ``passes``.
+        It is called only if the side ``is_permeable``.
 
         Args:
             time: time [s].
@@ -43,17 +43,17 @@ class Side:
         del time, places
         return 0.0
 
-    def along(self, time: float, axes: int) -> tuple[float, ...] | None:
+    def wall_velocity(self, time: float, ndim: int) -> tuple[float, ...] | None:
         """Return the velocity of the wall along the other axes [m/s]; None without friction.
 
         Args:
             time: time [s].
-            axes: of the domain, 2 or 3.
+            ndim: of the domain, 2 or 3.
         """
-        del time, axes
+        del time, ndim
         return None
 
-    def carries(self, outward: float) -> float:
+    def outflow_fraction(self, outward: float) -> float:
         """Return the fraction of a step in which the arriving water is carried out [-].
 
         Args:
@@ -77,11 +77,11 @@ class Stream(Side):
     ``farfield``). False prescribes the far stream itself, so that the displacement of a body cannot widen it. In space
     some of the six may be a Mirror."""
 
-    passes: ClassVar[bool] = True
-    opens: ClassVar[bool] = True
+    is_permeable: ClassVar[bool] = True
+    is_open: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = True, True
 
-    def carries(self, outward: float) -> float:
+    def outflow_fraction(self, outward: float) -> float:
         """Return the fraction, which rises with the outward velocity of the far stream; see ``Side``."""
         return min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
 
@@ -101,10 +101,10 @@ class Wall(Side):
 
     travels: ClassVar[tuple[bool, bool]] = False, False
 
-    def along(self, time: float, axes: int) -> tuple[float, ...]:
+    def wall_velocity(self, time: float, ndim: int) -> tuple[float, ...]:
         """Return the wall's speed; see ``Side``."""
         del time
-        return self.speed if isinstance(self.speed, tuple) else (self.speed, *(0.0,) * (axes - 2))
+        return self.speed if isinstance(self.speed, tuple) else (self.speed, *(0.0,) * (ndim - 2))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,29 +115,29 @@ class Inflow(Side):
     """Velocity into the domain [m/s] as a function of the coordinate along the side [m]; in space of both, two arrays
     of one shape in the order x, y, z."""
 
-    passes: ClassVar[bool] = True
+    is_permeable: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = False, False
 
-    def into(self, time: float, *places: np.ndarray) -> np.ndarray:
+    def inflow_velocity(self, time: float, *places: np.ndarray) -> np.ndarray:
         """Return the profile; see ``Side``."""
         del time
         return np.asarray(self.profile(*places))
 
-    def along(self, time: float, axes: int) -> tuple[float, ...]:
+    def wall_velocity(self, time: float, ndim: int) -> tuple[float, ...]:
         """Return zero: the water enters at a right angle; see ``Side``."""
         del time
-        return (0.0,) * (axes - 1)
+        return (0.0,) * (ndim - 1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outflow(Side):
     """A side at which water leaves, carried out with the mean speed."""
 
-    passes: ClassVar[bool] = True
-    opens: ClassVar[bool] = True
+    is_permeable: ClassVar[bool] = True
+    is_open: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = True, True
 
-    def carries(self, outward: float) -> float:
+    def outflow_fraction(self, outward: float) -> float:
         """Return 1: the water is always carried out; see ``Side``."""
         del outward
         return 1.0
@@ -191,41 +191,44 @@ class Sides:
                 raise InvalidDesign(
                     f"of {low_name} and {high_name}, one side is periodic and the other is not; make both Periodic()."
                 )
-        plane, ends = self.around(2), (self.low, self.high)
+        plane, ends = self.of_axes(2), (self.low, self.high)
         enters = any(isinstance(side, Inflow) for side in (*plane, *ends))
-        if enters and not any(s.opens for s in plane) and Outflow not in map(type, ends):
+        if enters and not any(s.is_open for s in plane) and Outflow not in map(type, ends):
             raise InvalidDesign("water enters through an Inflow and cannot leave; make another side an Outflow().")
 
-    def check(self, axes: int) -> None:
+    def check(self, ndim: int) -> None:
         """Refuse sides that do not fit the number of axes of the domain.
 
         Args:
-            axes: number of axes, 2 or 3.
+            ndim: number of axes, 2 or 3.
 
         Raises:
             InvalidDesign: a mirror in the plane, or a side's speed of another dimension.
         """
-        for name, side in zip(NAMES, self.around(axes), strict=False):
-            if isinstance(side, Mirror) and axes == 2:
+        for name, side in zip(NAMES, self.of_axes(ndim), strict=False):
+            if isinstance(side, Mirror) and ndim == 2:
                 raise InvalidDesign(f"the {name} side of a plane grid is a Mirror; in the plane take a Slip().")
-            speed, needs = side.along(0.0, axes), ("a plane grid needs one number", "in space it has two")[axes - 2]
-            if speed is not None and len(speed) != axes - 1:
+            speed, needs = (
+                side.wall_velocity(0.0, ndim),
+                ("a plane grid needs one number", "in space it has two")[ndim - 2],
+            )
+            if speed is not None and len(speed) != ndim - 1:
                 raise InvalidDesign(f"the speed of the {name} side along itself is {show(speed)} m/s; {needs}.")
 
-    def check_travel(self, axes: int, travels: tuple[bool, bool, bool], body: str) -> None:
+    def check_travel(self, ndim: int, travels: tuple[bool, bool, bool], body: str) -> None:
         """Refuse sides with a fixed position in the world if the grid travels and would move them.
 
         A side without friction may travel along itself. Open and periodic sides may travel in any direction.
 
         Args:
-            axes: of the domain.
+            ndim: of the domain.
             travels: whether the grid travels along x, y and z.
             body: name of the body that it travels with.
 
         Raises:
             InvalidDesign: a wall, an inflow or a mirror would travel.
         """
-        for number, name in enumerate(NAMES[: 2 * axes]):
+        for number, name in enumerate(NAMES[: 2 * ndim]):
             side, travels_across = getattr(self, name), travels[number // 2]
             may_across, may_along = side.travels
             if (travels_across and not may_across) or (any(travels) and not may_along):
@@ -245,28 +248,28 @@ class Sides:
         """Return a domain that repeats itself along all axes."""
         return cls(**dict.fromkeys(NAMES, Periodic()))
 
-    def around(self, axes: int) -> tuple[Side, ...]:
+    def of_axes(self, ndim: int) -> tuple[Side, ...]:
         """Return the sides of a domain with so many axes, in the order of ``NAMES``."""
-        return tuple(getattr(self, name) for name in NAMES[: 2 * axes])
+        return tuple(getattr(self, name) for name in NAMES[: 2 * ndim])
 
-    def unbounded(self, axes: int) -> bool:
+    def unbounded(self, ndim: int) -> bool:
         """Return whether the domain is unbounded, so that its sides move with the flow."""
-        sides = self.around(axes)
+        sides = self.of_axes(ndim)
         open_sides = [isinstance(s, Stream) and s.unbounded for s in sides]
         return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, sides, strict=True))
 
-    def repeats(self, axes: int) -> tuple[bool, ...]:
+    def is_periodic(self, ndim: int) -> tuple[bool, ...]:
         """Return whether the domain is periodic, along each axis."""
-        return tuple(isinstance(side, Periodic) for side in self.around(axes)[::2])
+        return tuple(isinstance(side, Periodic) for side in self.of_axes(ndim)[::2])
 
-    def mirrors(self, axes: int) -> tuple[bool, ...]:
+    def has_mirror(self, ndim: int) -> tuple[bool, ...]:
         """Return whether there is a mirror at the low and at the high end, along each axis: ``NAMES``."""
-        return tuple(isinstance(side, Mirror) for side in self.around(axes))
+        return tuple(isinstance(side, Mirror) for side in self.of_axes(ndim))
 
-    def held(self, axes: int) -> tuple[tuple[bool, bool], ...]:
+    def is_fixed(self, ndim: int) -> tuple[tuple[bool, bool], ...]:
         """Return whether the positions of the low and the high side are fixed, along each axis.
 
         They are fixed for all but open sides.
         """
-        fixed = [not side.opens for side in self.around(axes)]
+        fixed = [not side.is_open for side in self.of_axes(ndim)]
         return tuple(zip(fixed[::2], fixed[1::2], strict=True))

@@ -72,7 +72,8 @@ def _fastest_marker(markers: Markers) -> float:
 Watcher = Callable[["Simulation"], None]
 """Function that is called with the simulation during a run."""
 
-_CHANGING = ("time", "_last", "_speed", "_reference")
+_CHANGING = {"time": "time", "_last": "_last_step", "_speed": "_speed", "_reference": "_reference"}
+"""Numbers that change, by their key in a checkpoint."""
 
 MAX_EVENED_STEPS = 16
 """Steps before the end of a run over which the time step is evened out, so that the last step is not much shorter
@@ -86,8 +87,8 @@ class Simulation(Fields):
         setup: what is simulated.
         time: time reached [s].
         water: velocity and pressure.
-        thin: for each body, the fraction of its length that is thinner than the kernel: no water passes it, but its
-            force is noisy.
+        thin_fractions: for each body, the fraction of its length that is thinner than the kernel: no water passes it,
+            but its force is noisy.
     """
 
     def __init__(self, setup: Setup, *, thread_count: int | None = None) -> None:
@@ -98,28 +99,32 @@ class Simulation(Fields):
             thread_count: threads of the kernels; None takes those of ``threads.count`` [-].
 
         Raises:
-            InvalidDesign: bodies overlap, or see ``Setup.check``.
+            InvalidDesign: bodies overlap, or see ``Setup.check_bodies``.
         """
         self.setup = setup
-        self.thin = setup.check()
-        precompile(setup.grid.axes, setup.dtype)
+        self.thin_fractions = setup.check_bodies()
+        precompile(setup.grid.ndim, setup.dtype)
         self.time = 0.0
         options = setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
-        self.water = Fluid(setup.grid, *options) if setup.around is None else Nested(setup.grid, setup.around, *options)
-        self.axes = setup.grid.axes
-        self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
+        self.water = (
+            Fluid(setup.grid, *options)
+            if setup.coarse_grid is None
+            else Nested(setup.grid, setup.coarse_grid, *options)
+        )
+        self.ndim = setup.grid.ndim
+        self.frame = np.zeros((2, self.ndim))  # position and velocity of the grid
         self._bodies = [_remembering(body) for body in setup.bodies]
-        self.swimmers = {b.name: Swimmer.of(b) for b in self._bodies if isinstance(b, FreeBody)}
+        self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
         self._log, self._watch = Log(setup), Watch(setup)
-        self._last = 0.0
+        self._last_step = 0.0
         self._frame_velocity_at(0.0)
         stream = self._stream(0.0)
         for layer in self.water.layers:
             for c, component in enumerate(layer.velocity):
-                component[:] = setup.began(c, layer.grid) - self.frame[1, c]
+                component[:] = setup.initial_velocity(c, layer.grid) - self.frame[1, c]
             layer.border.stream = stream
-        self._placed = False
+        self._is_placed = False
         self._latest_step: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
         self._outlines = outlines = [
@@ -130,17 +135,17 @@ class Simulation(Fields):
         self._reference = 0.0  # fastest stream, body or wall so far
         self._max_first_step = inf  # of a first step, by how far it carries bodies that begin at rest
         self.water.place(self._bodies, [self._in_frame(self.pose(b.name)) for b in self._bodies], 0.0)
-        shared = self._watch.shared(self.water, 0.0)
+        shared = self._watch.overlap_message(self.water, 0.0)
         if shared is not None:
             raise InvalidDesign(shared)
-        for body, mirror_cuts in zip(self._bodies, self.water.cut, strict=True):
+        for body, mirror_cuts in zip(self._bodies, self.water.mirror_cuts, strict=True):
             if isinstance(body, FreeBody) and body.free is None:
-                self.swimmers[body.name].go &= np.array(symmetric(mirror_cuts))
-        self._log.hold(self.water, outlines)
+                self.swimmers[body.name].is_free &= np.array(symmetric(mirror_cuts))
+        self._log.store_contents(self.water, outlines)
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(self._bodies, outlines, strict=True)]
         )  # fmt: skip
-        self._watched = [consistency for b in self._bodies for consistency in self._consistencies_of(b)]
+        self._consistency_checks = [consistency for b in self._bodies for consistency in self._consistencies_of(b)]
 
     def _consistencies_of(self, body: AnyBody) -> list[Consistency]:
         """Return the checks that compare a body's prescribed rates with its positions during the run.
@@ -149,7 +154,7 @@ class Simulation(Fields):
         """
         cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
-            pose = body.pose(0.0).along(self.axes)
+            pose = body.pose(0.0).in_dimensions(self.ndim)
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
@@ -157,22 +162,23 @@ class Simulation(Fields):
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
             consistencies.append(
                 Consistency(
-                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).along(self.axes), reach), cell
+                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.ndim), reach),
+                    cell,
                 )
             )
             changing.append(not fixed)
         if isinstance(body.shape, Midline | Trunk):
             consistencies.append(
-                Consistency(MidlineSource(body.name, body.shape.spine), cell, every=RATE_CHECK_INTERVAL)
+                Consistency(MidlineSource(body.name, body.shape.spine), cell, check_interval=RATE_CHECK_INTERVAL)
             )
             changing.append(not body.shape.rigid)
         if isinstance(body.shape, Linked):
-            links = LinkSource(body.name, body.shape.motion, body.shape.reach)
-            consistencies.append(Consistency(links, cell, every=RATE_CHECK_INTERVAL))
+            links = LinkSource(body.name, body.shape.motion, body.shape.bounding_radii)
+            consistencies.append(Consistency(links, cell, check_interval=RATE_CHECK_INTERVAL))
             changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
         for consistency in consistencies:
-            first_step = consistency.longest(0.0, step)
+            first_step = consistency.max_first_step(0.0, step)
             self._max_first_step = min(self._max_first_step, first_step)
             consistency.start(0.0, first_step)
         return [consistency for consistency, is_changing in zip(consistencies, changing, strict=True) if is_changing]
@@ -188,7 +194,7 @@ class Simulation(Fields):
         """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
-            return body.pose(self.time if time is None else time).along(self.axes)
+            return body.pose(self.time if time is None else time).in_dimensions(self.ndim)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
@@ -203,7 +209,7 @@ class Simulation(Fields):
         """Return the velocity of the far water in the frame of the grid [m/s]."""
         return tuple(
             float(component - frame_component)
-            for component, frame_component in zip(self.setup.far(time), self.frame[1], strict=True)
+            for component, frame_component in zip(self.setup.far_velocity(time), self.frame[1], strict=True)
         )
 
     def _frame_velocity_at(self, time: float) -> None:
@@ -212,7 +218,7 @@ class Simulation(Fields):
             return
         name = self.setup.follow
         velocity = self.swimmers[name].rate if name in self.swimmers else np.array(self.pose(name, time).velocity)
-        travels = self.setup.follow_axes[: self.axes]
+        travels = self.setup.follow_axes[: self.ndim]
         self.frame[1, : len(travels)] = np.where(travels, velocity[: len(travels)], 0.0)
 
     # --- one step ----------------------------------------------------------------------------------------------
@@ -236,7 +242,7 @@ class Simulation(Fields):
 
     def _limit(self, fastest: float) -> float:
         """Return the time step at which the fastest water crosses one cell, with a margin for friction [s]."""
-        return self.setup.grid.cell / (fastest + 2 * self.axes * float(self.water.nu))
+        return self.setup.grid.cell / (fastest + 2 * self.ndim * float(self.water.nu))
 
     def advance(self, dt: float | None = None) -> None:
         """Advance by one step.
@@ -256,8 +262,8 @@ class Simulation(Fields):
         dt = self.next_step() if dt is None else dt
         if not (isfinite(dt) and dt > 0):
             raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
-        for consistency in self._watched:
-            consistency.look(self.time, dt)
+        for consistency in self._consistency_checks:
+            consistency.check_step(self.time, dt)
         contacts = self._contacts(dt)
         for name, swimmer in self.swimmers.items():
             swimmer.advance(self.time, dt, self.setup.density, contacts.get(name))
@@ -266,12 +272,12 @@ class Simulation(Fields):
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
         time = self.time + dt
         poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
-        moving = self.setup.follow is not None or not all(b.still for b in self._bodies)
+        moving = self.setup.follow is not None or not all(b.is_static for b in self._bodies)
         offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
-        if moving or not self._placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE:
+        if moving or not self._is_placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE:
             self.water.offset = offset
             self.water.place(self._bodies, poses, time)
-            self._placed = True
+            self._is_placed = True
             self._watch.overlap(self.water, time)
         if moving:
             cell = self.setup.grid.cell
@@ -289,9 +295,9 @@ class Simulation(Fields):
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits, time)
-        self.time, self._last = time, dt
+        self.time, self._last_step = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
-        self._latest_step = _LatestStep(dt, poses, push, drift, self._log.held)
+        self._latest_step = _LatestStep(dt, poses, push, drift, self._log.region_contents)
         self._note(self._latest_step)
         self._log.control(self.water, dt, push)
 
@@ -310,7 +316,7 @@ class Simulation(Fields):
             half_step = 0.5 * dt
             outlines.append(replace(outline, points=outline.points + half_step * outline.velocities))
             swimmer = self.swimmers.get(body.name)
-            centres.append(np.zeros(2) if swimmer is None else swimmer.place[:2] + half_step * swimmer.rate[:2])
+            centres.append(np.zeros(2) if swimmer is None else swimmer.coordinates[:2] + half_step * swimmer.rate[:2])
         contact_forces = contact.forces(setup.contact, outlines, centres)
         return dict(zip([b.name for b in self._bodies], contact_forces, strict=True))
 
@@ -335,16 +341,16 @@ class Simulation(Fields):
         for k, (body, markers, point, loads) in enumerate(
             zip(self._bodies, outlines, torque_points, self._loads, strict=True)
         ):  # fmt: skip
-            act = loads.whole
-            load = sample(water, markers, setup.density).load(point) if water.axes == 2 else None
+            act = loads.total
+            load = sample(water, markers, setup.density).load(point) if water.ndim == 2 else None
             body_pose = self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
             if swimmer is not None:
                 body_pose = swimmer.place_and_rate
                 swimmer.load = np.array([*act.force, *act.moment])
-                if swimmer.steps % ADDED_MASS_INTERVAL == 1 and swimmer.go.any():
-                    free_degrees = swimmer.go if self.axes == 3 else None
-                    swimmer.take_added(added_mass(water, markers, point, setup.density, k, free_degrees), self.time)
+                if swimmer.steps % ADDED_MASS_INTERVAL == 1 and swimmer.is_free.any():
+                    free_degrees = swimmer.is_free if self.ndim == 3 else None
+                    swimmer.set_added_mass(added_mass(water, markers, point, setup.density, k, free_degrees), self.time)
             values += columns(load, act, step.drift, body_pose, self._watch.errors[k])
             part_values += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
@@ -353,17 +359,17 @@ class Simulation(Fields):
         solves = water.solves
         row = np.array(
             [
-                self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].largest / self._speed, *values,
+                self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].max_divergence / self._speed, *values,
                 *part_values,
             ]
         )  # fmt: skip
-        good = dict(zip("uvw", water.before, strict=False))
+        good = dict(zip("uvw", water.previous_velocity, strict=False))
         self._log.refuse_nonsense(fastest, self._reference, row, good)
         self._log.rows.append(row)
         if len(self._log.rows) % SIDE_CHECK_INTERVAL == 0:
             self._watch.sides(water, self.time)
 
-    def last(self, name: str) -> FlowLoads:
+    def last_loads(self, name: str) -> FlowLoads:
         """Return the force of the water on a body and on each of its parts in the last step.
 
         Args:
@@ -380,7 +386,7 @@ class Simulation(Fields):
     @property
     def drift(self) -> np.ndarray:
         """Mean velocity of the grid in the last step, shape (axis,) [m/s]."""
-        return np.zeros(self.axes) if self._latest_step is None else self._latest_step.drift
+        return np.zeros(self.ndim) if self._latest_step is None else self._latest_step.drift
 
     def accelerate(self, twists: Mapping[str, Twists]) -> None:
         """Change the velocities of bodies at the end of the last step, and let the water follow; see ``twist``.
@@ -399,20 +405,20 @@ class Simulation(Fields):
         """
         if self._latest_step is None:
             raise OutsideLimits("bodies are to be accelerated before any step was taken; call advance first.")
-        body_twists = [resting_twists(len(rows), self.axes) for rows in self.water.rows]
+        body_twists = [resting_twists(len(rows), self.ndim) for rows in self.water.rows]
         for name, motion in twists.items():
             number = self._number(name)
-            if motion.about.shape != body_twists[number].about.shape:
+            if motion.reference_points.shape != body_twists[number].reference_points.shape:
                 raise InvalidDesign(
-                    f"{name} is given the motions of {len(motion.about)} parts, and it has "
-                    f"{len(body_twists[number].about)}; give one for each part, from the first to the last."
+                    f"{name} is given the motions of {len(motion.reference_points)} parts, and it has "
+                    f"{len(body_twists[number].reference_points)}; give one for each part, from the first to the last."
                 )
             body_twists[number] = motion
         accelerate(self.water, join_twists(body_twists), self._latest_step.dt)
         self._outlines = [
             add_twists(outline, motion) for outline, motion in zip(self._outlines, body_twists, strict=True)
         ]
-        self.forget()
+        self.clear_shape_cache()
         self._log.rows.pop()
         self._note(self._latest_step)
 
@@ -428,7 +434,7 @@ class Simulation(Fields):
             NotConverged: the pressure solver did not converge.
         """
         number = self._number(name)
-        resting = [resting_twists(len(rows), self.axes) for rows in self.water.rows]
+        resting = [resting_twists(len(rows), self.ndim) for rows in self.water.rows]
         joined_modes = [join_twists([*resting[:number], mode, *resting[number + 1 :]]) for mode in modes]
         return generalised_added_mass(self.water, self._outlines, joined_modes, self.setup.density)
 
@@ -443,12 +449,12 @@ class Simulation(Fields):
             raise UnknownName("body", name, names or ("none",))
         return names.index(name)
 
-    def forget(self) -> None:
+    def clear_shape_cache(self) -> None:
         """Clear the cached midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, CachedMidline):
-                spine.forget()
+                spine.clear()
 
     def snapshot(self) -> Snapshot:
         """Return a copy of the whole state, for ``restore``."""
@@ -461,7 +467,7 @@ class Simulation(Fields):
             snapshot: see ``snapshot``.
         """
         restore_snapshot(self, snapshot)
-        self.forget()
+        self.clear_shape_cache()
         self._latest_step = None
         if snapshot.arrays["b"].size:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
@@ -470,13 +476,18 @@ class Simulation(Fields):
 
     def state(self) -> store.State:
         """Return the whole state, for a checkpoint."""
-        numbers = {key: np.array(getattr(self, key)) for key in _CHANGING}
+        numbers = {key: np.array(getattr(self, name)) for key, name in _CHANGING.items()}
         rows = np.array(self._log.rows).reshape(len(self._log.rows), -1)
         swimmers = {f"{n}.{key}": value for n, s in self.swimmers.items() for key, value in s.state().items()}
         return {
-            **numbers, **self.water.state(), **swimmers, "frame": self.frame, "rows": rows, "held": self._log.held,
+            **numbers,
+            **self.water.state(),
+            **swimmers,
+            "frame": self.frame,
+            "rows": rows,
+            "held": self._log.region_contents,
             "b": self.water.b,
-        }  # fmt: skip
+        }
 
     def resume(self, state: store.State) -> None:
         """Continue from the state of a checkpoint.
@@ -484,20 +495,20 @@ class Simulation(Fields):
         Args:
             state: see ``state``.
         """
-        for key in _CHANGING:
-            setattr(self, key, float(state[key]))
+        for key, name in _CHANGING.items():
+            setattr(self, name, float(state[key]))
         self.frame = state["frame"]
-        self._log.rows, self._log.held = list(state["rows"]), state["held"]
+        self._log.rows, self._log.region_contents = list(state["rows"]), state["held"]
         self.water.resume(state)
         self._fastest = self.water.fastest()
         for name, swimmer in self.swimmers.items():
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
-        self.forget()
+        self.clear_shape_cache()
         poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
         self.water.place(self._bodies, poses, self.time)
         if self.water.b.shape == state["b"].shape:
             self.water.b[:] = state["b"]  # as it was after ``accelerate``
-        self._placed = bool(self._log.rows)  # as in the continued run, which keeps its offset
+        self._is_placed = bool(self._log.rows)  # as in the continued run, which keeps its offset
 
     # --- a run -------------------------------------------------------------------------------------------------
 
@@ -543,7 +554,7 @@ class Simulation(Fields):
             try:
                 while self.time < end_time * (1 - 1e-12):
                     self.advance(_even_step(self.next_step(), end_time - self.time))
-                    if end_time - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
+                    if end_time - self.time < 1e-6 * self._last_step:  # rounding must not leave a tiny last step
                         self.time = end_time
                     bar.move(self.time)
                     if watchers and (self.time >= due or self.time == end_time):
@@ -582,10 +593,10 @@ class Simulation(Fields):
         Raises:
             InvalidDesign: a mirror cuts a body, so that no box goes around it.
         """
-        if not self._placed:
+        if not self._is_placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
-        for body, mirror_cuts in zip(self._bodies, self.water.cut, strict=True):
+        for body, mirror_cuts in zip(self._bodies, self.water.mirror_cuts, strict=True):
             if any(mirror_cuts):
                 raise InvalidDesign(
                     f"a mirror cuts {body.name}, and a control volume goes all around bodies; take Record.force."
@@ -601,7 +612,7 @@ class Simulation(Fields):
     @property
     def control_forces(self) -> np.ndarray:
         """Force on all bodies from the momentum through the box, one row per step since ``control`` [N/m, N]."""
-        return np.array(self._log.control_rows).reshape(-1, self.setup.grid.axes)
+        return np.array(self._log.control_rows).reshape(-1, self.setup.grid.ndim)
 
     # --- what there is to see ----------------------------------------------------------------------------------
 
@@ -621,10 +632,10 @@ class Simulation(Fields):
             raise UnknownName("body", "" if name is None else name, names or ("none",))
         body, grid = self._bodies[0 if name is None else names.index(name)], self.setup.grid
         skin = body.shape.markers(self.time, self._in_frame(self.pose(body.name)), grid.cell)
-        if grid.axes == 3:
+        if grid.ndim == 3:
             low_corner = np.array(grid.origin)[:, None]
             high_corner = low_corner + np.array(grid.size)[:, None]
-            skin = skin.of(((skin.points >= low_corner) & (skin.points <= high_corner)).all(axis=0))
+            skin = skin.select(((skin.points >= low_corner) & (skin.points <= high_corner)).all(axis=0))
         return sample(self.water, skin, self.setup.density)
 
 

@@ -46,15 +46,15 @@ class SpaceField:
     """Velocity of the body along each axis, extended smoothly a few cells into the water [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
-    part: np.ndarray | None = None
+    part_index: np.ndarray | None = None
     """Index of the body's part to which a point belongs; None for a body of one part [-]."""
 
 
 class SpaceShape(ABC):
     """A body's shape in space in its own frame; it may change with time."""
 
-    axes: ClassVar[int] = 3
-    even: ClassVar[tuple[bool, bool, bool]] = (True, True, True)
+    ndim: ClassVar[int] = 3
+    mirror_symmetry: ClassVar[tuple[bool, bool, bool]] = (True, True, True)
     """Whether the planes through the origin across x, y and z are planes of symmetry."""
 
     jointed: ClassVar[bool] = False
@@ -109,7 +109,7 @@ class SpaceShape(ABC):
         return True
 
     @property
-    def blunt(self) -> bool:
+    def is_compact(self) -> bool:
         """Whether it is about as long along each axis, for ``resolution``."""
         return False
 
@@ -139,49 +139,52 @@ class Ellipsoid(SpaceShape):
             check_positive(name, getattr(self, name))
 
     @property
-    def half(self) -> np.ndarray:
+    def half_extents(self) -> np.ndarray:
         """Half-axes, shape (3,) [m]."""
         return 0.5 * np.array([self.length, self.width, self.height])
 
-    def holds(self, points: np.ndarray) -> np.ndarray:
+    def contains(self, points: np.ndarray) -> np.ndarray:
         """Return which points of the body's frame lie inside, for points of shape (3, ...) [m]."""
-        x, y, z = (coordinate / half for coordinate, half in zip(points, self.half, strict=True))
+        x, y, z = (coordinate / half for coordinate, half in zip(points, self.half_extents, strict=True))
         return np.asarray(x * x + y * y + z * z < 1 - MIN_INSIDE_DEPTH)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return distance, normal and velocity on the points of a window; see ``SpaceShape``."""
-        pose_3d = pose.along(3)
+        pose_3d = pose.in_dimensions(3)
         fields = np.zeros((8, z.size, y.size, x.size))
         fields[7] = np.inf
         cell = float(x[1] - x[0]) if x.size > 1 else float(reach)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_ellipsoid(
             fields, px, py, pz, np.ascontiguousarray(pose_3d.matrix), np.array(pose_3d.position),
-            np.array(pose_3d.velocity), pose_3d.spins, self.half, float(reach), cell,
+            np.array(pose_3d.velocity), pose_3d.spins, self.half_extents, float(reach), cell,
         )  # fmt: skip
         return SpaceField(fields[0], (fields[1], fields[2], fields[3]), (fields[4], fields[5], fields[6]), fields[7])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return points on rings about the body's z axis; each represents the same area of a unit sphere."""
-        pose_3d, rings = pose.along(3), max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
+        pose_3d, rings = (
+            pose.in_dimensions(3),
+            max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half_extents.max()) / spacing))),
+        )
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
         turn = (np.arange(2 * rings) + 0.5) * np.pi / rings
         sin = np.sqrt(1 - cos * cos)[:, None]
         unit = np.stack([sin * np.cos(turn), sin * np.sin(turn), np.broadcast_to(cos[:, None], (rings, turn.size))])
         unit = unit.reshape(3, -1)
-        a = self.half[:, None]
-        areas = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
-        points = np.stack(pose_3d.place(a * unit))
+        a = self.half_extents[:, None]
+        areas = float(np.prod(self.half_extents)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
+        points = np.stack(pose_3d.to_world_3d(a * unit))
         normals = np.stack(rotate_vectors(pose_3d.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
         spins = np.broadcast_to(pose_3d.spins[:, None], points.shape)
         return Markers(
-            points=points, share=areas, velocities=np.stack(pose_3d.rates(points)), normals=normals, spins=spins
+            points=points, weight=areas, velocities=np.stack(pose_3d.velocity_at(points)), normals=normals, spins=spins
         )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""
-        pose_3d = pose.along(3)
-        reach = np.sqrt(((pose_3d.matrix * self.half) ** 2).sum(axis=1)).tolist()
+        pose_3d = pose.in_dimensions(3)
+        reach = np.sqrt(((pose_3d.matrix * self.half_extents) ** 2).sum(axis=1)).tolist()
         return tuple(p + sign * r for p, r in zip(pose_3d.position, reach, strict=True) for sign in (-1.0, 1.0))
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
@@ -190,34 +193,34 @@ class Ellipsoid(SpaceShape):
         It is smaller than the ellipsoid's own cross-section and vanishes where the ellipsoid is round. See
         ``SpaceShape``.
         """
-        thin_axis, *long_axes = np.argsort(self.half)
-        excess = self.half**2 - self.half[thin_axis] ** 2
-        rim_half_axes = self.half * excess / (self.half**2 + self.half[thin_axis] ** 2)
-        if rim_half_axes[long_axes].min() <= _ROUND * self.half[thin_axis]:
+        thin_axis, *long_axes = np.argsort(self.half_extents)
+        excess = self.half_extents**2 - self.half_extents[thin_axis] ** 2
+        rim_half_axes = self.half_extents * excess / (self.half_extents**2 + self.half_extents[thin_axis] ** 2)
+        if rim_half_axes[long_axes].min() <= _ROUND * self.half_extents[thin_axis]:
             return None
         turn = np.linspace(0.0, 2 * np.pi, _RIM + 1)
         rim = np.zeros((3, turn.size))
         rim[long_axes] = rim_half_axes[long_axes, None] * np.stack([np.cos(turn), np.sin(turn)])
-        rim, centre = np.array(pose.along(3).place(rim)), np.array(pose.along(3).position)
+        rim, centre = np.array(pose.in_dimensions(3).to_world_3d(rim)), np.array(pose.in_dimensions(3).position)
         return np.stack([np.broadcast_to(centre[:, None], (3, _RIM)), rim[:, :-1], rim[:, 1:]])
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the smallest axis."""
-        return np.zeros(1), np.full(1, 2 * float(self.half.min()))
+        return np.zeros(1), np.full(1, 2 * float(self.half_extents.min()))
 
     @property
-    def blunt(self) -> bool:
+    def is_compact(self) -> bool:
         """Whether no axis is more than ``_MAX_BLUNT_RATIO`` times another."""
-        return is_blunt(self.half)
+        return is_blunt(self.half_extents)
 
     def volume(self, time: float) -> float:
         """Return the volume."""
-        return 4 / 3 * np.pi * float(np.prod(self.half))
+        return 4 / 3 * np.pi * float(np.prod(self.half_extents))
 
     def mass(self, time: float) -> SpaceMass:
         """Return volume and moments; the centre is the origin."""
         volume, zero = self.volume(time), (0.0, 0.0, 0.0)
-        moments = tensor(np.diag(volume * self.half**2 / 5))
+        moments = tensor(np.diag(volume * self.half_extents**2 / 5))
         return SpaceMass(volume=volume, centre=zero, centre_rate=zero, moments=moments, swirl=zero)
 
 

@@ -25,22 +25,22 @@ from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.pose import Pose, rotate_vectors
 
 
-def to_degrees_of_freedom(values: Sequence[float], axes: int) -> np.ndarray:
+def to_degrees_of_freedom(values: Sequence[float], ndim: int) -> np.ndarray:
     """Return values for all degrees of freedom; of three values in space, those along z and about x and y are 0.
 
     Args:
         values: along x and y and about z, or all six.
-        axes: of the domain, 2 or 3.
+        ndim: of the domain, 2 or 3.
     """
-    if axes == 2 or len(values) == 6:
+    if ndim == 2 or len(values) == 6:
         return np.array(values)
     x, y, turn = values
     return np.array([x, y, 0 * x, 0 * x, 0 * x, turn])
 
 
-def _lengthened(vector: Sequence[float], axes: int) -> list[float]:
+def _lengthened(vector: Sequence[float], ndim: int) -> list[float]:
     """Return a vector with as many components as there are axes."""
-    return [*vector, *(0.0,) * (axes - len(vector))]
+    return [*vector, *(0.0,) * (ndim - len(vector))]
 
 
 def _attitude(yaw: float, pitch: float, roll: float) -> np.ndarray:
@@ -67,7 +67,19 @@ def _unwinding(vector: np.ndarray, slope: np.ndarray) -> np.ndarray:
     return torque
 
 
-_CHANGING = ("place", "rate", "push", "load", "added", "momentum", "owed", "applied", "span", "steps")
+_CHANGING = {
+    "place": "coordinates",
+    "rate": "rate",
+    "push": "acceleration",
+    "load": "load",
+    "added": "added_mass",
+    "momentum": "momentum",
+    "owed": "residual_impulse",
+    "applied": "applied",
+    "span": "span",
+    "steps": "steps",
+}
+"""Attributes that change, by their key in a checkpoint."""
 
 RESIDUAL_RELAXATION = 0.5
 """Fraction of the momentum still owed that a step repays [-]; all at once excites oscillations."""
@@ -86,21 +98,21 @@ class Swimmer:
 
     body: FreeBody
     """The free body."""
-    place: np.ndarray
+    coordinates: np.ndarray
     """Centre of mass and angle of the frame, in space its rotation vector [m, rad]."""
     rate: np.ndarray
     """Velocity of the centre, and angular momentum over the tensor of inertia [m/s, rad/s]."""
-    go: np.ndarray
+    is_free: np.ndarray
     """Whether the body is free in each degree of freedom."""
-    push: np.ndarray = field(init=False)
+    acceleration: np.ndarray = field(init=False)
     """Acceleration in the last step [m/s^2, rad/s^2]."""
     load: np.ndarray = field(init=False)
     """Force and torque of the water in the last step [N/m, N; in space N, N m]."""
-    added: np.ndarray = field(init=False)
+    added_mass: np.ndarray = field(init=False)
     """Added mass, a square matrix [kg/m, kg, kg m; in space kg, kg m, kg m^2]."""
     momentum: np.ndarray = field(init=False)
     """Momentum and angular momentum before the last step [kg/s, kg m/s; in space kg m/s, kg m^2/s]."""
-    owed: np.ndarray = field(init=False)
+    residual_impulse: np.ndarray = field(init=False)
     """Momentum given by water and other forces that has not yet changed the body's motion [kg/s, kg m/s]."""
     applied: np.ndarray = field(init=False)
     """Force and torque in the last step, except those of the water [N/m, N]."""
@@ -110,26 +122,26 @@ class Swimmer:
     """Number of steps taken [-]."""
 
     def __post_init__(self) -> None:
-        count = len(self.place)
-        self.push, self.load, self.momentum, self.owed, self.applied = np.zeros((5, count))
-        self.added = np.zeros((count, count))
+        count = len(self.coordinates)
+        self.acceleration, self.load, self.momentum, self.residual_impulse, self.applied = np.zeros((5, count))
+        self.added_mass = np.zeros((count, count))
 
     @classmethod
-    def of(cls, body: FreeBody) -> "Swimmer":
+    def from_body(cls, body: FreeBody) -> "Swimmer":
         """Return a free body in its initial state."""
-        axes = body.shape.axes
-        if axes == 2:
+        ndim = body.shape.ndim
+        if ndim == 2:
             place, rate = np.array([*body.start[:2], body.angle]), np.array([*body.velocity[:2], body.spin])
         else:
             turn = _attitude(body.angle, body.pitch, body.roll)
             place = np.array([*_lengthened(body.start, 3), *turn])
             rate = np.array([*_lengthened(body.velocity, 3), body.spin_x, body.spin_y, body.spin])
         free = (True,) * place.size if body.free is None else body.free
-        return cls(body, place, rate, to_degrees_of_freedom(free, axes).astype(bool))
+        return cls(body, place, rate, to_degrees_of_freedom(free, ndim).astype(bool))
 
     @property
-    def _axes(self) -> int:
-        return self.body.shape.axes
+    def _ndim(self) -> int:
+        return self.body.shape.ndim
 
     @staticmethod
     def _angles(place: np.ndarray) -> tuple[float, float, float]:
@@ -143,7 +155,7 @@ class Swimmer:
         Args:
             place: centre of mass and rotation vector [m, rad].
         """
-        if self._axes == 2:
+        if self._ndim == 2:
             return np.eye(3)  # the plane's mass matrix does not depend on it
         x, y, z = place[3:].tolist()
         return rotation.turn(place[3:]) if x or y else Pose(angle=z).matrix
@@ -169,36 +181,36 @@ class Swimmer:
             mass: mass properties of the present shape in the body's frame.
         """
         if isinstance(mass, SpaceMass):
-            matrix = self._matrix(self.place)
-            spins = np.where(self.go[3:], self.rate[3:] - mass.recoil(matrix)[3:], self.rate[3:])
+            matrix = self._matrix(self.coordinates)
+            spins = np.where(self.is_free[3:], self.rate[3:] - mass.recoil(matrix)[3:], self.rate[3:])
             offset, drift = (
                 np.array(rotate_vectors(matrix, mass.centre)),
                 np.array(rotate_vectors(matrix, mass.centre_rate)),
             )
-            place = np.concatenate([self.place[:3] - offset, self.place[3:]])
+            place = np.concatenate([self.coordinates[:3] - offset, self.coordinates[3:]])
             return self._pose(place, self.rate[:3] - drift - np.cross(spins, offset), spins)
-        angle = self.place[2]
+        angle = self.coordinates[2]
         c, s = np.cos(angle), np.sin(angle)
-        spin = self.rate[2] - mass.swirl / mass.moment if self.go[2] else self.rate[2]
+        spin = self.rate[2] - mass.swirl / mass.moment if self.is_free[2] else self.rate[2]
         rx, ry = c * mass.centre[0] - s * mass.centre[1], s * mass.centre[0] + c * mass.centre[1]
         ux, uy = (c * mass.centre_rate[0] - s * mass.centre_rate[1], s * mass.centre_rate[0] + c * mass.centre_rate[1])
         return Pose(
-            position=(self.place[0] - rx, self.place[1] - ry), angle=angle,
+            position=(self.coordinates[0] - rx, self.coordinates[1] - ry), angle=angle,
             velocity=(self.rate[0] - ux + spin * ry, self.rate[1] - uy - spin * rx), spin=spin,
         )  # fmt: skip
 
     @property
     def place_and_rate(self) -> Pose:
         """Centre of mass and attitude, with the velocities that the water's forces change."""
-        return self._state(self.place)
+        return self._state(self.coordinates)
 
     def _state(self, place: np.ndarray) -> Pose:
-        if self._axes == 3:
+        if self._ndim == 3:
             return self._pose(place, self.rate[:3], self.rate[3:])
         (x, y, angle), (u, v, spin) = place.tolist(), self.rate.tolist()
         return Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
 
-    def take_added(self, mass: np.ndarray, time: float) -> None:
+    def set_added_mass(self, mass: np.ndarray, time: float) -> None:
         """Set the added mass.
 
         Args:
@@ -208,7 +220,7 @@ class Swimmer:
         Raises:
             Diverged: it is not finite in a free degree of freedom.
         """
-        free_mass = mass[np.ix_(self.go, self.go)]
+        free_mass = mass[np.ix_(self.is_free, self.is_free)]
         if not np.isfinite(free_mass).all():
             entry = free_mass[~np.isfinite(free_mass)][0]
             raise Diverged(
@@ -216,16 +228,16 @@ class Swimmer:
                 f"may move; take a finer grid around it, precision='double', or lock that degree.",
                 time=time,
             )
-        self.added = np.nan_to_num(mass)
+        self.added_mass = np.nan_to_num(mass)
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all that changes, by name."""
-        return {key: np.array(getattr(self, key)) for key in _CHANGING}
+        return {key: np.array(getattr(self, name)) for key, name in _CHANGING.items()}
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
         """Set all that changes."""
-        for key in _CHANGING:
-            setattr(self, key, state[key] if state[key].ndim else state[key].item())
+        for key, name in _CHANGING.items():
+            setattr(self, name, state[key] if state[key].ndim else state[key].item())
 
     def advance(self, time: float, dt: float, water_density: float, contact: np.ndarray | None = None) -> None:
         """Advance by one step under the water's forces of the last step and the other forces of this one.
@@ -245,7 +257,7 @@ class Swimmer:
         shape = self.body.shape
         density = water_density if self.body.density is None else self.body.density
         start_mass, end_mass = shape.mass(time), shape.mass(time + dt)
-        matrix = self._matrix(self.place)
+        matrix = self._matrix(self.coordinates)
         start_inertia, slip = start_mass.inertia(matrix), self._slip(start_mass, matrix)
         momentum = (density * start_inertia) @ self.rate
         guess = self._foreseen(momentum, dt)
@@ -258,19 +270,19 @@ class Swimmer:
         for count in range(MAX_ITERATIONS):  # one is exact in the plane; in space the first assumes a fixed attitude
             end_inertia = end_mass.inertia(matrix)
             inertia_change = end_inertia - start_inertia
-            inertia_change[: self._axes] = 0
+            inertia_change[: self._ndim] = 0
             force = guess - (density * inertia_change / dt) @ self.rate + outer
-            total_inertia = density * end_inertia + self.added + np.diag(yielding)
+            total_inertia = density * end_inertia + self.added_mass + np.diag(yielding)
             push = self._accelerated(total_inertia, force if self.steps else force - guess - outer)
             previous_rate, rate = rate, self.rate + dt * push
-            place = self._moved(dt * 0.5 * (self.rate + rate) - dt * 0.5 * recoil)
+            place = self._displaced(dt * 0.5 * (self.rate + rate) - dt * 0.5 * recoil)
             rate_change = np.abs(rate - previous_rate).max()
-            if self._axes == 2 or (count and rate_change <= _RATE_TOLERANCE * np.abs(rate).max()):
+            if self._ndim == 2 or (count and rate_change <= _RATE_TOLERANCE * np.abs(rate).max()):
                 break
             matrix = self._matrix(place)
             recoil = slip + self._slip(end_mass, matrix)
         self.applied = outer - yielding * push
-        self.place, self.rate, self.push = place, rate, push
+        self.coordinates, self.rate, self.acceleration = place, rate, push
         self.steps += 1
 
     def _foreseen(self, momentum: np.ndarray, dt: float) -> np.ndarray:
@@ -280,14 +292,16 @@ class Swimmer:
             momentum: of the body now [kg/s, kg m/s; in space kg m/s, kg m^2/s].
             dt: length of the step [s].
         """
-        guess: np.ndarray = self.load + self.added @ self.push
+        guess: np.ndarray = self.load + self.added_mass @ self.acceleration
         if self.steps:
-            self.owed = self.owed + self.span * (self.load + self.applied) - (momentum - self.momentum)
+            self.residual_impulse = (
+                self.residual_impulse + self.span * (self.load + self.applied) - (momentum - self.momentum)
+            )
         if self.steps > 1:  # the second step compensates the sudden start by itself
             # The force of the last step is one step late. The missing momentum is repaid gradually. Otherwise an eel,
             # whose lateral added mass is ten times its own mass, sways several times too much. An extrapolation of the
             # force would instead amplify its fluctuations.
-            guess = guess + RESIDUAL_RELAXATION * self.owed / dt
+            guess = guess + RESIDUAL_RELAXATION * self.residual_impulse / dt
         return guess
 
     def _accelerated(self, total_inertia: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -298,26 +312,26 @@ class Swimmer:
             force: on a body that does not accelerate. In the first step, water force and added mass are not known: the
                 force is then that of the change of inertia.
         """
-        push = np.zeros(self.place.size)
-        if self.steps or self._axes == 3:
-            push[self.go] = np.linalg.solve(total_inertia[np.ix_(self.go, self.go)], force[self.go])
+        push = np.zeros(self.coordinates.size)
+        if self.steps or self._ndim == 3:
+            push[self.is_free] = np.linalg.solve(total_inertia[np.ix_(self.is_free, self.is_free)], force[self.is_free])
         return push
 
     def _slip(self, mass: Mass | SpaceMass, matrix: np.ndarray) -> np.ndarray:
         """Return the velocity that the deformation takes from the frame, as far as it is free."""
-        slip: np.ndarray = np.where(self.go, mass.recoil(matrix), 0.0)
+        slip: np.ndarray = np.where(self.is_free, mass.recoil(matrix), 0.0)
         return slip
 
-    def _moved(self, step: np.ndarray) -> np.ndarray:
+    def _displaced(self, step: np.ndarray) -> np.ndarray:
         """Return the place after a displacement; in space the rotations are composed.
 
         Args:
             step: displacement and rotation vector [m, rad].
         """
-        place = self.place + step
-        if step[3:5].any() or (self.place[3:5].any() and step[3:].any()):  # else about z alone
-            turn = rotation.multiply(rotation.from_vector(step[3:]), rotation.from_vector(self.place[3:]))
-            place[3:] = rotation.to_vector(turn, self.place[3:] + step[3:])
+        place = self.coordinates + step
+        if step[3:5].any() or (self.coordinates[3:5].any() and step[3:].any()):  # else about z alone
+            turn = rotation.multiply(rotation.from_vector(step[3:]), rotation.from_vector(self.coordinates[3:]))
+            place[3:] = rotation.to_vector(turn, self.coordinates[3:] + step[3:])
         return place
 
     def _outer(self, time: float, dt: float, weight: float, recoil: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -335,25 +349,25 @@ class Swimmer:
         Raises:
             InvalidDesign: the body's own force is not three or six finite numbers.
         """
-        body, axes = self.body, self._axes
-        mid_place = self._moved(0.5 * dt * (self.rate - 0.5 * recoil))
-        stiff, viscous = to_degrees_of_freedom(body.springs, axes), to_degrees_of_freedom(body.dampers, axes)
-        pull = _lengthened(body.gravity, axes)
-        outer = weight * np.array([*pull, *np.zeros(mid_place.size - axes)]) - self._held(mid_place, stiff)
+        body, ndim = self.body, self._ndim
+        mid_place = self._displaced(0.5 * dt * (self.rate - 0.5 * recoil))
+        stiff, viscous = to_degrees_of_freedom(body.springs, ndim), to_degrees_of_freedom(body.dampers, ndim)
+        pull = _lengthened(body.gravity, ndim)
+        outer = weight * np.array([*pull, *np.zeros(mid_place.size - ndim)]) - self._spring_force(mid_place, stiff)
         outer = outer - viscous * self.rate
         if body.force is not None:
             force = body.force(time + 0.5 * dt, self._state(mid_place))
-            sizes = [(3,)] if axes == 2 else [(3,), (6,)]
+            sizes = [(3,)] if ndim == 2 else [(3,), (6,)]
             if np.shape(force) not in sizes or not np.isfinite(np.asarray(force, float)).all():
                 raise InvalidDesign(
                     f"the force of {body.name} at t = {time:.4g} s is {show(force)}; give three finite numbers, the "
                     f"force along x and y in N/m and the torque in N (in space N and N m, or six numbers: forces along "
                     f"and torques about x, y and z)."
                 )
-            outer = outer + to_degrees_of_freedom(np.asarray(force, float).tolist(), axes)
+            outer = outer + to_degrees_of_freedom(np.asarray(force, float).tolist(), ndim)
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff
 
-    def _held(self, mid_place: np.ndarray, stiff: np.ndarray) -> np.ndarray:
+    def _spring_force(self, mid_place: np.ndarray, stiff: np.ndarray) -> np.ndarray:
         """Return the elastic force of the springs, positive along the displacement [N/m, N].
 
         Args:
@@ -361,7 +375,7 @@ class Swimmer:
             stiff: stiffness of each degree of freedom.
         """
         body = self.body
-        if self._axes == 2:
+        if self._ndim == 2:
             slack = np.array([*body.start[:2], body.angle] if body.anchor is None else body.anchor)
             return np.asarray(stiff * (mid_place - slack))
         if body.anchor is None:

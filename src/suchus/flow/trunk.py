@@ -30,14 +30,14 @@ class Trunk(SpaceShape):
             the midline's stations, and for cuts that do not rise.
     """
 
-    even: ClassVar[tuple[bool, bool, bool]] = (False, False, True)
+    mirror_symmetry: ClassVar[tuple[bool, bool, bool]] = (False, False, True)
 
     spine: Callable[[float], MidlineState]
     """The midline as a function of the time [s], with the half-widths in its plane."""
     half_height: np.ndarray
     """Half of the height across the plane at each station, shape (station,) [m]."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths from the first station that divide the body into the parts of ``Record.along`` [m]."""
+    """Arc lengths from the first station that divide the body into the parts of ``Record.part_series`` [m]."""
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
 
@@ -61,7 +61,7 @@ class Trunk(SpaceShape):
         """Parts that the cuts leave [-]."""
         return len(self.cuts) + 1
 
-    def placed(self, time: float, pose: Pose) -> tuple[MidlineState, Pose]:
+    def midline_and_frame(self, time: float, pose: Pose) -> tuple[MidlineState, Pose]:
         """Return the midline at a time in the plane z = 0 of a frame, and the pose of that frame in the world.
 
         The frame of a body that turns about z alone has the axes of the world.
@@ -73,11 +73,11 @@ class Trunk(SpaceShape):
         Raises:
             InvalidDesign: the midline has another number of stations than the half-heights.
         """
-        spine, pose_3d = self._spine(time), pose.along(3)
+        spine, pose_3d = self._spine(time), pose.in_dimensions(3)
         if not pose_3d.in_plane:
             return spine, pose_3d
         height, rate = pose_3d.position[2], pose_3d.velocity[2]
-        return spine.placed(pose), Pose(position=(0.0, 0.0, height), velocity=(0.0, 0.0, rate))
+        return spine.in_world(pose), Pose(position=(0.0, 0.0, height), velocity=(0.0, 0.0, rate))
 
     def _spine(self, time: float) -> MidlineState:
         """Return the midline at a time [s].
@@ -95,11 +95,11 @@ class Trunk(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return distance, normal, velocity and part on the points of a window; see ``SpaceShape``."""
-        spine, frame = self.placed(time, pose)
+        spine, frame = self.midline_and_frame(time, pose)
         h = float(x[-1] - x[0]) / (x.size - 1)
         fields = np.zeros((PAINTED_FIELDS, z.size, y.size, x.size))
         fields[0], fields[6] = reach, np.inf
-        rows = np.stack([*spine.rows, self.half_height, spine.swell, spine.arc])
+        rows = np.stack([*spine.rows, self.half_height, spine.half_width_rates, spine.arc])
         arguments = fields, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts)
         part_index = fields[7] if self.cuts else None
         if pose.in_plane:
@@ -110,7 +110,7 @@ class Trunk(SpaceShape):
         matrix = np.ascontiguousarray(frame.matrix)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_turned_sections(*arguments, px, py, pz, matrix, np.array(frame.position), float(reach))
-        rigid = frame.rates((x, y[:, None], z[:, None, None]))
+        rigid = frame.velocity_at((x, y[:, None], z[:, None, None]))
         u, v, w = (
             a + b for a, b in zip(rigid, rotate_vectors(matrix, (fields[4], fields[5], 0 * fields[5])), strict=True)
         )
@@ -121,7 +121,7 @@ class Trunk(SpaceShape):
 
         The widest section determines the number of patches around the body.
         """
-        spine, frame = self.placed(time, pose)
+        spine, frame = self.midline_and_frame(time, pose)
         return in_world(self._skin(spine, spacing), frame)
 
     def _skin(self, spine: MidlineState, spacing: float) -> Markers:
@@ -144,7 +144,7 @@ class Trunk(SpaceShape):
             np.outer(half_heights, np.sin(angle)),
         ])  # fmt: skip
         turn = spine.heading_rate[station, None]
-        swell = np.outer(np.concatenate([[0.0], spine.swell, [0.0]]), np.cos(angle))
+        swell = np.outer(np.concatenate([[0.0], spine.half_width_rates, [0.0]]), np.cos(angle))
         rate = np.stack([
             spine.x_rate[station, None] + swell * nx - turn * lateral_offset * ny,
             spine.y_rate[station, None] + swell * ny + turn * lateral_offset * nx,
@@ -160,20 +160,23 @@ class Trunk(SpaceShape):
         spins = np.zeros(square.shape)
         spins[2] = _patch_centres(np.broadcast_to(turn, lateral_offset.shape)[None])[0]
         return Markers(
-            points=_patch_centres(corner).reshape(3, -1), share=0.5 * size.ravel(),
+            points=_patch_centres(corner).reshape(3, -1),
+            weight=0.5 * size.ravel(),
             velocities=_patch_centres(rate).reshape(3, -1),
-            normals=(square / np.maximum(size, 1e-300)).reshape(3, -1), spins=spins.reshape(3, -1), part=part_index,
-        )  # fmt: skip
+            normals=(square / np.maximum(size, 1e-300)).reshape(3, -1),
+            spins=spins.reshape(3, -1),
+            part_index=part_index,
+        )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the smallest box around the body: x0, x1, y0, y1, z0, z1 [m]."""
-        spine, frame = self.placed(time, pose)
+        spine, frame = self.midline_and_frame(time, pose)
         if pose.in_plane:
             outline, height = ring(spine.rows), frame.position[2]
             ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
             half_height = float(self.half_height.max())
             return (*ends, height - half_height, height + half_height)
-        centres, matrix = np.array(frame.place((spine.x, spine.y, 0 * spine.x))), frame.matrix
+        centres, matrix = np.array(frame.to_world_3d((spine.x, spine.y, 0 * spine.x))), frame.matrix
         lateral = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
         lateral_extent = spine.half_width * (matrix[:, :2] @ lateral)
         vertical_extent = np.outer(matrix[:, 2], self.half_height)
@@ -186,7 +189,7 @@ class Trunk(SpaceShape):
 
         Round sections have no such surface. See ``SpaceShape``.
         """
-        spine, frame = self.placed(time, pose)
+        spine, frame = self.midline_and_frame(time, pose)
         half_width, half_height, arc = spine.half_width, self.half_height, spine.arc
         is_slim = np.minimum(half_width, half_height) < np.minimum(arc, arc[-1] - arc)
         square = np.maximum(half_width**2 + half_height**2, np.finfo(float).tiny)
@@ -197,7 +200,7 @@ class Trunk(SpaceShape):
         has_surface = ((vertical[1:] > 0) & (vertical[:-1] > 0)) | ((lateral[1:] > 0) & (lateral[:-1] > 0))
         if not has_surface.any():
             return None
-        lower_rim, upper_rim = (np.array(frame.place(centre_line + sign * rim_offset)) for sign in (-1.0, 1.0))
+        lower_rim, upper_rim = (np.array(frame.to_world_3d(centre_line + sign * rim_offset)) for sign in (-1.0, 1.0))
         pairs = [
             (lower_rim[:, :-1], lower_rim[:, 1:], upper_rim[:, :-1]),
             (lower_rim[:, 1:], upper_rim[:, 1:], upper_rim[:, :-1]),
@@ -217,7 +220,7 @@ class Trunk(SpaceShape):
         """Return volume, centre and moments, section by section."""
         return of_trunk(self._spine(time).rows, self.half_height)
 
-    def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
+    def position_at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
         """Return points of the midline in the world frame, shape (point, 3) [m].
 
         Args:
@@ -225,9 +228,9 @@ class Trunk(SpaceShape):
             pose: pose of the body's frame.
             arc: arc lengths of the points [m].
         """
-        spine, frame = self.placed(time, pose)
+        spine, frame = self.midline_and_frame(time, pose)
         x, y = (np.interp(arc, spine.arc, line) for line in (spine.x, spine.y))
-        return np.column_stack(frame.place((x, y, 0 * x)))
+        return np.column_stack(frame.to_world_3d((x, y, 0 * x)))
 
 
 def in_world(skin: Markers, frame: Pose) -> Markers:
@@ -237,12 +240,12 @@ def in_world(skin: Markers, frame: Pose) -> Markers:
         skin: markers in a frame.
         frame: pose of that frame.
     """
-    points = np.array(frame.place(skin.points))
-    velocities = np.array(rotate_vectors(frame.matrix, skin.velocities)) + frame.rates(points)
+    points = np.array(frame.to_world_3d(skin.points))
+    velocities = np.array(rotate_vectors(frame.matrix, skin.velocities)) + frame.velocity_at(points)
     return Markers(
-        points=points, share=skin.share, velocities=velocities,
+        points=points, weight=skin.weight, velocities=velocities,
         normals=np.array(rotate_vectors(frame.matrix, skin.normals)),
-        spins=np.array(rotate_vectors(frame.matrix, skin.spins)) + frame.spins[:, None], part=skin.part,
+        spins=np.array(rotate_vectors(frame.matrix, skin.spins)) + frame.spins[:, None], part_index=skin.part_index,
     )  # fmt: skip
 
 

@@ -27,14 +27,14 @@ class Twists:
     A body that is not divided is one part. A bending body is approximated by as many rigid pieces as it has parts.
     """
 
-    about: np.ndarray
+    reference_points: np.ndarray
     """Reference points of the parts, whose velocity is ``linear``, in the frame of the grid, shape (part, axis) [m]."""
     linear: np.ndarray
     """Velocities of these points, shape (part, axis) [m/s]."""
     angular: np.ndarray
     """Angular velocities, about z in the plane and about x, y and z in space, shape (part, 1) or (part, 3) [rad/s]."""
 
-    def at(self, part_index: np.ndarray, points: np.ndarray) -> np.ndarray:
+    def velocity_at(self, part_index: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Return the velocities of points, shape (axis, point) [m/s].
 
         Args:
@@ -42,7 +42,7 @@ class Twists:
             points: the points, shape (axis, point) [m].
         """
         velocities = self.linear.T[:, part_index].astype(float)
-        lever = points - self.about.T[:, part_index]
+        lever = points - self.reference_points.T[:, part_index]
         for turn, (a, b) in zip(self.angular.T, ROTATION_PLANES[len(points)], strict=True):
             velocities[a] -= lever[b] * turn[part_index]
             velocities[b] += lever[a] * turn[part_index]
@@ -50,30 +50,30 @@ class Twists:
 
     def at_origin(self) -> np.ndarray:
         """Return the velocities that the parts have at the origin of the frame, shape (part, axis) [m/s]."""
-        return self.at(np.arange(len(self.about)), np.zeros(self.about.T.shape)).T
+        return self.velocity_at(np.arange(len(self.reference_points)), np.zeros(self.reference_points.T.shape)).T
 
     def __mul__(self, factor: float) -> "Twists":
         """Return the twists multiplied by a factor."""
         return replace(self, linear=factor * self.linear, angular=factor * self.angular)
 
 
-def resting_twists(rows: int, axes: int) -> Twists:
+def resting_twists(rows: int, ndim: int) -> Twists:
     """Return zero twists of parts at rest.
 
     Args:
         rows: number of parts.
-        axes: of the domain, 2 or 3.
+        ndim: of the domain, 2 or 3.
     """
-    turns = len(ROTATION_PLANES[axes])
+    turns = len(ROTATION_PLANES[ndim])
     return Twists(
-        about=np.zeros((rows, axes)), linear=np.zeros((rows, axes)), angular=np.zeros((rows, turns))
+        reference_points=np.zeros((rows, ndim)), linear=np.zeros((rows, ndim)), angular=np.zeros((rows, turns))
     )  # fmt: skip
 
 
 def join_twists(twists: Sequence[Twists]) -> Twists:
     """Return the twists of several bodies in one object, body after body."""
     return Twists(
-        about=np.concatenate([twist.about for twist in twists]),
+        reference_points=np.concatenate([twist.reference_points for twist in twists]),
         linear=np.concatenate([twist.linear for twist in twists]),
         angular=np.concatenate([twist.angular for twist in twists]),
     )  # fmt: skip
@@ -82,15 +82,15 @@ def join_twists(twists: Sequence[Twists]) -> Twists:
 class HeldFaces(NamedTuple):
     """Faces across one axis that belong to the bodies in part; arrays of shape (face,) except for the points."""
 
-    place: np.ndarray
+    face_indices: np.ndarray
     """Flat indices of the faces in an array of the window [-]."""
     row: np.ndarray
     """Part to which each face belongs [-]."""
     points: np.ndarray
     """Centres of the faces in the frame of the grid, shape (axis, face) [m]."""
-    held: np.ndarray
+    body_fraction: np.ndarray
     """Fraction of each face that moves with the body, ``1 - mu0`` [-]."""
-    closed: np.ndarray
+    closed_fraction: np.ndarray
     """Fraction of each face on which the pressure does not act, ``1 - passage`` [-]."""
 
 
@@ -99,17 +99,17 @@ def held_faces(water: Fluid) -> list[HeldFaces]:
 
     Faces beyond mirrors are left out.
     """
-    window, axes, grid, faces = water.here, water.axes, water.grid, []
+    window, ndim, grid, faces = water.window_slices, water.ndim, water.grid, []
     is_inside = np.ones([s.stop - s.start for s in window], bool)
-    for mirror_cuts in water.cut:
+    for mirror_cuts in water.mirror_cuts:
         clear_images(is_inside, mirror_cuts)
     ends = [(s.start, s.stop) for s in reversed(window)]
-    for c in range(axes):
+    for c in range(ndim):
         body_fraction, closed = (1 - fraction[c][window].astype(np.float64) for fraction in (water.mu0, water.passage))
         index = np.flatnonzero(((body_fraction > 0) | (closed > 0)) & is_inside)
-        lines = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(axes)]
+        lines = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(ndim)]
         places = np.unravel_index(index, body_fraction.shape)
-        points = np.stack([lines[d][places[axes - 1 - d]] for d in range(axes)])
+        points = np.stack([lines[d][places[ndim - 1 - d]] for d in range(ndim)])
         row = water.owners[c].ravel()[index].astype(np.intp)
         faces.append(HeldFaces(index, row, points, body_fraction.ravel()[index], closed.ravel()[index]))
     return faces
@@ -139,16 +139,17 @@ def face_differences(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -
         faces: the faces across an axis.
         axis: that axis.
     """
-    low_corner = [s.start for s in water.here]
+    low_corner = [s.start for s in water.window_slices]
     cell_behind = [
-        index + start for index, start in zip(np.unravel_index(faces.place, _shape(water)), low_corner, strict=True)
+        index + start
+        for index, start in zip(np.unravel_index(faces.face_indices, _shape(water)), low_corner, strict=True)
     ]
-    cell_before = [index - (n == water.axes - 1 - axis) for n, index in enumerate(cell_behind)]
+    cell_before = [index - (n == water.ndim - 1 - axis) for n, index in enumerate(cell_behind)]
     return x[tuple(cell_behind)].astype(np.float64) - x[tuple(cell_before)]
 
 
 def _shape(water: Fluid) -> tuple[int, ...]:
-    return tuple(s.stop - s.start for s in water.here)
+    return tuple(s.stop - s.start for s in water.window_slices)
 
 
 def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
@@ -165,47 +166,49 @@ def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
     Raises:
         NotConverged: the pressure solver did not converge.
     """
-    axes, h, faces = water.axes, water.grid.cell, held_faces(water)
-    changes = [twists.at(axis_faces.row, axis_faces.points)[c] for c, axis_faces in enumerate(faces)]
+    ndim, h, faces = water.ndim, water.grid.cell, held_faces(water)
+    changes = [twists.velocity_at(axis_faces.row, axis_faces.points)[c] for c, axis_faces in enumerate(faces)]
     max_change = max((float(np.abs(change).max(initial=0.0)) for change in changes), default=0.0)
     if max_change == 0.0:
         return
-    shape, count = _shape(water), len(water.given)
-    velocity_change = np.zeros((axes, *shape))
+    shape, count = _shape(water), len(water.immersion_sums)
+    velocity_change = np.zeros((ndim, *shape))
     for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
-        velocity_change[c].ravel()[axis_faces.place] = axis_faces.held * change
-    x = water.press(velocity_change, dt, DIVERGENCE_TOLERANCE * max_change)
-    energy, turns = axes + len(ROTATION_PLANES[axes]), ROTATION_PLANES[axes]
-    sums = np.zeros_like(water.given)
+        velocity_change[c].ravel()[axis_faces.face_indices] = axis_faces.body_fraction * change
+    x = water.apply_velocity_change(velocity_change, dt, DIVERGENCE_TOLERANCE * max_change)
+    energy, turns = ndim + len(ROTATION_PLANES[ndim]), ROTATION_PLANES[ndim]
+    sums = np.zeros_like(water.immersion_sums)
     corner = np.array(water.grid.origin)
-    lever = replace(twists, about=twists.about - corner)
+    lever = replace(twists, reference_points=twists.reference_points - corner)
     # the mean velocity of the step changes by half of the velocity change, which acts on the previous sums too
-    previous_sums, spin = water.given, h * twists.angular
-    sums[:, energy] += 0.5 * (lever.at_origin() * previous_sums[:, :axes]).sum(axis=1)
-    sums[:, energy] += 0.5 * (spin * previous_sums[:, axes:energy]).sum(axis=1)
+    previous_sums, spin = water.immersion_sums, h * twists.angular
+    sums[:, energy] += 0.5 * (lever.at_origin() * previous_sums[:, :ndim]).sum(axis=1)
+    sums[:, energy] += 0.5 * (spin * previous_sums[:, ndim:energy]).sum(axis=1)
     for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
-        gained = axis_faces.held * change + axis_faces.closed * face_differences(water, x, axis_faces, c)
+        gained = axis_faces.body_fraction * change + axis_faces.closed_fraction * face_differences(
+            water, x, axis_faces, c
+        )
         sums[:, c] += np.bincount(axis_faces.row, gained, count)
         for n, (a, b) in enumerate(turns):
             if c in (a, b):
                 offset = (axis_faces.points[b if c == a else a] - corner[b if c == a else a]) / h
-                sums[:, axes + n] += np.bincount(axis_faces.row, (-offset if c == a else offset) * gained, count)
-        mean = water.mean[c].ravel()[axis_faces.place].astype(np.float64)
+                sums[:, ndim + n] += np.bincount(axis_faces.row, (-offset if c == a else offset) * gained, count)
+        mean = water.mean[c].ravel()[axis_faces.face_indices].astype(np.float64)
         sums[:, energy] += np.bincount(axis_faces.row, (mean + 0.5 * change) * gained, count)
         body_velocity = water.b[c].ravel()
-        body_velocity[axis_faces.place] += change.astype(water.dtype)
-        water.mean[c].ravel()[axis_faces.place] += (0.5 * change).astype(water.dtype)
-    if len(water.given) > len(water.rows):
-        water.pressed += water.pressures(x, 1.0)
-    water.spread(sums, x, 1.0)
-    water.given += sums + water.across(x, 1.0)
+        body_velocity[axis_faces.face_indices] += change.astype(water.dtype)
+        water.mean[c].ravel()[axis_faces.face_indices] += (0.5 * change).astype(water.dtype)
+    if len(water.immersion_sums) > len(water.rows):
+        water.internal_pressure_sums += water.pressures(x, 1.0)
+    water.subtract_dilatation_work(sums, x, 1.0)
+    water.immersion_sums += sums + water.joint_pressure_sums(x, 1.0)
 
 
 def part_indices(outline: Markers) -> np.ndarray:
     """Return which of its body's parts each point of a skin belongs to, shape (point,) [-]."""
-    if outline.part is None:
+    if outline.part_index is None:
         return np.zeros(outline.points.shape[1], np.intp)
-    return outline.part.astype(np.intp)
+    return outline.part_index.astype(np.intp)
 
 
 def add_twists(outline: Markers, twists: Twists) -> Markers:
@@ -216,6 +219,6 @@ def add_twists(outline: Markers, twists: Twists) -> Markers:
         twists: change of the velocity of each part of this body.
     """
     row = part_indices(outline)
-    velocities = outline.velocities + twists.at(row, outline.points)
+    velocities = outline.velocities + twists.velocity_at(row, outline.points)
     spins = outline.spins + twists.angular[row].T
     return replace(outline, velocities=velocities, spins=spins)

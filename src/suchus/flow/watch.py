@@ -32,15 +32,15 @@ def vorticity_size(velocity: np.ndarray) -> np.ndarray:
     Args:
         velocity: padded velocity, shape (axis, ...) [m/s].
     """
-    axes, interior = len(velocity), slice(PAD + 1, -PAD)
+    ndim, interior = len(velocity), slice(PAD + 1, -PAD)
 
     def shifted(component: np.ndarray, axis: int) -> np.ndarray:
         """Return the values one cell lower along an axis."""
-        return component[tuple(slice(PAD, -PAD - 1) if axes - 1 - n == axis else interior for n in range(axes))]
+        return component[tuple(slice(PAD, -PAD - 1) if ndim - 1 - n == axis else interior for n in range(ndim))]
 
-    inner = (interior,) * axes
+    inner = (interior,) * ndim
     total: np.ndarray = np.zeros(velocity[0][inner].shape, velocity.dtype)
-    for d in range(axes):
+    for d in range(ndim):
         for e in range(d):
             u, v = velocity[e], velocity[d]
             total += np.abs((v[inner] - shifted(v, e)) - (u[inner] - shifted(u, d)))
@@ -69,7 +69,7 @@ class Watch:
             if warning is not None:
                 self._say(f"layer {body.name}", warning)
 
-    def shared(self, water: Fluid, time: float) -> str | None:
+    def overlap_message(self, water: Fluid, time: float) -> str | None:
         """Return a message about two bodies that overlap, or None.
 
         Args:
@@ -89,7 +89,7 @@ class Watch:
 
     def overlap(self, water: Fluid, time: float) -> None:
         """Warn of bodies that have run into each other."""
-        text = self.shared(water, time)
+        text = self.overlap_message(water, time)
         if text is not None:
             self._say(f"overlap {water.overlap.bodies}", text)
 
@@ -103,17 +103,17 @@ class Watch:
         water = water.layers[-1]
         fixed_edges = [
             edge for edge in water.border.edges
-            if isinstance(edge.side, Stream) and not edge.unbounded and edge.leaves < 0.5
+            if isinstance(edge.side, Stream) and not edge.unbounded and edge.convective_weight < 0.5
         ]  # fmt: skip
         if not fixed_edges:
             return
-        inner = (slice(PAD + 1, -PAD),) * water.axes
+        inner = (slice(PAD + 1, -PAD),) * water.ndim
         spin = vorticity_size(water.velocity)
         max_vorticity = float(spin.max())
         fastest = max(float(np.abs(component[inner]).max()) for component in water.velocity)
         for edge in fixed_edges:
-            lines = edge.across(spin)
-            outer_lines = lines[:2] if edge.low else lines[-2:]
+            lines = edge.with_normal_first(spin)
+            outer_lines = lines[:2] if edge.is_lower_side else lines[-2:]
             side_vorticity = float(outer_lines.max())
             if side_vorticity > MAX_SIDE_VORTICITY * max_vorticity and side_vorticity > MIN_INDUCED_SPEED * fastest:
                 percent = 100 * side_vorticity / max_vorticity

@@ -63,12 +63,13 @@ def _inflow(velocity: np.ndarray, axis: int) -> np.ndarray:
 
 
 class PlannedStage(NamedTuple):
-    """A stage of an integrator: ``out = keep blend + (1 - keep) B[base + dt (f(rate) + push - grad p)]``.
+    """A stage of an integrator: ``result = w blend + (1 - w) B[base + dt (f(rate) + push - grad p)]``.
 
-    B is the immersion, f advection and diffusion. All fields are velocities, shape (axis, ...) [m/s].
+    w is ``blend_fraction``, B the immersion, f advection and diffusion. All fields are velocities, shape
+    (axis, ...) [m/s].
     """
 
-    out: np.ndarray
+    result: np.ndarray
     """Velocity at the end of the stage, which is written."""
     blend: np.ndarray
     """Velocity that is blended with it."""
@@ -76,17 +77,17 @@ class PlannedStage(NamedTuple):
     """Velocity that the stage starts from."""
     rate: np.ndarray
     """Velocity at which advection and diffusion are taken."""
-    keep: float
+    blend_fraction: float
     """Fraction of ``blend`` [-]."""
     dt: float
     """Length of the stage from ``base`` [cells per (m/s)]."""
-    beyond: Any = None
+    coarse_stage: Any = None
     """The same stage of the coarser water around a patch; see ``nest``."""
 
     @property
-    def solved(self) -> float:
-        """Duration for which the solved pressure acts on ``out`` [cells per (m/s)]."""
-        return (1 - self.keep) * self.dt
+    def pressure_duration(self) -> float:
+        """Duration for which the solved pressure acts on ``result`` [cells per (m/s)]."""
+        return (1 - self.blend_fraction) * self.dt
 
 
 class Fluid:
@@ -101,21 +102,27 @@ class Fluid:
         b: velocity of the bodies on these faces, in the window, shape (axis, ...) [m/s].
         source: divergence of the bodies' own motion, times the body's fraction, in the window [m/s per cell].
         window: padded cell indices around the bodies; it includes a cell beyond a mirror that cuts one.
-        cut: for each body, which mirrors cut it; see ``body.cuts``.
+        mirror_cuts: for each body, which mirrors cut it; see ``body.cuts``.
         rows: for each body the rows of its parts in arrays of sums; one for a body that is not divided.
         owners: for each component, the row of the part that is nearest to the points of the window.
-        given: momentum and energy given to the water by the immersion in the last step, per row; see
+        immersion_sums: momentum and energy given to the water by the immersion in the last step, per row; see
             ``momentum.add_immersion_impulse``.
-        pressed: integral of the pressure inside divided bodies in the last step, per row; see ``pressures``.
+        internal_pressure_sums: integral of the pressure inside divided bodies in the last step, per row; see
+            ``pressures``.
         solves: statistics of the pressure solves of the last step, one a stage.
         overlap: the two bodies that overlap most.
-        least: fewest iterations of a pressure solve.
+        min_cycles: fewest iterations of a pressure solve.
     """
 
     def __init__(
-        self, grid: Grid, sides: Sides, viscosity: float, dtype: type, scheme: Scheme = QUICK,
+        self,
+        grid: Grid,
+        sides: Sides,
+        viscosity: float,
+        dtype: type,
+        scheme: Scheme = QUICK,
         integrator: Integrator = HEUN,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Allocate the fields of water at rest without bodies.
 
         Args:
@@ -128,13 +135,13 @@ class Fluid:
         """
         self.grid, self.sides, self.dtype, self.integrator = grid, sides, dtype, integrator
         self._advance_all = advance_by(scheme)
-        self.axes, self.repeats = grid.axes, sides.repeats(grid.axes)
+        self.ndim, self.repeats = grid.ndim, sides.is_periodic(grid.ndim)
         self.inner = inner_strides(grid.cells)
         self.nu = dtype(viscosity / grid.cell)
-        self.border = Border.of(sides, grid, dtype)
+        self.border = Border.for_grid(sides, grid, dtype)
         shape = tuple(n + 2 * PAD for n in reversed(grid.cells))
         slabs = shape[0], int(np.prod(shape[1:]))
-        vector = (self.axes, *shape)
+        vector = (self.ndim, *shape)
         # Fluid: now, predicted, corrected; pressure
         self.velocity: np.ndarray = np.zeros(vector, dtype)
         self._predicted: np.ndarray = np.zeros(vector, dtype)
@@ -151,24 +158,24 @@ class Fluid:
         faces = multigrid.faces_of(self._store, self._layout, self.inner, 0)
         self._views = (*parts, faces.reshape(vector))  # of its finest level
         self._patches = patch.patch_layouts(self._layout, self.repeats)
-        self._room: np.ndarray = np.zeros((patch.FACES + self.axes, 0), dtype)
+        self._buffer: np.ndarray = np.zeros((patch.FACES + self.ndim, 0), dtype)
         self._sums = np.zeros((shape[0], 4))
-        self._near = self._layout[0].copy()
-        self._look_at((PAD,) * (2 * self.axes))
+        self._near_layout = self._layout[0].copy()
+        self._set_window((PAD,) * (2 * self.ndim))
         self._level_window = self.window  # that of the levels
-        self.cut: list[tuple[bool, ...]] = []
+        self.mirror_cuts: list[tuple[bool, ...]] = []
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
-        self.least = 1
+        self.min_cycles = 1
         self.overlap = Overlap(0.0, (0, 0))
         self.rows: list[range] = []
-        self.given = np.zeros((0, sums_of(self.axes)))
-        self.pressed = np.zeros((0, 1 + self.axes))
+        self.immersion_sums = np.zeros((0, sums_of(self.ndim)))
+        self.internal_pressure_sums = np.zeros((0, 1 + self.ndim))
         self._jointed = False
-        self.widening: np.ndarray = np.zeros((0,) * self.axes, dtype)
+        self.widening: np.ndarray = np.zeros((0,) * self.ndim, dtype)
         self._widens = False
-        self.mean: list[np.ndarray] = [np.zeros((0,) * self.axes, dtype)] * self.axes
-        self.owners = [np.zeros((0,) * self.axes, np.int8)] * self.axes
+        self.mean: list[np.ndarray] = [np.zeros((0,) * self.ndim, dtype)] * self.ndim
+        self.owners = [np.zeros((0,) * self.ndim, np.int8)] * self.ndim
 
     @property
     def u(self) -> np.ndarray:
@@ -181,16 +188,16 @@ class Fluid:
         return self.velocity[1]
 
     @property
-    def before(self) -> np.ndarray:
+    def previous_velocity(self) -> np.ndarray:
         """Velocity at the start of the last step [m/s]."""
         return self._corrected
 
     def _flat(self, a: np.ndarray) -> np.ndarray:
         """Return a field or values of the window as the kernels see them: slabs, and components before them."""
-        component_axes = a.ndim - self.axes
+        component_axes = a.ndim - self.ndim
         return a.reshape(*a.shape[: component_axes + 1], -1)
 
-    def _look_at(self, window: Window) -> None:
+    def _set_window(self, window: Window) -> None:
         """Set the window around the bodies and allocate its arrays.
 
         These are kernel moments, body velocity, source and bare update.
@@ -199,11 +206,11 @@ class Fluid:
             window: padded indices, first and end along each axis, the last axis first.
         """
         self.window: Window = window
-        self._near[1 + self.axes :] = window
+        self._near_layout[1 + self.ndim :] = window
         shape = tuple(end - start + 1 for start, end in zip(window[::2], window[1::2], strict=True))
-        self.mu1: np.ndarray = np.zeros((self.axes, self.axes, *shape), self.dtype)
-        self.b: np.ndarray = np.zeros((self.axes, *shape), self.dtype)
-        self._raw: np.ndarray = np.zeros((self.axes, *shape), self.dtype)
+        self.mu1: np.ndarray = np.zeros((self.ndim, self.ndim, *shape), self.dtype)
+        self.b: np.ndarray = np.zeros((self.ndim, *shape), self.dtype)
+        self._raw: np.ndarray = np.zeros((self.ndim, *shape), self.dtype)
         self.source: np.ndarray = np.zeros(shape, self.dtype)
 
     def _in_window(self, values: np.ndarray, window: Window) -> np.ndarray:
@@ -227,18 +234,18 @@ class Fluid:
         return result
 
     @property
-    def carried(self) -> np.ndarray:
+    def weighted_body_velocity(self) -> np.ndarray:
         """Velocity of the bodies times their share on the faces before the cells, shape (axis, ...) [m/s]."""
         weighted_velocity = np.zeros_like(self.velocity)
-        weighted_velocity[:, *self.here] = (1 - self.mu0[:, *self.here]) * self.b
+        weighted_velocity[:, *self.window_slices] = (1 - self.mu0[:, *self.window_slices]) * self.b
         return weighted_velocity
 
     @property
-    def here(self) -> tuple[slice, ...]:
+    def window_slices(self) -> tuple[slice, ...]:
         """The window of an array, with the faces behind its last cells."""
-        return self._here(self.window)
+        return self._window_slices(self.window)
 
-    def _here(self, window: Window) -> tuple[slice, ...]:
+    def _window_slices(self, window: Window) -> tuple[slice, ...]:
         """Return the window of an array, with the faces behind its last cells."""
         return tuple(slice(a, b + 1) for a, b in zip(window[::2], window[1::2], strict=True))
 
@@ -254,8 +261,8 @@ class Fluid:
 
     def _level_of(self, p: np.ndarray) -> float:
         """Return the mean of a field at the cells along the outermost ones of this grid."""
-        cells = p[(slice(PAD, -PAD),) * self.axes]
-        sides = [cells[(slice(None),) * axis + (end,)] for axis in range(self.axes) for end in (0, -1)]
+        cells = p[(slice(PAD, -PAD),) * self.ndim]
+        sides = [cells[(slice(None),) * axis + (end,)] for axis in range(self.ndim) for end in (0, -1)]
         return float(sum(side.sum(dtype=np.float64) for side in sides) / sum(side.size for side in sides))
 
     def imposed(self, time: float) -> float:
@@ -298,16 +305,16 @@ class Fluid:
             InvalidDesign: a body reaches out of the domain.
         """
         old = self.window
-        mirrors = self.sides.mirrors(self.axes)
+        mirrors = self.sides.has_mirror(self.ndim)
         windows = [window_of(b, p, self.grid, time, mirrors) for b, p in zip(bodies, poses, strict=True)]
-        self.cut, new = [cuts(window, self.grid) for window in windows], unite(windows, self.axes)
+        self.mirror_cuts, new = [cuts(window, self.grid) for window in windows], unite(windows, self.ndim)
         self._clear(old)
         old_velocity = self.b
-        self._look_at(new)
+        self._set_window(new)
         filled_windows = [w for w in (old, new) if w[1] > w[0]]
         self.rows = rows_of(bodies)
-        self.given = np.zeros((sum(map(len, self.rows)), sums_of(self.axes)))
-        self.pressed = np.zeros((len(self.given), 1 + self.axes))
+        self.immersion_sums = np.zeros((sum(map(len, self.rows)), sums_of(self.ndim)))
+        self.internal_pressure_sums = np.zeros((len(self.immersion_sums), 1 + self.ndim))
         self._jointed = any(getattr(body.shape, "jointed", False) for body in bodies)
         if not filled_windows:
             return
@@ -320,14 +327,14 @@ class Fluid:
             self.mean = list(0.5 * ((self._in_window(old_velocity, old) if new != old else old_velocity) + self.b))
             self._widening(bodies)
         if has_moved:
-            poisson.place_window(self._layout, unite(filled_windows, self.axes))
+            poisson.place_window(self._layout, unite(filled_windows, self.ndim))
         multigrid.coarsen(self._store, self._layout, self.inner)
         if has_moved:
             poisson.place_window(self._layout, new)
             self._level_window = new
             self._patches = patch.patch_layouts(self._layout, self.repeats)
-            self._room = patch.allocate_buffer(self._room, self._patches)
-        multigrid.copy_coefficients(self._store, self._layout, self._room, self._patches, self.inner)
+            self._buffer = patch.allocate_buffer(self._buffer, self._patches)
+        multigrid.copy_coefficients(self._store, self._layout, self._buffer, self._patches, self.inner)
 
     def _widening(self, bodies: list[AnyBody]) -> None:
         """Compute the source of the mean of the step's start and end; it is 0 for bodies that do not bend."""
@@ -335,11 +342,11 @@ class Fluid:
         self._widens = not all(body.shape.rigid for body in bodies)
         if self._widens:
             widening, mean, mu0 = (self._flat(a) for a in (self.widening, np.array(self.mean), self.mu0))
-            fill_source(widening, mean, mu0, self._layout[0], self._near, self.inner)
+            fill_source(widening, mean, mu0, self._layout[0], self._near_layout, self.inner)
 
     def _clear(self, window: Window) -> None:
         """Set the coefficients of a window to those of water without bodies."""
-        slices = self._here(window)
+        slices = self._window_slices(window)
         for fraction in (self.mu0, self.passage):
             fraction[:, *slices] = 1
 
@@ -351,25 +358,25 @@ class Fluid:
             poses: their poses in the frame of the grid.
             time: time [s].
         """
-        h, grid, slices = self.grid.cell, self.grid, self._here(self.window)
+        h, grid, slices = self.grid.cell, self.grid, self._window_slices(self.window)
         self.overlap = Overlap(0.0, (0, 0))
         ends = [(s.start, s.stop) for s in reversed(slices)]
-        for c in range(self.axes):
-            points = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(self.axes)]
+        for c in range(self.ndim):
+            points = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(self.ndim)]
             f, self.owners[c], overlap = measure_all(bodies, poses, points, time, h)
             self.overlap = max(self.overlap, overlap)
             distance, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
             mu0: np.ndarray = np.empty(distance.size, self.dtype)
-            mu1: np.ndarray = np.empty((self.axes, distance.size), self.dtype)
+            mu1: np.ndarray = np.empty((self.ndim, distance.size), self.dtype)
             fill(distance.ravel(), np.array([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
             self.mu0[c][slices] = self.passage[c][slices] = mu0.reshape(distance.shape)
-            self.mu1[c] = mu1.reshape(self.axes, *distance.shape)
+            self.mu1[c] = mu1.reshape(self.ndim, *distance.shape)
             self.b[c] = f.velocity[c]
-        first_centre = [grid.centres(*ends[d], d)[0] for d in range(self.axes)]
+        first_centre = [grid.centres(*ends[d], d)[0] for d in range(self.ndim)]
         for body, pose in zip(bodies, poses, strict=True):
             self._close(body.shape, pose, time, first_centre)
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
-        fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
+        fill_source(source, b, mu0, self._layout[0], self._near_layout, self.inner)
 
     def _close(self, shape: Shape | SpaceShape, pose: Pose, time: float, first_centre: list[float]) -> None:
         """Set the pressure to act on no face through the middle of a thin body.
@@ -380,7 +387,7 @@ class Fluid:
             time: time [s].
             first_centre: centre of the first cell of the window, x first [m].
         """
-        h, slices = self.grid.cell, self._here(self.window)
+        h, slices = self.grid.cell, self._window_slices(self.window)
         if isinstance(shape, SpaceShape):
             triangles = shape.midsurface(time, pose)
             if triangles is not None:
@@ -461,8 +468,8 @@ class Fluid:
     def _stages(self, plan: list[PlannedStage], push: tuple[float, ...], limits: tuple[float, float]) -> None:
         """Take the stages of a step; each is immersed and then made divergence-free.
 
-        On return ``_corrected`` is the velocity at the end of the step, ``p`` its pressure, and ``given`` the sums of
-        the immersion.
+        On return ``_corrected`` is the velocity at the end of the step, ``p`` its pressure, and ``immersion_sums`` the
+        sums of the immersion.
 
         Args:
             plan: the stages.
@@ -470,8 +477,8 @@ class Fluid:
             limits: mean and largest divergence that may be left [m/s per cell].
         """
         self.solves = []
-        self.given[:] = 0
-        self.pressed[:] = 0
+        self.immersion_sums[:] = 0
+        self.internal_pressure_sums[:] = 0
         for k, (stage, weight) in enumerate(zip(plan, self.integrator.weights, strict=True)):
             if k > 0:
                 self._hear(plan[k - 1])
@@ -483,11 +490,11 @@ class Fluid:
     def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
         """Take one stage."""
         self._advance(stage, push)
-        self._project(stage.out, stage.solved, limits)
+        self._project(stage.result, stage.pressure_duration, limits)
 
     def _hear(self, stage: PlannedStage) -> float:
         """Update the water beyond the sides after a stage; return the largest change of their velocity [m/s]."""
-        return self.border.update_induced(stage.out, self.window)
+        return self.border.update_induced(stage.result, self.window)
 
     @property
     def _learns(self) -> bool:
@@ -515,24 +522,36 @@ class Fluid:
         """Write the velocity of a stage, immersed and with its sides filled; its divergence is not yet removed.
 
         Args:
-            stage: the stage; its ``out`` is written.
+            stage: the stage; its ``result`` is written.
             push: uniform acceleration of the water times the cell [(m/s)^2].
         """
         result, blend, base, rate = (self._flat(a) for a in stage[:4])
         level_layout, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
         self._advance_all(
-            result, blend, base, rate, p, raw, level_layout, self._near, self.inner, self.repeats, stage.dt, self.nu,
-            push, stage.keep,
-        )  # fmt: skip
+            result,
+            blend,
+            base,
+            rate,
+            p,
+            raw,
+            level_layout,
+            self._near_layout,
+            self.inner,
+            self.repeats,
+            stage.dt,
+            self.nu,
+            push,
+            stage.blend_fraction,
+        )
         if self.window[1] > self.window[0]:
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
-            for c in range(self.axes):
+            for c in range(self.ndim):
                 immerse(
-                    result[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near, self.inner,
-                    stage.dt, stage.keep,
+                    result[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near_layout, self.inner,
+                    stage.dt, stage.blend_fraction,
                 )  # fmt: skip
-        self.border.fill(stage.out)
+        self.border.fill(stage.result)
 
     def _mirror_raw(self) -> None:
         """Fill the bare update beyond the mirrors that cut bodies with its mirror image."""
@@ -540,9 +559,9 @@ class Fluid:
             if not is_cut:
                 continue
             axis, is_low = k // 2, k % 2 == 0
-            start = self.window[2 * (self.axes - 1 - axis)]
+            start = self.window[2 * (self.ndim - 1 - axis)]
             for c, component in enumerate(self._raw):
-                planes = np.moveaxis(component, self.axes - 1 - axis, 0)
+                planes = np.moveaxis(component, self.ndim - 1 - axis, 0)
                 n = self.grid.cells[axis] + PAD - start
                 if c == axis:  # across the mirror, which lies on these faces
                     low_planes = PAD - start, PAD - 1 - start, PAD + 1 - start
@@ -553,7 +572,7 @@ class Fluid:
                     planes[image] = planes[source]
 
     def _collect(self, stage: PlannedStage, weight: float) -> None:
-        """Add the momentum and energy that the immersion gave to the water in a stage to ``given``.
+        """Add the momentum and energy that the immersion gave to the water in a stage to ``immersion_sums``.
 
         Args:
             stage: the stage after its projection.
@@ -561,10 +580,10 @@ class Fluid:
         """
         if self.window[1] <= self.window[0]:
             return
-        dt, keep, near_layout, inner = float(stage.dt), float(stage.keep), self._near, self.inner
-        sums, p = np.zeros_like(self.given), self._flat(self.p)
+        dt, keep, near_layout, inner = float(stage.dt), float(stage.blend_fraction), self._near_layout, self.inner
+        sums, p = np.zeros_like(self.immersion_sums), self._flat(self.p)
         result, blend, raw, passage, mu1 = (
-            self._flat(a) for a in (stage.out, stage.blend, self._raw, self.passage, self.mu1)
+            self._flat(a) for a in (stage.result, stage.blend, self._raw, self.passage, self.mu1)
         )
         owners = [self._flat(owner) for owner in self.owners]
         for c, mean in enumerate(self.mean):
@@ -572,38 +591,39 @@ class Fluid:
                 sums, result[c], blend[c], raw[c], self._flat(mean), passage[c], mu1[c], p, owners[c], c, near_layout,
                 inner, dt, keep,
             )  # fmt: skip
-        self.spread(sums, self.p, dt)
-        self.given += weight * (sums + self.across(self.p, dt))
-        if len(self.given) > len(self.rows):
-            self.pressed += self.pressures(self.p, weight * dt)
+        self.subtract_dilatation_work(sums, self.p, dt)
+        self.immersion_sums += weight * (sums + self.joint_pressure_sums(self.p, dt))
+        if len(self.immersion_sums) > len(self.rows):
+            self.internal_pressure_sums += self.pressures(self.p, weight * dt)
 
-    def spread(self, sums: np.ndarray, p: np.ndarray, weight: float) -> None:
+    def subtract_dilatation_work(self, sums: np.ndarray, p: np.ndarray, weight: float) -> None:
         """Subtract the work of a pressure on the widening inside bending bodies from the energy in ``sums``.
 
         Args:
-            sums: see ``given``.
+            sums: see ``immersion_sums``.
             p: pressure over density at the cells.
             weight: factor of the pressure.
         """
         if not self._widens:
             return
         flat = self._flat(p), self._flat(self.widening), self._flat(np.stack(self.owners))
-        dilatation_work(sums, *flat, self._near, self.inner, weight)
+        dilatation_work(sums, *flat, self._near_layout, self.inner, weight)
 
-    def across(self, p: np.ndarray, weight: float) -> np.ndarray:
+    def joint_pressure_sums(self, p: np.ndarray, weight: float) -> np.ndarray:
         """Return the correction for the force with which a pressure pushes linked parts apart inside the bodies.
 
-        Its shape is that of ``given``; it is 0 for bodies without joints. See ``momentum.subtract_joint_pressure``.
+        Its shape is that of ``immersion_sums``; it is 0 for bodies without joints. See
+        ``momentum.subtract_joint_pressure``.
 
         Args:
             p: pressure over density at the cells.
             weight: factor of the pressure.
         """
-        sums = np.zeros_like(self.given)
+        sums = np.zeros_like(self.immersion_sums)
         if self._jointed and self.window[1] > self.window[0]:
             owners = np.array([self._flat(owner) for owner in self.owners])
             flat = self._flat(p), self._flat(self.mu0), owners
-            subtract_joint_pressure(sums, *flat, self._layout[0], self._near, self.inner, weight)
+            subtract_joint_pressure(sums, *flat, self._layout[0], self._near_layout, self.inner, weight)
         return sums
 
     def pressures(self, p: np.ndarray, weight: float) -> np.ndarray:
@@ -616,10 +636,10 @@ class Fluid:
             p: pressure over density at the cells.
             weight: factor of the pressure.
         """
-        sums = np.zeros_like(self.pressed)
+        sums = np.zeros_like(self.internal_pressure_sums)
         if self.window[1] > self.window[0]:
             flat = self._flat(p), self._flat(self.mu0), self._flat(np.stack(self.owners))
-            add_internal_pressure(sums, *flat, self._layout[0], self._near, self.inner, weight)
+            add_internal_pressure(sums, *flat, self._layout[0], self._near_layout, self.inner, weight)
         return sums
 
     def contents(self) -> np.ndarray:
@@ -627,11 +647,11 @@ class Fluid:
 
         The shape is (row, ``momentum.contents_of``).
         """
-        sums = np.zeros((len(self.given), contents_of(self.axes)))
+        sums = np.zeros((len(self.immersion_sums), contents_of(self.ndim)))
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
             for c, owner in enumerate(self.owners):
-                add_contents(sums, b[c], mu0[c], self._flat(owner), c, self._layout[0], self._near, self.inner)
+                add_contents(sums, b[c], mu0[c], self._flat(owner), c, self._layout[0], self._near_layout, self.inner)
         return sums
 
     def _project(self, velocity: np.ndarray, dt: float, limits: tuple[float, float]) -> None:
@@ -644,15 +664,26 @@ class Fluid:
         """
         r, level_layout = self._level_view(multigrid.B), self._layout[0]
         u, source = self._flat(velocity), self._flat(self.source)
-        mean = mean_residual(u, source, level_layout, self._near, self.inner)
+        mean = mean_residual(u, source, level_layout, self._near_layout, self.inner)
         residual(
-            r, u, source, self._level_view(multigrid.DINV), level_layout, self._near, self.dtype(mean), self.inner,
-            self.repeats, self._sums,
-        )  # fmt: skip
+            r,
+            u,
+            source,
+            self._level_view(multigrid.DINV),
+            level_layout,
+            self._near_layout,
+            self.dtype(mean),
+            self.inner,
+            self.repeats,
+            self._sums,
+        )
         sums = self._sums[PAD:-PAD]
         cells = prod(self.grid.cells)
         solve = poisson.Solve(0, float(sums[:, 0].sum()) / cells, float(sums[:, 1].max()))
-        if solve.mean > MIN_SOLVED_RESIDUAL * limits[0] or solve.largest > MIN_SOLVED_RESIDUAL * limits[1]:
+        if (
+            solve.mean_divergence > MIN_SOLVED_RESIDUAL * limits[0]
+            or solve.max_divergence > MIN_SOLVED_RESIDUAL * limits[1]
+        ):
             solve, parts = self._solve(limits)
             x, gain = (self._d, self._level_view(multigrid.X)), self.dtype(1 / dt)
             correct(u, self._flat(self.p), *x, *parts, self._flat(self.passage), level_layout, self.inner, gain)
@@ -662,7 +693,7 @@ class Fluid:
 
     def _seal(self, x: np.ndarray) -> None:
         """Fill the cells beside the domain with mirrored values, or with those at the other end of a periodic axis."""
-        for axis, is_periodic in zip(reversed(range(self.axes)), self.repeats, strict=True):
+        for axis, is_periodic in zip(reversed(range(self.ndim)), self.repeats, strict=True):
             lines, n = x.swapaxes(axis, 0), x.shape[axis]
             lines[PAD - 1] = lines[n - PAD - 1 if is_periodic else PAD]
             lines[n - PAD] = lines[PAD if is_periodic else n - PAD - 1]
@@ -692,7 +723,7 @@ class Fluid:
         r = self._level_view(multigrid.B)
         r[:] = 0
         net = sum(
-            np.moveaxis(_inflow(component, self.axes - 1 - c), 0, self.axes - 1 - c)
+            np.moveaxis(_inflow(component, self.ndim - 1 - c), 0, self.ndim - 1 - c)
             for c, component in enumerate(acceleration)
         )
         window_cells = tuple(slice(a, b) for a, b in zip(self.window[::2], self.window[1::2], strict=True))
@@ -700,22 +731,22 @@ class Fluid:
         field[window_cells] = net
         if side_velocity is not None:
             for c, component in enumerate(side_velocity):
-                lines, faces = np.moveaxis(field, self.axes - 1 - c, 0), np.moveaxis(component, self.axes - 1 - c, 0)
+                lines, faces = np.moveaxis(field, self.ndim - 1 - c, 0), np.moveaxis(component, self.ndim - 1 - c, 0)
                 lines[:-1] += faces[:-1] - faces[1:]
-        for axis in range(self.axes):  # a body cut by a mirror has cells beyond the mirror
+        for axis in range(self.ndim):  # a body cut by a mirror has cells beyond the mirror
             lines = np.moveaxis(field, axis, 0)
             lines[:PAD], lines[-PAD:] = 0, 0
         r[self._level_view(multigrid.DINV) == 0] = 0
         _, (a, b) = self._solve((limit, 10 * limit))
         x, d, z = (slabs.reshape(self.p.shape) for slabs in (self._x, self._d, self._level_view(multigrid.X)))
-        cells = (slice(PAD, -PAD),) * self.axes  # the multigrid leaves undefined values beyond them
+        cells = (slice(PAD, -PAD),) * self.ndim  # the multigrid leaves undefined values beyond them
         x[:] = 0
         np.multiply(d[cells], a, out=x[cells])
         x[cells] += b * z[cells]
         self._seal(x)
         return x
 
-    def press(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
+    def apply_velocity_change(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
         """Add a velocity change on the faces of the window to the water, with the pressure of its response.
 
         The sides are not changed. Returns ``potential`` of the velocity change: the pressure times the step in cells.
@@ -743,7 +774,7 @@ class Fluid:
             dt: length of the step [s].
         """
         solution, z, unity, zero = self._x, self._level_view(multigrid.X), self.dtype(1), self.dtype(0)
-        self.velocity[:, *self.here] += velocity_change.astype(self.dtype)
+        self.velocity[:, *self.window_slices] += velocity_change.astype(self.dtype)
         velocity, p, passage = (self._flat(a) for a in (self.velocity, self.p, self.passage))
         gain = self.dtype(self.grid.cell / dt)
         correct(velocity, p, solution, z, unity, zero, passage, self._layout[0], self.inner, gain)
@@ -751,10 +782,10 @@ class Fluid:
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
         """Return the values of the cells along each side: left, right, bottom, top (low and high)."""
-        cells = x[(slice(PAD, -PAD),) * self.axes]
-        return [np.moveaxis(cells, axis, 0)[end] for axis in reversed(range(self.axes)) for end in (0, -1)]
+        cells = x[(slice(PAD, -PAD),) * self.ndim]
+        return [np.moveaxis(cells, axis, 0)[end] for axis in reversed(range(self.ndim)) for end in (0, -1)]
 
-    def answer(self, acceleration: np.ndarray) -> list[np.ndarray]:
+    def side_accelerations(self, acceleration: np.ndarray) -> list[np.ndarray]:
         """Return the acceleration into the domain that the last ``potential`` induces on each side [m/s^2].
 
         The list is empty if the domain is bounded.
@@ -775,9 +806,13 @@ class Fluid:
         Args:
             acceleration: argument of that ``potential``, on the faces of the window.
         """
-        slices, x, gained = self._here(self.window), self._x.reshape(self.p.shape), np.zeros_like(self.velocity)
+        slices, x, gained = (
+            self._window_slices(self.window),
+            self._x.reshape(self.p.shape),
+            np.zeros_like(self.velocity),
+        )
         for c, work in enumerate(gained):
-            axis = self.axes - 1 - c
+            axis = self.ndim - 1 - c
             np.moveaxis(work, axis, 0)[1:] = -np.moveaxis(np.diff(x, axis=axis), axis, 0)
             work[slices] = acceleration[c] + self.passage[c][slices] * work[slices]
         return gained
@@ -795,14 +830,18 @@ class Fluid:
             NotConverged: the residual is above ``MAX_FINAL_RESIDUAL`` times its limit.
         """
         *result, a, b = poisson.solve(
-            self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.inner,
-            self.repeats, self._sums, *limits, self.least, MAX_PRESSURE_CYCLES,
+            self._x, self._d, self._q, self._store, self._layout, self._buffer, self._patches, self.inner,
+            self.repeats, self._sums, *limits, self.min_cycles, MAX_PRESSURE_CYCLES,
         )  # fmt: skip
         solve = poisson.Solve(*result)
-        if not (solve.mean <= MAX_FINAL_RESIDUAL * limits[0] and solve.largest <= MAX_FINAL_RESIDUAL * limits[1]):
+        if not (
+            solve.mean_divergence <= MAX_FINAL_RESIDUAL * limits[0]
+            and solve.max_divergence <= MAX_FINAL_RESIDUAL * limits[1]
+        ):
             raise NotConverged(
-                f"the pressure solver stopped after {solve.cycles} cycles with a divergence of {solve.mean:.2g} m/s "
-                f"per cell on the average and {solve.largest:.2g} at most, where {limits[0]:.2g} and {limits[1]:.2g} "
-                f"are allowed; take a larger tolerance, or precision='double'."
+                f"the pressure solver stopped after {solve.cycles} cycles with a divergence of "
+                f"{solve.mean_divergence:.2g} m/s per cell on the average and {solve.max_divergence:.2g} at most, "
+                f"where {limits[0]:.2g} and {limits[1]:.2g} are allowed; take a larger tolerance, "
+                "or precision='double'."
             )
         return solve, (self.dtype(a), self.dtype(b))

@@ -22,7 +22,7 @@ from suchus.visual.figures import LINES, captioned, panels
 class Wave(Experiment):
     title = "How high is a wave?"
     shows = "Fig. 16"
-    judged_with = ()
+    judged_settings = ()
 
     robot: Robot = ROBOTS["caiman"]
     """Who waves."""

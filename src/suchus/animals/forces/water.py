@@ -322,7 +322,7 @@ def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, p
     for i in range(quarters):
         sim.run((i + 1) * swim.end / quarters, progress=False)
         progress(rung, (i + 1) / quarters)
-    series = sim.record.after(swim.end - 1.05 * swim.period)
+    series = sim.record.select_after(swim.end - 1.05 * swim.period)
     phase = (series.time - 0.5 * series.step - swim.end + swim.period) / swim.period
     half_widths, _ = outline.silhouette
     depth = displaced_mass(outline, 1.0) / float(np.trapezoid(2 * half_widths, outline.s)) if rung == "slice" else 1.0

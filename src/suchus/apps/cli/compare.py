@@ -76,15 +76,17 @@ def _show(comparison: Comparison) -> None:
         console.print(escape(printable(f"{letter}: {name}")), soft_wrap=True)
     _print(console, ("setting", "A", "B"), _settings(comparison)[:_MAX_ROWS])
     _print(
-        console, ("claim judged differently", "A", "B"), [(o.quantity, o.first, o.second) for o in comparison.changed]
+        console,
+        ("claim judged differently", "A", "B"),
+        [(o.quantity, o.first_verdict, o.second_verdict) for o in comparison.changed_verdicts],
     )
     rows = [
         (
             row.name,
-            quantity(row.first, "-"),
-            quantity(row.second, "-"),
+            quantity(row.first_value, "-"),
+            quantity(row.second_value, "-"),
             "" if row.unit == "-" else row.unit,
-            "" if row.share is None else f"{number(float(f'{100 * row.share:.3g}'), 6)} %",
+            "" if row.relative_difference is None else f"{number(float(f'{100 * row.relative_difference:.3g}'), 6)} %",
         )
         for row in comparison.measures[:_MAX_ROWS]
     ]
@@ -95,7 +97,7 @@ def _settings(comparison: Comparison) -> list[tuple[str, str, str]]:
     """Return a row for each setting that differs; settings of one list, such as a robot's axis, share a row."""
     groups: dict[str, list[tuple[str, str, str]]] = {}
     for setting in comparison.settings:
-        row = setting.name, _rounded(setting.first), _rounded(setting.second)
+        row = setting.name, _rounded(setting.first_value), _rounded(setting.second_value)
         groups.setdefault(setting.name.partition("[")[0], []).append(row)
     return [
         rows[0] if len(rows) == 1 else (f"{name}[]", "", f"{len(rows)} of its settings differ")

@@ -56,7 +56,7 @@ class Finding:
     """Name of the thing that was checked."""
     lines: tuple[str, ...]
     """Lines that describe what there is."""
-    wrong: str = ""
+    problem: str = ""
     """What keeps suchus from running, and the remedy; empty if nothing does."""
 
 
@@ -64,7 +64,7 @@ class Finding:
 class Trial:
     """Result of a trial in a process of its own."""
 
-    found: Mapping[str, Any] | None
+    output: Mapping[str, Any] | None
     """Output of the trial; None if it failed."""
     failure: str = ""
     """Reason of the failure, in one line."""
@@ -95,7 +95,7 @@ def doctor(words: Sequence[str]) -> int:
         extras(),
     ]
     print(page(findings))
-    if problems := [finding.wrong for finding in findings if finding.wrong]:
+    if problems := [finding.problem for finding in findings if finding.problem]:
         raise UnfitMachine(f"suchus cannot run here: {'; '.join(problems)}.")
     print("suchus can run here.")
     return 0
@@ -126,7 +126,7 @@ def packages(requires: Iterable[str] | None = None, find_version: Callable[[str]
         if present is None or not need.specifier.contains(present, prereleases=True):
             mismatches.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
     remedy = f"{', '.join(mismatches)}: pip install --upgrade suchus" if mismatches else ""
-    return Finding(heading="packages", lines=(", ".join(listed) or "unknown: suchus is not installed",), wrong=remedy)
+    return Finding(heading="packages", lines=(", ".join(listed) or "unknown: suchus is not installed",), problem=remedy)
 
 
 def extras(requires: Iterable[str] | None = None, find_version: Callable[[str], str | None] | None = None) -> Finding:
@@ -149,7 +149,7 @@ def cores() -> Finding:
     try:
         return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({setting_text})",))
     except SuchusError as error:
-        return Finding(heading="threads", lines=(setting_text,), wrong=str(error).rstrip("."))
+        return Finding(heading="threads", lines=(setting_text,), problem=str(error).rstrip("."))
 
 
 def bits() -> Finding:
@@ -165,27 +165,27 @@ def bits() -> Finding:
 
 def walking(trial: Trial) -> Finding:
     """Judge the trial walk."""
-    if trial.found is None:
-        return Finding(heading="walking", lines=("failed",), wrong=f"a short walk failed ({trial.failure})")
-    if not trial.found["finite"]:
-        return Finding(heading="walking", lines=("not a number",), wrong="a short walk gave what is no number")
-    return Finding(heading="walking", lines=(f"0.2 s of a crawl in {trial.found['seconds']:.1f} s",))
+    if trial.output is None:
+        return Finding(heading="walking", lines=("failed",), problem=f"a short walk failed ({trial.failure})")
+    if not trial.output["finite"]:
+        return Finding(heading="walking", lines=("not a number",), problem="a short walk gave what is no number")
+    return Finding(heading="walking", lines=(f"0.2 s of a crawl in {trial.output['seconds']:.1f} s",))
 
 
 def compiled(trial: Trial) -> Finding:
     """Judge how the flow solver is compiled, and whether the code can be kept."""
-    if trial.found is None:
-        return Finding(heading="swimming", lines=("failed",), wrong=f"a kernel cannot be compiled ({trial.failure})")
-    lines = [f"numba compiles; its threads are those of {trial.found['layer']}"]
-    if trial.found["layer"] == "workqueue":
+    if trial.output is None:
+        return Finding(heading="swimming", lines=("failed",), problem=f"a kernel cannot be compiled ({trial.failure})")
+    lines = [f"numba compiles; its threads are those of {trial.output['layer']}"]
+    if trial.output["layer"] == "workqueue":
         lines.append("workqueue serves one flow at a time: install libgomp (the package libgomp1) for several")
-    if trial.found["missing"]:
-        lines.append(f"this numba lacks {', '.join(trial.found['missing'])}: first runs may differ in their last bits")
-    if trial.found["folder"] is None:
+    if trial.output["missing"]:
+        lines.append(f"this numba lacks {', '.join(trial.output['missing'])}: first runs may differ in their last bits")
+    if trial.output["folder"] is None:
         lines.append("compiled code cannot be kept, so every swim compiles for minutes: set NUMBA_CACHE_DIR")
     else:
-        state = "there" if trial.found["compiled"] else "not there yet, the first swim takes a minute or two longer"
-        lines.append(f"compiled code is kept in {trial.found['folder']} ({state})")
+        state = "there" if trial.output["compiled"] else "not there yet, the first swim takes a minute or two longer"
+        lines.append(f"compiled code is kept in {trial.output['folder']} ({state})")
     return Finding(heading="swimming", lines=tuple(lines))
 
 
@@ -200,7 +200,7 @@ def places() -> Finding:
 
 def opengl(trial: Trial) -> Finding:
     """Return whether OpenGL draws off-screen; suchus does not need it."""
-    offscreen = f"off-screen by {trial.found['by']}" if trial.found else "none off-screen"
+    offscreen = f"off-screen by {trial.output['by']}" if trial.output else "none off-screen"
     return Finding(heading="OpenGL", lines=(f"{offscreen}; suchus needs none, browsers draw with WebGL 2",))
 
 
@@ -238,12 +238,12 @@ def _outcome(process: "subprocess.Popen[str]") -> Trial:
     try:
         stdout, stderr = process.communicate(timeout=_TRIAL_TIMEOUT)
     except subprocess.TimeoutExpired:
-        return Trial(found=None, failure=f"no answer within {_TRIAL_TIMEOUT:g} s")
+        return Trial(output=None, failure=f"no answer within {_TRIAL_TIMEOUT:g} s")
     if process.returncode < 0:
-        return Trial(found=None, failure=f"the process died of signal {-process.returncode}")
+        return Trial(output=None, failure=f"the process died of signal {-process.returncode}")
     if process.returncode > 0:
-        return Trial(found=None, failure=(stderr.strip().splitlines() or ["no word"])[-1])
-    return Trial(found=json.loads(stdout.splitlines()[-1]))
+        return Trial(output=None, failure=(stderr.strip().splitlines() or ["no word"])[-1])
+    return Trial(output=json.loads(stdout.splitlines()[-1]))
 
 
 def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:

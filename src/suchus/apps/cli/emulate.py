@@ -103,7 +103,7 @@ def emulate(words: Sequence[str]) -> int:
             print(f"goals are {1e3 * body.latency:g} ms on their way, whole steps of the physics", flush=True)
         if options.view:
             viewer = _watching_page(options, server, body)
-            after_step = viewer.look
+            after_step = viewer.send_state
             print(f"open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
         end = body.tick + round(options.seconds / body.period) if options.seconds is not None else None
         with suppress(KeyboardInterrupt):

@@ -54,7 +54,7 @@ def optimise(words: Sequence[str]) -> int:
         bars.say("the best are run again, drawn and packed for replay")
         result = write_results(spec, results, folder)
     for search in results:
-        for name, i in zip(search.names, search.chosen, strict=True):
+        for name, i in zip(search.names, search.chosen_indices, strict=True):
             aims = ", ".join(
                 f"{aim.name} {float(search.history[f'aim_{aim.name}'][0]):.3g} to "
                 f"{float(search.history[f'aim_{aim.name}'][i]):.3g} {AIMS[aim.name].unit}"

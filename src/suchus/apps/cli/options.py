@@ -78,7 +78,7 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
     start = experiment.quick() if is_quick else experiment
     robot = _robot(words)
     if robot is not None:
-        start = start.on(robot)
+        start = start.for_robot(robot)
     prog = f"suchus run {name}"
     options: type[Any] = make_dataclass(
         "Options",

@@ -75,7 +75,7 @@ def perform(experiment: Experiment, name: str, results_folder: Path, progress: P
             figures = experiment.draw(outcome)
         progress("saving", 1.0)
         folder = save_outcome(outcome, figures, experiment, results_folder / name, command=command)
-    for path in outcome.kept:
+    for path in outcome.checkpoint_files:
         with suppress(OSError):  # a file that cannot be removed does not spoil the result
             path.unlink()
     return SavedRun(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)

@@ -31,7 +31,7 @@ class Bars:
         return move
 
     @property
-    def seen(self) -> bool:
+    def is_terminal(self) -> bool:
         """Whether standard error is a terminal, which shows the bars."""
         return self._progress.console.is_terminal
 
@@ -43,7 +43,7 @@ class Bars:
             """Move the bar; without a terminal print a line every ten seconds."""
             nonlocal last_time
             move(stage, fraction)
-            if not self.seen and time.monotonic() - last_time > _LINE_INTERVAL:
+            if not self.is_terminal and time.monotonic() - last_time > _LINE_INTERVAL:
                 last_time = time.monotonic()
                 self.say(f"{name}: {stage}, {fraction:.0%}")
 

@@ -89,12 +89,12 @@ def displace_joints(task: Task, beginning: Beginning, jitter: np.ndarray) -> Beg
 
 def _floating_beginning(task: Task, model: Any) -> Beginning:
     """Put a robot on the water, or into a flow, in the mean posture of its swimming motion."""
-    swim = task.swum
+    swim = task.swimming_gait
     check_limits(task.robot, swim)
     check_speeds(task.robot, swim)
     servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # limbs folded back, axis straight
     stands = standing(model, task.robot, hip_height(task.robot, task.gait), servos)
-    if task.solved is not None:
+    if task.flow is not None:
         return Beginning(stands, np.zeros(model.nv), activations(model, servos), servos)
     assert task.lake is not None  # see ``Task``
     qpos = surfaced(task.body, task.lake, up_direction(task.ground), stands, task.timestep)
@@ -171,22 +171,22 @@ class Pack:
         for fault in task.breaks.possible(task.robot) if task.breaks else ():
             check_faults([fault], task.robot, np.inf)
         if task.pushes is not None:
-            body = task.pushes.where(task.robot)
+            body = task.pushes.pushed_body(task.robot)
             check_pushes([Push(force=(0.0, 0.0, 0.0), at=0.0, body=body)], task.body, np.inf)
         self._begin = begin(task)
-        self._low, self._high = servo_ranges(task.robot).T
+        self._lower_limits, self._upper_limits = servo_ranges(task.robot).T
         self._cranks = is_crank(task.robot)
         self._max_crank_turn = task.decision * np.array(
             [task.robot.servo(name).speed for name in layout(task.robot).servos]
         )
         periods = round(task.decision / control_period(task.robot))
         self._actor = Actor(np.tile(self._begin.commanded, (count, 1)), periods, len(layout(task.robot).limbs))
-        if task.solved is None:
+        if task.flow is None:
             run = Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)
         else:
-            run = Run(robot=task.body, gait=task.swum, water=task.solved)
+            run = Run(robot=task.body, gait=task.swimming_gait, water=task.flow)
         self.loop = loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor)
-        self._tanks = None if task.solved is None else Tanks(run, loop.batch, periods, loop.period)
+        self._tanks = None if task.flow is None else Tanks(run, loop.batch, periods, loop.period)
         self._observer = Observer(task.robot, count, goal=task.goal is not None)
         self._goals = np.zeros((count, 2))
         self._commanded = self._actor.target  # a view; the actor writes it
@@ -253,10 +253,12 @@ class Pack:
             active_mask: whether each robot acts [-].
         """
         clipped = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
-        angles = np.clip(self.centre + self.task.span * clipped, self._low, self._high)
+        angles = np.clip(self.centre + self.task.span * clipped, self._lower_limits, self._upper_limits)
         target = np.where(self._cranks, self._commanded + self._max_crank_turn * clipped, angles)
         target = np.where(
-            active_mask[:, None] & (True if self._tanks is None else self._tanks.moved), target, self._commanded
+            active_mask[:, None] & (True if self._tanks is None else self._tanks.is_lateral_servo),
+            target,
+            self._commanded,
         )
         command_change = target - self._commanded
         last_position, work, last_goal_distance = (
@@ -305,7 +307,7 @@ class Pack:
         task = self.task
         if task.goal is not None:
             begin = self.loop.sensors["centre_of_mass"][robot, :2]
-            self._goals[robot] = task.goal.place(begin, self.chances[robot].bearing, task.ground, task.lake)
+            self._goals[robot] = task.goal.position(begin, self.chances[robot].bearing, task.ground, task.lake)
 
     def _servo_power(self) -> Float[np.ndarray, " run"]:
         """Return torque times speed, summed over the servos [W]."""
@@ -394,7 +396,7 @@ def draw(task: Task, random: np.random.Generator) -> Chance:
             force=(float(force * np.cos(direction)), float(force * np.sin(direction)), 0.0),
             at=float(begins * period),
             duration=float(ends * period - begins * period),
-            body=task.pushes.where(task.robot),
+            body=task.pushes.pushed_body(task.robot),
         )
         chance = replace(chance, push=push)
     return chance

@@ -86,7 +86,7 @@ class SwimToGoal:
     def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
         task, robot = self.task, self.task.robot
-        swim = movement(robot, task.swum)
+        swim = movement(robot, task.swimming_gait)
         sine, cosine = reading_columns(observations, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
         direction = reading_columns(observations, "goal_direction", robot).astype(float)
@@ -142,7 +142,7 @@ class EpisodeResults:
 
     returns: Float[np.ndarray, " episode"]
     """Sum of the rewards [-]."""
-    lasted: Float[np.ndarray, " episode"]
+    durations: Float[np.ndarray, " episode"]
     """Duration of the episode [s]."""
     forward: Float[np.ndarray, " episode"]
     """Displacement along the world's x axis [m]."""
@@ -175,4 +175,4 @@ def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps
         approach += np.where(is_running, infos["approach"], 0.0)
         goal |= is_running & infos["goal"]
         is_running &= ~(terminated | truncated)
-    return EpisodeResults(returns=returns, lasted=durations, forward=forward, approach=approach, goal=goal)
+    return EpisodeResults(returns=returns, durations=durations, forward=forward, approach=approach, goal=goal)

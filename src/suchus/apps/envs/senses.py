@@ -38,7 +38,7 @@ class Sense(NamedTuple):
     """Columns of the reading in an observation."""
     scale: str
     """Scale by which it is divided, with its unit."""
-    what: str
+    description: str
     """Description of the measured quantity."""
 
 

@@ -77,7 +77,7 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
     """Return a task, given itself or by its name, with some fields changed.
 
     A robot or a gait may be given by its name in the catalog or the path of its file; a robot brings its gait and its
-    size, see ``Task.on``. With ``water`` a flow takes the place of the lake.
+    size, see ``Task.for_robot``. With ``water`` a flow takes the place of the lake.
 
     Raises:
         UnknownName: there is no such task, field, robot, gait or servo; the message lists those that are.
@@ -117,7 +117,7 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
             allowed_types = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds[name])
             raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {allowed_types} is needed.")
     if "robot" in values:
-        task = task.on(values.pop("robot"), values.pop("gait", None))
+        task = task.for_robot(values.pop("robot"), values.pop("gait", None))
     return replace(task, **values)
 
 

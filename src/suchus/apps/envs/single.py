@@ -118,7 +118,7 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
         """
         terms = self.pack.act(checked(action, self.action_space.shape)[None], np.ones(1, dtype=bool))
         info = {name: values.tolist()[0] for name, values in step_info(self.pack, terms).items()}
-        return self.pack.feel()[0], float(terms.reward(self.task.rewards)[0]), bool(terms.over[0]), False, info
+        return self.pack.feel()[0], float(terms.reward(self.task.rewards)[0]), bool(terms.is_over[0]), False, info
 
     def render(self) -> np.ndarray | None:
         """Return a picture of (480, 640, 3) for ``rgb_array``, else None."""
@@ -134,7 +134,9 @@ def step_info(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
 def portrait(pack: Pack, robot: int) -> np.ndarray:
     """Return a picture of one robot of a pack."""
     text = f"{pack.time[robot]:.2f} s  {pack.chances[robot].fault}"
-    surroundings = Surroundings(up=up_direction(pack.task.ground), goal=pack.task.goal, place=pack.goals[robot])
+    surroundings = Surroundings(
+        upward=up_direction(pack.task.ground), goal=pack.task.goal, goal_position=pack.goals[robot]
+    )
     return picture(pack.task.robot, pack.record(robot), text, surroundings)
 
 
@@ -167,11 +169,11 @@ _SKY_FRACTION = 0.4
 class Surroundings:
     """What a picture shows beside the robot."""
 
-    up: Float[np.ndarray, "3"]
+    upward: Float[np.ndarray, "3"]
     """Unit vector against gravity."""
     goal: AnyGoal | None = None
     """The goal; None without a goal."""
-    place: Float[np.ndarray, "2"] | None = None
+    goal_position: Float[np.ndarray, "2"] | None = None
     """Position of the goal, forward and left in the world [m]."""
 
 
@@ -216,9 +218,9 @@ def picture(
             ylabel="up [m]",
         )
         if "water_level" in record:
-            draw_water(top_axes, side_axes, float(record.water_level[0]), surroundings.up, y)
-        if surroundings.goal is not None and surroundings.place is not None:
-            _draw_goal(top_axes, side_axes, surroundings.goal, surroundings.place)
+            draw_water(top_axes, side_axes, float(record.water_level[0]), surroundings.upward, y)
+        if surroundings.goal is not None and surroundings.goal_position is not None:
+            _draw_goal(top_axes, side_axes, surroundings.goal, surroundings.goal_position)
         canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()
     return np.array(canvas.buffer_rgba())[..., :3]

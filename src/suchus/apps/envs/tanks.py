@@ -40,7 +40,9 @@ class Tanks:
         self._actors: dict[int, Actor] = {}
         self._ticks: dict[int, int] = {}
         lateral = {servo.name for servo in Outline(run.robot, 33).servos}
-        self.moved: Bool[np.ndarray, " servo"] = np.array([name in lateral for name in layout(run.robot).servos])
+        self.is_lateral_servo: Bool[np.ndarray, " servo"] = np.array(
+            [name in lateral for name in layout(run.robot).servos]
+        )
         """Whether the flow sees each servo move the body; the others keep still."""
 
     def restart(self, sim: int, begin: Beginning, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:

@@ -63,7 +63,7 @@ class Goal:
         """Return the bearing of the goal of one episode, left positive [rad]."""
         return float(random.uniform(-self.bearing, self.bearing))
 
-    def place(
+    def position(
         self, begin: Float[np.ndarray, "2"], bearing: float, ground: Ground, lake: Lake | None
     ) -> Float[np.ndarray, "2"]:
         """Return where the goal of one episode is, forward and left in the world [m].
@@ -117,7 +117,7 @@ class Landing:
         del random
         return 0.0
 
-    def place(
+    def position(
         self, begin: Float[np.ndarray, "2"], bearing: float, ground: Ground, lake: Lake | None
     ) -> Float[np.ndarray, "2"]:
         """Return a point on the line that has to be reached, forward and left in the world [m].
@@ -207,7 +207,7 @@ class Terms:
     """Whether it fell, or the simulation diverged [-]."""
 
     @property
-    def over(self) -> Bool[np.ndarray, " run"]:
+    def is_over(self) -> Bool[np.ndarray, " run"]:
         """Whether the episode ends here: by a fall, or at the goal [-]."""
         return np.asarray(self.fall | self.goal)
 
@@ -262,7 +262,7 @@ class Breaks:
             if kind not in allowed:
                 raise UnknownName("fault of a servo", str(kind)[:40], allowed)
 
-    def among(self, robot: Robot) -> tuple[str, ...]:
+    def candidate_servos(self, robot: Robot) -> tuple[str, ...]:
         """Return the servos of a robot among which it is drawn.
 
         Raises:
@@ -283,13 +283,13 @@ class Breaks:
         """Return all faults of a robot that may be drawn, each from 0 s on."""
         if self.faults:
             return self.faults
-        return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.among(robot))
+        return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.candidate_servos(robot))
 
     def draw(self, random: np.random.Generator, robot: Robot) -> Fault:
         """Draw the fault of one episode."""
         if self.faults:
             return self.faults[int(random.integers(len(self.faults)))]
-        joints = self.among(robot)
+        joints = self.candidate_servos(robot)
         joint = joints[int(random.integers(len(joints)))]
         return self._fault(self.kinds[int(random.integers(len(self.kinds)))], joint)
 
@@ -321,7 +321,7 @@ class Pushes:
             check.number("lasting", 1e-3, 60.0, "s")
             _check_times(check, "pushes", self.earliest, self.latest)
 
-    def where(self, robot: Robot) -> str:
+    def pushed_body(self, robot: Robot) -> str:
         """Return the body of a robot that is pushed."""
         if self.body is not None:
             return self.body
@@ -405,7 +405,7 @@ class Task:
         return with_speed_lines(self.robot) if self.speed_lines else with_servos(self.robot, with_full_torque)
 
     @property
-    def solved(self) -> Slice | Space | None:
+    def flow(self) -> Slice | Space | None:
         """The flow that is solved together with each robot, if any is."""
         return self.water if isinstance(self.water, Slice | Space) else None
 
@@ -413,11 +413,11 @@ class Task:
     def period(self) -> float:
         """Period of the clock, that of the swimming motion or of the gait [s]."""
         if self.start == "swimming":
-            return self.swum.period
+            return self.swimming_gait.period
         return self.gait.period
 
     @property
-    def swum(self) -> Gait:
+    def swimming_gait(self) -> Gait:
         """Gait of a ``swimming`` start: ``swim``, or the wave of (20) on the robot's joints.
 
         Raises:
@@ -426,7 +426,7 @@ class Task:
         """
         return self.swim or swim_of(self.robot)
 
-    def on(self, robot: Robot, gait: Gait | None = None) -> "Task":
+    def for_robot(self, robot: Robot, gait: Gait | None = None) -> "Task":
         """Return the same task for another robot.
 
         Where the robot can follow the gait and keeps the same control period, nothing else changes. If not, the gait
@@ -478,12 +478,12 @@ class Task:
                 f"task.start is {self.start!r}; {' or '.join(get_args(Start))} is allowed",
             )
             check.that(
-                not (self.start == "swimming" and self.lake is None and self.solved is None),
+                not (self.start == "swimming" and self.lake is None and self.flow is None),
                 "task.lake is None; a task that begins swimming needs water: give it a land.Lake",
             )
             is_open_water = self.lake is None and self.ground == Ground() and not isinstance(self.goal, Landing)
             check.that(
-                self.solved is None or (self.start == "swimming" and is_open_water),
+                self.flow is None or (self.start == "swimming" and is_open_water),
                 "task.water is a flow, which has neither surface nor ground: the task must begin swimming, without "
                 'lake, ground or landing; leave them out, or take water="sections"',
             )
@@ -504,12 +504,12 @@ class Task:
                     "a whole number of times",
                 )
         if self.breaks is not None:
-            self.breaks.among(self.robot)
+            self.breaks.candidate_servos(self.robot)
         if self.lake is not None:
             check_water(self.robot, self.lake)
             if self.start == "swimming":
                 check_floats(self.robot, self.lake)
-        if self.solved is not None:
+        if self.flow is not None:
             check_floats(self.robot, Lake(level=self.robot.length))
         if self.goal is not None:
             self.goal.check(self.ground, self.lake)

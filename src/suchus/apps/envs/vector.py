@@ -103,7 +103,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         terms = self.pack.act(action_values, ~was_over)
         self._steps[~was_over] += 1
         rewards = np.where(was_over, 0.0, terms.reward(self.task.rewards))
-        terminated = ~was_over & terms.over
+        terminated = ~was_over & terms.is_over
         has_timed_out = self._steps >= (self.max_episode_steps or np.inf)
         truncated = ~was_over & has_timed_out
         step_values = step_info(self.pack, terms)

@@ -19,9 +19,9 @@ class ComparisonRow:
     """The animal's quantity, with its range."""
     article: str
     """Value in the article, as text; empty if it gives none."""
-    ours: str
+    robot_text: str
     """Value of the robot, as text."""
-    seen: str
+    animal_text: str
     """Value or range of the animal, as text."""
     experiment: str
     """Experiment that measured the robot's value; empty if it follows from the design."""
@@ -53,8 +53,8 @@ def _row(animal: Animal, robot: Robot, results: Results) -> ComparisonRow | None
     return ComparisonRow(
         animal=animal,
         article=quantity(article_value, animal.unit, 2),
-        ours=quantity(value, animal.unit, 2),
-        seen=_range(animal),
+        robot_text=quantity(value, animal.unit, 2),
+        animal_text=_range(animal),
         experiment=experiment,
     )
 

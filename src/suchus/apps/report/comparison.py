@@ -23,13 +23,13 @@ class MeasureComparison:
     """Name of the measure."""
     unit: str
     """Unit of the measure; both units where they differ."""
-    first: float | None
+    first_value: float | None
     """Value in the first outcome; None where it has none."""
-    second: float | None
+    second_value: float | None
     """Value in the second."""
     difference: float | None
     """Second less first, in ``unit``; None where one is missing or the units differ."""
-    share: float | None
+    relative_difference: float | None
     """The difference over the size of the first [-]; None where the first is zero."""
 
 
@@ -39,11 +39,11 @@ class VerdictComparison:
 
     quantity: str
     """Quantity that the claim is about."""
-    where: str
+    location: str
     """Place in the article: section, figure or table."""
-    first: str
+    first_verdict: str
     """Verdict of the first outcome; empty where it has none."""
-    second: str
+    second_verdict: str
     """Verdict of the second."""
 
 
@@ -53,9 +53,9 @@ class Setting:
 
     name: str
     """Dotted path."""
-    first: str
+    first_value: str
     """Value in the first outcome; empty where it has none."""
-    second: str
+    second_value: str
     """Value in the second."""
 
 
@@ -75,20 +75,24 @@ class Comparison:
     """Every setting in which they differ."""
 
     @property
-    def of_both(self) -> tuple[MeasureComparison, ...]:
+    def common_measures(self) -> tuple[MeasureComparison, ...]:
         """Measures of which both outcomes have a number."""
-        return tuple(measure for measure in self.measures if measure.first is not None and measure.second is not None)
+        return tuple(
+            measure for measure in self.measures if measure.first_value is not None and measure.second_value is not None
+        )
 
     @property
-    def of_one(self) -> tuple[MeasureComparison, ...]:
+    def unmatched_measures(self) -> tuple[MeasureComparison, ...]:
         """Measures of which only one outcome has a number, or none."""
-        return tuple(measure for measure in self.measures if measure.first is None or measure.second is None)
+        return tuple(
+            measure for measure in self.measures if measure.first_value is None or measure.second_value is None
+        )
 
     @property
-    def changed(self) -> tuple[VerdictComparison, ...]:
+    def changed_verdicts(self) -> tuple[VerdictComparison, ...]:
         """Claims that both judge, and differently."""
-        common_verdicts = (verdict for verdict in self.verdicts if verdict.first and verdict.second)
-        return tuple(verdict for verdict in common_verdicts if verdict.first != verdict.second)
+        common_verdicts = (verdict for verdict in self.verdicts if verdict.first_verdict and verdict.second_verdict)
+        return tuple(verdict for verdict in common_verdicts if verdict.first_verdict != verdict.second_verdict)
 
 
 def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Comparison:
@@ -104,7 +108,7 @@ def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Compa
     """
     measures_of_both = result_a.outcome["measures"], result_b.outcome["measures"]
     measures = [_compare_measure(name, *measures_of_both) for name in _union(result_a, result_b)]
-    if not any(measure.first is not None and measure.second is not None for measure in measures):
+    if not any(measure.first_value is not None and measure.second_value is not None for measure in measures):
         raise IncompatibleRecord(
             f"{result_a.folder} ({result_a.name}) and {result_b.folder} ({result_b.name}) have no measure in common; "
             "compare two outcomes of one experiment."
@@ -113,7 +117,12 @@ def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Compa
         key=lambda measure: (measure.difference is None, -_size(measure))
     )  # a stable sort: equal measures keep their order
     verdicts = list(_pair_verdicts(result_a.outcome["verdicts"], result_b.outcome["verdicts"]))
-    verdicts.sort(key=lambda verdict: (verdict.first == verdict.second, not (verdict.first and verdict.second)))
+    verdicts.sort(
+        key=lambda verdict: (
+            verdict.first_verdict == verdict.second_verdict,
+            not (verdict.first_verdict and verdict.second_verdict),
+        )
+    )
     flat = [dict(_flat(result.outcome.get("settings", {}))) for result in (result_a, result_b)]
     differ = [name for name in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(name) != flat[1].get(name)]
     return Comparison(
@@ -122,7 +131,7 @@ def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Compa
         measures=tuple(measures),
         verdicts=tuple(verdicts),
         settings=tuple(
-            Setting(name=n, first=_shorten(flat[0].get(n)), second=_shorten(flat[1].get(n))) for n in differ
+            Setting(name=n, first_value=_shorten(flat[0].get(n)), second_value=_shorten(flat[1].get(n))) for n in differ
         ),
     )
 
@@ -180,18 +189,18 @@ def _compare_measure(
     return MeasureComparison(
         name=name,
         unit=" / ".join(units),
-        first=values[0],
-        second=values[1],
+        first_value=values[0],
+        second_value=values[1],
         difference=difference,
-        share=relative_difference,
+        relative_difference=relative_difference,
     )
 
 
 def _size(measure: MeasureComparison) -> float:
     """Return the relative difference of a measure, by which measures of all units are sorted."""
-    if measure.share is None:
+    if measure.relative_difference is None:
         return inf if measure.difference else 0.0
-    return abs(measure.share)
+    return abs(measure.relative_difference)
 
 
 def _pair_verdicts(
@@ -207,9 +216,9 @@ def _pair_verdicts(
         ]
         yield VerdictComparison(
             quantity=verdict_pair["quantity"],
-            where=verdict_pair["where"],
-            first=verdict_words[0],
-            second=verdict_words[1],
+            location=verdict_pair["where"],
+            first_verdict=verdict_words[0],
+            second_verdict=verdict_words[1],
         )
 
 

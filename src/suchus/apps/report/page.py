@@ -155,7 +155,7 @@ _MEASURES = ("speed", "work_per_metre", "cost_of_transport")
 class Metre:
     """A row of the table."""
 
-    where: str
+    terrain: str
     """Place, in words."""
     experiment: str
     """Name of the experiment that measured them."""
@@ -175,7 +175,7 @@ def metres(results: Mapping[str, Result]) -> list[Metre]:
             outcome = result.outcome["measures"]
             speed, work, cost = (_with_unit(outcome.get(f"{measure_name}_{ending}")) for measure_name in _MEASURES)
             if speed and work:
-                rows.append(Metre(where=terrain, experiment=name, speed=speed, work=work, cost=cost))
+                rows.append(Metre(terrain=terrain, experiment=name, speed=speed, work=work, cost=cost))
     return rows
 
 
@@ -231,11 +231,11 @@ class ChosenNumber:
     """Dotted path."""
     value: str
     """Our value with its unit."""
-    low: str
+    lower_bound: str
     """Least plausible value."""
-    high: str
+    upper_bound: str
     """Greatest plausible value."""
-    why: str
+    reason: str
     """The reason."""
 
 
@@ -275,9 +275,9 @@ def _choice(design: Any, free_number: Assumption) -> ChosenNumber:
     return ChosenNumber(
         field=free_number.field,
         value=_format_value(value, unit),
-        low=number(free_number.low),
-        high=number(free_number.high),
-        why=free_number.why,
+        lower_bound=number(free_number.low),
+        upper_bound=number(free_number.high),
+        reason=free_number.why,
     )
 
 

@@ -122,7 +122,7 @@ class Picture:
     """Caption: what the picture or replay shows."""
     file: Path
     """The picture as a drawing; as pixels it stands beside it."""
-    wide: bool = False
+    is_wide: bool = False
     """Whether the figure needs the full width of the page to be readable."""
 
     @property
@@ -193,7 +193,7 @@ def load_result(folder: str | Path) -> Result:
                 name=f["name"],
                 caption=f["caption"],
                 file=_path_inside(folder, f"{f['name']}.svg"),
-                wide=_is_wide(_path_inside(folder, f"{f['name']}.svg")),
+                is_wide=_is_wide(_path_inside(folder, f"{f['name']}.svg")),
             )
             for f in outcome["figures"]
         )

@@ -26,7 +26,7 @@ class WatchProcess:
 
     Args:
         robot: the robot.
-        picture: returns what is seen now; called by ``look`` only.
+        picture: returns what is seen now; called by ``send_state`` only.
         port: to listen on; 0 for any that is free.
         title: of the page.
 
@@ -53,7 +53,7 @@ class WatchProcess:
             raise answer
         self.url = answer
 
-    def look(self) -> None:
+    def send_state(self) -> None:
         """Send the robot's state if it is due and the page requested it; never wait for the page."""
         time_now = time.monotonic()
         if time_now - self._picture_time < _PICTURE_INTERVAL:

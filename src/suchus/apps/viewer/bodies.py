@@ -33,7 +33,7 @@ class BodyPoses:
         self._data = mujoco.MjData(self.model)
         self._joints = joint_addresses(self.model, self._layout.hinges)
 
-    def put(self, state: Mapping[str, np.ndarray]) -> None:
+    def set_state(self, state: Mapping[str, np.ndarray]) -> None:
         """Take the posture of an instant, by the names of ``record.VARIABLES``."""
         self._data.qpos[:3], self._data.qpos[3:7] = state["position"], state["orientation"]
         self._data.qpos[self._joints] = state["joint_angle"]
@@ -66,7 +66,7 @@ class BodyPoses:
         body: Any = self._data.body(name)
         return np.array(body.xpos), np.array(body.xquat)
 
-    def part(self, name: str) -> np.ndarray:
+    def part_position(self, name: str) -> np.ndarray:
         """Return where the joint of a servo, or the foot of a leg, is [m]; for the cable, where its first joint is."""
         robot_layout = self._layout
         if name in robot_layout.limb_names:
@@ -88,7 +88,7 @@ class SkinPiece:
     """(n, bone) [-]."""
     bones: tuple[str, ...]
     """Names of the bones, which are bodies and ankles."""
-    rest: np.ndarray
+    rest_origins: np.ndarray
     """Origins of the bones at rest, (bone, 3) [m]."""
     colour: tuple[int, int, int]
     """Red, green, blue of 255."""
@@ -121,7 +121,7 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
                 faces=faces.reshape(-1, 3),
                 weights=dense[np.ix_(vertices, used_bones)],
                 bones=tuple(surface.bones[bone] for bone in used_bones),
-                rest=surface.rest[used_bones],
+                rest_origins=surface.rest_origins[used_bones],
                 colour=(red, green, blue),
             )
         )

@@ -67,14 +67,14 @@ class DrawnRobot:
             piece.vertices,
             piece.faces,
             bone_wxyzs=identity,
-            bone_positions=piece.rest,
+            bone_positions=piece.rest_origins,
             skin_weights=piece.weights,
             color=GHOST if self._ghost else piece.colour,
             opacity=0.35 if self._ghost else None,
             receive_shadow=False,  # of itself: the scutes would drown in it
         )
 
-    def look(self, geometry: BodyGeometry) -> None:
+    def show_geometry(self, geometry: BodyGeometry) -> None:
         """Show the skin or the collision geoms."""
         if geometry != "skin" and not self._geoms:
             self._geoms = {number: self._geom(number) for number in self.posture.geoms()}
@@ -86,7 +86,7 @@ class DrawnRobot:
 
     def show(self, state: Mapping[str, np.ndarray]) -> None:
         """Move to an instant, by the names of ``record.VARIABLES``."""
-        self.posture.put(state)
+        self.posture.set_state(state)
         if self._geometry == "skin":
             bones = self.posture.bones(self.relief)
             for piece, handle in self._skin:
@@ -96,7 +96,7 @@ class DrawnRobot:
             for number, handle in self._geoms.items():
                 handle.position, handle.wxyz = self.posture.geom(number)
         for joint, (ball, label) in self._marks.items():
-            ball.position = self.posture.part(joint)
+            ball.position = self.posture.part_position(joint)
             label.position = ball.position + np.array([0.0, 0.0, self._size * _LABEL_HEIGHT])
 
     def mark(self, faults: Sequence[Fault]) -> None:
@@ -112,7 +112,7 @@ class DrawnRobot:
     def _mark(self, fault: Fault) -> tuple[Any, Any]:
         """Add a ball and a label at the joint or foot that a fault breaks, and return both handles."""
         joint, kind = fault.part, fault.kind()
-        position = self.posture.part(joint)
+        position = self.posture.part_position(joint)
         ball = self._scene.add_icosphere(
             f"{self._root}/failed_{joint}",
             self._size * _MARK_RADIUS,
@@ -150,7 +150,7 @@ class DrawnAnimal:
 
     def show(self, time: float) -> None:
         """Move to a time of the record [s]."""
-        positions = self._animal.at(time)
+        positions = self._animal.keypoints_at(time)
         self._lines.points = positions[np.array(self._animal.bones)].astype(np.float32)
         for ball, foot in zip(self._feet, self._animal.feet, strict=True):
             ball.position = positions[foot]

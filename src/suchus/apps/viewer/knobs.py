@@ -35,11 +35,11 @@ class Knob:
     def __str__(self) -> str:
         return f"{self.label} [{self.unit}]" if self.unit else self.label
 
-    def said(self, value: float) -> str:
+    def value_text(self, value: float) -> str:
         """Return a shown value with its unit."""
         return f"{value:.4g} {self.unit}".rstrip()
 
-    def within(self, value: object, current: float) -> tuple[float, str]:
+    def clip(self, value: object, current: float) -> tuple[float, str]:
         """Return the nearest allowed value, and a sentence if it differs from the requested value.
 
         Args:
@@ -49,13 +49,16 @@ class Knob:
         try:
             number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
-            return current, f"{self.label}: {str(value)[:40]!r} is no number; it stays at {self.said(current)}."
+            return current, f"{self.label}: {str(value)[:40]!r} is no number; it stays at {self.value_text(current)}."
         if not isfinite(number):
-            return current, f"{self.label}: {number} is no finite number; it stays at {self.said(current)}."
+            return current, f"{self.label}: {number} is no finite number; it stays at {self.value_text(current)}."
         clipped = min(max(number, self.low), self.high)
         if clipped != number:
-            allowed = f"{self.low:g} to {self.said(self.high)}"
-            return clipped, f"{self.label}: {self.said(number)} is outside {allowed}; it is {self.said(clipped)} now."
+            allowed = f"{self.low:g} to {self.value_text(self.high)}"
+            return (
+                clipped,
+                f"{self.label}: {self.value_text(number)} is outside {allowed}; it is {self.value_text(clipped)} now.",
+            )
         return number, ""
 
 
@@ -210,7 +213,7 @@ def tune_gait(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait,
         value: asked for, in the knob's unit; anything.
     """
     knob, current = knobs_of(robot, gait)[name], displayed_value(gait, name)
-    target, notice = knob.within(value, current)
+    target, notice = knob.clip(value, current)
     if notice and target == current:
         return gait, notice
     target_gait, error = _gait_with(robot, gait, name, target * knob.scale)
@@ -224,7 +227,8 @@ def tune_gait(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait,
             feasible_gait, feasible_value = trial, trial_value
     return (
         feasible_gait,
-        f"{knob.label}: the robot cannot follow {knob.said(target)}; it is {knob.said(feasible_value)} now. {error}",
+        f"{knob.label}: the robot cannot follow {knob.value_text(target)}; "
+        f"it is {knob.value_text(feasible_value)} now. {error}",
     )
 
 

@@ -36,7 +36,7 @@ def gait_file(robot: Robot, settings: Settings) -> SavedFile:
         robot: the robot that walks.
         settings: sliders and switches.
     """
-    gait = settings.walked(robot)
+    gait = settings.walking_gait(robot)
     if gait.name in GAITS and GAITS[gait.name] != gait:
         gait = replace(gait, name=f"{gait.name}_tuned")
     head = (f"Saved from a live walk of {robot.name}: suchus view {robot.name} {gait.name}.toml",)
@@ -82,7 +82,7 @@ class Controls:
 
     def __init__(self, gui: Any, session: Session, say: Say, save: Save) -> None:
         self._gui, self._session, self._say = gui, session, say
-        self.touched = 0
+        self.touch_count = 0
         self._switches: dict[str, Any] = {}
         self._sliders: dict[str, Any] = {}
         self._playback()
@@ -122,7 +122,7 @@ class Controls:
             """Count a touch, act, and show the sentence that the action returns."""
             if event.client is None:  # the program set the value
                 return
-            self.touched += 1
+            self.touch_count += 1
             answer = act(handle.value)
             if isinstance(answer, str):
                 self._say(answer)
@@ -163,7 +163,7 @@ class Controls:
         menu = self._gui.add_dropdown("from the catalog", tuple(shelf), initial_value=current_gait.name)
 
         def act(gait_name: Any) -> str:
-            notice = self._session.adopt(shelf[gait_name])
+            notice = self._session.set_gait(shelf[gait_name])
             for name in knobs_of(self._session.robot, self._session.settings.gait):
                 self._sliders[name].value = self._gait_value(name)
             return notice
@@ -217,17 +217,17 @@ class Controls:
         knobs, session = plain_knobs(self._session.robot), self._session
         for name in names:
             self._add_slider(
-                name, knobs[name], lambda n: round(getattr(session.settings, n) / knobs[n].scale, 9), session.put
+                name, knobs[name], lambda n: round(getattr(session.settings, n) / knobs[n].scale, 9), session.set_number
             )
 
     def _faults(self) -> None:
         """Add a menu of joints with buttons that break and repair them, and the other faults in a folder."""
         gui, session = self._gui, self._session
         joint = gui.add_dropdown("joint", Limp.parts(session.robot), initial_value=Limp.parts(session.robot)[0])
-        self._connect(gui.add_button("make it limp", color="red"), lambda _: session.lose(joint.value, "limp"))
-        self._connect(gui.add_button("lock it", color="dark"), lambda _: session.lose(joint.value, "locked"))
-        self._connect(gui.add_button("repair it", color="green"), lambda _: session.mend(joint.value))
-        self._connect(gui.add_button("repair all", color="gray"), lambda _: session.mend())
+        self._connect(gui.add_button("make it limp", color="red"), lambda _: session.break_part(joint.value, "limp"))
+        self._connect(gui.add_button("lock it", color="dark"), lambda _: session.break_part(joint.value, "locked"))
+        self._connect(gui.add_button("repair it", color="green"), lambda _: session.repair_part(joint.value))
+        self._connect(gui.add_button("repair all", color="gray"), lambda _: session.repair_part())
         with gui.add_folder("Other faults", expand_by_default=False):
             self._other_faults()
 
@@ -245,12 +245,12 @@ class Controls:
 
         def happen(_: object) -> str:
             fields = list(numbers(FAULTS[kind.value]))[:1]
-            return session.lose(joint.value, kind.value, **dict.fromkeys(fields, float(magnitude.value)))
+            return session.break_part(joint.value, kind.value, **dict.fromkeys(fields, float(magnitude.value)))
 
         choose(kinds[0])
         self._connect(kind, choose)
         self._connect(gui.add_button("let it happen", color="red"), happen)
-        self._connect(gui.add_button("repair this part", color="green"), lambda _: session.mend(joint.value))
+        self._connect(gui.add_button("repair this part", color="green"), lambda _: session.repair_part(joint.value))
 
 
 FRAMES_PER_RENEWAL = 3
@@ -284,8 +284,8 @@ class LivePage(BrowserPage):
         self._dock()
         self._plots = Plots(gui, uplot, session.robot)
         self._stage = WalkScene(client.scene, session.robot)
-        self._stage.look("skin")
-        self._skin.on_update(lambda _: self._stage.look("skin" if self._skin.value else "collision geoms"))
+        self._stage.show_geometry("skin")
+        self._skin.on_update(lambda _: self._stage.show_geometry("skin" if self._skin.value else "collision geoms"))
         self._switches = switches
         self._rate, self._pictures, self._plotted = 1.0, 0, 0.0
         self._walk_number, self._bumps = -1, 0.0
@@ -301,14 +301,14 @@ class LivePage(BrowserPage):
             self._session.advance(elapsed * settings.speed)
             rate = settings.speed * elapsed / max(elapsed, monotonic() - clock, 1e-6)
             self._rate += 0.05 * (rate - self._rate)
-        if self._session.begun != self._walk_number:
-            self._walk_number = self._session.begun
+        if self._session.walk_count != self._walk_number:
+            self._walk_number = self._session.walk_count
             self._stage.forget()
             if settings.bumps != self._bumps:
                 self._bumps = settings.bumps
-                self._stage.lay(settings.ground.relief)
+                self._stage.set_relief(settings.ground.relief)
         self._pictures += 1
-        self._show(self._session.look(), everything=self._pictures % FRAMES_PER_RENEWAL == 1)
+        self._show(self._session.instant(), everything=self._pictures % FRAMES_PER_RENEWAL == 1)
         if clock - self._plotted > PLOT_INTERVAL:
             self._plotted = clock
             self._plots.draw(self._session.table())
@@ -316,7 +316,7 @@ class LivePage(BrowserPage):
 
     def _pause_if_idle(self, clock: float) -> None:
         """Pause the walk after a long time without a touch."""
-        touch = self._controls.touched, self._client.camera.update_timestamp
+        touch = self._controls.touch_count, self._client.camera.update_timestamp
         if touch != self._last_touch:
             self._last_touch, self._touch_time = touch, clock
         if clock - self._touch_time > self._idle and not self._controls.paused:
@@ -326,15 +326,17 @@ class LivePage(BrowserPage):
     def _show(self, instant: Instant, *, everything: bool) -> None:
         """Move the scene to an instant; ``everything`` renews the track and the numbers too."""
         settings = self._session.settings
-        self._stage.shown = {name: bool(box.value) for name, box in self._switches.items()}
+        self._stage.visible_overlays = {name: bool(box.value) for name, box in self._switches.items()}
         with self._client.atomic():
             self._stage.mark(settings.broken)
             if not instant.trouble:
-                self._stage.place(instant.now, (settings.uphill, settings.sideways), follow=bool(self._follow.value))
-                self._stage.show(instant.now, instant.pushed)
+                self._stage.set_pose(
+                    instant.state, (settings.uphill, settings.sideways), follow=bool(self._follow.value)
+                )
+                self._stage.show(instant.state, instant.push_force)
                 self._stage.flood(instant.level)
             if everything:
-                self._stage.go(instant.now["centre_of_mass"])
+                self._stage.extend_track(instant.state["centre_of_mass"])
                 self._status.content = status(
                     instant, settings, rate=self._rate, notice=self._notice, paused=self._controls.paused
                 )
@@ -372,8 +374,8 @@ def status(instant: Instant, settings: Settings, *, rate: float, notice: str, pa
         for label, value in (
             ("time", f"{instant.time:.1f} s"),
             ("forward", f"{instant.forward:+.3f} m"),
-            ("to the left", f"{instant.aside:+.3f} m"),
-            *((("under water", f"{float(instant.now['share_under']):.0%}"),) if instant.level is not None else ()),
+            ("to the left", f"{instant.lateral_displacement:+.3f} m"),
+            *((("under water", f"{float(instant.state['share_under']):.0%}"),) if instant.level is not None else ()),
         )
     )
     notice_box = _box(instant.trouble, "#fdecea", "#a1261b") if instant.trouble else _box(notice, "#fff6dc", "#6b5200")

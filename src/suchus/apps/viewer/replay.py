@@ -48,7 +48,7 @@ class Take:
         """Time of the last valid sample [s]."""
         return float(self.record.time[-1])
 
-    def at(self, time: float) -> dict[str, np.ndarray]:
+    def sample_at(self, time: float) -> dict[str, np.ndarray]:
         """Return the sample nearest to a time, by the names of ``record.VARIABLES``."""
         sample = self._sample(time)
         return {name: self.record[name].values[sample] for name in _VARIABLES}
@@ -199,7 +199,7 @@ class FilmedAnimal:
     pace: float
     """Period of the robot's gait over that of the animal; 1 where the record names none [-]."""
 
-    def at(self, time: float) -> Float[np.ndarray, "point 3"]:
+    def keypoints_at(self, time: float) -> Float[np.ndarray, "point 3"]:
         """Return the keypoints at a time of the record [m]; before and after the film as at its ends."""
         frame = float(np.interp(time, self.time, np.arange(len(self.time))))
         first_frame = min(int(frame), len(self.time) - 2)

@@ -53,8 +53,8 @@ class ReplayPage(BrowserPage):
         self._stage = WalkScene(client.scene, takes[0].robot)
         if ghosts:
             self._stage.compare(ghosts[0].robot)
-        self._stage.look("skin")
-        skin.on_update(lambda _: self._stage.look("skin" if skin.value else "collision geoms"))
+        self._stage.show_geometry("skin")
+        skin.on_update(lambda _: self._stage.show_geometry("skin" if skin.value else "collision geoms"))
         self._labels: tuple[str, str] = ("", "")
         self._pictures, self._plotted = 0, 0.0
 
@@ -70,7 +70,7 @@ class ReplayPage(BrowserPage):
                 player.seek(self._slider.value)
 
         def faster(_: Any) -> None:
-            player.speed, _ = SPEED.within(speed.value, player.speed)
+            player.speed, _ = SPEED.clip(speed.value, player.speed)
 
         def pause(_: Any) -> None:
             player.playing = not paused.value
@@ -88,7 +88,7 @@ class ReplayPage(BrowserPage):
         if labels != self._labels:
             self._labels, self._plotted = labels, 0.0
             self._tables = take.table(), ghost.table() if ghost else None
-            self._stage.lay(take.ground.relief)
+            self._stage.set_relief(take.ground.relief)
             self._draw_animal(take)
             self._stage.draw_track(take.record.centre_of_mass.values[::5])
         self._pictures += 1
@@ -106,12 +106,12 @@ class ReplayPage(BrowserPage):
         """Move robot, water, ghost and animal to the player's time; ``everything`` renews slider and text too."""
         time = self._player.time
         with self._client.atomic():
-            state = take.at(time)
-            self._stage.place(state, (take.ground.uphill, take.ground.sideways), follow=bool(self._follow.value))
+            state = take.sample_at(time)
+            self._stage.set_pose(state, (take.ground.uphill, take.ground.sideways), follow=bool(self._follow.value))
             self._stage.show(state)
             self._stage.flood(take.level(time))
             if ghost is not None and self._stage.ghost is not None:
-                self._stage.ghost.show(ghost.at(time))
+                self._stage.ghost.show(ghost.sample_at(time))
             if self._drawn_animal is not None:
                 self._drawn_animal.show(time)
             if everything:
@@ -124,7 +124,7 @@ def status_text(take: Take, ghost: Take | None, time: float, animal: FilmedAnima
     rows = []
     for prefix, run in (("", take), ("ghost", ghost)):
         if run is not None:
-            displacement = run.at(time)["centre_of_mass"] - run.origin
+            displacement = run.sample_at(time)["centre_of_mass"] - run.origin
             rows.append(
                 f'<tr><td style="padding-right:14px">{escape(f"{prefix} {run.label}".strip())}</td>'
                 f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{displacement[0]:+.3f} m</td>'

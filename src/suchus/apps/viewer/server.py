@@ -91,7 +91,7 @@ class Gate:
         return guard
 
     @contextmanager
-    def before(self) -> Iterator[None]:
+    def guard_server(self) -> Iterator[None]:
         """Stand before the server of websockets that is begun in this block; viser offers no place of its own for it.
 
         ``Viewer`` tries the door before it lets anybody in, so that a viser that serves otherwise is noticed.
@@ -255,13 +255,13 @@ class Viewer:
         self._lock = Lock()
         self._stop_event = Event()
         gate = Gate(host)
-        with redirect_stdout(io.StringIO()), gate.before():  # suppresses viser's banner
+        with redirect_stdout(io.StringIO()), gate.guard_server():  # suppresses viser's banner
             self._server = _Server(host=host, port=port, label=title, verbose=False)
         self._server.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=(0, 114, 178))
         self._server.initial_camera.position, self._server.initial_camera.look_at = camera
         self._server.initial_camera.fov = _FOV
         self._camera = camera
-        self._server.on_client_connect(self._come)
+        self._server.on_client_connect(self._connect_client)
         self._server.on_client_disconnect(self._disconnect_client)
         bound = self._server.get_port()
         try:
@@ -293,7 +293,7 @@ class Viewer:
         with redirect_stdout(io.StringIO()):
             self._server.stop()
 
-    def _come(self, client: Any) -> None:
+    def _connect_client(self, client: Any) -> None:
         """Open a page for a new browser and draw it until it closes; refuse the browser if the server is full."""
         with self._lock:
             is_full = len(self._pages) >= self._max_browsers or self._stop_event.is_set()

@@ -80,16 +80,16 @@ class Settings:
     broken: tuple[Fault, ...] = ()
     """Faults, each from the beginning of the next walk on."""
 
-    def walked(self, robot: Robot) -> Gait:
+    def walking_gait(self, robot: Robot) -> Gait:
         """Return the gait of a robot with the switches of spine and tail."""
         if self.spine and self.tail:
             return self.gait
         straight_chains = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
         return divide_axis(robot, self.gait).straightened(*straight_chains)
 
-    def moved(self, robot: Robot) -> Gait:
+    def current_gait(self, robot: Robot) -> Gait:
         """Return the gait in which a robot moves now: that of its swim, or that of its walk."""
-        return self.swim if self.swim is not None and self.swims else self.walked(robot)
+        return self.swim if self.swim is not None and self.swims else self.walking_gait(robot)
 
     @property
     def lake(self) -> Lake | None:
@@ -129,13 +129,13 @@ class Instant:
 
     time: float = 0.0
     """Time since the walk was begun [s]."""
-    now: dict[str, np.ndarray] = field(default_factory=dict)
+    state: dict[str, np.ndarray] = field(default_factory=dict)
     """Values by the names of ``record.VARIABLES``, without run and time."""
     forward: float = 0.0
     """Displacement of the centre of mass since the first cycle began [m]."""
-    aside: float = 0.0
+    lateral_displacement: float = 0.0
     """Displacement of the centre of mass to the left [m]."""
-    pushed: tuple[float, float, float] | None = None
+    push_force: tuple[float, float, float] | None = None
     """The force of a push that lasts [N]."""
     level: float | None = None
     """Level of the water above the ground where the walk began, against gravity [m]; None on dry land."""
@@ -162,7 +162,7 @@ class Session:
         self.robot = robot
         length_ratio = size_relative_to_article(robot).length
         self.settings = Settings(gait=gait, force=push_on(robot), size=length_ratio, swim=swim)
-        self.begun = 0
+        self.walk_count = 0
         self._timestep = coarse_step(robot) if timestep is None else timestep
         self._period = control_period(robot)
         self._lock = RLock()
@@ -190,7 +190,7 @@ class Session:
             gait, notice = tune_gait(self.robot, self.settings.gait, name, value)
             return notice if gait == self.settings.gait else self._change(replace(self.settings, gait=gait)) or notice
 
-    def adopt(self, gait: Gait) -> str:
+    def set_gait(self, gait: Gait) -> str:
         """Walk on in another gait; return a sentence if the robot cannot."""
         with self._lock:
             return self._change(replace(self.settings, gait=gait))
@@ -205,7 +205,7 @@ class Session:
             changes: dict[str, Any] = {name: bool(is_on)}
             return self._change(replace(self.settings, **changes))
 
-    def put(self, name: str, value: object) -> str:
+    def set_number(self, name: str, value: object) -> str:
         """Set slope, bumps, water, playback speed or the next push; return a sentence if that is not as asked.
 
         Args:
@@ -214,7 +214,7 @@ class Session:
         """
         knob = plain_knobs(self.robot)[name]
         with self._lock:
-            number, notice = knob.within(value, getattr(self.settings, name) / knob.scale)
+            number, notice = knob.clip(value, getattr(self.settings, name) / knob.scale)
             changes: dict[str, Any] = {name: number * knob.scale}
             last_settings, self.settings = self.settings, replace(self.settings, **changes)
             if name == "bumps" and self.settings.bumps != last_settings.bumps:
@@ -225,7 +225,7 @@ class Session:
                 return self._fill(last_settings) or notice
             return notice
 
-    def lose(self, part_name: str, kind: str, **parameters: object) -> str:
+    def break_part(self, part_name: str, kind: str, **parameters: object) -> str:
         """Break a part in its present state; return a sentence if that is impossible.
 
         Args:
@@ -243,7 +243,7 @@ class Session:
             self.settings = replace(self.settings, broken=(*other_faults, fault))
             return ""
 
-    def mend(self, part_name: str | None = None) -> None:
+    def repair_part(self, part_name: str | None = None) -> None:
         """Repair a part, or all of them."""
         with self._lock:
             for fault in self.settings.broken:
@@ -269,7 +269,7 @@ class Session:
         with self._lock:
             return self._history.table()
 
-    def look(self) -> Instant:
+    def instant(self) -> Instant:
         """Return a copy of the present instant."""
         with self._lock:
             return replace(self.state)
@@ -290,21 +290,21 @@ class Session:
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
         run = Run(
-            robot=self.robot, gait=s.moved(self.robot), ground=s.ground, lake=s.lake, control=s.control,
+            robot=self.robot, gait=s.current_gait(self.robot), ground=s.ground, lake=s.lake, control=s.control,
             faults=s.broken,
         )  # fmt: skip
         self._live = Live(run, timestep=self._timestep)
         self._history = History(layout(self.robot).limb_names)
         self._push, self._due = None, 0.0
         self._origin = self._live.now["centre_of_mass"]
-        self.begun += 1
-        self.state = Instant(now=self._live.now, level=s.level if s.lake else None)
+        self.walk_count += 1
+        self.state = Instant(state=self._live.now, level=s.level if s.lake else None)
         self._history.note(0.0, self._live.now, (0.0, 0.0))
 
     def _change(self, settings: Settings) -> str:
         """Continue the walk with other settings; keep the old ones and return a sentence if that fails."""
         try:
-            self._live.walk(settings.moved(self.robot), settings.control)
+            self._live.walk(settings.current_gait(self.robot), settings.control)
         except SuchusError as error:
             return str(error)
         self.settings = settings
@@ -327,10 +327,10 @@ class Session:
         level = self.settings.level if self.settings.lake else None
         self.state = Instant(
             time=time,
-            now=state,
+            state=state,
             forward=float(forward),
-            aside=float(lateral_displacement),
-            pushed=push_force,
+            lateral_displacement=float(lateral_displacement),
+            push_force=push_force,
             level=level,
         )
         self._history.note(time, state, (float(forward), float(lateral_displacement)))

@@ -105,7 +105,7 @@ class DrawnRod:
             receive_shadow=False,
         )
 
-    def put(self, start: np.ndarray, end: np.ndarray) -> None:
+    def set_ends(self, start: np.ndarray, end: np.ndarray) -> None:
         """Show the rod from one point to another [m]."""
         axis = np.asarray(end, dtype=float) - start
         length = float(np.linalg.norm(axis))
@@ -182,7 +182,7 @@ class WalkScene:
         self.ghost: DrawnRobot | None = None
         self._relief: Any = None
         self._grid: Any = None
-        self.lay(None)
+        self.set_relief(None)
         self._forces = [self._rod(f"force_{limb}", _ARROW, colour) for limb, colour in limb_colours(robot)]
         self._push = self._rod("push", _PUSH, COLOURS["printed"])
         self._support = [self._rod(f"support_{i}", _EDGE, COLOURS["spine"]) for i in range(len(robot_layout.limbs))]
@@ -193,13 +193,13 @@ class WalkScene:
         )
         self._water: Any = None
         self._path: list[np.ndarray] = []
-        self.shown = {"forces": True, "support": True, "track": True}
+        self.visible_overlays = {"forces": True, "support": True, "track": True}
 
     def _rod(self, name: str, shape: RodShape, colour: str) -> DrawnRod:
         lengths = {field.name: self._size * getattr(shape, field.name) for field in fields(shape)}
         return DrawnRod(self._scene, f"{WORLD}/{name}", RodShape(**lengths), rgb(colour))
 
-    def lay(self, relief: Relief | None) -> None:
+    def set_relief(self, relief: Relief | None) -> None:
         """Lay the ground, even or with what stands up from it."""
         for drawn_robot in (self.robot, self.ghost):
             if drawn_robot is not None:
@@ -240,13 +240,13 @@ class WalkScene:
         self.ghost = DrawnRobot(self._scene, f"{WORLD}/ghost", robot, ghost=True)
         self.ghost.relief = self.robot.relief
 
-    def look(self, geometry: BodyGeometry) -> None:
+    def show_geometry(self, geometry: BodyGeometry) -> None:
         """Show skins or collision geoms."""
         for drawn_robot in (self.robot, self.ghost):
             if drawn_robot is not None:
-                drawn_robot.look(geometry)
+                drawn_robot.show_geometry(geometry)
 
-    def place(self, state: Mapping[str, np.ndarray], tilt: tuple[float, float], *, follow: bool) -> None:
+    def set_pose(self, state: Mapping[str, np.ndarray], tilt: tuple[float, float], *, follow: bool) -> None:
         """Turn the world by its slope, and move it so that a camera that follows keeps the robot in view.
 
         In water it follows up and down too, from the height of the centre of mass of a robot that stands.
@@ -270,15 +270,15 @@ class WalkScene:
         ground = feet - np.array([0.0, 0.0, 1.0]) * self._radii[:, None]
         loaded = forces[:, 2] > self._load_threshold
         for arrow, foot, force, stands in zip(self._forces, ground, forces, loaded, strict=True):
-            if self.shown["forces"] and stands:
-                arrow.put(foot, foot + self._per_newton * force)
+            if self.visible_overlays["forces"] and stands:
+                arrow.set_ends(foot, foot + self._per_newton * force)
             else:
                 arrow.hide()
         if push_force is None:
             self._push.hide()
         else:
             tip = self.robot.posture.body(self._front)[0] + np.array([0.0, 0.0, self._size * _TIP])
-            self._push.put(tip - self._per_newton * np.array(push_force), tip)
+            self._push.set_ends(tip - self._per_newton * np.array(push_force), tip)
         self._draw_support(ground, loaded, com)
 
     def flood(self, level: float | None) -> None:
@@ -312,18 +312,18 @@ class WalkScene:
         ground_point = np.array([com[0], com[1], floor + paint_height])
         sides = len(corners) if len(corners) > 2 else len(corners) - 1
         for i, edge in enumerate(self._support):
-            if self.shown["support"] and i < sides:
-                edge.put(corners[i], corners[(i + 1) % len(corners)])
+            if self.visible_overlays["support"] and i < sides:
+                edge.set_ends(corners[i], corners[(i + 1) % len(corners)])
             else:
                 edge.hide()
-        self._com.visible = bool(self.shown["support"])
+        self._com.visible = bool(self.visible_overlays["support"])
         self._com.position = ground_point
-        if self.shown["support"]:
-            self._plumb.put(ground_point, com)
+        if self.visible_overlays["support"]:
+            self._plumb.set_ends(ground_point, com)
         else:
             self._plumb.hide()
 
-    def go(self, com: np.ndarray) -> None:
+    def extend_track(self, com: np.ndarray) -> None:
         """Lengthen the track on the ground to where the centre of mass is now."""
         track_point = np.array([com[0], com[1], 0.0])
         if self._path and np.linalg.norm(track_point - self._path[-1]) < self._size * _STEP:
@@ -333,7 +333,7 @@ class WalkScene:
 
     def draw_track(self, path: np.ndarray) -> None:
         """Draw a track on the ground, (point, 3) [m], at whatever height its points are."""
-        self._track.visible = bool(self.shown["track"] and len(path) > 1)
+        self._track.visible = bool(self.visible_overlays["track"] and len(path) > 1)
         if len(path) > 1:
             level = heights(self.robot.relief, path[:, 0], path[:, 1]) + self._size * _PAINT_HEIGHT
             path = np.column_stack([path[:, :2], level])

@@ -202,17 +202,17 @@ class VortexFilm:
 
     Args:
         record: of the experiment ``swim_3d``, or of ``water.resolved`` in space with frames; see ``figures.vortices``.
-        whose: how a sentence about it begins.
+        subject: how a sentence about it begins.
 
     Raises:
         IncompatibleRecord: it is none of these.
     """
 
     record: xr.Dataset
-    whose: str = "the record"
+    subject: str = "the record"
 
     def __post_init__(self) -> None:
-        vortices.check_vortex_record(self.record, self.whose)
+        vortices.check_vortex_record(self.record, self.subject)
 
     @property
     def phase(self) -> np.ndarray:
@@ -229,7 +229,7 @@ class VortexFilm:
         """Least and greatest Q whose surface can be shown [1/s2]."""
         return _MIN_LEVEL * self.level, _MAX_LEVEL * self.level
 
-    def within(self, level: float) -> float:
+    def clip_level(self, level: float) -> float:
         """Return the nearest Q whose surface can be shown [1/s2]; the record's own for what is no number."""
         lower_bound, upper_bound = self.levels
         return min(max(level, lower_bound), upper_bound) if np.isfinite(level) else self.level
@@ -269,7 +269,7 @@ class VortexFilm:
         position = np.array(view.target) + 1.1 * view.width * view.axes[2]
         return (float(position[0]), float(position[1]), float(position[2])), view.target
 
-    def about(self) -> str:
+    def description(self) -> str:
         """Return grid resolution and f L² / ν of the swim as text, as far as the record holds them."""
         sentences = []
         if "cells" in self.record.coords and self.record.cells.ndim == 1:

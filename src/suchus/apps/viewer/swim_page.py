@@ -31,7 +31,7 @@ class CyclePage(BrowserPage):
 
     def __init__(self, client: Any) -> None:
         super().__init__(client)
-        self._place = 0.0
+        self._phase = 0.0
 
     @abstractmethod
     def show(self) -> None:
@@ -42,15 +42,15 @@ class CyclePage(BrowserPage):
         """Frames of the cycle; none is left out, however slow the browser [-]."""
         return 1
 
-    def place(self, phase: float) -> None:
+    def set_phase(self, phase: float) -> None:
         """Go to a phase of the cycle, 0 to 1; a value that is no number becomes 0 [-]."""
-        self._place = min(max(phase, 0.0), 1.0) if np.isfinite(phase) else 0.0
+        self._phase = min(max(phase, 0.0), 1.0) if np.isfinite(phase) else 0.0
 
     def draw(self, clock: float, elapsed: float) -> None:
         """Advance the phase unless paused, and draw the frame that is due."""
         del clock
         if not self._pause.value:
-            self._place = (self._place + self._speed.value * min(elapsed / _CYCLE_DURATION, 1.0 / self.frames)) % 1.0
+            self._phase = (self._phase + self._speed.value * min(elapsed / _CYCLE_DURATION, 1.0 / self.frames)) % 1.0
         self.show()
 
     def _add_player(self) -> None:
@@ -137,12 +137,12 @@ class SwimPage(CyclePage):
         self._films = {film.title: film for film in films}
         gui = client.gui
         with gui.add_folder("Replay"):
-            self._phase = gui.add_slider("phase [cycle]", 0.0, 1.0, 0.01, 0.0)
+            self._phase_slider = gui.add_slider("phase [cycle]", 0.0, 1.0, 0.01, 0.0)
             self._add_player()
         with gui.add_folder("Record"):
             self._film = gui.add_dropdown("swim", tuple(self._films), initial_value=films[-1].title)
             self._field = gui.add_dropdown("field", ("vorticity", "pressure", "none"))
-        self._phase.on_update(self._seek)
+        self._phase_slider.on_update(self._seek)
         self._dock()
         self._measured(curves)
         scene = client.scene
@@ -157,9 +157,9 @@ class SwimPage(CyclePage):
     def show(self) -> None:
         """Draw the frame that is due, unless the browser shows it already."""
         if not self._pause.value:
-            self._phase.value = round(self._place, 2)
+            self._phase_slider.value = round(self._phase, 2)
         film = self._films[self._film.value]
-        frame = int(np.argmin(np.abs((film.phase - self._place + 0.5) % 1.0 - 0.5)))
+        frame = int(np.argmin(np.abs((film.phase - self._phase + 0.5) % 1.0 - 0.5)))
         frame_key = film.title, str(self._field.value), frame
         if frame_key != self._shown_frame:
             self._show(film, frame_key[1], frame, anew=frame_key[:2] != self._shown_frame[:2])
@@ -167,7 +167,7 @@ class SwimPage(CyclePage):
 
     def _seek(self, event: Any) -> None:
         if event.client is not None:
-            self.place(float(self._phase.value))
+            self.set_phase(float(self._phase_slider.value))
 
     def _show(self, film: Film, field: str, frame: int, *, anew: bool) -> None:
         """Draw a field and the body of one frame; ``anew`` replaces the picture since its size may differ."""
@@ -260,7 +260,7 @@ class VortexPage(CyclePage):
             "/body", skin.vertices.astype(np.float32), skin.faces.astype(np.uint32), color=(red, green, blue),
             cast_shadow=False,
         )  # fmt: skip
-        self._made: dict[int, Any] = {}
+        self._surfaces: dict[int, Any] = {}
         self._surface_settings: tuple[float, str] = (film.level, _BOTH_HALVES)
         self._blocks = film.blocks(film.level)
         self._shown_frame: tuple[float, str, int] | None = None
@@ -273,26 +273,26 @@ class VortexPage(CyclePage):
     def step(self, frames: int) -> None:
         """Pause, and go on or back by frames."""
         self._pause.value = True
-        self._go(self.frame + frames)
+        self._show_frame(self.frame + frames)
 
     @property
     def frame(self) -> int:
         """Number of the frame that is due, from 0."""
-        return min(int(self._place * self._count), self._count - 1)
+        return min(int(self._phase * self._count), self._count - 1)
 
     def show(self) -> None:
         """Draw the frame that is due, unless the browser shows it already."""
-        due = (self._film.within(float(self._level.value)), str(self._halves.value), self.frame)
+        due = (self._film.clip_level(float(self._level.value)), str(self._halves.value), self.frame)
         if due == self._shown_frame:
             return
         level, halves, frame = due
         with self._client.atomic():
             if (level, halves) != self._surface_settings:
                 self._forget(level, halves)
-            for number, surface in self._made.items():
+            for number, surface in self._surfaces.items():
                 surface.visible = number == frame
-            if halves != _NO_SURFACES and frame not in self._made:
-                self._made[frame] = self._draw_surface(frame)
+            if halves != _NO_SURFACES and frame not in self._surfaces:
+                self._surfaces[frame] = self._draw_surface(frame)
             self._body.vertices = self._film.body(frame).vertices.astype(np.float32)
             self._frame.value = frame + 1
             self._status.content = vortex_text(self._film, frame, level, self._blocks)
@@ -301,16 +301,16 @@ class VortexPage(CyclePage):
     def _seek(self, event: Any) -> None:
         if event.client is not None:
             value = float(self._frame.value)
-            self._go(round(value) - 1 if np.isfinite(value) else 0)
+            self._show_frame(round(value) - 1 if np.isfinite(value) else 0)
 
-    def _go(self, frame: int) -> None:
-        self._place = (frame % self._count + 0.5) / self._count
+    def _show_frame(self, frame: int) -> None:
+        self._phase = (frame % self._count + 0.5) / self._count
 
     def _forget(self, level: float, halves: str) -> None:
         """Remove all surfaces and take over another level and another choice of halves."""
-        for surface in self._made.values():
+        for surface in self._surfaces.values():
             surface.remove()
-        self._made.clear()
+        self._surfaces.clear()
         if level != self._surface_settings[0]:
             self._blocks = self._film.blocks(level)
         self._surface_settings = level, halves
@@ -343,4 +343,4 @@ def vortex_text(film: VortexFilm, frame: int, level: float, blocks: int) -> str:
     bar = colour_bar(
         "vorticity about the vertical [1/s]", inks, film.limit, "clockwise from above", "counter-clockwise"
     )
-    return status(film.about() or "a swim", lines, bar)
+    return status(film.description() or "a swim", lines, bar)

@@ -22,11 +22,11 @@ class WatchedRobot(NamedTuple):
 
     time: float
     """Time since the robot began to move [s]."""
-    now: Mapping[str, np.ndarray]
+    state: Mapping[str, np.ndarray]
     """Values by the names of ``record.VARIABLES``, without run and time."""
     level: float | None
     """Level of the water above the ground at the start [m]; None on dry land."""
-    state: str
+    status: str
     """Description of what the robot does."""
 
 
@@ -48,10 +48,10 @@ class WatchPage(BrowserPage):
         self._dock()
         self._plots = Plots(client.gui, uplot, robot)
         self._stage = WalkScene(client.scene, robot)
-        self._stage.look("skin")
-        self._skin.on_update(lambda _: self._stage.look("skin" if self._skin.value else "collision geoms"))
+        self._stage.show_geometry("skin")
+        self._skin.on_update(lambda _: self._stage.show_geometry("skin" if self._skin.value else "collision geoms"))
         self._history = History(layout(robot).limb_names)
-        self._origin = self._get_robot().now["centre_of_mass"]
+        self._origin = self._get_robot().state["centre_of_mass"]
         self._pictures, self._plotted, self._last_time = 0, 0.0, -1.0
 
     def draw(self, clock: float, elapsed: float) -> None:
@@ -59,16 +59,16 @@ class WatchPage(BrowserPage):
         del elapsed
         watched_robot = self._get_robot()
         self._pictures += 1
-        forward, lateral_displacement, _ = watched_robot.now["centre_of_mass"] - self._origin
+        forward, lateral_displacement, _ = watched_robot.state["centre_of_mass"] - self._origin
         if watched_robot.time != self._last_time:
             self._last_time = watched_robot.time
-            self._history.note(watched_robot.time, watched_robot.now, (float(forward), float(lateral_displacement)))
+            self._history.note(watched_robot.time, watched_robot.state, (float(forward), float(lateral_displacement)))
         with self._client.atomic():
-            self._stage.place(watched_robot.now, (0.0, 0.0), follow=bool(self._follow.value))
-            self._stage.show(watched_robot.now)
+            self._stage.set_pose(watched_robot.state, (0.0, 0.0), follow=bool(self._follow.value))
+            self._stage.show(watched_robot.state)
             self._stage.flood(watched_robot.level)
             if self._pictures % _FRAMES_PER_RENEWAL == 1:
-                self._stage.go(watched_robot.now["centre_of_mass"])
+                self._stage.extend_track(watched_robot.state["centre_of_mass"])
                 self._status.content = _status(watched_robot, float(forward), float(lateral_displacement))
         if clock - self._plotted > _PLOT_INTERVAL:
             self._plotted = clock
@@ -85,7 +85,7 @@ def _status(watched_robot: WatchedRobot, forward: float, lateral_displacement: f
             ("forward", f"{forward:+.3f} m"),
             ("to the left", f"{lateral_displacement:+.3f} m"),
             *(
-                (("under water", f"{float(watched_robot.now['share_under']):.0%}"),)
+                (("under water", f"{float(watched_robot.state['share_under']):.0%}"),)
                 if watched_robot.level is not None
                 else ()
             ),
@@ -94,5 +94,5 @@ def _status(watched_robot: WatchedRobot, forward: float, lateral_displacement: f
     return (
         f'<div style="padding:4px 12px;font-family:sans-serif">'
         f'<div style="display:flex;flex-wrap:wrap;gap:2px 12px">{cells}</div>'
-        f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(watched_robot.state)}</div></div>'
+        f'<div style="font-size:12px;color:#444" data-suchus="state">{escape(watched_robot.status)}</div></div>'
     )

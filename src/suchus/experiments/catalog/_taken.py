@@ -28,7 +28,7 @@ class TakenMidline(NamedTuple):
     """One of ``TAKEN``."""
     motion: Undulation
     """The midline, joint by joint."""
-    away: float
+    relative_error: float
     """Rms angle off what was commanded, over that [-]."""
 
 

@@ -23,8 +23,8 @@ Numbers = Callable[[xr.Dataset], Mapping[str, xr.DataArray]]
 class TwoGroups(Experiment):
     """The article's two groups in each condition as designed, and as several robots built of the design."""
 
-    judged_with: ClassVar[tuple[str, ...]] = ("robot", "gait", "control_group", "cycles", "tolerances")
-    judged_from: ClassVar[Mapping[str, float]] = {"repeats": 12}
+    judged_settings: ClassVar[tuple[str, ...]] = ("robot", "gait", "control_group", "cycles", "tolerances")
+    judged_minima: ClassVar[Mapping[str, float]] = {"repeats": 12}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""

@@ -72,7 +72,7 @@ def optimise(
     seconds = walks * processor_seconds(spec.run, spec.duration, spec.timestep)
     large.check_work(f"search {spec.name!r} of {walks} walks", seconds, "ask for fewer evaluations or shorter walks")
     return tuple(
-        _arm(spec.of(arm), folder, portion(progress, number, count), place) for number, arm in enumerate(spec.arms)
+        _arm(spec.for_arm(arm), folder, portion(progress, number, count), place) for number, arm in enumerate(spec.arms)
     )
 
 
@@ -88,7 +88,7 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> 
     name = spec.arms[0].name
     with opened(spec, folder / name) as store:
         result = _searched(spec, store, folder, progress, place)
-        if not result.chosen:
+        if not result.chosen_indices:
             raise NotConverged(
                 f"nothing of {result.history.sizes['candidate']} candidates of {name} keeps all limits; widen ranges "
                 "or limits, or raise evaluations."
@@ -99,7 +99,7 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> 
         neighbourhood = _stored_part(
             store,
             _NEIGHBOURHOOD_NUMBER + generations,
-            lambda: vary_around_best(spec, result.shares[0], partial(try_candidates, place)),
+            lambda: vary_around_best(spec, result.range_fractions[0], partial(try_candidates, place)),
         )
         return result.with_checks(check, neighbourhood)
 
@@ -236,9 +236,9 @@ class Condition:
     """Description of the condition."""
     friction_scale: float = 1.0
     """Factor on the friction [-]."""
-    built: int | None = None
+    tolerance_seed: int | None = None
     """Seed of the errors of a robot that is built of the design, see ``land.Tolerances``; None as designed."""
-    later: float = 0.0
+    phase_shift: float = 0.0
     """Phase by which the walk begins later in its cycle [cycle]."""
 
 
@@ -247,10 +247,10 @@ CONDITIONS = (
     Condition("foot friction 0.5", friction_scale=0.625),
     Condition("foot friction 0.65", friction_scale=0.8125),
     Condition("foot friction 1.0", friction_scale=1.25),
-    Condition("a robot as built, seed 1", built=1),
-    Condition("a robot as built, seed 2", built=2),
-    Condition("begun a quarter of a cycle later", later=0.25),
-    Condition("begun 0.4 of a cycle later", later=0.4),
+    Condition("a robot as built, seed 1", tolerance_seed=1),
+    Condition("a robot as built, seed 2", tolerance_seed=2),
+    Condition("begun a quarter of a cycle later", phase_shift=0.25),
+    Condition("begun 0.4 of a cycle later", phase_shift=0.4),
 )
 """All with the robot's own time step, 2 ms for the caiman. Frictions are those of the caiman, whose feet have 0.8: a
 rubber foot on floors from 0.5 to 1."""
@@ -283,13 +283,15 @@ def run_checks(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
 
 def _run_under_condition(run: Run, condition: Condition) -> Run:
     """Return a run under one condition of a check: other friction, later phase, or a robot built with errors."""
-    phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
+    phases = tuple((phase + condition.phase_shift + 1.0) % 1.0 for phase in run.gait.limb_phases)
     gait = replace(run.gait, limb_phases=phases)
-    changed_run = replace(run, gait=gait if condition.later else run.gait)
+    changed_run = replace(run, gait=gait if condition.phase_shift else run.gait)
     changed_run = with_values(
         changed_run, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale}
     )
-    return changed_run if condition.built is None else Tolerances().built(changed_run, condition.built)
+    return (
+        changed_run if condition.tolerance_seed is None else Tolerances().built(changed_run, condition.tolerance_seed)
+    )
 
 
 def vary_around_best(spec: Optimisation, best: np.ndarray, evaluate_candidates: Evaluate = evaluate) -> xr.Dataset:

@@ -80,7 +80,7 @@ def draw_front(search: SearchResult) -> Figure:
         is_allowed(search.spec, search.history),
         search.history,
         search.front,
-        search.chosen,
+        search.chosen_indices,
     )
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.2, width_ratios=[1.4, 1])
@@ -106,7 +106,7 @@ def draw_front(search: SearchResult) -> Figure:
         for axis, aim, kind in zip((ax.set_xlabel, ax.set_ylabel), search.spec.aims, kinds, strict=True):
             axis(f"{label(aim.name)} [{kind.unit}], {kind.good} is better")
         ax.legend(loc="best", fontsize=10)
-        areas = search.covered()
+        areas = search.covered_areas()
         axes[0, 1].plot(areas, color=COLOURS["ours"])
         axes[0, 1].set_xlabel("generation [-]")
         axes[0, 1].set_ylabel("area that the front covers [-]")
@@ -208,7 +208,7 @@ def _shade(name: str, number: int) -> str:
 
 def draw_around(search: SearchResult) -> Figure:
     """Draw the first aim as each field alone moves to both sides of the best; crosses break a limit."""
-    neighbourhood = search.near
+    neighbourhood = search.neighbourhood
     assert neighbourhood is not None
     aim = search.spec.aims[0].name
     kind: Kind = AIMS[aim]

@@ -106,7 +106,7 @@ def _numbers_of(search: SearchResult) -> dict[str, Any]:
 def _best(search: SearchResult, index: int) -> dict[str, Any]:
     """Return aims, fields, limits and checks of one chosen candidate as JSON holds them."""
     assert search.checks is not None
-    candidate, ranges = search.chosen[index], {v.field: (v.low, v.high) for v in search.spec.vary}
+    candidate, ranges = search.chosen_indices[index], {v.field: (v.low, v.high) for v in search.spec.vary}
     return {
         "sentence": sentence(search, index),
         "aims": {aim.name: _finite(search.history[f"aim_{aim.name}"][candidate]) for aim in search.spec.aims},
@@ -200,7 +200,7 @@ def _lead(searches: Sequence[SearchResult]) -> str:
         front = search.front if search.spec.pareto else []
         changes = []
         for aim in search.spec.aims if front else search.spec.aims[:1]:
-            ends = (front[0], front[-1]) if front else (0, search.chosen[0])
+            ends = (front[0], front[-1]) if front else (0, search.chosen_indices[0])
             start_value, end_value = (float(search.history[f"aim_{aim.name}"][i]) for i in ends)
             changes.append(
                 f"{label(aim.name)} {start_value:.3g} to {end_value:.3g} {AIMS[aim.name].unit}".removesuffix(" -")
@@ -225,7 +225,7 @@ def _sections(
         links += [
             (f"{n}_robot.toml", f"{n}_robot.toml: the robot as a file") for search in searches for n in search.names
         ]
-    best = [(search, i) for search in searches for i in range(len(search.chosen))]
+    best = [(search, i) for search in searches for i in range(len(search.chosen_indices))]
     return [
         Section(title="What it found", texts=[*_best_said(numbers), *_control_note(spec)], links=links,
                 figures=("gaits",)),

@@ -86,7 +86,7 @@ class Front:
     Sofomore framework, GECCO 2019.
     """
 
-    WORST = (0.0, 2.0)
+    REFERENCE_LOSSES = (0.0, 2.0)
     """Reference losses of the hypervolume [-]: 0 where more is better, twice the start's value where less is."""
 
     def __init__(self, spec: Optimisation) -> None:
@@ -117,7 +117,9 @@ class Front:
 
 def reference_of(spec: Optimisation) -> list[float]:
     """Return the reference point of the hypervolume, a loss for each aim."""
-    return [Front.WORST[0] if AIMS[aim.name].good == "more" else Front.WORST[1] for aim in spec.aims]
+    return [
+        Front.REFERENCE_LOSSES[0] if AIMS[aim.name].good == "more" else Front.REFERENCE_LOSSES[1] for aim in spec.aims
+    ]
 
 
 def _in_order(kernel: int) -> int:
@@ -175,7 +177,7 @@ class SearchResult:
     """All candidates in order, the start first, with ``generation`` and ``score``."""
     checks: xr.Dataset | None = None
     """Aims and limits of the best under other conditions; see ``conduct.run_checks``."""
-    near: xr.Dataset | None = None
+    neighbourhood: xr.Dataset | None = None
     """Candidates around the best; see ``conduct.vary_around_best``."""
 
     @property
@@ -189,7 +191,7 @@ class SearchResult:
         return front_of(self.spec, self.history, units(self.spec, self.start))
 
     @property
-    def chosen(self) -> list[int]:
+    def chosen_indices(self) -> list[int]:
         """The best candidate; of a front both ends and the middle; empty if none keeps all limits."""
         if self.spec.pareto:
             front = self.front
@@ -203,22 +205,22 @@ class SearchResult:
         )
 
     @property
-    def shares(self) -> list[np.ndarray]:
+    def range_fractions(self) -> list[np.ndarray]:
         """Fractions of the ranges at the chosen candidates, each of shape (field,) [-]."""
-        return [self.history.share.values[i] for i in self.chosen]
+        return [self.history.share.values[i] for i in self.chosen_indices]
 
     @property
     def names(self) -> list[str]:
         """Names of the chosen candidates: the arm, numbered if there are several."""
-        several = len(self.chosen) > 1
-        return [f"{self.arm}_{i + 1}" if several else self.arm for i in range(len(self.chosen))]
+        several = len(self.chosen_indices) > 1
+        return [f"{self.arm}_{i + 1}" if several else self.arm for i in range(len(self.chosen_indices))]
 
     @property
     def runs(self) -> list[Run]:
         """The chosen, their gaits called after search and condition."""
         return [
             titled(self.spec, self.spec.candidate(dict(zip(self.fields, share.tolist(), strict=True))), name)
-            for share, name in zip(self.shares, self.names, strict=True)
+            for share, name in zip(self.range_fractions, self.names, strict=True)
         ]
 
     @property
@@ -235,7 +237,7 @@ class SearchResult:
         """Return by limit its value, the value of a chosen candidate, and whether the limit is active."""
         limits = {}
         for limit in self.spec.limits:
-            has = float(self.history[f"limit_{limit.name}"][self.chosen[index]])
+            has = float(self.history[f"limit_{limit.name}"][self.chosen_indices[index]])
             limits[limit.name] = (limit.value, has, bool(relative_excess(limit, np.array([has]))[0] > -ACTIVE))
         return limits
 
@@ -247,7 +249,7 @@ class SearchResult:
         values = self.history[f"aim_{self.spec.aims[0].name}"].values[best_index]
         return np.where(np.isfinite(score[best_index]), values, np.nan)
 
-    def covered(self) -> np.ndarray:
+    def covered_areas(self) -> np.ndarray:
         """Return after each generation the area that the front covers, in parts of the start's aims."""
         table, parts = self.history, units(self.spec, self.start)
         loss, allowed = losses(self.spec, table, parts), is_allowed(self.spec, table)
@@ -260,7 +262,7 @@ class SearchResult:
 
     def with_checks(self, checks: xr.Dataset, neighbourhood: xr.Dataset) -> "SearchResult":
         """Return the same with what was checked."""
-        return replace(self, checks=checks, near=neighbourhood)
+        return replace(self, checks=checks, neighbourhood=neighbourhood)
 
 
 def titled(spec: Optimisation, run: Run, name: str) -> Run:

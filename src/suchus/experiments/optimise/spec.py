@@ -125,7 +125,7 @@ class Optimisation(Search):
         for vary in self.vary:
             self._check_vary(vary)
         for arm in self.arms:
-            self.of(arm)
+            self.for_arm(arm)
 
     def _check_vary(self, vary: Vary) -> None:
         """Refuse a field that does not exist, is no number, or whose range the robot or the start is not in."""
@@ -155,7 +155,7 @@ class Optimisation(Search):
             except InvalidDesign:
                 continue  # wrong together with the start; it may be right together with what varies
 
-    def of(self, arm: Arm) -> "Optimisation":
+    def for_arm(self, arm: Arm) -> "Optimisation":
         """Return the search of one condition alone: what it sets is set, and does not vary.
 
         Raises:

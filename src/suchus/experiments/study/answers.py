@@ -16,7 +16,7 @@ _BINS, _RESAMPLED, _CONFIDENCE = 8, 400, 0.95
 class Index(NamedTuple):
     """How much of a quantity each parameter decides alone."""
 
-    share: np.ndarray
+    variance_fraction: np.ndarray
     """Fraction of the variance of its ranks, shape (parameter,) [-]; chance alone gives about zero."""
     low: np.ndarray
     """Lower end of the 95 % interval [-]."""

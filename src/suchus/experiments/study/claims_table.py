@@ -56,7 +56,7 @@ def claim_row(record: xr.Dataset, claim: str) -> dict[str, Any]:
         "deciders": [
             {
                 "parameter": str(record.parameter.values[i]),
-                "decides": float(index.share[i]),
+                "decides": float(index.variance_fraction[i]),
                 "low": float(index.low[i]),
                 "high": float(index.high[i]),
                 "correlation": float(claim_record.correlation.values[i]),
@@ -86,10 +86,13 @@ def deciders(parameters: np.ndarray, index: Index) -> list[int]:
         index: of each parameter, see ``answers.first_order``.
     """
     indices: list[int] = []
-    for i in np.argsort(-index.share):
+    for i in np.argsort(-index.variance_fraction):
         if len(indices) == _MAX_DECIDERS:
             break
-        passes = (first_order(parameters[:, [i]], parameters[:, j]).share[0] > _MAX_SHARED_VARIANCE for j in indices)
+        passes = (
+            first_order(parameters[:, [i]], parameters[:, j]).variance_fraction[0] > _MAX_SHARED_VARIANCE
+            for j in indices
+        )
         if index.low[i] > 0 and not any(passes):
             indices.append(int(i))
     return indices

@@ -45,7 +45,7 @@ class Plan(Sequence[Point]):
         factorial = study.design == "factorial"
         self._factorial_fields = [v for v in study.vary if factorial or v.each]
         self._sampled = [v for v in study.vary if not (factorial or v.each)]
-        self._takes_whole = {v.field: study.whole(v.field) for v in study.vary}
+        self._takes_whole = {v.field: study.takes_integers(v.field) for v in study.vary}
         self._levels = [levels(v, is_whole=self._takes_whole[v.field]) for v in self._factorial_fields]
         self._combinations = prod(len(v) for v in self._levels)
         count = (study.samples or 1) if self._sampled else 1
@@ -53,7 +53,7 @@ class Plan(Sequence[Point]):
         self._length = count * len(self._arms) * self._combinations * study.seeds
         if self._length > _MAX_RUNS:
             raise InvalidDesign(f"study {study.name!r} has {self._length} runs; up to {_MAX_RUNS} are allowed.")
-        self._shares = evenly(study.design, count, len(self._sampled), study.seed)
+        self._fractions = evenly(study.design, count, len(self._sampled), study.seed)
         self._cached_runs: dict[tuple[int, int], Run] = {}
 
     def __len__(self) -> int:
@@ -65,16 +65,16 @@ class Plan(Sequence[Point]):
             return [self[i] for i in range(*index.indices(len(self)))]
         if not 0 <= index < len(self):
             raise IndexError(index)
-        sample, arm, combination, repeat = self._place(index)
+        sample, arm, combination, repeat = self._run_indices(index)
         values: dict[str, Any] = {}
         for vary, levels_ in zip(reversed(self._factorial_fields), reversed(self._levels), strict=True):
             combination, level = divmod(combination, len(levels_))
             values[vary.field] = levels_[level]
-        for vary, share in zip(self._sampled, self._shares[sample], strict=True):
+        for vary, share in zip(self._sampled, self._fractions[sample], strict=True):
             values[vary.field] = value_of(vary, float(share), is_whole=self._takes_whole[vary.field])
         return Point({v.field: values[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
 
-    def _place(self, index: int) -> tuple[int, int, int, int]:
+    def _run_indices(self, index: int) -> tuple[int, int, int, int]:
         """Return the numbers of a run's sample, arm, combination and seed."""
         quotient, repeat = divmod(index, self.study.seeds)
         quotient, combination = divmod(quotient, self._combinations)
@@ -97,7 +97,7 @@ class Plan(Sequence[Point]):
         Raises:
             InvalidDesign: its values cannot be together.
         """
-        point, (sample, _, combination, _) = self[index], self._place(index)
+        point, (sample, _, combination, _) = self[index], self._run_indices(index)
         if (sample, combination) not in self._cached_runs:  # arms and seeds of a point share robot and gait
             point_run = self._vary(point.values)
             self._cached_runs = {key: run for key, run in self._cached_runs.items() if key[0] == sample}

@@ -140,7 +140,7 @@ class Study:
         self._check_measures()
         self._check_fields()
 
-    def whole(self, field: str) -> bool:
+    def takes_integers(self, field: str) -> bool:
         """Return whether a field of the run takes whole numbers only."""
         current_value = value_at(self.run, field)
         return isinstance(current_value, int) and not isinstance(current_value, bool)
@@ -167,7 +167,7 @@ class Study:
                 raise InvalidDesign(
                     f"study {self.name!r} varies {vary.field}; the study sets it: choose seed and seeds."
                 )
-            is_whole = self.whole(vary.field)
+            is_whole = self.takes_integers(vary.field)
             if is_whole:
                 self._check_whole(vary)
             for value in (round(end) if is_whole and vary.values is None else end for end in vary.ends):

@@ -35,7 +35,7 @@ class Question(Protocol):
     def name(self) -> str:
         """Return its name in the catalog."""
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Mapping[str, Any]:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Mapping[str, Any]:
         """Return the numbers that are wanted at least, each with its ``value``."""
 
 
@@ -74,7 +74,7 @@ class VariedStudy:
         rows = zip(self.vary, shares, whole_flags, strict=True)
         return {vary.field: value_of(vary, float(share), is_whole=is_whole) for vary, share, is_whole in rows}
 
-    def asked(self, sample: int) -> Question:
+    def question_at(self, sample: int) -> Question:
         """Return the question of a point.
 
         Raises:
@@ -186,7 +186,7 @@ def ask(study: VariedStudy, sample: int, progress: Progress = silent) -> xr.Data
     measure_names = sorted(set().union(*(rule.needs for rule in study.rules)))
     numbers, error = dict.fromkeys(measure_names, np.nan), ""
     try:
-        measures = study.asked(sample).measured(measure_names, progress)
+        measures = study.question_at(sample).simulate_measures(measure_names, progress)
         numbers = {name: float(measures[name].value) for name in measure_names}
     except SuchusError as refused:
         error = f"{type(refused).__name__}: {' '.join(str(refused).split())}"

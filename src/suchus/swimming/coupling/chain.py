@@ -227,15 +227,15 @@ class MidlineChain:
 
         Args:
             place: posture; with that in the middle of the step, force times velocity is the power to second order.
-            loads: on the parts; torques about ``loads.about``.
+            loads: on the parts; torques about ``loads.reference_point``.
             origin: of the grid's frame in the world of the flow [m].
         """
         points = self.centres(place)
         pull, turn = loads.parts.force[:, :2], loads.parts.torque
-        offset = points.place.T - origin - loads.about[:2]
+        offset = points.place.T - origin - loads.reference_point[:2]
         torque = turn - (offset[:, 0] * pull[:, 1] - offset[:, 1] * pull[:, 0])
         generalised_force = np.einsum("cpk,pc->k", points.along, pull) + torque @ points.turning
-        return generalised_force + self.unpressed(place, loads.pressed, origin + loads.about[:2])
+        return generalised_force + self.unpressed(place, loads.internal_pressure, origin + loads.reference_point[:2])
 
     @cached_property
     def _bends(self) -> np.ndarray:
@@ -271,7 +271,7 @@ class MidlineChain:
         link_loads = np.zeros((len(self.names), 4))
         for link in range(len(link_loads)):
             is_of_link = self.links == link
-            middle = points[is_of_link].mean(axis=0) - loads.about[:2]
+            middle = points[is_of_link].mean(axis=0) - loads.reference_point[:2]
             total = pull[is_of_link].sum(axis=0)
             link_loads[link, :2] = -total[0], -total[1]
             link_loads[link, 3] = turn[is_of_link].sum() - (middle[0] * total[1] - middle[1] * total[0])
@@ -294,7 +294,7 @@ class MidlineChain:
                 np.column_stack([vectors, np.zeros(len(vectors))]) for vectors in (reference_points, linear)
             )
             turn = np.column_stack([np.zeros((len(turn), 2)), turn])
-        return Twists(about=reference_points, linear=linear, angular=turn)
+        return Twists(reference_points=reference_points, linear=linear, angular=turn)
 
     def modes(self, place: np.ndarray, origin: np.ndarray, axes: int) -> list[Twists]:
         """Return the motions of the parts at a unit rate of each coordinate; see ``twists``."""
@@ -314,7 +314,7 @@ class MidlineChain:
 
     def motion(self, path: "ChainPath", axes: int, min_half_width: float) -> Callable[[float], flow.Pose]:
         """Return the function that gives the pose of the body's centre at a time [s]."""
-        return lambda time: path.seen(time, lambda posture: self.state(posture, min_half_width))[1].along(axes)
+        return lambda time: path.seen(time, lambda posture: self.state(posture, min_half_width))[1].in_dimensions(axes)
 
 
 class ChainPath:

@@ -104,7 +104,7 @@ class LinkChain:
 
         Args:
             place: posture; with that in the middle of the step, force times velocity is the power to second order.
-            loads: on the links; torques about ``loads.about``.
+            loads: on the links; torques about ``loads.reference_point``.
             origin: of the grid's frame in the world of the flow [m].
         """
         jacobian = self._jacobian(place)
@@ -115,7 +115,7 @@ class LinkChain:
         self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray
     ) -> tuple[Float[np.ndarray, "link 3"], Float[np.ndarray, "link 3"]]:
         """Return forces on the links and torques about their origins, in the frame of the flow."""
-        link_origins = self.states(ChainState(place, np.zeros(self.size))).position - origin - loads.about
+        link_origins = self.states(ChainState(place, np.zeros(self.size))).position - origin - loads.reference_point
         return loads.parts.force, loads.parts.moment - np.cross(link_origins, loads.parts.force)
 
     def felt(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
@@ -137,7 +137,7 @@ class LinkChain:
             axes: of the flow, 3 [-].
         """
         states = self.states(ChainState(place, rate))
-        return Twists(about=states.position - origin, linear=states.velocity, angular=states.spin)
+        return Twists(reference_points=states.position - origin, linear=states.velocity, angular=states.spin)
 
     def modes(self, place: np.ndarray, origin: np.ndarray, axes: int) -> list[Twists]:
         """Return the motions of the links at a unit rate of each coordinate; see ``twists``."""
@@ -206,9 +206,12 @@ def _piece(shape: LinkShape) -> flow.LinkPiece:
     if shape.kind == "ellipsoid":
         length, width, height = (2 * half for half in shape.size)
         ellipsoid: flow.Ellipsoid | flow.Spherocylinder = flow.Ellipsoid(length=length, width=width, height=height)
-        return flow.LinkPiece(link=shape.link, shape=ellipsoid, at=shape.at, turn=shape.turn)
+        return flow.LinkPiece(link=shape.link, shape=ellipsoid, position=shape.at, quaternion=shape.turn)
     length = 2 * shape.size[1] if shape.kind == "rod" else 0.0
     w, x, y, z = rotation.multiply(np.array(shape.turn), _ROD_TURN).tolist()
     return flow.LinkPiece(
-        link=shape.link, shape=flow.Spherocylinder(length=length, radius=shape.size[0]), at=shape.at, turn=(w, x, y, z)
+        link=shape.link,
+        shape=flow.Spherocylinder(length=length, radius=shape.size[0]),
+        position=shape.at,
+        quaternion=(w, x, y, z),
     )

@@ -380,7 +380,7 @@ class Swim:
 
     def _water_force(self, began: ChainState, posture: ChainState) -> np.ndarray:
         """Return the generalised force of the water in the last step, in the robot's own coordinates."""
-        loads, place = self.sim.last(self.run.robot.name), 0.5 * (began.place + posture.place)
+        loads, place = self.sim.last_loads(self.run.robot.name), 0.5 * (began.place + posture.place)
         return self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
 
     # --- going on ----------------------------------------------------------------------------------------------
@@ -410,7 +410,7 @@ class Swim:
         previous_mass = self._added_mass
         modes = self.chain.modes(posture.place, self._origin, self._axes)
         added_mass = self.sim.added_mass(self.run.robot.name, modes)
-        internal_mass = self.chain.unpressed(posture.place, added_mass.pressed, self._origin)
+        internal_mass = self.chain.unpressed(posture.place, added_mass.internal_pressure, self._origin)
         water_mass = added_mass.matrix - 0.5 * (internal_mass + internal_mass.T)
         self._added_mass = never_negative(self._times * self.chain.of_robot(water_mass), self.stepper.mass())
         if len(self.series.time):
@@ -580,9 +580,9 @@ class Swim:
     ) -> None:  # fmt: skip
         """Append the quantities of a step to the series."""
         series = self.series
-        loads = self.sim.last(self.run.robot.name)
+        loads = self.sim.last_loads(self.run.robot.name)
         h = self.time - (series.time[-1] if series.time else 0.0)
-        power = self._times * float(loads.whole.power - loads.whole.force @ self._drift())
+        power = self._times * float(loads.total.power - loads.total.force @ self._drift())
         series.time.append(self.time)
         series.force.append(water_force)
         series.links.append(self._times * self.chain.felt(posture.place, loads, self._origin))
@@ -707,7 +707,7 @@ class Swim:
         self.path.go(self.time, self._flow_posture, self.time, self._flow_posture)
         self.sim.resume(component_state("flow"))
         self.path.go(self.time, posture, self.time, posture)
-        self.sim.forget()
+        self.sim.clear_shape_cache()
         for name, value in component_state("own").items():
             setattr(self, _CHANGING[name], value if value.ndim else value.item())
         self.series, self.samples = Series.of(component_state("series")), Samples.of(component_state("samples"))

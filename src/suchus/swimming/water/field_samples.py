@@ -73,7 +73,7 @@ class FieldWindow:
 def midline(sim: flow.Simulation) -> flow.MidlineState:
     """Return the midline of the only body, in the frame of the grid."""
     body, (position, _) = sim.setup.bodies[0], sim.frame
-    world_state = body.shape.spine(sim.time).placed(sim.pose(body.name))  # type: ignore[union-attr]
+    world_state = body.shape.spine(sim.time).in_world(sim.pose(body.name))  # type: ignore[union-attr]
     return flow.MidlineState(
         x=world_state.x - position[0],
         y=world_state.y - position[1],
@@ -149,7 +149,7 @@ def _vortices(sim: flow.Simulation) -> np.ndarray:
     velocity = np.stack(sim.velocity).astype(float)
     image = velocity[:, :1] * np.array([1.0, 1.0, -1.0])[:, None, None, None]
     q = flow.second_invariant(np.concatenate([image, velocity], axis=1), sim.setup.grid.cell)[1:]
-    invariant: np.ndarray = q * (sim.fluid_share > MIN_FLUID_FRACTION)
+    invariant: np.ndarray = q * (sim.fluid_fraction > MIN_FLUID_FRACTION)
     return invariant
 
 

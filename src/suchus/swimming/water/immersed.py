@@ -87,11 +87,11 @@ def folded_limbs(robot: Robot) -> tuple[flow.Capsule, ...]:
         lateral_offset, rear_offset = -limb.side * girdle.aside, 0.0  # the body's y points to the robot's right
         for link in girdle.limb.links:
             ends = (rear_offset, lateral_offset), (rear_offset + link.length, lateral_offset)
-            capsules.append(flow.Capsule(at=hip_position, start=ends[0], end=ends[1], radius=link.radius))
+            capsules.append(flow.Capsule(arc_position=hip_position, start=ends[0], end=ends[1], radius=link.radius))
             rear_offset += link.length
         capsules.append(
             flow.Capsule(
-                at=hip_position,
+                arc_position=hip_position,
                 start=(rear_offset, lateral_offset),
                 end=(rear_offset, lateral_offset),
                 radius=girdle.limb.foot.radius,

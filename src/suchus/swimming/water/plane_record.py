@@ -65,7 +65,11 @@ class TetheredSlice:
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
         """Return the record of the samples at equal phases, with the means of every cycle."""
         lateral = self._outline.servos
-        series, steps, quarters = sim.record.after(self._start), samples.series("steps"), samples.series("quarters")
+        series, steps, quarters = (
+            sim.record.select_after(self._start),
+            samples.series("steps"),
+            samples.series("quarters"),
+        )
         phase = np.arange(1, PHASES + 1) / PHASES
         sample_phase = (steps["time"] - self._start) / self._period
         force, step_phase = series.force(), (series.time - 0.5 * series.step - self._start) / self._period
@@ -89,7 +93,7 @@ class TetheredSlice:
                 "place": ("phase", np.interp(phase, sample_phase, steps["place"]), {"units": "1"}),
                 "sides": (("instant", "side", "tail"), quarters["sides"], {"units": "Pa"}),
                 "noise": ((), _noise(series, self._period), {"units": "1"}),
-                "thin": ((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
+                "thin": ((), sim.thin_fractions[sim.setup.bodies[0].name], {"units": "1"}),
             },
             coords={
                 "phase": phase,
@@ -173,7 +177,7 @@ class FreeSlice:
                 "swing": ("station", swing(lateral).amplitude, {"units": "m"}),
                 "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N/m"}),
                 "wave_speed": ((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
-                "thin": ((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
+                "thin": ((), sim.thin_fractions[sim.setup.bodies[0].name], {"units": "1"}),
             }
         )
         data = data.merge(course(sim, samples, period, self._swim.setting.cycles))
@@ -219,7 +223,7 @@ def _moments(
 ) -> Float[np.ndarray, " joint"]:
     """Return the moment about each joint of the water's load beyond it."""
     m = surface.markers
-    fx, fy = surface.traction * m.share * height
+    fx, fy = surface.traction * m.weight * height
     moments = []
     for i, place in enumerate(outline.places):
         x, y = np.interp(place, outline.s, midline.x), np.interp(place, outline.s, midline.y)
@@ -246,7 +250,7 @@ def convex_less_concave(outline: Outline, surface: flow.Surface, midline: flow.M
     means = []
     for side in (1.0, -1.0):
         is_on_side = (m.side == side) & (m.station > start)
-        means.append(float(np.average(surface.pressure[is_on_side], weights=m.share[is_on_side])))
+        means.append(float(np.average(surface.pressure[is_on_side], weights=m.weight[is_on_side])))
     # what bends to the right is convex on the left
     return (means[1] - means[0]) * float(np.sign(bend(outline, midline)))
 

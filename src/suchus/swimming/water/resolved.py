@@ -138,7 +138,7 @@ def towed_drag(robot: Robot, speed: float, setting: SwimSetting, *, lengths: flo
             tolerance=setting.largest_divergence(),
         )
     )  # fmt: skip
-    series = sim.run(lengths * length / speed, progress=False).after((lengths - 1.0) * length / speed)
+    series = sim.run(lengths * length / speed, progress=False).select_after((lengths - 1.0) * length / speed)
     return float(np.average(series.force()[:, 0], weights=series.step))
 
 

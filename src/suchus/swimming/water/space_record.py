@@ -40,7 +40,7 @@ class FreeInSpace:
         outline, motion, robot = self._swim.outline, self._swim.motion, self._swim.robot
         servos = [servo.name for servo in outline.servos]
         means = dict(zip(_PER_CYCLE, cycle_means(series, period, cycles, tuple(_PER_CYCLE)), strict=True))
-        track, last_cycle = samples.series("track"), series.after((cycles - 1) * period * (1.0 + SLACK))
+        track, last_cycle = samples.series("track"), series.select_after((cycles - 1) * period * (1.0 + SLACK))
         sign = {"velocity_x": -1.0, "force_x": -1.0, "power": 1.0}  # the body swims towards -x
         data = xr.Dataset(
             {
@@ -53,7 +53,7 @@ class FreeInSpace:
             swing=((), float(np.ptp(track["tail"])), {"units": "m", "long_name": "of the tail's tip, peak to peak"}),
             head_yaw=((), 0.5 * float(np.ptp(track["heading"])), {"units": "rad"}),
             wave_speed=((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
-            thin=((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
+            thin=((), sim.thin_fractions[sim.setup.bodies[0].name], {"units": "1"}),
             steps=((), float(len(last_cycle.time)), {"units": "1", "long_name": "in the last cycle"}),
             million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
             joint_place=("joint", outline.places, {"units": "m"}),
@@ -64,8 +64,8 @@ class FreeInSpace:
     def _loads(self, sim: flow.Simulation) -> xr.Dataset:
         """Return the torques of the last cycle at joints and servos, and the weight."""
         outline, setting = self._swim.outline, self._swim.setting
-        last_cycle = sim.record.after((setting.cycles - 1) * self._swim.period * (1.0 + SLACK))
-        torques = last_cycle.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
+        last_cycle = sim.record.select_after((setting.cycles - 1) * self._swim.period * (1.0 + SLACK))
+        torques = last_cycle.part_series("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
         return xr.Dataset(
             {
                 "moment": ("moment", last_cycle.time, {"units": "s"}),
@@ -127,7 +127,7 @@ class TetheredInSpace:
             "aside": (np.interp(turns, step_times, force[:, 1]), "N"),
         }
         if swim.outline.places.size:  # else it is not divided
-            parts = np.stack([series.along("force_x"), series.along("force_y")])
+            parts = np.stack([series.part_series("force_x"), series.part_series("force_y")])
             part_forces = np.array(
                 [[np.interp(turns, step_times, part_force) for part_force in axis.T] for axis in parts]
             )

@@ -112,7 +112,7 @@ class ResolvedSwim:
         self.setting.check_margin()
         setup = self.setup
         self.setting.check_thickness(self.robot, setup.bodies[0].shape)
-        setup.check()
+        setup.check_bodies()
 
     def _check_layer(self) -> None:
         """Refuse cells that are too coarse for the boundary layer of the motion."""

@@ -38,14 +38,14 @@ class _Quantity(NamedTuple):
 
     name: str
     """Quantity and unit."""
-    places: np.ndarray
+    tick_positions: np.ndarray
     """Positions of the ticks on the axis."""
     words: list[str]
     """Labels of the ticks; empty on an axis of numbers."""
 
     def word(self, value: float) -> str:
         """Return the tick label at a position on the axis; empty on an axis of numbers."""
-        return self.words[int(np.argmin(np.abs(self.places - float(value))))] if self.words else ""
+        return self.words[int(np.argmin(np.abs(self.tick_positions - float(value))))] if self.words else ""
 
 
 _Quantities = tuple[_Quantity, _Quantity]

@@ -127,9 +127,9 @@ class FieldFilm:
     The picture travels with the grid. Vorticity is red counter-clockwise, pressure purple above that of the far water.
     """
 
-    every: float
+    interval: float
     """Interval of the frames [s]."""
-    what: FieldName = "vorticity"
+    field_name: FieldName = "vorticity"
     """Name of the field."""
     limit: float | None = None
     """End of the scale [1/s, Pa]; None takes what 99 % of the values stay below."""
@@ -140,11 +140,11 @@ class FieldFilm:
     _sim: Simulation | None = None
 
     def __post_init__(self) -> None:
-        for name, value in (("every", self.every), ("speed", self.speed), ("limit", self.limit)):
+        for name, value in (("interval", self.interval), ("speed", self.speed), ("limit", self.limit)):
             if value is not None and not (isfinite(value) and value > 0):
                 raise InvalidDesign(f"{name} of a film is {value}; a positive number is needed.")
-        if self.what not in _FIELDS:
-            raise UnknownName("field", str(self.what), tuple(_FIELDS))
+        if self.field_name not in _FIELDS:
+            raise UnknownName("field", str(self.field_name), tuple(_FIELDS))
 
     def __call__(self, sim: Simulation) -> None:
         """Store the field and the outlines, if a frame is due.
@@ -152,11 +152,11 @@ class FieldFilm:
         Raises:
             InvalidDesign: in space.
         """
-        if sim.setup.grid.axes == 3:
+        if sim.setup.grid.ndim == 3:
             raise InvalidDesign("this film is of plane flows, and this one has three axes; see suchus view swim.")
         if sim.time >= self._due:
-            self._due, self._sim = due_after(sim.time, self.every), sim
-            fields = [values.astype(np.float32) for values in _field_values(sim, self.what)]
+            self._due, self._sim = due_after(sim.time, self.interval), sim
+            fields = [values.astype(np.float32) for values in _field_values(sim, self.field_name)]
             self._frames.append((sim.time, fields, _edges(sim)))
 
     def save(self, path: Path | str) -> Path:
@@ -172,11 +172,11 @@ class FieldFilm:
         if self._sim is None:
             raise InvalidDesign("the film holds no frame; give it to a run first: sim.run(until, watch=film).")
         limit = self.limit if self.limit is not None else span(np.stack([f[-1] for _, f, _ in self._frames]), 0.99)
-        picture = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.what])
+        picture = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.field_name])
         picture.figure.set_dpi(_FILM_DPI)
         times = [time for time, _, _ in self._frames]
-        seconds = max(times[-1] - times[0] + self.every, self.every) / self.speed
-        caption = f"{self.what} of a flow from {times[0]:.3g} to {times[-1]:.3g} s"
+        seconds = max(times[-1] - times[0] + self.interval, self.interval) / self.speed
+        caption = f"{self.field_name} of a flow from {times[0]:.3g} to {times[-1]:.3g} s"
         frames = self._frames
         data = film(
             picture.figure, lambda i: picture.move_on(*frames[i]), len(frames), seconds=seconds, caption=caption
@@ -209,7 +209,7 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
     """Return pressure and friction along a body's outline or over its skin now, and what is known of their error."""
     surface = sim.surface(body)
     with styled():
-        draw = _over_the_skin if sim.setup.grid.axes == 3 else _along_the_outline
+        draw = _over_the_skin if sim.setup.grid.ndim == 3 else _along_the_outline
         figure: Figure = draw(surface)
         figure.suptitle(f"t = {sim.time:.3g} s", fontsize="medium", x=0.02, ha="left")
         figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 110)), fontsize="x-small", x=0.02, ha="left")
@@ -219,7 +219,7 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
 def _along_the_outline(surface: Surface) -> Figure:
     """Draw pressure and friction over the arc length of a plane body's outline."""
     m = surface.markers
-    arc_length = np.cumsum(m.share) - m.share / 2
+    arc_length = np.cumsum(m.weight) - m.weight / 2
     friction = surface.shear[1] * m.normals[0] - surface.shear[0] * m.normals[1]
     figure, grid = panels(1, 2, width=WIDTH, height=3.8)
     for axes, values, label in zip(
@@ -236,7 +236,7 @@ def _over_the_skin(surface: Surface) -> Figure:
     max_pressure = max(float(np.abs(surface.pressure).max()), 1e-12)
     views = (("seen along y", 2, 1, -1.0), ("from above", 1, 2, 1.0))
     length, *extents = np.ptp(m.points, axis=1)
-    side = _COVERING * np.sqrt(m.share.max()) / length * 0.4 * WIDTH * 72.0  # side of a dot, in points of the page
+    side = _COVERING * np.sqrt(m.weight.max()) / length * 0.4 * WIDTH * 72.0  # side of a dot, in points of the page
     figure, grid = panels(2, 2, width=WIDTH, height=2.4 + min(2 * 0.4 * WIDTH * max(extents) / length, 6.0))
     for row, (values, label, cmap, lower_bound, upper_bound) in zip(
         grid,
@@ -247,7 +247,7 @@ def _over_the_skin(surface: Surface) -> Figure:
         strict=True,
     ):
         for axes, (view, vertical_axis, depth, view_sign) in zip(row, views, strict=True):
-            is_visible = (view_sign * m.normals[depth] > 0) & (m.share > 0)
+            is_visible = (view_sign * m.normals[depth] > 0) & (m.weight > 0)
             order = np.argsort(view_sign * m.points[depth, is_visible])
             x, y, visible_values = (
                 m.points[0, is_visible][order],

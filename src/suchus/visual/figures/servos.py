@@ -13,7 +13,7 @@ class ServoUse(NamedTuple):
 
     servo: str
     """Name of the servo in the robot."""
-    bought: str
+    servo_model: str
     """Name of the servo that is bought; empty for one of the design."""
     torque: float
     """Torque over what it can give at its speed, but for the worst 2 % of the time [-]."""
@@ -54,7 +54,7 @@ def draw_use(servo_uses: Sequence[ServoUse], title: str) -> Figure:
             )
         ax.axvline(100, color=COLOURS["alarm"], linestyle="--", linewidth=1.4, label="all there is")
         ax.set_yticks(
-            list(positions), [f"{servo_use.servo}  {servo_use.bought}".strip() for servo_use in rows], fontsize=10
+            list(positions), [f"{servo_use.servo}  {servo_use.servo_model}".strip() for servo_use in rows], fontsize=10
         )
         ax.set_xlabel("used of what the servo has [%]")
         ax.set_title(title)

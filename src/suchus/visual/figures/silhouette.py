@@ -38,7 +38,7 @@ def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Sil
         axes: which two coordinates are drawn: (0, 1) from above, (0, 2) from the side.
     """
     surface, flat = skin(robot), vertices[:, list(axes)]
-    starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
+    starts = np.flatnonzero(np.diff(surface.part_index, prepend=-1))
     part_points = np.split(flat, starts[1:])
     sizes = np.array([len(points) for points in part_points])
     if surface.plain:
@@ -52,7 +52,7 @@ def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Sil
     spikes = [points for points in axial[2:] if len(points) == _SCUTE]
     eyes = [axial[i] for i in np.flatnonzero(sizes[: len(axial)] == _EYE)[:2]]
     return Silhouette(
-        body=_sides(axial[0], SKIN.around),
+        body=_sides(axial[0], SKIN.ring_points),
         jaw=_sides(axial[1], JAW_AROUND),
         scutes=[_hull(points[[0, 2, 4, 6, 8]]) for points in spikes],  # every other corner, and the apex
         eyes=[_hull(points) for points in eyes],
@@ -82,7 +82,7 @@ _SCUTE, _EYE = 10, 98  # vertices of a scute and of an eye
 def _owners(surface: Skin, starts: np.ndarray) -> list[int]:
     """Return for each part the leg that it belongs to, -1 for head, trunk and tail."""
     shins = {surface.bones.index(f"{leg}_{bone}"): i for i, leg in enumerate(LEGS) for bone in ("femur", "tibia")}
-    last_vertices = [*(starts[1:] - 1), len(surface.part) - 1]  # a limb ends at its foot
+    last_vertices = [*(starts[1:] - 1), len(surface.part_index) - 1]  # a limb ends at its foot
     return [shins.get(int(surface.indices[vertex, 0]), -1) for vertex in last_vertices]
 
 

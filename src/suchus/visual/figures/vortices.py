@@ -51,7 +51,7 @@ class Viewpoint(NamedTuple):
             [[-s, c, 0.0], [-c * vertical, -s * vertical, horizontal], [c * horizontal, s * horizontal, vertical]]
         )
 
-    def seen(self, points: np.ndarray, size: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
+    def project(self, points: np.ndarray, size: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
         """Return where points are in a picture, from its lower left corner (point, 2) [pixel], and how far off [m]."""
         right, upward, toward_camera = self.axes @ (points - np.array(self.target)).T
         scale = size[0] / self.width * self.distance / (self.distance - toward_camera)
@@ -83,7 +83,7 @@ def _render(meshes: Sequence[Mesh], camera: Viewpoint, size: tuple[int, int]) ->
     """
     mesh = join_meshes(meshes)
     fine = (_SUPERSAMPLING * size[0], _SUPERSAMPLING * size[1])
-    positions, depth = camera.seen(mesh.vertices, fine)
+    positions, depth = camera.project(mesh.vertices, fine)
     corner = positions[mesh.faces]
     order = np.argsort(-depth[mesh.faces].mean(axis=1), kind="stable")
     colours = np.column_stack([_lit_colours(mesh, camera), np.ones(len(mesh.vertices))])

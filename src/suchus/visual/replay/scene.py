@@ -108,7 +108,7 @@ def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
     assert (surface.weights[:, 2:] == 0).all()  # joints are so far apart that no vertex hangs on three bones
     return {
         "scale": scale,
-        "rest": np.round(surface.rest, 7).tolist(),
+        "rest": np.round(surface.rest_origins, 7).tolist(),
         "vertices": pack.add(vertices),
         "normals": pack.add(np.round(127 * surface.normals).astype(np.int8)),
         "colours": pack.add(surface.colours),

@@ -29,16 +29,16 @@ def skin_with_ankles(robot: Robot) -> Skin:
     surface = skin(robot)
     if surface.plain:
         return surface
-    indices, origins = surface.indices.copy(), [*surface.rest]
-    starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
+    indices, origins = surface.indices.copy(), [*surface.rest_origins]
+    starts = np.flatnonzero(np.diff(surface.part_index, prepend=-1))
     min_weights = np.minimum.reduceat(surface.weights[:, 0], starts)
     for i, leg in enumerate(LEGS):
         bone = surface.bones.index(f"{leg}_tibia")
         is_foot_part = (np.maximum.reduceat(surface.indices[:, 0], starts) == bone) & (min_weights > 0.999)
         is_foot_part &= np.minimum.reduceat(surface.indices[:, 0], starts) == bone  # palm, toes and claws, not the limb
-        indices[is_foot_part[surface.part]] = len(surface.bones) + i
-        origins.append(surface.rest[bone] + [0.0, _side(leg) * robot.leg(leg).tibia, 0.0])
-    return replace(surface, bones=(*surface.bones, *ANKLES), rest=np.array(origins), indices=indices)
+        indices[is_foot_part[surface.part_index]] = len(surface.bones) + i
+        origins.append(surface.rest_origins[bone] + [0.0, _side(leg) * robot.leg(leg).tibia, 0.0])
+    return replace(surface, bones=(*surface.bones, *ANKLES), rest_origins=np.array(origins), indices=indices)
 
 
 def ankles(robot: Robot, bones: Poses, feet: np.ndarray, relief: Relief | None = None) -> Poses:

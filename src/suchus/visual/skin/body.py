@@ -94,7 +94,7 @@ def body(robot: Robot, proportions: Proportions) -> Mesh:
     # finer at both ends, where it closes, and on the head, where there is more to see
     uniform = np.linspace(0.0, 1.0, count)
     x = outline.back + length * curve([(0.0, 0.0), (0.02, 0.006), (0.72, 0.78), (0.985, 0.997), (1.0, 1.0)])(uniform)
-    c, s = ring(proportions.around, proportions.roundness)
+    c, s = ring(proportions.ring_points, proportions.roundness)
     y = outline.width(x)[:, None] * c
     z = np.where(s >= 0, outline.top(x)[:, None] * s, outline.bottom(x)[:, None] * s)
     mesh = loft(np.stack([np.broadcast_to(x[:, None], y.shape), y, z], axis=-1))

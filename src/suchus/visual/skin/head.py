@@ -46,7 +46,7 @@ class Frame(NamedTuple):
 
     joint: float
     """x of the jaw joint [m]."""
-    reach: float
+    snout_distance: float
     """Distance from there to the tip of the snout [m]."""
     neck: float
     """Distance from the shoulders to the jaw joint [m]."""
@@ -66,7 +66,7 @@ def frame(robot: Robot, proportions: Proportions) -> Frame:
 def head_knots(robot: Robot, proportions: Proportions) -> list[Knot]:
     """Return the outline from shoulders to snout, without the lower jaw."""
     f = frame(robot, proportions)
-    rows = [(u * f.neck, *sizes) for u, *sizes in _NECK] + [(u * f.reach, *sizes) for u, *sizes in _SKULL]
+    rows = [(u * f.neck, *sizes) for u, *sizes in _NECK] + [(u * f.snout_distance, *sizes) for u, *sizes in _SKULL]
     return [(f.joint + x, a * f.w, b * f.h, c * f.h) for x, a, b, c in rows]
 
 
@@ -77,7 +77,7 @@ def jaw(robot: Robot, proportions: Proportions) -> Mesh:
     c, s = ring(JAW_AROUND, 2.3)
     top, bottom = -f.h * _JAW_TOP(u), -f.h * _JAW_DEPTH(u)
     z = (top + bottom)[:, None] / 2 + (top - bottom)[:, None] / 2 * s
-    x = np.broadcast_to((f.reach * u)[:, None], z.shape)
+    x = np.broadcast_to((f.snout_distance * u)[:, None], z.shape)
     y = f.w * _JAW_WIDTH(u)[:, None] * c
     mesh = loft(_opened(np.stack([x, y, z], axis=-1), f, proportions))
     level = np.concatenate([np.broadcast_to(s, z.shape).ravel(), [0.0, 0.0]])
@@ -94,11 +94,11 @@ def _opened(points: np.ndarray, f: Frame, proportions: Proportions) -> np.ndarra
 def eyes(robot: Robot, proportions: Proportions) -> list[Mesh]:
     """Return the left eye, its pupil and its brow, and the left nostril."""
     f = frame(robot, proportions)
-    x, y, z = f.joint + 0.27 * f.reach, 0.60 * f.w, 0.98 * f.h
+    x, y, z = f.joint + 0.27 * f.snout_distance, 0.60 * f.w, 0.98 * f.h
     size = 0.135 * f.w
     brows = (x - 0.2 * size, y - 0.45 * size, z + 0.45 * size)
     pupil = (x + 0.1 * size, y + 0.62 * size, z + 0.3 * size)
-    nostril = (f.joint + 0.945 * f.reach, 0.19 * f.w, 0.40 * f.h)
+    nostril = (f.joint + 0.945 * f.snout_distance, 0.19 * f.w, 0.40 * f.h)
     return [
         ellipsoid((x, y, z + 0.2 * size), (1.25 * size, size, size), point_count=12, rings=8).painted(EYE),
         ellipsoid(pupil, (0.3 * size, 0.5 * size, 0.72 * size)).painted(PUPIL),
@@ -113,10 +113,12 @@ def teeth(robot: Robot, proportions: Proportions) -> list[Mesh]:
     meshes = []
     for i, u in enumerate(np.linspace(0.30, 0.955, proportions.teeth)):
         size = f.h * (0.30 if i % 4 == 2 else 0.19)
-        gum = (f.joint + f.reach * u, 0.90 * f.w * float(_SKULL_WIDTH(u)), -f.h * (float(_MOUTH(u)) - 0.06))
+        gum = (f.joint + f.snout_distance * u, 0.90 * f.w * float(_SKULL_WIDTH(u)), -f.h * (float(_MOUTH(u)) - 0.06))
         meshes.append(_tooth(np.array(gum), -size, 0.055 * f.h))
         v = u - 0.5 * 0.655 / proportions.teeth
-        lower_gum = np.array([f.reach * v, 0.86 * f.w * float(_JAW_WIDTH(v)), -f.h * (float(_JAW_TOP(v)) + 0.06)])
+        lower_gum = np.array(
+            [f.snout_distance * v, 0.86 * f.w * float(_JAW_WIDTH(v)), -f.h * (float(_JAW_TOP(v)) + 0.06)]
+        )
         meshes.append(_tooth(_opened(lower_gum, f, proportions), 0.75 * size, 0.055 * f.h))
     return [tooth.painted(TOOTH) for tooth in meshes]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 class Proportions:
     """Proportions of the animal where the robot has none; none of them touches the physics."""
 
-    around: int = 28
+    ring_points: int = 28
     """Points around the body, a multiple of four [-]: edges of about 10 mm on the article's robot."""
     step: float = 0.0065
     """Distance between rings along a body one metre long, longer on longer ones [m]."""

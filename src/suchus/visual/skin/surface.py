@@ -35,11 +35,11 @@ class Skin:
     """Places of three vertices, counterclockwise as seen from outside, (m, 3) int32."""
     colours: np.ndarray
     """Red, green, blue of each vertex, (n, 3) uint8."""
-    part: np.ndarray
+    part_index: np.ndarray
     """Number of the closed part to which each vertex belongs, (n,) int32."""
     bones: tuple[str, ...]
     """Names of the bones, which are bodies of the model."""
-    rest: np.ndarray
+    rest_origins: np.ndarray
     """Origins of the bones at zero posture in the frame of the pelvis, (bone, 3) [m]; all are parallel to it."""
     indices: np.ndarray
     """Bones that each vertex hangs on, (n, 4) int32."""
@@ -69,7 +69,7 @@ class Skin:
             if not self.weights[:, i].any():
                 continue
             bone = self.indices[:, i]
-            arm = self.vertices - self.rest[bone]
+            arm = self.vertices - self.rest_origins[bone]
             posed_vertices += self.weights[:, i, None] * (positions[bone] + rotate(quaternions[bone], arm))
         return posed_vertices
 
@@ -91,15 +91,23 @@ def skin(robot: Robot) -> Skin:
         normals=normals(full_mesh),
         faces=full_mesh.faces,
         colours=np.round(255 * np.clip(full_mesh.colours, 0.0, 1.0)).astype(np.uint8),
-        part=np.repeat(np.arange(len(parts), dtype=np.int32), [len(mesh.vertices) for mesh, _ in parts]),
+        part_index=np.repeat(np.arange(len(parts), dtype=np.int32), [len(mesh.vertices) for mesh, _ in parts]),
         bones=bone_names(robot),
-        rest=bone_rest(robot),
+        rest_origins=bone_rest(robot),
         indices=np.concatenate([indices for indices, _ in hung]),
         weights=np.concatenate([weights for _, weights in hung]),
         plain=plain,
     )
-    for array in (surface.vertices, surface.normals, surface.faces, surface.colours, surface.part, surface.rest,
-                  surface.indices, surface.weights):  # fmt: skip
+    for array in (
+        surface.vertices,
+        surface.normals,
+        surface.faces,
+        surface.colours,
+        surface.part_index,
+        surface.rest_origins,
+        surface.indices,
+        surface.weights,
+    ):
         array.flags.writeable = False
     return surface
 

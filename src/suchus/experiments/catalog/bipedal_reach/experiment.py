@@ -73,8 +73,8 @@ class BipedalReach(Experiment):
     shows = "Section IV.D, Figs 22 to 24"
     answers = ("reach_crawl", "reach_standing", "reach_ratio", "held_share", "push_lateral_on")
     needs = ("tables", *STANDING)
-    judged_with = ("robot", "gait", "balance", "least")
-    judged_from: ClassVar[Mapping[str, float]] = {"hold": 10.0, "repeats": 6, "hips": 3}
+    judged_settings = ("robot", "gait", "balance", "least")
+    judged_minima: ClassVar[Mapping[str, float]] = {"hold": 10.0, "repeats": 6, "hips": 3}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that stands up."""
@@ -140,9 +140,9 @@ class BipedalReach(Experiment):
             timestep=_COARSE_TIMESTEP,
         )
 
-    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+    def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
         """Return the gaits of a robot of another size, and the balance rule in that size."""
-        return Experiment.gaits_on(self, robot) | {
+        return Experiment.gaits_for_robot(self, robot) | {
             "balance": rescale(self.balance, length_factor=size_of(robot) / size_of(self.robot))
         }
 

@@ -101,10 +101,10 @@ class CrawlStability(TwoGroups):
         record.attrs["equal_stroke"] = stroke_factor * self._stroke()
         return SimulationResult(record=record, replays=self._replays(record))
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; only the conditions that they name are simulated."""
         if any(name.startswith(_COMPARISON_MEASURES) or _EQUAL_DISPLACEMENT in name for name in measure_names):
-            return super(CrawlStability, self).measured(measure_names, progress)
+            return super(CrawlStability, self).simulate_measures(measure_names, progress)
         arms = conditions_of(self.robot, self.gait, self.control_group)
         requested_gaits = {arm: gait for arm, gait in arms.items() if any(f"_{arm}" in name for name in measure_names)}
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in requested_gaits.items()]
@@ -179,7 +179,7 @@ class CrawlStability(TwoGroups):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the dragged tail, its swing and the trunk's swing each do to the height's fluctuation."""
-        return self.told(measures, stroke=self._stroke())
+        return self.render_explanation(measures, stroke=self._stroke())
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw height over time, the snapshots, the spread."""

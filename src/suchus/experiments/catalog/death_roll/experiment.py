@@ -101,9 +101,9 @@ class DeathRoll(Experiment):
             timesteps=(0.0025, 0.00125),
         )
 
-    def on(self, robot: Robot) -> "DeathRoll":
+    def for_robot(self, robot: Robot) -> "DeathRoll":
         """Return the same question for another robot, with time steps that are as stable for it as those of now."""
-        variant = super(DeathRoll, self).on(robot)  # super() without arguments fails in a class with slots
+        variant = super(DeathRoll, self).for_robot(robot)  # super() without arguments fails in a class with slots
         step_factor, max_timestep = 1.0, max(self.timesteps) * longest_step(robot) / longest_step(self.robot)
         while step_factor * max(variant.timesteps) > _STIFFNESS_TOLERANCE * max_timestep:
             step_factor /= 2  # a control period remains a whole number of steps
@@ -255,7 +255,9 @@ class DeathRoll(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the phase of the bends, the shape and the water do to the rate, and what limits it."""
-        return self.told(measures, **{quantity: self._load(measures, quantity) for quantity in ("speed", "torque")})
+        return self.render_explanation(
+            measures, **{quantity: self._load(measures, quantity) for quantity in ("speed", "torque")}
+        )
 
     def _load(self, measures: Mapping[str, float], quantity: str) -> float:
         """Return the greatest load of the C-shaped roll over the servo's limit [-].

@@ -100,8 +100,8 @@ class Feedback(Experiment):
         "turning_limp_yaw_steered",
     )
     needs = ("limbs", "trunk")
-    judged_with = ("robot", "gait", "kick", "slope", "push", "noise")
-    judged_from: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12, "hold": 2.0, "after": 5}
+    judged_settings = ("robot", "gait", "kick", "slope", "push", "noise")
+    judged_minima: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12, "hold": 2.0, "after": 5}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
@@ -145,7 +145,7 @@ class Feedback(Experiment):
         """Two starts, few and short cycles."""
         return replace(self, gait=replace(self.gait, period=2.0), starts=2, cycles=2, hold=0.5, after=1)
 
-    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+    def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
         """Return the robot's own gait, and a kick for each of its limbs.
 
         Raises:
@@ -174,10 +174,10 @@ class Feedback(Experiment):
         record = xr.merge([starts, self._disturbance_record(staged(progress, "disturbances", 0.7, 1.0))])
         return SimulationResult(record=record, replays=self._replays(pair))
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; those of the claims need fewer laws and disturbances."""
         if not set(measure_names) <= _CLAIM_MEASURES:
-            return super(Feedback, self).measured(measure_names, progress)
+            return super(Feedback, self).simulate_measures(measure_names, progress)
         starts, _ = self._start_record(staged(progress, "random starts", 0.0, 0.8), _CLAIM_LAWS)
         measures = start_measures(starts, self.gait, self.hold, self.cycles)
         if not set(measure_names) <= measures.keys():

@@ -52,7 +52,7 @@ class KnownDraft:
     """Name of the body."""
     body: FloatBody
     """The body."""
-    exact: float
+    exact_draft: float
     """Depth of its lowest point [m]."""
 
 
@@ -77,7 +77,9 @@ def drafts() -> list[KnownDraft]:
 
 
 def _draft(name: str, body: FloatBody, density_ratio: float, exact: float) -> KnownDraft:
-    return KnownDraft(name=name, body=replace(body, mass=density_ratio * WATER.density * body.volume), exact=exact)
+    return KnownDraft(
+        name=name, body=replace(body, mass=density_ratio * WATER.density * body.volume), exact_draft=exact
+    )
 
 
 def draft_of(body: FloatBody) -> float:

@@ -110,7 +110,7 @@ class Floating(Experiment):
         return xr.Dataset(
             {
                 "body_draft": ("float", [cases.draft_of(draft.body) for draft in known_drafts], {"units": "m"}),
-                "exact_draft": ("float", [draft.exact for draft in known_drafts], {"units": "m"}),
+                "exact_draft": ("float", [draft.exact_draft for draft in known_drafts], {"units": "m"}),
             },
             coords={"float": [draft.name for draft in known_drafts]},
         )

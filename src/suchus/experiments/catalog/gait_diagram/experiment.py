@@ -74,7 +74,7 @@ class GaitDiagram(Experiment):
         "tail_gain",
     )
     needs = ("limbs",)
-    judged_with = ("robot", "gait", "cycles")
+    judged_settings = ("robot", "gait", "cycles")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
@@ -154,7 +154,9 @@ class GaitDiagram(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return how the motion of feet and joints differs from the commanded motion."""
-        return self.told(measures, legs=layout(self.robot).limb_names, animal_duty=_ANIMAL_GAIT.duty_factor)
+        return self.render_explanation(
+            measures, legs=layout(self.robot).limb_names, animal_duty=_ANIMAL_GAIT.duty_factor
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the simulated and the commanded gait diagram, and for a body of four limbs that of an animal."""

@@ -53,8 +53,8 @@ class GallopLimits(Experiment):
     shows = "Section II.A"
     answers = ("speed_bound", "flight_bound", "bound_over_walk", "servo_speed_needed", "gallops_share")
     needs = ("legs", "shells", "article_spine", "cable_tail")
-    judged_with = ("robot", "bounds", "trots", "walks", "tolerances")
-    judged_from: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
+    judged_settings = ("robot", "bounds", "trots", "walks", "tolerances")
+    judged_minima: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that should gallop."""

@@ -94,7 +94,7 @@ class JointFaults(TwoGroups):
         "own_loss_hind_pitch_limp_one_limbs_only",
     )
     needs = ("limbs",)
-    judged_with = ("robot", "gait", "control_group", "lifted", "cycles", "hold", "kind", "legs", "tolerances")
+    judged_settings = ("robot", "gait", "control_group", "lifted", "cycles", "hold", "kind", "legs", "tolerances")
 
     lifted: float = LIFTED
     """Pitch of the tail of the control group with its tail in the air, for comparison, down positive [rad]."""
@@ -140,10 +140,10 @@ class JointFaults(TwoGroups):
         replays = self._replays(staged(progress, "replay", 0.98, 1.0))
         return SimulationResult(record=record, tables={"faults.csv": table(record)}, replays=replays)
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; those of the support need no other faults."""
         if not all(name.startswith(_SUPPORT_PREFIXES) for name in measure_names):
-            return super(JointFaults, self).measured(measure_names, progress)
+            return super(JointFaults, self).simulate_measures(measure_names, progress)
         return _support_measures(self._support(progress))
 
     def measure(self, record: xr.Dataset) -> Measures:
@@ -181,7 +181,7 @@ class JointFaults(TwoGroups):
             for name in measures
             if name.startswith("loss_") and name.endswith(f"{reading}_coordinated")
         ]
-        return self.told(measures, joints=joints, reading=reading)
+        return self.render_explanation(measures, joints=joints, reading=reading)
 
     @property
     def _duration(self) -> float:
@@ -210,13 +210,13 @@ class JointFaults(TwoGroups):
         """Return the faults of a joint in the reading of the article that is judged."""
         return joint_failure(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
 
-    def _built(self, runs: list[Run]) -> list[Run]:
+    def _repeat_runs(self, runs: list[Run]) -> list[Run]:
         """Return the repeats of runs, run by run; the i-th repeat of each is the same robot on the same ground."""
         return self.tolerances.repeats(runs, self.repeats, self.seed)
 
     def _repeats_of(self, runs: list[Run], progress: Any) -> xr.Dataset:
         """Simulate the repeats of runs, run by run."""
-        repeated = self._built(runs)
+        repeated = self._repeat_runs(runs)
         return require_complete(
             simulate(
                 repeated,
@@ -294,7 +294,7 @@ class JointFaults(TwoGroups):
 
     def _support(self, progress: Any) -> xr.Dataset:
         """Return the loads that carry the body while the right hind leg, whose pitch joint fails, should swing."""
-        runs, step = self._built(self._failed_pitch()), coarse_step(self.robot)
+        runs, step = self._repeat_runs(self._failed_pitch()), coarse_step(self.robot)
         return support(
             require_complete(simulate(runs, duration=self._duration, timestep=step, progress=progress)), self.repeats
         )

@@ -56,8 +56,8 @@ class JointLoops(Experiment):
         "tracking_by_damping",
     )
     needs = ("limbs",)
-    judged_with = ("robot", "gait", "joint", "step")
-    judged_from: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
+    judged_settings = ("robot", "gait", "joint", "step")
+    judged_minima: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose servos are tested."""
@@ -86,7 +86,7 @@ class JointLoops(Experiment):
         """Return two gains, a second each, one cycle."""
         return replace(self, integrals=(0.0, 20.0), seconds=1.0, cycles=1)
 
-    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+    def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
         """Return the robot's own gait, and the left hind servo that lifts the limb, or its only one."""
         hind = layout(robot).limbs[-2]
         servos = layout(robot).servos[hind.servos]
@@ -110,11 +110,11 @@ class JointLoops(Experiment):
             time=("time", step * np.arange(1, round(self.seconds / step) + 1), {"units": "s", "long_name": "time"}),
         )
         kp = self.robot.servo(self.joint).kp
-        attrs = {"gripped": self.gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
+        attrs = {"gripped": self.clamp_duration, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
         return SimulationResult(record=data.assign_attrs(attrs))
 
     @property
-    def gripped(self) -> float:
+    def clamp_duration(self) -> float:
         """Duration for which the joint is clamped, a second for the article's robot [s]."""
         return _CLAMP_PERIODS * control_period(self.robot)
 
@@ -139,7 +139,7 @@ class JointLoops(Experiment):
             load: load of the second test [N m].
         """
         step = physics_step(self.robot)
-        free_steps, clamp_steps = round(self.seconds / step), round(self.gripped / step)
+        free_steps, clamp_steps = round(self.seconds / step), round(self.clamp_duration / step)
         zeros, step_target = np.zeros(free_steps), np.full(free_steps, self.step)
         no_clamp = np.zeros(free_steps, dtype=bool)
         angles: list[list[np.ndarray]] = [[], [], []]

@@ -46,8 +46,8 @@ class LegKinematics(Experiment):
     )
     needs = ("legs",)
     follows_gait = False
-    judged_with = ("robot", "gait", "other_gait")
-    judged_from: ClassVar[Mapping[str, float]] = {"points": 10_000, "phases": 100}
+    judged_settings = ("robot", "gait", "other_gait")
+    judged_minima: ClassVar[Mapping[str, float]] = {"points": 10_000, "phases": 100}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot; its hind leg is examined."""

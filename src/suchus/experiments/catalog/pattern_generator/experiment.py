@@ -60,8 +60,8 @@ class PatternGeneratorExperiment(Experiment):
     shows = "Beyond the article: Ijspeert et al. 2007, Science 315, 1416"
     answers = ("frequency_walk", "frequency_swim", "frequency_jump", "lag_walk", "lag_swim", "locked_share")
     needs = ("limbs", "axis")
-    judged_with = ("robot", "gait", "walk", "swim", "asymmetry")
-    judged_from: ClassVar[Mapping[str, float]] = {"cycles": 5, "followed": 6.0}
+    judged_settings = ("robot", "gait", "walk", "swim", "asymmetry")
+    judged_minima: ClassVar[Mapping[str, float]] = {"cycles": 5, "followed": 6.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot, with limbs and an axis that bends sideways."""
@@ -125,9 +125,9 @@ class PatternGeneratorExperiment(Experiment):
             self, drives=(1.0, 3.0, 4.0), starts=4, followed=6.0, hold=0.5, cycles=1, ramp=2.0, shore_time=3.0
         )
 
-    def on(self, robot: Robot) -> "PatternGeneratorExperiment":
+    def for_robot(self, robot: Robot) -> "PatternGeneratorExperiment":
         """Return the same question for another robot, which goes from the water to the land itself where it floats."""
-        variant = super(PatternGeneratorExperiment, self).on(robot)  # a class with slots has no short form
+        variant = super(PatternGeneratorExperiment, self).for_robot(robot)  # a class with slots has no short form
         if robot == self.robot:
             return variant
         swimmer = robot if floats(robot) else self.swimmer
@@ -158,10 +158,10 @@ class PatternGeneratorExperiment(Experiment):
         )
         return SimulationResult(record=record, replays=self._replays(ramped))
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; if only turns are wanted, only their walks are simulated."""
         if not set(measure_names) <= _TURNS.keys():
-            return super(PatternGeneratorExperiment, self).measured(measure_names, progress)
+            return super(PatternGeneratorExperiment, self).simulate_measures(measure_names, progress)
         arms = dict.fromkeys(arm for name in measure_names for arm in _TURNS[name])
         return _turn_measures(
             self._walk_arms({name: arm for name, arm in self._arms.items() if name in arms}, progress)
@@ -183,7 +183,7 @@ class PatternGeneratorExperiment(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what drive and steering do, and how the oscillators lock, in words."""
-        return self.told(measures, standing=STANDING)
+        return self.render_explanation(measures, standing=STANDING)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the ramp, the sweep, the locks, and what drive and steering do on land."""

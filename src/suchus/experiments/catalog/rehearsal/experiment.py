@@ -281,7 +281,9 @@ class Rehearsal(Experiment):
                 measures[f"lost_{rule}_{wire}"] = Measure(displacement_change, "-")
                 measures[f"turned_{rule}_{wire}"] = Measure(heading_difference, "rad")
                 bad = exceeds_tolerance(displacement_change, heading_difference)
-                measures[f"flagged_{rule}_{wire}"] = Measure(float(bad) if self.judges(str(rule)) else np.nan, "-")
+                measures[f"flagged_{rule}_{wire}"] = Measure(
+                    float(bad) if self.is_long_enough(str(rule)) else np.nan, "-"
+                )
                 count += bad
                 latency = float(record.latency.sel(wire=wire))
                 if latency > 0.0:
@@ -291,19 +293,21 @@ class Rehearsal(Experiment):
             for latency in sorted(is_borne)
             if all(is_borne[shorter_latency] for shorter_latency in is_borne if shorter_latency <= latency)
         ]
-        is_judged = all(self.judges(rule) for rule in self.controls)
+        is_judged = all(self.is_long_enough(rule) for rule in self.controls)
         return measures | {
             "latency_budget": Measure(max(borne_latencies, default=0.0) if is_judged else np.nan, "s"),
             "flagged": Measure(float(count) if is_judged else np.nan, "-"),
         }
 
-    def judges(self, rule: str) -> bool:
+    def is_long_enough(self, rule: str) -> bool:
         """Return whether walks are long enough to judge what a wire costs a rule."""
         return (self.cycles if rule == "open" else self.rule_cycles) >= MIN_JUDGED_CYCLES
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what decided, with the bounds beyond which a wire is flagged."""
-        return self.told(measures, loses=MAX_DISPLACEMENT_CHANGE, turns=MAX_HEADING_CHANGE, enough=MIN_JUDGED_CYCLES)
+        return self.render_explanation(
+            measures, loses=MAX_DISPLACEMENT_CHANGE, turns=MAX_HEADING_CHANGE, enough=MIN_JUDGED_CYCLES
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw what each wire costs each rule, and how far each servo is off over ideal wires."""

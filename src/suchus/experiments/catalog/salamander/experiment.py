@@ -55,8 +55,8 @@ class Salamander(Experiment):
         "belly_share",
     )
     needs = ("salamander_joints",)
-    judged_with = ("robot", "gait", "loaded")
-    judged_from: ClassVar[Mapping[str, float]] = {"settle": 3, "cycles": 6}
+    judged_settings = ("robot", "gait", "loaded")
+    judged_minima: ClassVar[Mapping[str, float]] = {"settle": 3, "cycles": 6}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that walks; two pairs of limbs at least and a table of angles made for it are needed."""
@@ -156,7 +156,7 @@ class Salamander(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return a comparison of wave and forces with the animal's, and the effect of the axis, in words."""
-        return self.told(measures, animal=ANIMAL)
+        return self.render_explanation(measures, animal=ANIMAL)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the joint angles over the cycle, and the foot forces beside the animal's."""

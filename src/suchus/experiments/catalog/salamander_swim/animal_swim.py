@@ -37,7 +37,7 @@ def animal_gait(robot: Robot, frequency: float) -> Gait:
 class Envelope(NamedTuple):
     """Lateral swing along a body."""
 
-    place: Float[np.ndarray, " point"]
+    position: Float[np.ndarray, " point"]
     """Distance behind the snout along the straight body, from 0 to 1 [body length]."""
     swing: Float[np.ndarray, " point"]
     """Peak-to-peak swing across the course of each cycle, mean over the cycles [body length]."""

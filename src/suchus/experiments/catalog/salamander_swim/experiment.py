@@ -54,8 +54,8 @@ class SalamanderSwim(Experiment):
     shows = "Beyond the article: kinematics of swimming salamanders"
     answers = ("stride_swim", "stride_off", "strouhal", "swing_tail", "share_under")
     needs = ("salamander_joints",)
-    judged_with = ("robot", "frequencies")
-    judged_from: ClassVar[Mapping[str, float]] = {"settle": 6, "cycles": 4}
+    judged_settings = ("robot", "frequencies")
+    judged_minima: ClassVar[Mapping[str, float]] = {"settle": 6, "cycles": 4}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that swims; a table of angles made for it is played."""
@@ -148,7 +148,7 @@ class SalamanderSwim(Experiment):
             coords={
                 "frequency": ("swim", list(self.frequencies), {"units": "Hz"}),
                 "rung": list(LADDER),
-                "place": ("point", envelopes[0].place, units),
+                "place": ("point", envelopes[0].position, units),
             },
         )
 
@@ -227,7 +227,9 @@ class SalamanderSwim(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Set the stride beside the animal's."""
-        return self.told(measures, stride=animal.STRIDE, animals=own_size.ANIMAL_LABELS, rolled=own_size.ROLLOVER_HEEL)
+        return self.render_explanation(
+            measures, stride=animal.STRIDE, animals=own_size.ANIMAL_LABELS, rolled=own_size.ROLLOVER_HEEL
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the strides over the frequency, and how far the body swings along its length."""

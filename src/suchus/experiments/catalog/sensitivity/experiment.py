@@ -122,7 +122,7 @@ class Sensitivity(Experiment):
         fail = [key for key in judged_claims if 1.0 - measures[f"share_{key}"] >= ROBUST]
         depend = [key for key in judged_claims if key not in (*hold, *fail)]
         claim_groups = {"hold": hold, "fail": fail, "depend": depend, "judged": judged_claims}
-        return self.told(
+        return self.render_explanation(
             measures,
             designs=sum(measures[name] for name in _COUNTS.values()),
             alarm=_MIN_CHANCE,

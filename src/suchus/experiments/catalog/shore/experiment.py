@@ -159,13 +159,13 @@ class Shore(Experiment):
         )
         return replace(smaller, duration=2.0, cycles=1)
 
-    def on(self, robot: Robot) -> "Shore":
+    def for_robot(self, robot: Robot) -> "Shore":
         """Return the same question for another robot; one without air lets none out."""
-        variant = super(Shore, self).on(robot)  # a class with slots has no short form
+        variant = super(Shore, self).for_robot(robot)  # a class with slots has no short form
         aired = robot.hull is not None and robot.hull.air > 0.0
         return variant if aired else replace(variant, air_released=0.0, other_air_released=())
 
-    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+    def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
         """Return the gaits in which another robot walks ashore and lands: its own, or the first that can be steered."""
         walking_gait = default_gait(robot)
         if not walking_gait.has("steering"):
@@ -350,7 +350,7 @@ class Shore(Experiment):
         dependency_names = ("steepest", "least_grip", "most_grip", "air_released")
         names = [name.removeprefix("ashore_share_") for name in measures if name.startswith("ashore_share_")]
         metres = {ending: label for ending, label in METRES.items() if f"work_per_metre_{ending}" in measures}
-        return self.told(
+        return self.render_explanation(
             measures, metres=metres, gaits=[name for name in names if not name.startswith(dependency_names)]
         )
 

@@ -68,8 +68,8 @@ class SpeedRange(Experiment):
         "froude_high_walk",
     )
     needs = ("limbs",)
-    judged_with = ("robot", "gaits")
-    judged_from: ClassVar[Mapping[str, float]] = {"slower": 4, "cycles": 3}
+    judged_settings = ("robot", "gaits")
+    judged_minima: ClassVar[Mapping[str, float]] = {"slower": 4, "cycles": 3}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""
@@ -226,19 +226,19 @@ class SpeedRange(Experiment):
             measures |= ranged("tail_on_ground_high_walk", high_walk.tail_lies.mean(), high_walk.tail_lies, "-")
         return measures
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; only gaits whose measures are wanted are simulated."""
         named_gaits = tuple(gait for gait in self.gaits if any(f"_{gait.name}" in name for name in measure_names))
         needs_all_gaits = not named_gaits or not all(
             any(f"_{gait.name}" in name for gait in named_gaits) for name in measure_names
         )
         variant = self if needs_all_gaits else replace(self, gaits=named_gaits)
-        return super(SpeedRange, variant).measured(measure_names, progress)
+        return super(SpeedRange, variant).simulate_measures(measure_names, progress)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how fast and how dear each gait is, and what the other model of the servos changes."""
         names = [gait.name for gait in self.gaits]
-        return self.told(
+        return self.render_explanation(
             measures,
             fastest=max(names, key=lambda name: measures[f"speed_{name}_fastest"]),
             cheapest=min(names, key=lambda name: measures[f"cost_{name}_least"]),

@@ -41,8 +41,8 @@ class SpineKinematics(Experiment):
         "bending_saved_median",
     )
     needs = ("shells", "article_spine")
-    judged_with = ("robot",)
-    judged_from: ClassVar[Mapping[str, float]] = {"postures": 10_000}
+    judged_settings = ("robot",)
+    judged_minima: ClassVar[Mapping[str, float]] = {"postures": 10_000}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose spine is examined."""
@@ -103,7 +103,7 @@ class SpineKinematics(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return the difference of (15) to Table II, its cause, and the freedom of the inverse, in words."""
-        return self.told(measures, exact=EXACT)
+        return self.render_explanation(measures, exact=EXACT)
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
         """Return the workspace, the misprint and the choice of the least bending."""

@@ -204,7 +204,9 @@ class Swim3d(Experiment):
         record = self.recorded(swims, with_midlines(reference, joint_midlines))
         film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
         stored_swims = checkpoint_paths(self.keep, ["slice", *map(_checkpoint_name, items)])
-        return SimulationResult(record=record, films={"swim_3d.gif": film}, replays=_replays(record), kept=stored_swims)
+        return SimulationResult(
+            record=record, films={"swim_3d.gif": film}, replays=_replays(record), checkpoint_files=stored_swims
+        )
 
     def recorded(self, swims: Mapping[str, xr.Dataset], reference: xr.Dataset) -> xr.Dataset:
         """Return the record of the experiment.
@@ -411,7 +413,7 @@ def with_midlines(reference: xr.Dataset, joint_midlines: Sequence[TakenMidline])
         return reference
     misfit = (
         "taken_arm",
-        [midline.away for midline in joint_midlines],
+        [midline.relative_error for midline in joint_midlines],
         {"units": "1", "long_name": "rms angle off, over that commanded"},
     )
     return reference.assign(taken_away=misfit).assign_coords(taken_arm=[midline.name for midline in joint_midlines])

@@ -281,7 +281,7 @@ class SwimFree(Experiment):
                 "residual.md": residual_text(record, judgement, is_earned=correction is not None),
                 **({} if correction is None else {"correction.toml": render(correction)}),
             },
-            kept=checkpoint_paths(self.keep, checkpoint_names([run.label for run in flow])),
+            checkpoint_files=checkpoint_paths(self.keep, checkpoint_names([run.label for run in flow])),
         )  # fmt: skip
 
     def _flow_runs(self, motions: Mapping[str, Gait]) -> list[Run]:

@@ -117,9 +117,9 @@ def checkpoint_names(labels: Sequence[str]) -> list[str]:
 class FlowSwims(NamedTuple):
     """Results of the swims in a flow."""
 
-    kept: xr.Dataset
+    record: xr.Dataset
     """Stored variables of all swims."""
-    first: xr.Dataset
+    first_record: xr.Dataset
     """Record of the first swim."""
     judgement: str
     """Whether the swims justify a correction of the section model, link by link, as Markdown."""
@@ -302,7 +302,7 @@ class _Film:
         self._frequency = frequency
         self._vortices = VortexSampler(frequency, self._end, FRAMES)
         length = swim.run.robot.length
-        self._window = FieldWindow(swim.sim.setup.grid, length, 2.0, 0.6) if swim.sim.axes == 2 else None
+        self._window = FieldWindow(swim.sim.setup.grid, length, 2.0, 0.6) if swim.sim.ndim == 2 else None
 
     def __call__(self, swim: Swim) -> None:
         """Take a frame if one is due."""

@@ -237,7 +237,7 @@ class SwimSweep(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how the speed depends on frequency and amplitude, and how far the slender-body models are from CFD."""
-        return self.told(measures, models=MODELS)
+        return self.render_explanation(measures, models=MODELS)
 
     def _peers(self, record: xr.Dataset) -> str:
         """Return a table of published motions of crocodilians and robots beside the caiman's."""

@@ -106,8 +106,8 @@ class PlaneSwims(Experiment):
     answers = ("speed_free", "speed_as_printed", "gain_tail_share_space", "gain_spine_share_space",
                "gain_spine_share_slice", "misfit")  # fmt: skip
     needs = ("trunk", "tail_yaw")
-    judged_with = ("robot", "reading", "frequency", "reynolds")
-    judged_from: ClassVar[Mapping[str, float]] = {"cells": 80, "space_cells": 68, "cycles": 10}
+    judged_settings = ("robot", "reading", "frequency", "reynolds")
+    judged_minima: ClassVar[Mapping[str, float]] = {"cells": 80, "space_cells": 68, "cycles": 10}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
@@ -165,8 +165,8 @@ class PlaneSwims(Experiment):
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Swim tethered and free, in every motion, on every rung of the ladder."""
-        climb, printed_fit = self.climb(), self._fit(1)
-        wave_fit = climb.fitted
+        climb, printed_fit = self.ladder_setting(), self._fit(1)
+        wave_fit = climb.wave_fit
         slices = swims(climb, "slice", motions(wave_fit.gait), staged(progress, "slice", 0.0, 0.3), frames=self.frames)
         held_swim, free_swim = slices["held"], slices[MOTIONS[0]].drop_vars(("course", "course_centre"))
         printed_swim = self._held_swim("as printed", printed_fit, staged(progress, "as printed", 0.3, 0.35))
@@ -194,18 +194,20 @@ class PlaneSwims(Experiment):
         tables = {"readings.md": table, "ladder.md": ladder_table(numbers, self.unable(record))}
         swam = [f"{rung} {name}" for rung in ("slice", "slice_taken", "space") for name in (*MOTIONS, "held")]
         names = ("held as printed", *(f"free {arm}" for arm in ARMS[len(MOTIONS) :]), *swam)
-        return SimulationResult(record=record, tables=tables, films=films, kept=checkpoint_paths(self.keep, names))
+        return SimulationResult(
+            record=record, tables=tables, films=films, checkpoint_files=checkpoint_paths(self.keep, names)
+        )
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; if they are the ladder's, only the ladder swims.
 
         Swims that no verdict needs are left out too: once two rungs disagree on a claim, slower rungs do not swim for
         it, and their measures are NaN.
         """
         if not all(name.endswith(_OF_RUNGS) for name in measure_names):
-            return super(PlaneSwims, self).measured(measure_names, progress)
+            return super(PlaneSwims, self).simulate_measures(measure_names, progress)
         claims = [rule.claim for rule in RULES if rule.needs & set(measure_names)]
-        return Measures(measures(run_ladder(self.climb(), progress, claims=claims), self.robot.length))
+        return Measures(measures(run_ladder(self.ladder_setting(), progress, claims=claims), self.robot.length))
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
         """Return the reasons why rungs of the ladder could not run, by name."""
@@ -230,7 +232,7 @@ class PlaneSwims(Experiment):
         viscosity = self.frequency * self.robot.length**2 / reynolds
         return SwimSetting(cells=cells, viscosity=viscosity, cycles=cycles, free=TETHERED if is_held else FREE)
 
-    def climb(self) -> LadderSetting:
+    def ladder_setting(self) -> LadderSetting:
         """Return the setting of the ladder.
 
         Raises:
@@ -238,7 +240,7 @@ class PlaneSwims(Experiment):
         """
         check_checkpoint_folder(self.keep)
         return LadderSetting(
-            robot=self.robot, fitted=self._fit(-1), viscosity=self.frequency * self.robot.length**2 / self.reynolds,
+            robot=self.robot, wave_fit=self._fit(-1), viscosity=self.frequency * self.robot.length**2 / self.reynolds,
             cycles=self.cycles, cells=self.cells, space_cells=self.space_cells, keep=self.keep,
         )  # fmt: skip
 

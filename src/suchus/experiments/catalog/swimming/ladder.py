@@ -69,7 +69,7 @@ class LadderSetting:
 
     robot: Robot
     """The robot that swims."""
-    fitted: Fit
+    wave_fit: Fit
     """Motion of the robot, and the turn of its head while the snout is held."""
     viscosity: float
     """Kinematic viscosity on the rungs that resolve the water [m2/s]; theories and sections take real water."""
@@ -86,14 +86,14 @@ class LadderSetting:
     def digest(self) -> str:
         """Hash of body, motion and water; a study of grids is valid for the setting with the same hash."""
         outline, length = Outline(self.robot), self.robot.length
-        bend_phasors = undulation(outline, self.fitted.gait).middles
+        bend_phasors = undulation(outline, self.wave_fit.gait).middles
         inputs = (
             *outline.silhouette,
             bend_phasors.real,
             bend_phasors.imag,
             length,
             self.viscosity,
-            self.fitted.head,
+            self.wave_fit.head,
             self.cycles,
         )
         return fingerprint([np.round(quantity, 9) for quantity in inputs])[:16]
@@ -140,7 +140,7 @@ def run_ladder(
         unable["slice_taken"] = unable["sections"]
     else:
         results["sections"] = _attempt("sections", unable, lambda: _of_sections(climb, sections))
-    commanded_motions = motions(climb.fitted.gait)
+    commanded_motions = motions(climb.wave_fit.gait)
 
     def resolve(rung: str, rung_motions: Mapping[str, Motion], stage: Progress) -> None:
         swim_names = SWIMS if claims is None else _needed_swims(_ladder(climb, results, unable), climb, claims)
@@ -149,8 +149,8 @@ def run_ladder(
         )
 
     if slices is None:
-        check_limits(climb.robot, climb.fitted.gait)  # theories would swim all the same
-        check_speeds(climb.robot, climb.fitted.gait)
+        check_limits(climb.robot, climb.wave_fit.gait)  # theories would swim all the same
+        check_speeds(climb.robot, climb.wave_fit.gait)
         resolve("slice", commanded_motions, staged(progress, "slice", 0.1, 0.35))
     else:
         results["slice"] = _of_swims(climb, slices)
@@ -241,10 +241,10 @@ def _of_theory(climb: LadderSetting, model: str) -> dict[str, Any]:
     """
     outline, water = Outline(climb.robot), Water()
     steady_swims = {
-        name: cruise(outline, gait, MODELS[model], water) for name, gait in motions(climb.fitted.gait).items()
+        name: cruise(outline, gait, MODELS[model], water) for name, gait in motions(climb.wave_fit.gait).items()
     }
     whole_swim = steady_swims[MOTIONS[0]]
-    y = cycle(outline, climb.fitted.gait, whole_swim.sway, whole_swim.turn).y
+    y = cycle(outline, climb.wave_fit.gait, whole_swim.sway, whole_swim.turn).y
     width, height = outline.silhouette
     centre = np.average(y, axis=1, weights=width * height)
     instants = np.arange(TICKS * climb.cycles + 1) / TICKS % 1.0
@@ -277,12 +277,12 @@ def _of_swims(climb: LadderSetting, swims: Swims) -> dict[str, Any]:
 
 def _in_sections(climb: LadderSetting, progress: Progress) -> xr.Dataset:
     """Return the run in six degrees of freedom, the motions along ``run``."""
-    return swum_in_sections(climb.robot, [*motions(climb.fitted.gait).values()], climb.cycles, progress)
+    return swum_in_sections(climb.robot, [*motions(climb.wave_fit.gait).values()], climb.cycles, progress)
 
 
 def _joint_midlines(climb: LadderSetting, record: xr.Dataset) -> dict[str, Motion]:
     """Return the midlines of the joints in six degrees of freedom, by motion."""
-    outline, frequency = Outline(bare(climb.robot), climb.cells + 1), climb.fitted.gait.frequency
+    outline, frequency = Outline(bare(climb.robot), climb.cells + 1), climb.wave_fit.gait.frequency
     averaged_cycles = min(_AVERAGED_CYCLES, climb.cycles)
     return {
         name: motion_of_record(
@@ -297,7 +297,7 @@ def _midline_misfits(climb: LadderSetting, joint_midlines: Mapping[str, Motion] 
     if joint_midlines is None:
         return [nan] * len(MOTIONS)
     outline = Outline(bare(climb.robot), climb.cells + 1)
-    commanded_motions = motions(climb.fitted.gait)
+    commanded_motions = motions(climb.wave_fit.gait)
     return [
         unevenness(undulation(outline, joint_midlines[name]), undulation(outline, commanded_motions[name]))
         for name in MOTIONS
@@ -306,7 +306,7 @@ def _midline_misfits(climb: LadderSetting, joint_midlines: Mapping[str, Motion] 
 
 def space_swims(climb: LadderSetting, progress: Progress) -> Swims:
     """Return the swims in three dimensions."""
-    return swims(climb, "space", motions(climb.fitted.gait), progress)
+    return swims(climb, "space", motions(climb.wave_fit.gait), progress)
 
 
 def swims(
@@ -337,7 +337,7 @@ def swims(
             climb.robot,
             rung_motions[MOTIONS[0] if is_held else name],
             replace(setting, frames=frames) if is_first else setting,
-            turn=climb.fitted.head if is_held else 0j,
+            turn=climb.wave_fit.head if is_held else 0j,
             checkpoint=checkpoint_path(climb.keep, f"{rung} {name}"),
             progress=portion(progress, i, len(names)),
         )
@@ -351,7 +351,7 @@ def _of_sections(climb: LadderSetting, record: xr.Dataset) -> dict[str, Any]:
         climb: setting of the ladder.
         record: of ``_in_sections``.
     """
-    period, time = 1.0 / climb.fitted.gait.frequency, record.time.values.astype(float)
+    period, time = 1.0 / climb.wave_fit.gait.frequency, record.time.values.astype(float)
     ends = period * np.arange(climb.cycles + 1)
     forward_positions = [
         np.interp(ends, time, record.centre_of_mass.isel(run=i).sel(xyz="x")) for i in range(len(MOTIONS))
@@ -414,11 +414,11 @@ class SettledNumber(NamedTuple):
     """Least of them."""
     high: float
     """Greatest of them."""
-    apart: float
+    relative_spread: float
     """Greatest minus least, over the scale of the number [-]; NaN with too few cycles."""
 
     @classmethod
-    def of(cls, values: Iterable[float], scale: float) -> "SettledNumber":
+    def from_values(cls, values: Iterable[float], scale: float) -> "SettledNumber":
         """Return a settled number from the values of both halves and both starting sides."""
         sorted_values = np.sort(np.asarray([*values], float))  # sorted, so that a mirrored swim gives the same bytes
         return cls(
@@ -442,10 +442,10 @@ def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 
     number = None
     for count in range((cycles - 1) // 2 * 2, MIN_SETTLED_CYCLES - 1, -2):
         ends = cycles - count, cycles - count // 2, cycles
-        number = SettledNumber.of([*half(*ends[:2]), *half(*ends[1:])], scale)
-        if number.apart <= MAX_SETTLED_SPREAD:
+        number = SettledNumber.from_values([*half(*ends[:2]), *half(*ends[1:])], scale)
+        if number.relative_spread <= MAX_SETTLED_SPREAD:
             return number
-    return number or SettledNumber.of(half(cycles - 1, cycles), scale)._replace(apart=nan)
+    return number or SettledNumber.from_values(half(cycles - 1, cycles), scale)._replace(relative_spread=nan)
 
 
 def numbers_in_space(climb: LadderSetting, swims: Swims) -> Iterator[tuple[str, SettledNumber]]:

@@ -55,8 +55,8 @@ class TailBending(Experiment):
     )
     needs = ("cable_tail",)
     follows_gait = False
-    judged_with = ("robot", "furthest", "gait", "cycles")
-    judged_from: ClassVar[Mapping[str, float]] = {"steps": 91}
+    judged_settings = ("robot", "furthest", "gait", "cycles")
+    judged_minima: ClassVar[Mapping[str, float]] = {"steps": 91}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose tail is examined."""
@@ -169,7 +169,7 @@ class TailBending(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how large the dropped term is, what it does to the cords, and how alike the joints turn."""
-        return self.told(measures, alike=EQUAL_ANGLE_TOLERANCE)
+        return self.render_explanation(measures, alike=EQUAL_ANGLE_TOLERANCE)
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
         """Return the bent tails, the error of (17) and what the cords do."""

@@ -79,8 +79,8 @@ class Terrain(Experiment):
     shows = "Section II.B, Fig. 3"
     answers = ("erect_ahead_share", "flat_cost_ratio", "met_judged", "transitions_upright", "transition_after_least")
     needs = ("foot_paths",)
-    judged_with = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
-    judged_from: ClassVar[Mapping[str, float]] = {
+    judged_settings = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
+    judged_minima: ClassVar[Mapping[str, float]] = {
         "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 14.0,
     }  # fmt: skip
 
@@ -136,7 +136,7 @@ class Terrain(Experiment):
             self, bumps=(0.03,), steps=(), stones=(0.04,), surfaces=("even",), transitions=2, seeds=1, walked=1.5
         )
 
-    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+    def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
         """Return three postures of the robot's own gait, low, usual and high, as far as its limbs reach.
 
         Raises:
@@ -162,11 +162,11 @@ class Terrain(Experiment):
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(ground_record).merge(change_record)
         return SimulationResult(record=record, replays=self._replays(record))
 
-    def measured(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
+    def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; for those of crawl and high walk only these conditions are simulated."""
         names = {name.removesuffix("_low").removesuffix("_high") for name in measure_names}
         if not all(name in _STRUCTURE_MEASURES or name.startswith("transition") for name in names):
-            return super(Terrain, self).measured(measure_names, progress)
+            return super(Terrain, self).simulate_measures(measure_names, progress)
         needs_rough = any(name in _ROUGH_MEASURES for name in names)
         variant = self if needs_rough else replace(self, bumps=(), steps=(), stones=())
         ground_record = variant._ground_record(staged(progress, "grounds", 0.0, 0.9), _STRUCTURE_ARMS)
@@ -213,7 +213,7 @@ class Terrain(Experiment):
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what each posture keeps of its displacement on rough ground, and what switching is worth."""
         shares = {kind: measures.get(f"kept_{kind}_low_crawl", nan) for kind in ("bumps", "step", "stone")}
-        return self.told(measures, kinds=[kind for kind, share in shares.items() if isfinite(share)])
+        return self.render_explanation(measures, kinds=[kind for kind, share in shares.items() if isfinite(share)])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         """Return the replay of the semi-erect walk over bumps, with the low crawl half transparent, by file name."""

@@ -214,7 +214,7 @@ class Turning(Experiment):
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return by which means each gait turns tightest, and the errors of commanded circles, in words."""
         names = [gait.name for gait in self.gaits]
-        return self.told(
+        return self.render_explanation(
             measures,
             circles=len(names) * len(self.asked),
             walked=sum(measures[f"circles_walked_{name}"] for name in names),

@@ -36,8 +36,8 @@ class WorkingSpace(Experiment):
     shows = "Section IV.D, Figs 23 and 24"
     answers = ("volume_crawling", "volume_standing", "volume_ratio", "area_ratio", "highest_standing")
     needs = ("legs", "shells", "article_spine", "tail")
-    judged_with = ("robot", "gait")
-    judged_from: ClassVar[Mapping[str, float]] = {"crawling": 2**19, "standing": 2**18}
+    judged_settings = ("robot", "gait")
+    judged_minima: ClassVar[Mapping[str, float]] = {"crawling": 2**19, "standing": 2**18}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that reaches."""
