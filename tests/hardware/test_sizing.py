@@ -110,7 +110,7 @@ def test_cases_are_gaits_slopes_faults_standing_and_a_swim(robot, crawl_gait):
     assert found[0].slower(2.0).end == pytest.approx(17.0)
     assert found[3].end > 9.0
     (_, swim) = cases(ROBOTS["floating_caiman"], [crawl_gait], water=True)
-    assert (swim.name, swim.lake.at(0.0)[0]) == ("swimming", ROBOTS["floating_caiman"].length)
+    assert (swim.name, swim.lake.state_at(0.0)[0]) == ("swimming", ROBOTS["floating_caiman"].length)
     with pytest.raises(UnsuitedRobot, match="strider"):
         cases(ROBOTS["strider"], [GAITS["tripod"]], standing=True)
 

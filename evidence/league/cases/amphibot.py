@@ -101,7 +101,7 @@ def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
 
 def _gait(robot, numbers: Numbers) -> Gait:  # type: ignore[no-untyped-def]
     outline = Outline(robot)
-    number = [round(float(outline.places[servo.joints[0]]) / numbers["pitch"]) for servo in outline.servos]
+    number = [round(float(outline.joint_positions[servo.joints[0]]) / numbers["pitch"]) for servo in outline.servos]
     return swimming_gait(
         robot,
         name="amphibot_run1",

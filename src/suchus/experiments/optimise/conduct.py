@@ -289,7 +289,7 @@ def _run_under_condition(run: Run, condition: Condition) -> Run:
     changed_run = with_values(
         changed_run, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale}
     )
-    return changed_run if condition.built is None else Tolerances().built(changed_run, condition.built)
+    return changed_run if condition.built is None else Tolerances().draw_run(changed_run, condition.built)
 
 
 def vary_around_best(spec: Optimisation, best: np.ndarray, evaluate_candidates: Evaluate = evaluate) -> xr.Dataset:

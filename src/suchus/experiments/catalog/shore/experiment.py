@@ -179,7 +179,7 @@ class Shore(Experiment):
         cases = self._cases()
         runs = [run for _, _, run in cases]
         record = simulate(
-            [self.tolerances.built(run, run.seed) for run in runs],
+            [self.tolerances.draw_run(run, run.seed) for run in runs],
             duration=self.duration,
             timestep=self.timestep,
             sample_stride=_SAMPLE_INTERVAL,

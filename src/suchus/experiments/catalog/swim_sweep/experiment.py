@@ -55,7 +55,9 @@ def swim_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progr
         motion: gait at 1 Hz.
         progress: called with the fraction that is done.
     """
-    numbers = SwimMeasures.of(resolved_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
+    numbers = SwimMeasures.from_record(
+        resolved_swim(robot, motion, setting, progress=progress), motion.frequency
+    )._asdict()
     return xr.Dataset({name: ((), numbers[name], {"units": unit}) for name, unit in _SWIM_UNITS.items()})
 
 
