@@ -101,8 +101,8 @@ def test_a_correction_is_read_back_and_says_where_it_does_not_hold(tmp_path):
     one = correction({0: (2.0, 3.0), 3: (1.5, 4.0)}, reynolds=(3500.0, 7000.0))
     file = blueprint.write(one, tmp_path / "found.toml")
     assert read_correction(file) == one
-    assert one.outside(5000.0) == ""
-    assert "was found at f L2 / nu = 3.5e+03 to 7e+03, and this swim is at 1e+06" in one.outside(1e6)
+    assert one.validity_warning(5000.0) == ""
+    assert "was found at f L2 / nu = 3.5e+03 to 7e+03, and this swim is at 1e+06" in one.validity_warning(1e6)
     file.write_text(file.read_text().replace("drag = 4.0", "drag = -4.0"))
     with pytest.raises(MistakenFile, match=r"drag"):
         read_correction(file)

@@ -488,7 +488,7 @@ def test_what_a_file_says_of_inertia_is_kept_and_comes_out_of_the_export_again(t
 def test_foam_adds_its_mass_to_a_stated_inertia_as_it_does_to_shapes():
     robot = ROBOTS["floating_caiman"]
     plain, bare = compile_model(robot), compile_model(replace(robot, hull=None))
-    root = robot.root_place
+    root = robot.root_index
     _, centre, about = stiff(bare, 1)
     own = Inertia(centre=tuple(centre), moments=tuple(np.diag(about)), products=tuple(about[[0, 0, 1], [1, 2, 2]]))
     axis = tuple(replace(one, inertia=own) if i == root else one for i, one in enumerate(robot.axis))

@@ -141,7 +141,7 @@ def test_every_lateral_servo_bends_by_its_own_cosine(name):
         if number in place.cables:
             expected = tail_kinematics.servo_angle(place.cable(number), -bend)  # positive is the tip to the right
         else:
-            expected = bend if place.servo_hinges[number] in range(*place.ahead.indices(999)) else -bend
+            expected = bend if place.servo_hinges[number] in range(*place.forward_hinges.indices(999)) else -bend
         np.testing.assert_allclose(targets[:, number], expected, atol=1e-12)
     others = [i for i, servo in enumerate(place.servos) if servo not in servos]
     assert np.ptp(targets[:, others], axis=0).max(initial=0.0) == 0.0

@@ -100,7 +100,11 @@ class Outline:
     def joints(self) -> tuple[str, ...]:
         """The hinges that bend the midline sideways: those ahead of the root from there forward, then those behind."""
         place, lateral = layout(self.robot), {h.name for h in self.robot.axis_hinges if h.turn == "yaw"}
-        return tuple(name for name in (*place.hinges[place.ahead], *place.hinges[place.behind]) if name in lateral)
+        return tuple(
+            name
+            for name in (*place.hinges[place.forward_hinges], *place.hinges[place.backward_hinges])
+            if name in lateral
+        )
 
     @cached_property
     def joint_count_ahead(self) -> int:
@@ -109,7 +113,7 @@ class Outline:
         A positive angle of such a joint turns the front end left; behind the root it turns the tip right.
         """
         place = layout(self.robot)
-        return sum(name in place.hinges[place.ahead] for name in self.joints)
+        return sum(name in place.hinges[place.forward_hinges] for name in self.joints)
 
     @cached_property
     def servos(self) -> tuple[LateralServo, ...]:
@@ -216,7 +220,7 @@ class Outline:
 
 def tail_root(robot: Robot) -> float:
     """Return where the tail of a straight robot begins, at the end of its root's segment, from the snout [m]."""
-    return sum(segment.front + segment.rear for segment in robot.axis[: robot.root_place + 1])
+    return sum(segment.front + segment.rear for segment in robot.axis[: robot.root_index + 1])
 
 
 def cumulative_positions(

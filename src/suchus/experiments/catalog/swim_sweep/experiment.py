@@ -287,7 +287,7 @@ def _amplitudes(robot: Robot, gait: Gait) -> list[str]:
     """Return the amplitudes of the joints of trunk and tail, from the root, in words."""
     yaw, words = movement(robot, gait).yaw, []
     for body_part in ("trunk", "tail"):
-        bends = [f"{bend:.2f}" for bend in yaw.amplitude()[0][yaw.hinges.within(body_part)]]
+        bends = [f"{bend:.2f}" for bend in yaw.amplitude()[0][yaw.hinges.indices_in(body_part)]]
         from_root = bends[::-1] if body_part == "trunk" else bends
         if from_root:
             words.append(f"{body_part} {', '.join(dict.fromkeys(from_root))} rad per joint")
