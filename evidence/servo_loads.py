@@ -46,7 +46,9 @@ def _then(robot: Robot, case: LoadCase, weak: Mapping[str, ServoLoad]) -> dict[s
     named = {name: motor(load.other) for name, load in weak.items() if load.other}
     if not named:
         return {}
-    body = with_named_servos(robot, {name: Servo.of(one, template=robot.servo(name)) for name, one in named.items()})
+    body = with_named_servos(
+        robot, {name: Servo.from_motor(one, template=robot.servo(name)) for name, one in named.items()}
+    )
     (record,) = records_of_each([(cold(body), case)])
     return {name: measure_loads(body, record)[name].at_limit for name in named}
 

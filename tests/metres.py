@@ -11,7 +11,7 @@ from suchus.robot.robots import ROBOTS
 
 def with_metres(gait: Gait, **changes) -> Gait:
     """Return a gait of the article's robot with other numbers of ``GaitInMetres``."""
-    return replace(GaitInMetres.near(gait, LIMBS), **changes).gait(LIMBS)
+    return replace(GaitInMetres.from_gait(gait, LIMBS), **changes).gait(LIMBS)
 
 
 def limb_phase(gait: Gait, time):

@@ -26,10 +26,10 @@ def stated() -> Mapping[str, Any]:
         "attached_added": attached_coefficients(1.0)[1],
         "attached_robot": attached_coefficients(5.0, 3600.0)[1],
         "held_out": float(held_out_errors().max()),
-        "fine_round": [round_.drag, round_.added],
+        "fine_round": [round_.drag, round_.added_mass],
         "published_round": list(sections.measured()),
-        "fine_high": [high.drag, high.added],
-        "left": max(one.left for one in table()),
+        "fine_high": [high.drag, high.added_mass],
+        "left": max(one.residual for one in table()),
     }
 
 

@@ -427,8 +427,8 @@ def _coasting(swimmers: Sequence[ModelSwimmer], speeds: Sequence[float], progres
 
 def _root(robot: Robot) -> float:
     """Return where the middle of the root's segment is, from the snout [m]."""
-    ahead = sum(segment.front + segment.rear for segment in robot.axis[: robot.root_place])
-    return ahead + robot.axis[robot.root_place].front
+    ahead = sum(segment.front + segment.rear for segment in robot.axis[: robot.root_index])
+    return ahead + robot.axis[robot.root_index].front
 
 
 # --- the flow -----------------------------------------------------------------------------------------------------

@@ -119,8 +119,8 @@ def test_metres_written_back_on_themselves_are_the_same_gait():
     reaches = (0.1575, 0.175)
     crawl, high = GAITS["belly_crawl"], GAITS["high_walk"]
     every = {field.name for field in fields(GaitInMetres)}
-    assert GaitInMetres.near(crawl, reaches).onto(crawl, every, reaches) == crawl
-    assert GaitInMetres.near(crawl, reaches).onto(high, every, reaches) == crawl
+    assert GaitInMetres.from_gait(crawl, reaches).override(crawl, every, reaches) == crawl
+    assert GaitInMetres.from_gait(crawl, reaches).override(high, every, reaches) == crawl
 
 
 @given(
@@ -131,13 +131,13 @@ def test_metres_written_back_on_themselves_are_the_same_gait():
 )
 def test_a_wave_by_places_is_found_in_the_gait_that_it_makes(phase, waves, offset, name):
     robot = ROBOTS[name]
-    base = GaitByPlaces.of(
+    base = GaitByPlaces.from_gait(
         GAITS["salamander_walk" if name == "salamander" else "undulation"],
         AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0),
     )
     wave = AxialWave(amplitude=((0.0, 0.1), (0.6, -0.3), (1.0, -0.2)), waves=waves, phase=phase, offset=offset)
-    gait = GaitByPlaces.of(base.gait(robot), wave).gait(robot)
-    again = GaitByPlaces.of(gait, AxialWave.of(gait, robot)).gait(robot)
+    gait = GaitByPlaces.from_gait(base.gait(robot), wave).gait(robot)
+    again = GaitByPlaces.from_gait(gait, AxialWave.from_gait(gait, robot)).gait(robot)
     clock = np.arange(7) / 7
     np.testing.assert_allclose(cycle_targets(robot, again, clock), cycle_targets(robot, gait, clock), atol=1e-9)
 
@@ -204,5 +204,5 @@ def test_a_curve_follows_the_part_of_its_servo(gait_of):
 def test_bends_beyond_a_wave_are_told_how_to_be_written():
     gait = Gait(name="g", period=1.0, axis=(Bend(part="axis", amplitude=(0.5,), lag=(0.0, 0.1, 0.5, 0.6)),))
     with pytest.raises(OutsideLimits, match="give the whole wave, amplitude, waves and phase"):
-        AxialWave.of(gait, ROBOTS["swimmer"])
-    assert AxialWave.of(GAITS["belly_crawl"], CAIMAN).waves == 0.0
+        AxialWave.from_gait(gait, ROBOTS["swimmer"])
+    assert AxialWave.from_gait(GAITS["belly_crawl"], CAIMAN).waves == 0.0

@@ -23,7 +23,7 @@ def test_every_number_of_a_shipped_servo_has_its_source(name):
     assert set(told) == {field.name for field in fields(Motor)} - WORDS
     assert all(len(text) > 8 for text in told.values())
     for field, text in told.items():
-        assert text.startswith(("from memory", "a guess")) == (field in one.remembered)
+        assert text.startswith(("from memory", "a guess")) == (field in one.unconfirmed_fields)
 
 
 def test_data_sheets_agree_with_their_own_units():
@@ -52,18 +52,18 @@ def test_a_family_has_a_supply_that_all_of_it_bear():
 def test_at_its_continuous_torque_a_servo_stays_at_its_temperature_limit(name):
     one = motors()[name]
     loss = one.volts * one.stall_current * (one.continuous_torque / one.stall_torque) ** 2
-    assert one.heat.steady(loss) == pytest.approx(one.temperature_limit)
-    assert one.heat.steady(0.99 * loss) < one.temperature_limit < one.heat.steady(1.01 * loss)
+    assert one.heat.steady_temperature(loss) == pytest.approx(one.temperature_limit)
+    assert one.heat.steady_temperature(0.99 * loss) < one.temperature_limit < one.heat.steady_temperature(1.01 * loss)
 
 
 def test_a_winding_that_warms_itself_faster_than_the_air_cools_it_has_no_steady_temperature():
     heat = motor("STS3250").heat
-    assert heat.steady(0.0) == heat.ambient
-    assert heat.steady(1.0 / (COPPER * heat.resistance)) == float("inf")
-    assert heat.steady(0.99 / (COPPER * heat.resistance)) < float("inf")
+    assert heat.steady_temperature(0.0) == heat.ambient
+    assert heat.steady_temperature(1.0 / (COPPER * heat.resistance)) == float("inf")
+    assert heat.steady_temperature(0.99 / (COPPER * heat.resistance)) < float("inf")
     warmer = replace(heat, ambient=35.0)
     loss = 5.0
-    steady = warmer.steady(loss)
+    steady = warmer.steady_temperature(loss)
     assert steady == pytest.approx(35.0 + warmer.resistance * loss * (1 + COPPER * (steady - ROOM_TEMPERATURE)))
 
 
@@ -72,27 +72,27 @@ def test_torque_speed_and_current_go_with_the_supply(name, share):
     one = motors()[name]
     low, high = one.volts_range
     volts = low + share * (high - low)
-    servo = Servo.of(one, volts)
+    servo = Servo.from_motor(one, volts)
     assert servo.torque / one.stall_torque == pytest.approx(volts / one.volts)
     assert servo.speed / one.no_load_speed == pytest.approx(volts / one.volts)
     assert servo.winding.resistance == pytest.approx(one.volts / one.stall_current)
     assert servo.winding.motor == name
-    assert Servo.of(one) == Servo.of(one, one.volts)
+    assert Servo.from_motor(one) == Servo.from_motor(one, one.volts)
 
 
 def test_a_servo_like_another_keeps_its_loop_and_gear():
     other = Servo(
         kp=40.0, ki=1.0, kd=0.6, integral_limit=0.5, torque=3.0, speed=7.0, armature=5e-3, friction=0.03, damping=0.05
     )
-    one = Servo.of(motor("XM430-W350"), template=other)
+    one = Servo.from_motor(motor("XM430-W350"), template=other)
     assert replace(one, torque=3.0, speed=7.0, winding=None) == other
-    own = Servo.of(replace(motor("XM430-W350"), stall_torque=3.0))
+    own = Servo.from_motor(replace(motor("XM430-W350"), stall_torque=3.0))
     assert (own.kp, own.kd, own.armature, own.friction, own.damping) == pytest.approx((40.0, 0.6, 5e-3, 0.03, 0.05))
 
 
 def test_a_supply_that_it_does_not_bear_is_refused():
     with pytest.raises(InvalidDesign, match=r"24 V is no supply for STS3250; 6 to 12\.6 V is allowed"):
-        Servo.of(motor("STS3250"), 24.0)
+        Servo.from_motor(motor("STS3250"), 24.0)
     with pytest.raises(UnknownName, match="STS3215-12V"):
         motor("STS3215-12")
     with pytest.raises(InvalidDesign, match=r"winding\.volts is 0 V"):
@@ -171,6 +171,6 @@ def test_an_empty_file_and_one_that_is_no_toml_are_refused(tmp_path):
 
 
 def test_a_bought_servo_stands_in_a_file_of_its_own_meaning():
-    text = render(Servo.of(motor("STS3250")))
+    text = render(Servo.from_motor(motor("STS3250")))
     assert 'motor = "STS3250"' in text
     assert "resistance = " in text

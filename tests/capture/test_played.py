@@ -38,7 +38,7 @@ def test_columns_reach_their_servos_with_the_layouts_signs(tmp_path):
     place = layout(robot)
     columns = {"Axis 2": swung(), "axis 5": swung(), "Left Shoulder-roll": swung(), "Right Knee": swung()}
     gait = to_curves(cycle(tmp_path, columns), robot, name="a", period=1.0)
-    at = {curve.servo: float(curve.at(np.array(0.0))) for curve in gait.curves}
+    at = {curve.servo: float(curve.angle_at(np.array(0.0))) for curve in gait.curves}
     # concave on the right: ahead of the root the front end turns right (-), behind it the rear end turns right (+)
     assert at == pytest.approx({"spine_yaw_2": -0.3, "tail_yaw_2": 0.3, "LF_roll": 0.3, "RH_elbow": 0.3}, abs=1e-3)
     assert place.axial_left[1] == 1.0

@@ -244,7 +244,7 @@ def test_the_gradient_and_the_lag_are_what_is_asked():
     full = turned(
         [replace(control, gradient=((0.0, 1.0), (1.0, 1.0)))], SALAMANDER, WALK, duration=1.0, sample_interval=10
     )
-    places = [one.place for one in axis_segments(SALAMANDER, WALK)]
+    places = [one.axial_position for one in axis_segments(SALAMANDER, WALK)]
     assert done.wave == pytest.approx(full.wave * np.interp(places, [0.2, 0.8], [0.0, 2.0]))
 
 

@@ -49,7 +49,7 @@ def test_who_has_no_rule_gets_nothing():
     both = LoadDrive([None, LoadRule(memory=0.0)], [ROBOT, ROBOT], 0.01)
     both.feel(felt(0.0, runs=2))
     assert both.drive == pytest.approx([0.0, 2.0])
-    assert not LoadDrive([None], [ROBOT], 0.01).felt
+    assert not LoadDrive([None], [ROBOT], 0.01).has_feedback
     assert PatternGenerator(load=LoadRule()).feels
     assert not PatternGenerator().feels
 

@@ -99,14 +99,14 @@ def test_only_its_owner_writes_a_shared_variable():
         value = np.ones((2, 4)) if name == "limb_phase" else np.ones(2)
         for other in {"limbs", "spine", "tail"} - {owner}:
             with pytest.raises(OutsideLimits, match=f"'{other}' wrote the shared variable '{name}', which belongs"):
-                shared.written_by(other, **{name: value})
-        written = getattr(shared.written_by(owner, **{name: value}), name)
+                shared.updated_by(other, **{name: value})
+        written = getattr(shared.updated_by(owner, **{name: value}), name)
         with pytest.raises(ValueError, match="read-only"):
             written[0] = 2.0
     with pytest.raises(FrozenInstanceError):
         shared.trunk_bend = np.ones(2)
     with pytest.raises(OutsideLimits, match="belongs to 'nobody'"):
-        shared.written_by("limbs", mood=np.ones(2))
+        shared.updated_by("limbs", mood=np.ones(2))
 
 
 def test_the_shared_variables_are_those_that_the_article_names():
@@ -121,7 +121,7 @@ phases = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4)
 def test_spine_and_tail_follow_the_limbs_by_the_open_loop_law(robot, crawl_gait, phase, late, later, duty):
     gait = with_metres(crawl_gait, spine_phase=late, tail_phase=later, duty_factor=duty)
     gaits, clock = Batch([robot], [gait]), np.zeros(1)
-    shared = initial_shared(1, 4).written_by("limbs", limb_phase=np.array([phase]))
+    shared = initial_shared(1, 4).updated_by("limbs", limb_phase=np.array([phase]))
     shared = SpineController.step(shared, gaits, clock)
     shared = TailController.step(shared, gaits, clock)
     for name, law in (("trunk", trunk_bend), ("tail", tail_bend)):
@@ -171,7 +171,7 @@ def walked(laws, robot, gait, ahead, load, ticks):
     shared, out = initial_shared(runs, 4), []
     for tick in range(ticks):
         clock = np.tile(limb_phase(gait, np.array(START + tick * PERIOD)), (runs, 1))
-        shared = shared.written_by("limbs", limb_phase=clock + limbs.ahead)
+        shared = shared.updated_by("limbs", limb_phase=clock + limbs.phase_lead)
         shared = limbs.step(shared, sensed(runs, foot_pressure=load(shared.limb_phase)), clock, walking=True)
         out.append(shared.limb_phase)
     return np.array(out)

@@ -16,7 +16,7 @@ from suchus.sim.metrics import displacement, heading_change, tilt, time_window
 
 
 def started(control, robot, gait):
-    return control.start(Runs.alike(control, robot, gait, ticks=10), 0.01)
+    return control.start(Runs.identical(control, robot, gait, ticks=10), 0.01)
 
 
 POSTURES = ("belly_crawl", "low_crawl", "semi_erect", "high_walk")
@@ -43,8 +43,8 @@ def sensed(*, roll=0.0, pitch=0.0, roll_rate=0.0, pitch_rate=0.0, feet=(20.0,) *
 @pytest.mark.parametrize("name", POSTURES)
 def test_with_nothing_asked_it_is_the_open_loop(robot, name):
     gait = GAITS[name]
-    table = OpenLoop.start(Runs.alike(OpenLoop(), robot, gait, ticks=400), 0.01)
-    walker = Walking.start(Runs.alike(Walking(), robot, gait, ticks=400), 0.01)
+    table = OpenLoop.start(Runs.identical(OpenLoop(), robot, gait, ticks=400), 0.01)
+    walker = Walking.start(Runs.identical(Walking(), robot, gait, ticks=400), 0.01)
     assert walker.rest() == pytest.approx(table.rest(), abs=1e-9)
     for tick in range(0, 400, 7):
         ours, theirs = walker.command(tick, None), table.command(tick, None)
@@ -59,7 +59,7 @@ def test_feet_on_the_side_that_sinks_go_lower_and_the_front_ones_when_the_nose_s
         walker = started(Walking(attitude=AttitudeRule()), robot, GAITS["high_walk"])
         walker.command(150, sensed())
         walker.command(151, sensed(**felt))
-        return walker._lower[0]
+        return walker._foot_lowering[0]
 
     assert (lowered(roll=0.05) * [1, -1, 1, -1] < -0.002).all()  # left side up: left feet give way
     assert (lowered(pitch=0.05) * [1, 1, -1, -1] > 0.002).all()  # nose down: front feet push
@@ -74,7 +74,7 @@ def test_a_constant_slope_is_no_stumble(robot):
     walker.command(150, sensed())
     for tick in range(151, 600):
         walker.command(tick, sensed(pitch=0.2))
-    assert walker._lower[0] == pytest.approx(np.zeros(4), abs=1e-4)
+    assert walker._foot_lowering[0] == pytest.approx(np.zeros(4), abs=1e-4)
 
 
 def test_attitude_feedback_keeps_the_high_walk_on_its_feet_on_bumps(robot):

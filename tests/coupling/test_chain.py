@@ -33,7 +33,7 @@ def test_the_ends_of_the_midline_are_where_the_robot_has_them(name, size, off):
     data.qpos[:3], data.qpos[3], data.qpos[6] = (-place[0], -place[1], 0.0), np.cos(place[2] / 2), np.sin(place[2] / 2)
     data.qpos[joint_addresses(model, one.joints)] = place[3:]
     mujoco.mj_kinematics(model, data)
-    line = one.midline(place).place
+    line = one.midline(place).position
     for end, site in ((0, "snout"), (-1, "tail_tip")):
         assert line[:, end] == pytest.approx(-data.site(site).xpos[:2], abs=off * one.outline.robot.length)
 
@@ -46,7 +46,7 @@ def test_derivatives_are_those_of_the_places(name):
         here = points(place)
         for k, unit in enumerate(np.eye(one.size)):
             ahead, behind = points(place + step * unit), points(place - step * unit)
-            assert here.along[:, :, k] == pytest.approx((ahead.place - behind.place) / (2 * step), abs=1e-8)
+            assert here.jacobian[:, :, k] == pytest.approx((ahead.position - behind.position) / (2 * step), abs=1e-8)
             assert here.turning[:, k] == pytest.approx((ahead.heading - behind.heading) / (2 * step), abs=1e-8)
 
 
@@ -57,7 +57,10 @@ def test_a_force_spread_along_a_part_works_by_the_mean_of_its_velocity(name):
     line, points = one.midline(place), one.centres(place)
     for part, (a, b) in enumerate(zip(one.ends[:-1], one.ends[1:], strict=True)):
         s = a + (b - a) * (np.arange(fine) + 0.5) / fine
-        for mean, values in ((points.place[:, part], line.place), (points.along[:, part, 3], line.along[:, :, 3])):
+        for mean, values in (
+            (points.position[:, part], line.position),
+            (points.jacobian[:, part, 3], line.jacobian[:, :, 3]),
+        ):
             exact = [np.interp(s, one.outline.s, row).mean() for row in values]
             assert mean == pytest.approx(exact, abs=1e-6)
 
@@ -69,7 +72,7 @@ def test_the_work_of_a_force_is_that_of_its_parts():
     count = len(one.ends) - 1
     pull, own = rng.normal(size=(count, 2)), rng.normal(size=count)
     points = one.centres(place)
-    off = points.place.T - origin - about
+    off = points.position.T - origin - about
     moments = own + off[:, 0] * pull[:, 1] - off[:, 1] * pull[:, 0]
     parts = Reaction(force=pull, moment=moments[:, None], power=np.zeros(count))
     loads = flow.FlowLoads(reference_point=about, total=parts, parts=parts, internal_pressure=np.zeros((count, 3)))
@@ -86,7 +89,7 @@ def test_parts_that_press_on_each_other_work_on_each_joint_by_the_moment_of_a_se
     origin, about, long = np.array([0.2, 0.1]), np.array([-0.3, 0.5]), np.diff(one.ends)
     points = one.centres(straight)
     aside = np.stack([-np.sin(points.heading), np.cos(points.heading)])
-    first = moment * long * aside + level * long * (points.place - (origin + about)[:, None])
+    first = moment * long * aside + level * long * (points.position - (origin + about)[:, None])
     pressed = np.column_stack([level * long, *first])
     count = len(long)
     still = Reaction(force=np.zeros((count, 2)), moment=np.zeros((count, 1)), power=np.zeros(count))
@@ -105,7 +108,7 @@ def test_a_path_has_the_places_and_rates_of_both_ends():
     path = ChainPath(0.0, start)
     path.go(1.0, start, 1.2, end)
     for time, posture in ((1.0, start), (1.2, end)):
-        assert path.at(time).place == pytest.approx(posture.place)
-        assert path.at(time).rate == pytest.approx(posture.rate)
-    ahead, behind = path.at(1.07 + 1e-6), path.at(1.07 - 1e-6)
-    assert path.at(1.07).rate == pytest.approx((ahead.place - behind.place) / 2e-6, abs=1e-6)
+        assert path.posture_at(time).position == pytest.approx(posture.position)
+        assert path.posture_at(time).rate == pytest.approx(posture.rate)
+    ahead, behind = path.posture_at(1.07 + 1e-6), path.posture_at(1.07 - 1e-6)
+    assert path.posture_at(1.07).rate == pytest.approx((ahead.position - behind.position) / 2e-6, abs=1e-6)

@@ -47,7 +47,7 @@ def swum():
     swim, momenta = Swim(swim_run(), 0.3), []
     swim.go(
         0.3, progress=silent,
-        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.now.rate)[:2]),
+        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.coordinates.rate)[:2]),
     )  # fmt: skip
     return swim, swim.record().isel(run=0), np.array(momenta)
 
@@ -70,18 +70,18 @@ def test_momentum_that_comes_from_no_force_is_told():
         replace(disturbed(), noise=0.0, faults=()), MidlineChain(Outline(robot(), 33), 45).joints, 0.002, 50
     )
     force = 0.2 * np.cos(np.arange(len(stepper.dofs)))
-    carried = stepper.burden(0.5 * stepper.mass())
+    carried = stepper.set_added_mass(0.5 * stepper.mass())
     strayed, given, most = np.zeros(2), np.zeros(2), 0.0
     while stepper.time < 0.08:
-        before = stepper.now.rate
+        before = stepper.coordinates.rate
         stepper.begin()
-        stepper.go(count := stepper.until(0.08, 5), force)
+        stepper.go(count := stepper.steps_until(0.08, 5), force)
         one = stepper.account()
-        strayed += one.strayed
-        given += count * stepper.timestep * force[:2] - (carried @ (stepper.now.rate - before))[:2]
-        most = max(most, float(np.abs(one.strayed).max()))
+        strayed += one.momentum_defect
+        given += count * stepper.timestep * force[:2] - (carried @ (stepper.coordinates.rate - before))[:2]
+        most = max(most, float(np.abs(one.momentum_defect).max()))
     pushed = np.array([0.0, 0.3 * 0.035])
-    assert one.momentum == pytest.approx((stepper.mass() @ stepper.now.rate)[:2], abs=1e-12)
+    assert one.momentum == pytest.approx((stepper.mass() @ stepper.coordinates.rate)[:2], abs=1e-12)
     assert one.momentum - strayed == pytest.approx(given + pushed, abs=1e-9)
     assert most > 1e-5
 
@@ -125,11 +125,11 @@ def test_what_an_answer_would_take_from_the_mass_is_not_believed(share, believed
 
 def test_steps_before_an_end_are_about_equally_long():
     stepper = Stepper(replace(disturbed(), noise=0.0, faults=(), pushes=()), (), 0.002, 50)
-    assert stepper.until(0.1, 7) == 7
-    assert stepper.until(0.1, 7, landing=7) == 7
-    assert stepper.until(0.1, 7, landing=8) == 7  # 50 physics steps in eight
-    assert stepper.until(0.03, 7, landing=8) == 5  # 15 in three
-    assert stepper.until(0.03, 7) == 7
+    assert stepper.steps_until(0.1, 7) == 7
+    assert stepper.steps_until(0.1, 7, landing=7) == 7
+    assert stepper.steps_until(0.1, 7, landing=8) == 7  # 50 physics steps in eight
+    assert stepper.steps_until(0.03, 7, landing=8) == 5  # 15 in three
+    assert stepper.steps_until(0.03, 7) == 7
 
 
 @pytest.mark.parametrize(("most", "period", "found"), [(16, 5, 13), (15, 5, 13), (13, 5, 13), (4, 5, 4), (1, 5, 1),
@@ -146,7 +146,7 @@ def test_a_light_robot_has_the_momentum_and_the_energy_that_the_water_leaves_it(
     swim, momenta = Swim(run, 0.55), []
     swim.go(
         0.55, progress=silent,
-        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.now.rate)[:2]),
+        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.coordinates.rate)[:2]),
     )  # fmt: skip
     impulses = np.cumsum(np.diff([0.0, *swim.series.time])[:, None] * np.array(swim.series.force)[:, :2], axis=0)
     greatest = np.abs(momenta).max()
@@ -164,15 +164,15 @@ def test_what_servos_and_water_do_is_the_robots_kinetic_energy():
     joints = MidlineChain(Outline(run.robot, 33), 45).joints
     stepper = Stepper(run, joints, 0.002, 50)
     force = 0.02 * np.arange(3 + len(joints))
-    added = stepper.burden(np.diag(0.5 * np.diag(stepper.mass())))
+    added = stepper.set_added_mass(np.diag(0.5 * np.diag(stepper.mass())))
     done = given = most = 0.0
     for _ in range(40):
         stepper.begin()
         stepper.go(5, force)
         one = stepper.account()
-        done += one.worked + one.yielded
-        given += float(force @ one.way)
-        rate = stepper.now.rate
+        done += one.servo_work + one.passive_work
+        given += float(force @ one.displacement)
+        rate = stepper.coordinates.rate
         most = max(most, abs(done))
         assert one.energy + 0.5 * rate @ added @ rate == pytest.approx(done + given, abs=1e-3 * most)
     assert most > 0.01
@@ -304,7 +304,7 @@ def test_a_push_acts_in_each_go_through_a_stretch():
     for swim, impulse in zip(swims, (0.3 * 0.035, 0.0), strict=True):
         steps = np.diff([0.0, *swim.series.time])
         from_water = steps @ np.array(swim.series.force)[:, 1]
-        momentum = (swim.stepper.mass() @ swim.stepper.now.rate)[1]
+        momentum = (swim.stepper.mass() @ swim.stepper.coordinates.rate)[1]
         assert momentum - from_water == pytest.approx(impulse, abs=1.5e-3)  # but for what steps left over
     ends = {round(time, 9) for time in swims[0].series.time}
     assert {0.02, 0.05, 0.06} <= ends  # the control periods in which it begins and ends

@@ -25,13 +25,13 @@ def swim(added, drag, phase=0.0, noise=0.02, seed=0):
     """A link's force in a flow that has so much of each part of the sections' force."""
     one, rng = 2 * np.pi * TIME + phase, np.random.default_rng(seed)
     a, d = np.sin(one), np.cos(one) * np.abs(np.cos(one))
-    return ForceParts(flow=added * a + drag * d + noise * rng.normal(size=TIME.size), added=a, drag=d, block=50)
+    return ForceParts(flow=added * a + drag * d + noise * rng.normal(size=TIME.size), added_mass=a, drag=d, block=50)
 
 
 def test_what_other_swims_bear_out_is_offered():
     found = judge_link(swim(2.0, 4.0), [swim(2.1, 3.8, 0.4, seed=1), swim(1.9, 4.2, 1.0, seed=2)])
     assert found.why_not == ""
-    assert found.added == pytest.approx(2.0, abs=0.02)
+    assert found.added_mass_factor == pytest.approx(2.0, abs=0.02)
     assert found.added_interval[0] < 2.0 < found.added_interval[1]
     assert max(found.shipped) < 0.8 < 0.99 < min(found.corrected)
 
@@ -49,7 +49,7 @@ def test_what_they_do_not_is_not_offered(fit, others, why):
 
 def test_a_swim_of_too_few_cycles_earns_nothing():
     one = swim(2.0, 4.0)
-    short = ForceParts(flow=one.flow[:120], added=one.added[:120], drag=one.drag[:120], block=50)
+    short = ForceParts(flow=one.flow[:120], added_mass=one.added_mass[:120], drag=one.drag[:120], block=50)
     assert judge_link(short, [one]).why_not == "too few cycles for an interval"
     assert judge_link(one, [short]).why_not == "no gain in every other swim"
     text = judgement_text({"link_1": judge_link(one, [short])}, ["tail_only"])
@@ -101,8 +101,8 @@ def test_a_correction_is_read_back_and_says_where_it_does_not_hold(tmp_path):
     one = correction({0: (2.0, 3.0), 3: (1.5, 4.0)}, reynolds=(3500.0, 7000.0))
     file = blueprint.write(one, tmp_path / "found.toml")
     assert read_correction(file) == one
-    assert one.outside(5000.0) == ""
-    assert "was found at f L2 / nu = 3.5e+03 to 7e+03, and this swim is at 1e+06" in one.outside(1e6)
+    assert one.validity_warning(5000.0) == ""
+    assert "was found at f L2 / nu = 3.5e+03 to 7e+03, and this swim is at 1e+06" in one.validity_warning(1e6)
     file.write_text(file.read_text().replace("drag = 4.0", "drag = -4.0"))
     with pytest.raises(MistakenFile, match=r"drag"):
         read_correction(file)

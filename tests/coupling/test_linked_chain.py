@@ -74,12 +74,12 @@ def test_the_work_of_a_force_is_that_of_its_links(body):
     power = float((pull * states.velocity).sum() + (own * states.spin).sum())
     parts = Reaction(force=pull, moment=own + np.cross(off, pull), power=np.zeros(count))
     loads = flow.FlowLoads(reference_point=ABOUT, total=parts, parts=parts, internal_pressure=np.zeros((count, 4)))
-    assert one.force(posture.place, loads, ORIGIN) @ posture.rate == pytest.approx(power, rel=1e-10)
-    felt = one.felt(posture.place, loads, ORIGIN)
+    assert one.force(posture.position, loads, ORIGIN) @ posture.rate == pytest.approx(power, rel=1e-10)
+    felt = one.link_loads(posture.position, loads, ORIGIN)
     assert felt[:, :3] == pytest.approx(pull * [-1.0, -1.0, 1.0])  # the flow is the world turned by half a turn
     assert felt[:, 3] == pytest.approx(own[:, 2])
-    moving = one.twists(posture.place, posture.rate, ORIGIN, 3)
-    modes = one.modes(posture.place, ORIGIN, 3)
+    moving = one.twists(posture.position, posture.rate, ORIGIN, 3)
+    modes = one.modes(posture.position, ORIGIN, 3)
     summed = sum(rate * mode.linear for rate, mode in zip(posture.rate, modes, strict=True))
     assert moving.linear == pytest.approx(summed, abs=1e-12)
     assert moving.reference_points == pytest.approx(states.position - ORIGIN)
@@ -90,7 +90,7 @@ def test_the_body_of_the_flow_is_the_robot_with_its_head_at_the_origin():
     robot = ROBOTS["floating_caiman"]
     rest = np.array([0.1, -0.2, 0.05, 1.0, 0.0, 0.0, 0.0, *np.zeros(len(one.joints))])
     posture = ChainState(rest, np.zeros(one.size))
-    path = one.way(0.0, posture)
+    path = one.start_path(0.0, posture)
     body, pose = one.body(path), one.motion(path)(0.0)
     x0, x1, y0, y1, *_ = body.bounds(0.0, pose)
     assert (x0, x1) == pytest.approx((0.0, robot.length), abs=0.01)  # the tip of the tail is round
@@ -125,7 +125,7 @@ def followed(run, duration):
     swim, momenta = Swim(run, duration), []
     swim.go(
         duration, progress=silent,
-        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.now.rate)[:3]),
+        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.coordinates.rate)[:3]),
     )  # fmt: skip
     steps = np.diff([0.0, *swim.series.time])
     impulses = np.cumsum(steps[:, None] * np.array(swim.series.force)[:, :3], axis=0)
@@ -240,5 +240,5 @@ def test_any_body_swims_on_its_links_in_any_gait(body, gait, cells):
     for _ in range(6):
         swim.step(run.gait.period)
     assert swim.series.residual[-1][1] < 0.01
-    assert np.isfinite(swim.stepper.now.place).all()
-    assert np.abs(swim.stepper.now.rate[6:]).max() > 1e-3
+    assert np.isfinite(swim.stepper.coordinates.position).all()
+    assert np.abs(swim.stepper.coordinates.rate[6:]).max() > 1e-3

@@ -171,9 +171,12 @@ def test_every_hinge_and_servo_has_one_place(name):
     assert driven | set(place.passive) == set(range(len(place.hinges)))
     assert not driven & set(place.passive)
     limbs = [i for limb in place.limbs for i in range(limb.hinges.start, limb.hinges.stop)]
-    axis = [*range(place.ahead.start, place.ahead.stop), *range(place.behind.start, place.behind.stop)]
+    axis = [
+        *range(place.forward_hinges.start, place.forward_hinges.stop),
+        *range(place.backward_hinges.start, place.backward_hinges.stop),
+    ]
     assert limbs + axis == list(range(len(place.hinges)))
-    assert list(place.axial_place) == sorted(place.axial_place)
+    assert list(place.axial_positions) == sorted(place.axial_positions)
     assert servo_ranges(ROBOTS[name]).shape == (len(place.servos), 2)
 
 
@@ -239,7 +242,7 @@ def test_a_motor_in_another_size_is_as_warm_and_none_that_is_sold():
     assert small.stall_current == pytest.approx(power * own.stall_current)
     for share in (0.01, 0.02):
         loss = share * own.volts * own.stall_current
-        assert small.heat.steady(power * loss) == pytest.approx(own.heat.steady(loss))
+        assert small.heat.steady_temperature(power * loss) == pytest.approx(own.heat.steady_temperature(loss))
 
 
 @pytest.mark.parametrize(("length", "period"), [(0.1, 0.005), (0.5, 0.01), (1.01, 0.01), (3.0, 0.02)])

@@ -71,12 +71,12 @@ def actuator(robot: Robot) -> LinearActuator:
 @given(radius=st.floats(0.001, 0.5), travel=st.floats(0.001, 0.5))
 def test_a_servo_on_a_pulley_and_an_actuator_are_the_same_drive(radius, travel):
     servo = CAIMAN.servo("tail_cable")
-    linear = LinearActuator.of(servo, radius, travel)
+    linear = LinearActuator.from_servo(servo, radius, travel)
     assert linear.travel == travel
     assert linear.force * radius == pytest.approx(servo.torque)  # by the lever
     assert linear.speed == pytest.approx(servo.speed * radius)
     assert linear.kp * radius == pytest.approx(servo.kp / radius)  # a metre is 1 / radius, and so is a newton metre
-    back = linear.on(radius)
+    back = linear.equivalent_servo(radius)
     for name in ("kp", "kd", "torque", "speed", "armature", "friction", "damping", "integral_limit"):
         assert getattr(back, name) == pytest.approx(getattr(servo, name)), name
     assert back.winding == servo.winding
@@ -101,7 +101,7 @@ def test_with_the_ideal_actuator_of_equal_travel_the_tail_bends_the_same(ideal):
 
 def test_travel_must_do_for_the_bend():
     least = actuator(with_tail(drive="linear_actuator")).travel
-    short = LinearActuator.of(CAIMAN.servo("tail_cable"), 0.025, 0.99 * least)
+    short = LinearActuator.from_servo(CAIMAN.servo("tail_cable"), 0.025, 0.99 * least)
     with pytest.raises(InvalidDesign, match=r"bends up to 1\.571 rad.*move 0\.03916 m.*travel is 0\.03877 m"):
         with_tail(drive="linear_actuator", actuator=short)
     with_tail(drive="linear_actuator", actuator=short, bend_limit=1.5)  # it bends less
@@ -165,7 +165,7 @@ def test_its_commands_are_the_cords_travel_in_metres_and_pulses_within_its_strok
     hasty = replace(CRAWL, period=0.8 * CRAWL.period)
     with pytest.raises(OutsideLimits, match=r"moves tail_cable .* at 38\.5 mm/s .* up to 32 mm/s"):
         check_commands(bought, hasty, servo_map, commands(bought, hasty, servo_map))
-    assert servo_ranges(bought)[-1, 1] * cable.pulley == pytest.approx(cable.cord_at(cable.bend_limit))
+    assert servo_ranges(bought)[-1, 1] * cable.pulley == pytest.approx(cable.cord_travel(cable.bend_limit))
 
 
 def test_what_only_servos_that_turn_can_do_is_refused_in_a_sentence(bought):
@@ -184,7 +184,7 @@ def test_sheets_exports_and_pictures_speak_of_it(bought, tmp_path):
     assert "tail_cable" not in found.bought
     bend, place, toward, _ = found.cords[0].table[-1]
     assert found.cords[0].linear
-    assert place == pytest.approx(bought.cables[0].cord_at(bend))
+    assert place == pytest.approx(bought.cables[0].cord_travel(bend))
     assert place < -toward  # the cord towards the bend is drawn in a little further, (16)
     assert "one linear actuator moves two cords" in unsaid(bought)[0]
     assert "one servo turns a pulley" in unsaid(CAIMAN)[0]
@@ -208,4 +208,4 @@ def test_the_experiment_draws_how_far_it_moves(bought):
         record = _cords(robot.tail, bends, TailBending(robot=robot).linear)
         labels.append(pictures.tail_cords(record).axes[1].get_ylabel())
     assert labels == ["pulley angle [deg]", "travel to one side [mm]"]
-    assert float(record.servo[-1]) == pytest.approx(bought.cables[0].cord_at(2.0))
+    assert float(record.servo[-1]) == pytest.approx(bought.cables[0].cord_travel(2.0))

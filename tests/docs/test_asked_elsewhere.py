@@ -22,13 +22,15 @@ VIRTUAL = (0.001238, 0.018729, 0.018729)
 def hull(share, added=VIRTUAL):
     """A tank with the thread's hull, so many times as dense as water."""
     own = tuple(1000.0 * volume / DISPLACED for volume in added)
-    body = FloatBody(shape="ellipsoid", half=HALF, mass=share * DISPLACED, inertia=(0.1, 1.1, 1.1), added=own)
+    body = FloatBody(
+        shape="ellipsoid", half=HALF, mass=share * DISPLACED, inertia=(0.1, 1.1, 1.1), added_mass_ratio=own
+    )
     return FloatTank(body, DEEP_LAKE)
 
 
 def pushed(tank):
     tank.data.xfrc_applied[1, 1] = 10.0
-    tank.place((0.0, 0.0, 0.0))
+    tank.set_pose((0.0, 0.0, 0.0))
     return float(tank.acceleration[0][1])
 
 
@@ -43,7 +45,7 @@ def test_added_mass_resists_acceleration_and_without_it_the_error_is_the_threads
 def test_ballast_pulls_a_trimmed_float_down(ballast, force):
     body = FloatBody(shape="box", half=(0.15, 0.15, 0.15), mass=27.0 + ballast, inertia=(1.0, 1.0, 1.0))
     tank = FloatTank(body, DEEP_LAKE)
-    tank.place((0.0, 0.0, 0.0))
+    tank.set_pose((0.0, 0.0, 0.0))
     assert tank.acceleration[0][2] * body.mass == pytest.approx(force, rel=2e-4)  # the thread has g = 9.81 m/s2
 
 
@@ -56,20 +58,20 @@ def test_the_rest_of_the_table():
 
 @pytest.mark.parametrize(("height", "wanted"), [(-1000.0, 0.0), (100.0, -9.81)])
 def test_the_force_depends_on_the_depth(height, wanted):
-    body = replace(SPHEROID, centre=(0.0, 0.0, 0.0), added=(0.0, 0.0, 0.0))
+    body = replace(SPHEROID, centre=(0.0, 0.0, 0.0), added_mass_ratio=(0.0, 0.0, 0.0))
     tank = FloatTank(body, Lake(level=0.0))
-    tank.place((0.0, 0.0, height))
+    tank.set_pose((0.0, 0.0, height))
     assert tank.acceleration[0][2] == pytest.approx(wanted, abs=0.005)
 
 
 def test_the_mass_matrix_is_that_of_body_and_water_in_any_attitude():
     tank, turn = hull(1.0), rotation.from_axis_angle(np.array([0.6, 0.0, 0.8]), 0.7)
-    tank.place((0.0, 0.0, 0.0))
+    tank.set_pose((0.0, 0.0, 0.0))
     level = tank.mass_matrix()
     assert np.diag(level)[:3] == pytest.approx([DISPLACED + 1000.0 * volume for volume in VIRTUAL])
     assert np.diag(level)[3:] == pytest.approx([0.1, 1.1, 1.1])
     assert level == pytest.approx(np.diag(np.diag(level)), abs=1e-9)
-    tank.place((0.0, 0.0, 0.0), turn, velocity=(0.3, -0.2, 0.1), spin=(0.1, 0.4, -0.3))
+    tank.set_pose((0.0, 0.0, 0.0), turn, velocity=(0.3, -0.2, 0.1), spin=(0.1, 0.4, -0.3))
     assert tank.mass_matrix() == pytest.approx(level, abs=1e-9)
     along = rotation.rotate(turn * np.array([1.0, -1.0, -1.0, -1.0]), np.array([0.3, -0.2, 0.1]))
     momentum = rotation.rotate(turn, (level @ np.array([*along, 0.1, 0.4, -0.3]))[:3])

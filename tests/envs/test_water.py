@@ -35,7 +35,7 @@ def shifted(pack, by):
     """Put every robot of a pack elsewhere, by a vector [m], and bring the readings up to date."""
     pack.loop.batch.qpos[:, :3] += by
     pack.loop.batch.physics.forward()
-    pack.loop.batch.read(slice(None))
+    pack.loop.batch.read_sensors(slice(None))
 
 
 @pytest.mark.parametrize("name", ["Swim", "Shore"])

@@ -62,7 +62,7 @@ def test_a_robot_without_what_is_needed_is_refused_in_a_sentence(name, robot):
     text = str(refused.value)
     assert text.startswith(f"{name} needs ")
     assert repr(body.name) in text
-    assert all(NEEDS[need].words in text for need in missing)
+    assert all(NEEDS[need].text in text for need in missing)
     assert text.count(". ") == 0
 
 

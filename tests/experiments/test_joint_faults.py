@@ -158,10 +158,10 @@ def test_every_repeat_is_another_one_and_the_same_in_every_cell(campaign, outcom
 
 def test_all_groups_have_the_same_legs(campaign):
     clock = np.linspace(0, 1, 50)[:, None] + np.zeros(4)
-    ours = movement(CAIMAN, CRAWL).foot_places(clock)
+    ours = movement(CAIMAN, CRAWL).foot_positions(clock)
     assert list(campaign._gaits) == [*ARMS, "limbs_tail_lifted"]
     for name, gait in campaign._gaits.items():
-        assert np.array_equal(ours, movement(CAIMAN, gait).foot_places(clock))
+        assert np.array_equal(ours, movement(CAIMAN, gait).foot_positions(clock))
         assert gait.number("tail_pitch") == GAITS["belly_crawl" if name == "coordinated" else name].number("tail_pitch")
         assert gait.has("wave") == (name == "coordinated")
 

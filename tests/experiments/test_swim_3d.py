@@ -36,7 +36,7 @@ def test_the_trunk_is_the_robots_own_body_divided_at_its_joints():
     body = trunk(outline, MOTION)
     assert 1000.0 * body.volume(0.3) == pytest.approx(displaced_mass(outline), rel=1e-3)
     assert body.bounds(0.0, flow.Pose())[5] == pytest.approx(float(outline.silhouette.half_height.max()))
-    places = np.sort(outline.places)
+    places = np.sort(outline.joint_positions)
     assert body.cuts == pytest.approx(places)
     assert body.parts == places.size + 1
 

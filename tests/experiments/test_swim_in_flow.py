@@ -53,7 +53,7 @@ def test_a_robot_and_a_gait_from_files_swim_with_other_passive_tails(tmp_path):
         swim = Swim(one, 0.2)
         for _ in range(4):
             swim.step(0.2)
-        found.append(swim.stepper.now.place[-1])
+        found.append(swim.stepper.coordinates.position[-1])
         assert swim.series.residual[-1][1] < 0.01
     assert len(set(found)) == 3  # the end of the tail goes another way with each
     assert swim.run.robot.name == "mine"

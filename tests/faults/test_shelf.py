@@ -97,8 +97,10 @@ def test_a_live_walk_breaks_as_a_run_of_a_batch_does(shelved):
         planned.step()
     record = walk(fault).sel(time=1.2)
     for name in ("position", "joint_angle", "servo_torque", "foot_force"):
-        np.testing.assert_array_equal(live.now[name], planned.now[name])
-        np.testing.assert_allclose(live.now[name], record[name].values, atol=1e-6)  # of one cycle again and again
+        np.testing.assert_array_equal(live.current_sample[name], planned.current_sample[name])
+        np.testing.assert_allclose(
+            live.current_sample[name], record[name].values, atol=1e-6
+        )  # of one cycle again and again
 
 
 @dataclass(frozen=True)
@@ -158,8 +160,8 @@ def test_what_is_mended_at_once_was_never_broken(shelved):
             live.mend(made(shelved).part)
         live.step()
         intact.step()
-    for name, value in intact.now.items():
-        np.testing.assert_array_equal(live.now[name], value, err_msg=name)
+    for name, value in intact.current_sample.items():
+        np.testing.assert_array_equal(live.current_sample[name], value, err_msg=name)
 
 
 @pytest.mark.parametrize("robots", [[CAIMAN, CAIMAN], [CAIMAN, OTHER]], ids=["one robot", "several robots"])

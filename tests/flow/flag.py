@@ -133,7 +133,7 @@ class FlagChain(MidlineChain):
 
     @cached_property
     def ends(self):
-        return np.array([0.0, 2 * RADIUS, *self.outline.places, self.outline.robot.length])
+        return np.array([0.0, 2 * RADIUS, *self.outline.joint_positions, self.outline.robot.length])
 
 
 class Beam:
@@ -247,19 +247,19 @@ class Flag:
 
     def _renew(self):
         """Compute the added mass anew if the tip has turned enough, and once the wall has its skin."""
-        turned = float(self.posture.place[3:].sum())
+        turned = float(self.posture.position[3:].sum())
         if len(self.rows) != 1 and abs(turned - self.turned) < RENEWED:
             return
         self.turned, origin = turned, np.zeros(2)
-        modes = self.chain.modes(self.posture.place, origin, 2)[3:]
+        modes = self.chain.modes(self.posture.position, origin, 2)[3:]
         found = self.sim.added_mass("flag", modes)
-        inside = self.chain.unpressed(self.posture.place, found.internal_pressure, origin)[:, 3:]
+        inside = self.chain.unpressed(self.posture.position, found.internal_pressure, origin)[:, 3:]
         self.added = found.matrix - 0.5 * (inside + inside.T)
 
     def step(self, longest=np.inf):
         """Take one step, and note it."""
         h, start, began = min(self.sim.next_step(), longest), self.time, self.posture
-        angles, rates = began.place[3:], began.rate[3:]
+        angles, rates = began.position[3:], began.rate[3:]
         spring, cycles = self.beam.stiffness, (start + 0.5 * h) * self.case.frequency
         rest = self.case.shaken / self.beam.size * np.sin(2 * np.pi * cycles) if cycles < SHAKES else 0.0
 
@@ -274,7 +274,7 @@ class Flag:
             return left, whole + slow + LEAN * 0.5 * h * h * spring * np.eye(push.size)
 
         def gone(push):
-            place, rate = began.place.copy(), began.rate.copy()
+            place, rate = began.position.copy(), began.rate.copy()
             place[3:] += h * rates + 0.5 * h * h * push
             rate[3:] += h * push
             return ChainState(place, rate)
@@ -288,7 +288,7 @@ class Flag:
         self.sim.advance(h)
         made, size = 0, 1.0
         while True:
-            middle = 0.5 * (began.place + posture.place)
+            middle = 0.5 * (began.position + posture.place)
             found = self.chain.force(middle, self.sim.last_loads("flag"), np.zeros(2))[3:]
             left, whole = newton(push, found)
             weight = np.diag(whole)
@@ -315,7 +315,7 @@ class Flag:
 
     def state(self):
         own = {name: np.array(getattr(self, name)) for name in ("force", "push", "greatest", "turned", "added", "rows")}
-        now = {"place": self.posture.place, "rate": self.posture.rate}
+        now = {"place": self.posture.position, "rate": self.posture.rate}
         return {**own, **now, **{f"flow.{name}": value for name, value in self.sim.state().items()}}
 
     def resume(self, state):

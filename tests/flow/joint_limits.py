@@ -135,7 +135,7 @@ class FreeLinks:
             end = ChainState(q + h * v + 0.5 * h * h * a, v + h * a)
             swim.path.go(start, ChainState(q, v), start + h, end)
             sim.advance(h)
-            middle = 0.5 * (q + end.place)
+            middle = 0.5 * (q + end.position)
             force = self.depth * swim.chain.force(middle, sim.last_loads(name), np.array(sim.frame[0]))
             place, rate = q + 0.5 * h * v + 0.125 * h * h * a, v + 0.5 * h * a
             inertia = self.links.inertia(place)

@@ -179,7 +179,7 @@ def swum(mass_factor=1.0, duration=0.6, **changes):
     swim, momenta = Swim(run, duration, thread_count=1), []
     swim.go(
         duration, progress=silent,
-        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.now.rate)[:2]),
+        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.coordinates.rate)[:2]),
     )  # fmt: skip
     return swim, np.array(momenta)
 
@@ -250,7 +250,7 @@ def course_of(times, states):
 
     def course(time):
         k = min(max(int(np.searchsorted(times, time, side="left")) - 1, 0), len(ways) - 1)
-        place, rate = ways[k].at(time)
+        place, rate = ways[k].posture_at(time)
         return place[3:], rate[3:]
 
     return course
@@ -382,7 +382,7 @@ def test_a_step_that_is_taken_again():
     swim = Swim(run, 0.2, thread_count=1)
     swim.go(0.1, progress=silent)
     sim, name, h = swim.sim, robot.name, 0.006
-    (q, v), start, kept = swim.path.at(swim.time), sim.time, sim.snapshot()
+    (q, v), start, kept = swim.path.posture_at(swim.time), sim.time, sim.snapshot()
     rng = np.random.default_rng(4)
     pushes = rng.normal(size=(2, q.size))
 
@@ -391,7 +391,7 @@ def test_a_step_that_is_taken_again():
         swim.path.go(start, ChainState(q, v), start + h, end)
         sim.advance(h)
         if corrected:
-            more = swim.chain.twists(end.place, 0.1 * h * push, np.array(sim.frame[0]), 2)
+            more = swim.chain.twists(end.position, 0.1 * h * push, np.array(sim.frame[0]), 2)
             sim.accelerate({name: more})
         loads = sim.last_loads(name)
         return [

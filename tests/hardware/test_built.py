@@ -25,9 +25,9 @@ PAGE = ROOT / "docs" / "build_one.md"
 def test_its_servos_are_those_that_are_sold_and_nothing_else_became_another():
     own, was = servos_of(ROBOTS["caiman"]), servos_of(former())
     for name, servo in own.items():
-        assert servo == Servo.of(motor("STS3250"), template=was[name]), name
+        assert servo == Servo.from_motor(motor("STS3250"), template=was[name]), name
         assert was[name].winding is None
-    tables = with_servos(former(), lambda servo: Servo.of(motor("STS3250"), template=servo)).tables
+    tables = with_servos(former(), lambda servo: Servo.from_motor(motor("STS3250"), template=servo)).tables
     assert replace(tables, name="caiman") == ROBOTS["caiman"].tables
 
 

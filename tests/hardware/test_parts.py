@@ -26,7 +26,7 @@ NAMES = ["caiman", "floating_caiman", "strider", "salamandra", "swimmer"]
 
 @pytest.fixture(scope="module")
 def bought(robot):
-    return with_servos(robot, lambda servo: Servo.of(motor("STS3250"), template=servo))
+    return with_servos(robot, lambda servo: Servo.from_motor(motor("STS3250"), template=servo))
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -137,7 +137,7 @@ def load(**changes):
 
 def test_other_servos_are_put_in_their_places_in_an_equal_robot_too(robot):
     again = crocodile(copy.deepcopy(robot.tables))
-    other = Servo.of(motor("XM540-W270"), template=robot.servo("spine_yaw_1"))
+    other = Servo.from_motor(motor("XM540-W270"), template=robot.servo("spine_yaw_1"))
     for one in (robot, again, copy.deepcopy(robot)):
         made = with_named_servos(one, {"spine_yaw_1": other, "RH_knee": other, "tail_cable": other})
         changed = {name for name in servo_names() if made.servo(name) != one.servo(name)}

@@ -24,7 +24,7 @@ STS = motor("STS3250")
 
 @pytest.fixture(scope="module")
 def bought(robot):
-    return with_servos(robot, lambda servo: Servo.of(STS, template=servo))
+    return with_servos(robot, lambda servo: Servo.from_motor(STS, template=servo))
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def made(robot, torque, speed, target=0.0):
 def test_what_a_servo_uses_is_told_by_its_line(bought):
     servo = bought.servo("LF_yaw")
     speed = 3.0
-    given = float(servo.given(np.array(speed)))
+    given = float(servo.available_torque(np.array(speed)))
     record = made(bought, np.full(50, 0.5 * given), np.full(50, speed))
     assert use_of_each(bought, record).sel(servo="LF_yaw").values == pytest.approx(0.5)
     braking = made(bought, np.full(50, -0.5 * servo.torque), np.full(50, speed))
@@ -110,7 +110,7 @@ def test_cases_are_gaits_slopes_faults_standing_and_a_swim(robot, crawl_gait):
     assert found[0].slower(2.0).end == pytest.approx(17.0)
     assert found[3].end > 9.0
     (_, swim) = cases(ROBOTS["floating_caiman"], [crawl_gait], water=True)
-    assert (swim.name, swim.lake.at(0.0)[0]) == ("swimming", ROBOTS["floating_caiman"].length)
+    assert (swim.name, swim.lake.state_at(0.0)[0]) == ("swimming", ROBOTS["floating_caiman"].length)
     with pytest.raises(UnsuitedRobot, match="strider"):
         cases(ROBOTS["strider"], [GAITS["tripod"]], standing=True)
 

@@ -50,7 +50,7 @@ def test_sections_of_a_cylinder_are_exact_and_off_centre_rods_add_up():
         segment = Segment(name="one", front=0.2, rear=0.2, shapes=shapes)
         found = profile(SimpleNamespace(axis=(segment,)), np.array([0.1, 0.2]))
         assert found.area == pytest.approx(area * np.pi * 0.05**2, rel=2e-3)
-        assert found.middle == pytest.approx(middle, abs=1e-5)
+        assert found.centre_height == pytest.approx(middle, abs=1e-5)
 
 
 def test_a_hull_adds_its_volume_its_mass_and_its_height():

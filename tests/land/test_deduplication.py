@@ -19,7 +19,7 @@ def run(robot, crawl_gait) -> Run:
 
 
 def followers(alike: Deduplication) -> dict[int, int]:
-    return dict(zip(alike.others.tolist(), alike.whom.tolist(), strict=True))
+    return dict(zip(alike.followers.tolist(), alike.leader_of.tolist(), strict=True))
 
 
 def test_a_batch_of_runs_that_part_is_each_run_alone(run):
@@ -66,14 +66,14 @@ def test_runs_part_where_they_are_told_something_else_and_where_trouble_comes(ru
     pushed = replace(run, pushes=(Push(force=(1.0, 0.0, 0.0), at=0.055),))
     alike = Deduplication([run, run, run, pushed, pushed], np.zeros((5, 19)), 0.01)
     targets = np.zeros((5, 19))
-    alike.part(0, targets)
+    alike.separate(0, targets)
     assert followers(alike) == {1: 0, 2: 0, 3: 0, 4: 0}
     targets[1:3, 5] = 1e-16
-    alike.part(1, targets)
+    alike.separate(1, targets)
     assert followers(alike) == {2: 1, 3: 0, 4: 0}
-    alike.part(5, targets)
+    alike.separate(5, targets)
     assert followers(alike) == {2: 1}
-    assert alike.first.tolist() == [True, True, False, True, True]
+    assert alike.is_leader.tolist() == [True, True, False, True, True]
     targets[:] = 0.0  # who has parted does not meet again
-    alike.part(6, targets)
+    alike.separate(6, targets)
     assert followers(alike) == {2: 1}

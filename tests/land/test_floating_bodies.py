@@ -77,7 +77,7 @@ def test_a_box_heels_to_its_angle_of_loll():
     exact = np.arctan(np.sqrt(2 * 0.004 / bm))
 
     def moment(angle):
-        pool.place((0, 0, 0), np.array([np.cos(angle / 2), np.sin(angle / 2), 0, 0]))
+        pool.set_pose((0, 0, 0), np.array([np.cos(angle / 2), np.sin(angle / 2), 0, 0]))
         arm = pool.statics()[1:4] / pool.statics()[0] - pool.data.xipos[1]
         return arm[1]
 
@@ -95,9 +95,9 @@ def test_a_current_carries_the_frame_of_the_water_along():
     found = []
     for current in ((0.0, 0.0), (0.7, -0.4)):
         pool = FloatTank(body, Lake(level=20.0, current=current), integrator="RK4")
-        pool.place((0, 0, 0), velocity=(0.3 + current[0], 0.1 + current[1], 0.0), spin=(0.5, -0.4, 0.8))
+        pool.set_pose((0, 0, 0), velocity=(0.3 + current[0], 0.1 + current[1], 0.0), spin=(0.5, -0.4, 0.8))
         pool.step(500)
-        found.append(pool.middle - [*(np.array(current) * pool.data.time), 0.0])
+        found.append(pool.centre - [*(np.array(current) * pool.data.time), 0.0])
     assert found[1] == pytest.approx(found[0], abs=1e-8)
 
 
@@ -106,9 +106,9 @@ def test_a_small_neutral_body_goes_around_with_the_water_of_a_wave():
     deep = 0.3
     speed = 0.5 * wave.height * 2 * pi * wave.frequency * np.exp(-2 * pi * deep / wave.length)
     body = FloatBody(shape="ellipsoid", half=3 * (0.005,), mass=1000 * 4 / 3 * pi * 0.005**3, inertia=3 * (1e-8,),
-                     added=3 * (0.5,))  # fmt: skip
+                     added_mass_ratio=3 * (0.5,))  # fmt: skip
     pool = FloatTank(body, Lake(level=0.0, wave=wave), timestep=0.002)
-    pool.place((0.0, 0.0, -deep), velocity=(0.0, 0.0, speed))
+    pool.set_pose((0.0, 0.0, -deep), velocity=(0.0, 0.0, speed))
     path = pool.watch(1 / wave.frequency, 0.01).middle.values - [0, 0, -deep]
     radius = speed / (2 * pi * wave.frequency)
     assert np.ptp(path[:, 0]) == pytest.approx(2 * radius, rel=0.02)
@@ -119,9 +119,9 @@ def test_a_small_neutral_body_goes_around_with_the_water_of_a_wave():
 def test_a_float_follows_long_waves():
     """Up and down, and along the surface: it is not moved at the crest of the wave's own height alone."""
     wave = Wave(height=0.05, length=20.0)
-    body = replace(cases.BOX, centre=(0, 0, -0.02), added=(0.0, 0.0, 0.0))
+    body = replace(cases.BOX, centre=(0, 0, -0.02), added_mass_ratio=(0.0, 0.0, 0.0))
     pool = FloatTank(body, Lake(level=0.0, wave=wave))
-    pool.place((0.0, 0.0, 0.025))
+    pool.set_pose((0.0, 0.0, 0.025))
     watched = pool.watch(1 / wave.frequency, 0.02)
     surface = 0.025 * np.cos(2 * pi * wave.frequency * watched.time.values)
     assert watched.middle.values[:, 2] == pytest.approx(surface, abs=0.004)
@@ -132,7 +132,7 @@ def test_a_float_follows_long_waves():
 def test_drag_is_against_the_motion_and_takes_energy(speed, angle):
     body = FloatBody(shape="cylinder", half=(0.3, 0.05, 0.1), mass=3.0, inertia=(1, 1, 1))
     pool = _dragged(body)
-    pool.place((0, 0, 0), velocity=(0.0, speed * np.cos(angle), speed * np.sin(angle)))
+    pool.set_pose((0, 0, 0), velocity=(0.0, speed * np.cos(angle), speed * np.sin(angle)))
     force = pool.data.userdata[FORCE : FORCE + 3] - [0, 0, 1000 * 9.81 * body.volume]
     assert force @ pool.data.qvel[:3] < 0
     across = np.array([speed * np.cos(angle) * 2 * 0.1, speed * np.sin(angle) * 2 * 0.05])
@@ -157,13 +157,15 @@ def _write(pool, **columns):
 
 
 def test_what_is_shed_pushes_forward_and_takes_what_lighthill_says():
-    body = FloatBody(shape="cylinder", half=(0.1, 0.02, 0.05), mass=1.0, inertia=(1, 1, 1), added=(0.0, 1.0, 1.0))
+    body = FloatBody(
+        shape="cylinder", half=(0.1, 0.02, 0.05), mass=1.0, inertia=(1, 1, 1), added_mass_ratio=(0.0, 1.0, 1.0)
+    )
     pool = FloatTank(body, Lake(level=10.0))
     side = pi * 0.05**2
     _write(pool, shed=(side, pi * 0.02**2), shed_at=-0.1)
     u, w = 0.6, 0.2
     for forward, expected in ((u, 0.5 * 1000 * side * w**2), (-u, 0.0)):
-        pool.place((0, 0, 0), velocity=(forward, w, 0.0))
+        pool.set_pose((0, 0, 0), velocity=(forward, w, 0.0))
         pool.data.qacc[:] = 0.0
         passive = np.array(pool.data.qfrc_passive)
         assert passive[0] == pytest.approx(expected, rel=1e-9, abs=1e-9)
@@ -174,7 +176,7 @@ def test_what_is_shed_pushes_forward_and_takes_what_lighthill_says():
 def test_the_water_says_what_it_did():
     body = replace(cases.SPHEROID, mass=0.5 * cases.SPHEROID.mass)
     pool = FloatTank(body, cases.DEEP_LAKE)
-    pool.place((0, 0, 0), velocity=(0.0, 0.0, 0.1))
+    pool.set_pose((0, 0, 0), velocity=(0.0, 0.0, 0.1))
     for _ in range(50):
         pool.step()
     told = pool.data.userdata

@@ -34,7 +34,7 @@ def test_a_live_run_goes_as_a_batch_does(control):
     walk = until(Live(Run(robot=ROBOT, gait=GAIT, control=control), timestep=STEP), 3.5)
     record = batch(3.5, control=control)
     for name in ("position", "joint_angle", "foot_force", "servo_target"):
-        np.testing.assert_allclose(walk.now[name], record[name].values, atol=1e-6)
+        np.testing.assert_allclose(walk.current_sample[name], record[name].values, atol=1e-6)
 
 
 def test_what_breaks_and_pushes_live_does_so_as_in_a_batch():
@@ -45,16 +45,18 @@ def test_what_breaks_and_pushes_live_does_so_as_in_a_batch():
     until(walk, 2.5)
     faults = (Limp("LF_yaw", at=1.5), Locked("RH_pitch", at=1.5))
     record = batch(2.5, faults=faults, pushes=(Push(force=(0.0, 8.0, 0.0), at=1.6, duration=0.2),))
-    assert abs(walk.now["position"][0] - float(record.position[0])) < 2e-3  # the lock hears of it one period later
+    assert (
+        abs(walk.current_sample["position"][0] - float(record.position[0])) < 2e-3
+    )  # the lock hears of it one period later
 
 
 def test_a_mended_joint_obeys_again():
     walk = live(faults=(Limp("LF_pitch"),))
     until(walk, 1.2)
-    lame = abs(walk.now["servo_angle"][1] - walk.now["servo_target"][1])
+    lame = abs(walk.current_sample["servo_angle"][1] - walk.current_sample["servo_target"][1])
     walk.mend("LF_pitch")
     until(walk, 1.9)
-    assert abs(walk.now["servo_angle"][1] - walk.now["servo_target"][1]) < lame / 3
+    assert abs(walk.current_sample["servo_angle"][1] - walk.current_sample["servo_target"][1]) < lame / 3
 
 
 def test_a_joint_that_is_broken_otherwise_is_no_longer_broken_as_before():
@@ -62,17 +64,17 @@ def test_a_joint_that_is_broken_otherwise_is_no_longer_broken_as_before():
     walk.begin(Limp("LF_pitch"))
     walk.begin(Locked("LF_pitch", angle=0.5))
     until(walk, 2.0)
-    assert abs(walk.now["servo_angle"][1] - 0.5) < 0.1
+    assert abs(walk.current_sample["servo_angle"][1] - 0.5) < 0.1
 
 
 @pytest.mark.parametrize("period", [0.7, 2.0])
 def test_another_gait_goes_on_from_the_same_phase(period):
     walk = until(live(), 1.63)
-    before = walk.now["limb_phase"].copy()
+    before = walk.current_sample["limb_phase"].copy()
     walk.walk(replace(GAIT, period=period))
     walk.step()
     walk.step()
-    moved = (walk.now["limb_phase"] - before + 0.5) % 1.0 - 0.5
+    moved = (walk.current_sample["limb_phase"] - before + 0.5) % 1.0 - 0.5
     assert np.all((moved > 0.0) & (moved < 0.04))
 
 
@@ -80,10 +82,10 @@ def test_switching_the_rules_keeps_the_asked_heading():
     rules = Coordinated(heading=HeadingRule())
     walk = Live(Run(robot=ROBOT, gait=GAIT, control=rules, faults=(Limp("LF_yaw"),)), timestep=STEP)
     until(walk, 3.0)
-    turned = walk._loop.controller._heading._facing._turned.copy()
+    turned = walk._loop.controller._heading._facing._turn_angle.copy()
     walk.walk(GAIT.strode(1.1))
     walk.step()
-    assert abs(walk._loop.controller._heading._facing._turned - turned) < 0.05
+    assert abs(walk._loop.controller._heading._facing._turn_angle - turned) < 0.05
 
 
 def test_a_gait_out_of_reach_is_refused_and_the_walk_goes_on():
@@ -96,7 +98,9 @@ def test_a_gait_out_of_reach_is_refused_and_the_walk_goes_on():
 def test_ground_that_tilts_sends_the_robot_downhill():
     steep = live()
     steep.tilt(Ground(sideways=0.6))
-    assert abs(until(steep, 1.5).now["position"][1]) > 5 * abs(until(live(), 1.5).now["position"][1])
+    assert abs(until(steep, 1.5).current_sample["position"][1]) > 5 * abs(
+        until(live(), 1.5).current_sample["position"][1]
+    )
 
 
 def test_impossible_commands_are_refused():

@@ -15,7 +15,7 @@ def test_power_is_torque_times_the_mean_of_the_speeds_before_and_after():
     for step, (force, speed, torque) in enumerate(((4.0, 3.0, 10.0), (8.0, 5.0, 20.0))):
         water[:, hydro.FORCE] = force
         sensors[0, 0], sensors[0, 3] = speed, torque
-        meter.read(step)
+        meter.record_step(step)
     out = np.full((2, 5), -1.0)
     meter.mean(out, np.array([True, False]))
     first = 10.0 * (1.0 + 3.0) / 2 + 7.0 * 2.0

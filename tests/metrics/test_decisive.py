@@ -35,8 +35,8 @@ def test_a_clean_border_is_found_with_its_side(above):
     holds = POINTS[:, 3] > 0.3 if above else POINTS[:, 3] < 0.3
     found = border(POINTS, holds)
     assert found.parameter == 3
-    assert found.at == pytest.approx(0.3, abs=0.02)
-    assert found.above == above
+    assert found.threshold == pytest.approx(0.3, abs=0.02)
+    assert found.holds_above == above
     assert found.separation == pytest.approx(1.0)
     assert found.chance < 1e-12
 
@@ -47,7 +47,7 @@ def test_a_blurred_border_separates_less():
     assert found.parameter == 3
     assert 0.3 < found.separation < 0.95
     # the separation is what it says it is
-    above = POINTS[:, 3] > found.at
+    above = POINTS[:, 3] > found.threshold
     assert above[blurred].mean() - above[~blurred].mean() == pytest.approx(found.separation, abs=0.01)
 
 

@@ -44,7 +44,7 @@ def told(draft):
 def positions(model, matches, angles, ours):
     """Return the anchors of the matched hinges in the order of the matches, and the feet, in the world [m]."""
     data = mujoco.MjData(model)
-    names = [match.ours if ours else match.theirs for match in matches]
+    names = [match.hinge if ours else match.file_hinge for match in matches]
     values = angles if ours else [m.sign * angle + m.zero for m, angle in zip(matches, angles, strict=True)]
     data.qpos[joint_addresses(model, names)] = values
     mujoco.mj_kinematics(model, data)
@@ -92,9 +92,9 @@ def test_our_own_exports_come_back_with_every_joint_where_it_was(shelf):
     robot, draft, _ = shelf
     theirs = compile_model(robot)
     assert_same_places(draft, theirs)
-    assert {match.theirs for match in draft.matches} == set(layout(robot).hinges)
+    assert {match.file_hinge for match in draft.matches} == set(layout(robot).hinges)
     assert layout(draft.robot).hinges == layout(robot).hinges
-    assert all(match.ours == match.theirs and match.sign == 1.0 and match.zero == 0.0 for match in draft.matches)
+    assert all(match.hinge == match.file_hinge and match.sign == 1.0 and match.zero == 0.0 for match in draft.matches)
     assert draft.robot.root == robot.root
 
 
@@ -179,8 +179,8 @@ def test_a_quadruped_of_today_is_two_girdles_on_one_segment_and_walks(tmp_path):
     assert [link.end for link in limb.links] == [(0, pytest.approx(0.08), 0)] + 2 * [(0, 0, pytest.approx(-0.21))]
     assert limb.foot.radius == FOOT
     assert robot.mass == pytest.approx(8.0 + 4 * 1.95)
-    by_name = {match.theirs: match for match in draft.matches}
-    assert by_name["FL_abduction"].ours == "LF_pitch"
+    by_name = {match.file_hinge: match for match in draft.matches}
+    assert by_name["FL_abduction"].hinge == "LF_pitch"
     assert by_name["FL_abduction"].sign == -1.0  # about +x a left leg goes up and out, ours goes down
     assert by_name["FR_abduction"].sign == 1.0
     servo = limb.hinges[0].servo
@@ -203,7 +203,7 @@ def test_the_heading_of_the_file_does_not_matter(heading, tmp_path_factory):
     for one, two in zip(draft.robot.girdles, straight.robot.girdles, strict=True):
         assert (one.at - draft.robot.girdles[-1].at) == pytest.approx(two.at - straight.robot.girdles[-1].at, abs=1e-9)
         assert [link.end for link in one.limb.links] == [pytest.approx(link.end, abs=1e-9) for link in two.limb.links]
-    assert [m.theirs for m in draft.matches] == [m.theirs for m in straight.matches]
+    assert [m.file_hinge for m in draft.matches] == [m.file_hinge for m in straight.matches]
 
 
 @settings(max_examples=10)
@@ -243,7 +243,7 @@ def test_trees_with_any_mirrored_limbs_come_back(seed, tmp_path_factory):
 def test_limbs_that_are_drawn_askew_get_a_zero_at_which_their_hinges_are_straight(tmp_path):
     draft = read(skewed(), tmp_path)
     assert [hinge.turn for hinge in draft.robot.girdles[0].limb.hinges] == ["yaw", "pitch", "pitch"]
-    zeros = {match.theirs: match.zero for match in draft.matches}
+    zeros = {match.file_hinge: match.zero for match in draft.matches}
     assert [zeros[f"{limb}_hip"] for limb in ("LF", "RF", "LH", "RH")] == pytest.approx(
         np.pi / 4 * np.array([1, -1, -1, 1])
     )
@@ -262,7 +262,7 @@ def test_the_front_is_said_by_names_by_an_option_or_guessed(tmp_path):
     assert "Guess: the front is the file's x axis turned left by 0 degrees" in told(guessed)
     asked = read(quadruped(legs=blind), tmp_path, front="leg2_hip")
     assert "turned left by 180 degrees, as names or options say" in told(asked)
-    assert asked.matches[0].theirs != guessed.matches[0].theirs
+    assert asked.matches[0].file_hinge != guessed.matches[0].file_hinge
     assert read(quadruped(legs=blind), tmp_path, heading=180.0).matches == asked.matches
     with pytest.raises(UnknownName, match="Did you mean 'leg2_hip'"):
         read(quadruped(legs=blind), tmp_path, front="leg2_hipp")
@@ -488,7 +488,7 @@ def test_what_a_file_says_of_inertia_is_kept_and_comes_out_of_the_export_again(t
 def test_foam_adds_its_mass_to_a_stated_inertia_as_it_does_to_shapes():
     robot = ROBOTS["floating_caiman"]
     plain, bare = compile_model(robot), compile_model(replace(robot, hull=None))
-    root = robot.root_place
+    root = robot.root_index
     _, centre, about = stiff(bare, 1)
     own = Inertia(centre=tuple(centre), moments=tuple(np.diag(about)), products=tuple(about[[0, 0, 1], [1, 2, 2]]))
     axis = tuple(replace(one, inertia=own) if i == root else one for i, one in enumerate(robot.axis))

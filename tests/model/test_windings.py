@@ -30,7 +30,7 @@ def robot(former):
 
 @pytest.fixture(scope="module")
 def bought(robot):
-    return with_servos(robot, lambda servo: Servo.of(STS, template=servo))
+    return with_servos(robot, lambda servo: Servo.from_motor(STS, template=servo))
 
 
 def torque_at(robot, speed, *, supply=1.0, warmer=0.0, sign=1.0, joint="RH_knee"):
@@ -58,12 +58,12 @@ def test_the_torque_falls_in_a_straight_line_to_what_the_gear_takes_at_the_speed
     idle = servo.friction + servo.damping * servo.speed
     given = sign * torque_at(bought, sign * share * servo.speed, sign=sign)
     assert given == pytest.approx(servo.torque - share * (servo.torque - idle))
-    assert given == pytest.approx(float(servo.given(np.array(share * servo.speed))))
+    assert given == pytest.approx(float(servo.available_torque(np.array(share * servo.speed))))
 
 
 def test_a_gear_that_eats_the_torque_is_refused(robot):
     with pytest.raises(InvalidDesign, match=r"take 4\.75 N m at 7\.873 rad/s, of a torque of 4\.903 N m"):
-        Servo.of(STS, template=replace(robot.servo("RH_knee"), damping=0.6))
+        Servo.from_motor(STS, template=replace(robot.servo("RH_knee"), damping=0.6))
 
 
 def test_a_servo_that_is_driven_backwards_gives_no_more_than_at_standstill(bought):
@@ -90,7 +90,7 @@ def test_a_servo_without_a_winding_gives_all_its_torque_at_any_speed(robot):
 @pytest.mark.parametrize("volts", [12.0, 9.0])
 def test_at_its_continuous_torque_the_winding_stays_at_its_limit(robot, volts):
     """Whatever the supply: the heat goes with the torque."""
-    bought = with_servos(robot, lambda servo: Servo.of(STS, volts, template=servo))
+    bought = with_servos(robot, lambda servo: Servo.from_motor(STS, volts, template=servo))
     model = compile_model(bought)
     data = mujoco.MjData(model)
     number, heat = model.actuator("RH_knee").id, STS.heat
@@ -126,7 +126,7 @@ def test_a_record_knows_how_warm_the_servos_are(bought, robot):
     heated = STS.volts * STS.stall_current * current.sum("time") * 0.01 / STS.heat.capacity
     np.testing.assert_allclose(warm.isel(time=-1) - ROOM_TEMPERATURE, heated, rtol=0.05, atol=2e-3)
     assert "servo_temperature" not in crawl(robot, "belly_crawl", duration=0.1)
-    mixed = with_servos(robot, lambda servo: Servo.of(STS, template=servo) if servo.torque == 3.0 else servo)
+    mixed = with_servos(robot, lambda servo: Servo.from_motor(STS, template=servo) if servo.torque == 3.0 else servo)
     record = crawl(mixed, "belly_crawl", duration=0.1)
     assert bool(record.servo_temperature.sel(servo="tail_cable").isnull().all())
     assert bool(record.servo_temperature.sel(servo="LF_yaw").notnull().all())

@@ -38,6 +38,6 @@ def test_the_steered_targets_are_what_they_were(pair):
     robot, gait = frozen(pair)
     asked = {name: np.array(values) for name, values in FROZEN[pair]["steered"].items()}
     here, limbs = movement(robot, gait), asked["sphase"]
-    steer = Steer(size=asked["size"], stroke=asked["stroke"], lower=asked["lower"], bend=asked["trunk"])
+    steer = Steer(size=asked["size"], stroke=asked["stroke"], lowering=asked["lower"], bend=asked["trunk"])
     angles = here.targets(limbs, here.axis_phase(limbs), steer)
     assert angles == pytest.approx(asked["steered"], abs=1e-12)

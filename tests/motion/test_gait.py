@@ -72,16 +72,16 @@ def test_a_harmonic_is_met_everywhere_not_only_at_the_samples(count):
         return 0.2 + 0.5 * np.cos(2 * np.pi * t) - 0.3 * np.sin(4 * np.pi * t)
 
     curve = Curve(servo="a", part="limb", angles=tuple(wave(phase)))
-    assert curve.at(clock) == pytest.approx(wave(clock), abs=1e-12)
-    assert curve.lagged(0.3).at(clock) == pytest.approx(wave(clock - 0.3), abs=1e-12)
+    assert curve.angle_at(clock) == pytest.approx(wave(clock), abs=1e-12)
+    assert curve.lagged(0.3).angle_at(clock) == pytest.approx(wave(clock - 0.3), abs=1e-12)
 
 
 @settings(max_examples=50, deadline=None)
 @given(st.lists(st.floats(-3, 3), min_size=1, max_size=20))
 def test_a_curve_passes_through_its_samples_and_repeats(angles):
     curve, phase = Curve(servo="a", part="limb", angles=tuple(angles)), np.arange(len(angles)) / len(angles)
-    assert curve.at(phase) == pytest.approx(np.array(angles), abs=1e-9)
-    assert curve.at(phase + 3.0) == pytest.approx(curve.at(phase), abs=1e-9)
+    assert curve.angle_at(phase) == pytest.approx(np.array(angles), abs=1e-9)
+    assert curve.angle_at(phase + 3.0) == pytest.approx(curve.angle_at(phase), abs=1e-9)
 
 
 def test_servos_without_a_curve_stay_at_zero_and_before_the_start_nothing_moves():
@@ -107,7 +107,7 @@ def test_in_the_middle_of_stance_limbs_are_where_their_curves_have_them_and_the_
     assert np.abs(still[list(place.axial_yaw)]).max() == 0.0
     limb, curves = place.limbs[0], {curve.servo: curve for curve in FILMED.curves}
     clock = 1.0 - FILMED.duty_factor / 2 - FILMED.limb_phases[0]
-    assert still[limb.servos] == pytest.approx([float(curves[place.servos[i]].at(clock)) for i in range(4)])
+    assert still[limb.servos] == pytest.approx([float(curves[place.servos[i]].angle_at(clock)) for i in range(4)])
     assert hip_height(SALAMANDER, FILMED) == 0.0
 
 

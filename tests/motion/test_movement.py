@@ -47,7 +47,7 @@ STRAIGHT = np.zeros(64, dtype=complex)
 
 
 def feet_of(robot, gait, phase):
-    return movement(robot, gait).foot_places(phase)
+    return movement(robot, gait).foot_positions(phase)
 
 
 def reached(robot, targets):
@@ -168,7 +168,7 @@ def test_feet_are_where_their_paths_are():
     targets, place = cycle_targets(SALAMANDER, WALK, CLOCK), layout(SALAMANDER)
     angles = np.zeros((len(CLOCK), len(place.hinges)))
     angles[:, list(place.servo_hinges)] = targets
-    angles[:, place.ahead] = 0.0  # a straight axis, so that girdles are parallel to the root
+    angles[:, place.forward_hinges] = 0.0  # a straight axis, so that girdles are parallel to the root
     feet = landmarks(SALAMANDER, angles).feet
     for i, limb in enumerate(place.limbs):
         path, girdle = WALK.limbs[limb.number], limb.girdle
@@ -273,9 +273,9 @@ def test_knots_run_from_the_head_and_are_met_at_every_hinge_of_as_many():
     gait = replace(default_gait(robot), axis=(Bend(part="trunk", amplitude=knots),))
     amplitude = np.abs(cycle_targets(robot, gait, CLOCK)).max(axis=0)
     hinges = yaw_hinges(robot)
-    trunk = [hinges.servos[k] for k in hinges.within("trunk")]
-    assert [hinges.places[k] for k in hinges.within("trunk")] == sorted(
-        hinges.places[k] for k in hinges.within("trunk")
+    trunk = [hinges.servos[k] for k in hinges.indices_in("trunk")]
+    assert [hinges.axial_positions[k] for k in hinges.indices_in("trunk")] == sorted(
+        hinges.axial_positions[k] for k in hinges.indices_in("trunk")
     )
     assert amplitude[trunk] == pytest.approx(np.array(knots) / 4, rel=1e-3)
     two = replace(gait, axis=(Bend(part="trunk", amplitude=(0.4, 1.0)),))
@@ -340,8 +340,11 @@ def test_with_nothing_asked_it_is_the_gait_itself(name):
 @pytest.mark.parametrize("control", [Walking(), Coordinated(limbs=LAWS["off"], spine=None, tail=None)])
 def test_controllers_without_a_rule_command_the_open_loop_on_every_body(name, control):
     robot, gait = ROBOTS[name], default_gait(ROBOTS[name])
-    runs, period = Runs.alike(control, robot, gait, ticks=400), control_period(robot)
-    ours, theirs = control.start(runs, period), OpenLoop.start(Runs.alike(OpenLoop(), robot, gait, ticks=400), period)
+    runs, period = Runs.identical(control, robot, gait, ticks=400), control_period(robot)
+    ours, theirs = (
+        control.start(runs, period),
+        OpenLoop.start(Runs.identical(OpenLoop(), robot, gait, ticks=400), period),
+    )
     first, moved = ours.rest().copy(), 0.0
     for tick in (0, 200, 237, 399):
         now, open_loop = ours.command(tick, None), theirs.command(tick, None)
@@ -382,7 +385,7 @@ def test_a_shorter_stroke_on_one_side_moves_the_limbs_of_that_side_alone(name):
 def test_lower_feet_are_lower_by_as_much(robot):
     walk = GAITS["high_walk"]
     lower, phase = np.array([0.01, -0.01, 0.005, 0.0]), PHASE + np.array(walk.limb_phases)
-    steer = Steer(lower=np.broadcast_to(lower, phase.shape))
+    steer = Steer(lowering=np.broadcast_to(lower, phase.shape))
     there = reached(robot, movement(robot, walk).targets(phase, STRAIGHT, steer))
     assert there - feet_of(robot, walk, phase) == pytest.approx(
         np.broadcast_to(lower[:, None] * [0, 0, 1], there.shape), abs=1e-9
@@ -392,7 +395,7 @@ def test_lower_feet_are_lower_by_as_much(robot):
 def test_a_steered_leg_points_to_a_foot_out_of_reach_and_an_unsteered_one_is_refused(robot):
     walk, phase = GAITS["high_walk"], np.full((1, 4), 0.9)
     here, straight = movement(robot, walk), np.zeros(1, dtype=complex)
-    there = reached(robot, here.targets(phase, straight, Steer(lower=np.full((1, 4), 0.3))))[0, 2]
+    there = reached(robot, here.targets(phase, straight, Steer(lowering=np.full((1, 4), 0.3))))[0, 2]
     hip = np.array([robot.hind_leg.hip_offset, 0, 0])
     asked = feet_of(robot, walk, phase)[0, 2] + [0.0, 0.0, 0.3]
     assert np.linalg.norm(there - hip) == pytest.approx(robot.hind_leg.reach[1], abs=1e-5)
@@ -427,7 +430,7 @@ def test_a_batch_of_different_gaits_and_bodies_says_what_each_says_alone(robot, 
         assert axis[i] == z[0]
         assert together[i] == pytest.approx(here.targets(limbs[i : i + 1], z, mine)[0], abs=1e-14)
         assert plain[i] == pytest.approx(here.targets(limbs[i : i + 1], z)[0], abs=1e-14)
-        swing, steady = (part[i] for part in batch.together("trunk"))
+        swing, steady = (part[i] for part in batch.swing_and_offset("trunk"))
         assert batch.bend_of("trunk", axis)[i] == pytest.approx(steady + (swing * z[0]).real, abs=1e-14)
 
 

@@ -18,7 +18,7 @@ def test_a_transition_takes_three_to_five_seconds_without_a_jolt_and_within_the_
     way = transition(robot, GAITS[here], GAITS[there])
     assert 3.0 <= way.duration <= 5.0
     start = cycle_targets(robot, GAITS[here], np.array(0.0))
-    course = np.array([way.at(t, start) for t in np.arange(0.0, way.duration, 0.01)])
+    course = np.array([way.angles_at(t, start) for t in np.arange(0.0, way.duration, 0.01)])
     assert np.abs(np.diff(course, axis=0)).max() / 0.01 < 9.0  # [rad/s]
     assert np.abs(np.diff(course, n=2, axis=0)).max() / 0.01**2 < 150.0  # [rad/s2]
     for i, name in enumerate(servo_names()):
@@ -31,8 +31,8 @@ def test_it_begins_where_the_robot_is_and_ends_where_the_new_gait_stands(robot):
     here, there = GAITS["belly_crawl"], GAITS["high_walk"]
     way = transition(robot, here, there)
     start = np.linspace(-0.3, 0.3, 19)
-    assert way.at(0.0, start) == pytest.approx(start)
-    end = way.at(way.duration + 1.0, start)
+    assert way.angles_at(0.0, start) == pytest.approx(start)
+    end = way.angles_at(way.duration + 1.0, start)
     assert end[[0, 3, 6, 9]] == pytest.approx(np.array([-1, -1, 1, 1]) * np.pi / 2)
     assert end[12:17] == pytest.approx(np.zeros(5))
     assert end[17] == pytest.approx(there.number("tail_pitch"))
@@ -59,7 +59,7 @@ def test_a_change_of_height_of_any_body_ends_in_the_new_posture(name):
     course = transition(robot, gait, other)
     assert course.targets.shape == (len(course.times), len(layout(robot).servos))
     assert (np.diff(course.times) > 0).all()
-    assert course.at(course.duration, course.targets[0]) == pytest.approx(course.targets[-1])
+    assert course.angles_at(course.duration, course.targets[0]) == pytest.approx(course.targets[-1])
     assert np.ptp(course.targets, axis=0).max() > 0.05  # limbs are lifted on the way
 
 

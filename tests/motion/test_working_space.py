@@ -17,7 +17,7 @@ from suchus.robot.motion import GaitInMetres
 from suchus.robot.motion.working_space import extent, is_inside, outline, sample_configurations
 
 CRAWL = GAITS["belly_crawl"]
-METRES = GaitInMetres.near(CRAWL, LIMBS)
+METRES = GaitInMetres.from_gait(CRAWL, LIMBS)
 
 
 def world(pelvis, points):
@@ -103,14 +103,14 @@ def test_the_volume_of_a_ball_lies_between_the_estimates(count):
     way = rng.normal(size=(count, 3))
     points = 0.3 * way / np.linalg.norm(way, axis=1, keepdims=True) * np.cbrt(rng.uniform(size=(count, 1)))
     room, true = extent(points, 0.04), 4 / 3 * pi * 0.3**3
-    assert room.low < true < room.high
+    assert room.lower_estimate < true < room.upper_estimate
     assert count < 10_000 or room.value == pytest.approx(true, rel=0.1)
 
 
 def test_the_area_of_a_rectangle_and_of_nothing():
     points = np.random.default_rng(1).uniform([0, 0], [0.8, 0.5], (50_000, 2))
     room = extent(points, 0.01)
-    assert (room.low, room.high) == pytest.approx((78 * 48 * 1e-4, 80 * 50 * 1e-4), rel=1e-3)
+    assert (room.lower_estimate, room.upper_estimate) == pytest.approx((78 * 48 * 1e-4, 80 * 50 * 1e-4), rel=1e-3)
     assert extent(np.empty((0, 2)), 0.01) == (0.0, 0.0, 0.0)
 
 

@@ -132,4 +132,4 @@ def test_what_a_ready_made_search_begins_with_can_be_steered(name):
     spec = READY[name]()
     for arm in spec.arms:
         run = spec.for_arm(arm).run
-        run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))
+        run.control.start(Runs.identical(run.control, run.robot, run.gait), control_period(run.robot))

@@ -83,7 +83,7 @@ def test_it_says_what_it_feels_and_nothing_else_counts(control, robot, crawl_gai
     other = {name: rng.standard_normal(value.shape) for name, value in lacking.items()}
     commands = []
     for unnamed in (lacking, other):
-        controller = control.start(Runs.alike(control, robot, crawl_gait, ticks=400), 0.01)
+        controller = control.start(Runs.identical(control, robot, crawl_gait, ticks=400), 0.01)
         ticks = [controller.command(tick, replace(seen, time=0.01 * tick, **unnamed)) for tick in range(0, 400, 4)]
         commands.append(np.array([command.targets for command in ticks]))
     assert np.isfinite(commands[0]).all()

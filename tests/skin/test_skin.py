@@ -122,7 +122,7 @@ def test_mirrored_posture_mirrors_the_skin(shelf):
     other, place = one.copy(), layout(shelf)
     for limb in place.limbs:
         other[limb.hinges] = one[place.limbs[limb.contralateral].hinges]
-    for i in range(place.ahead.start, len(names)):
+    for i in range(place.forward_hinges.start, len(names)):
         if "yaw" in names[i]:
             other[i] = -one[i]
     a, b = (found.posed(*poses(shelf, np.zeros(3), STILL, angles)) for angles in (one, other))

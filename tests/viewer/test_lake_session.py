@@ -81,8 +81,8 @@ def test_a_live_swim_is_the_swim_of_a_batch():
     for _ in range(30):
         live.step()
     record = simulate([run], duration=0.3, timestep=0.005)
-    assert live.now["position"] == pytest.approx(record.position[0, -1].values, abs=1e-9)
-    assert float(live.now["share_under"]) == pytest.approx(float(record.share_under[0, -1]), abs=1e-9)
+    assert live.current_sample["position"] == pytest.approx(record.position[0, -1].values, abs=1e-9)
+    assert float(live.current_sample["share_under"]) == pytest.approx(float(record.share_under[0, -1]), abs=1e-9)
 
 
 def test_what_a_live_run_cannot_do_is_refused():

@@ -27,7 +27,7 @@ def wave(robot, frequency=0.8):
 
 def midline(robot, time, stations=257):
     """Return the midline in that gait, the snout swinging as well."""
-    return undulation(Outline(robot, stations), wave(robot)).held(SWAY, TURN).curve(time)
+    return undulation(Outline(robot, stations), wave(robot)).with_head_motion(SWAY, TURN).curve(time)
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -80,14 +80,14 @@ def test_ends_stand_where_the_joints_of_the_robot_put_them(name):
     apart = np.hypot(curve.x[-1] - curve.x[0], curve.y[-1] - curve.y[0])
     assert apart == pytest.approx(np.linalg.norm(marks.snout - marks.tail), abs=0.01 * robot.length)  # corners are cut
     outline = Outline(robot)
-    signs = np.where(np.arange(len(outline.joints)) < outline.ahead, -1.0, 1.0)
+    signs = np.where(np.arange(len(outline.joints)) < outline.joint_count_ahead, -1.0, 1.0)
     bends = [angles[place.hinges.index(joint)] for joint in outline.joints]
     assert curve.heading[-1] - curve.heading[0] == pytest.approx(float(signs @ bends), abs=1e-9)
 
 
 def test_a_smeared_bend_is_even_where_joints_bend_alike(robot):
     outline = Outline(robot, stations=2049)
-    cable = outline.places[3 : 3 + len(cable_joints(robot))]
+    cable = outline.joint_positions[3 : 3 + len(cable_joints(robot))]
     inside = (outline.s > cable[1]) & (outline.s < cable[-2])
     curvature = np.gradient(outline.bending_at(outline.s)[:, 3], outline.s)[inside]
     assert curvature.max() == pytest.approx(curvature.min(), rel=1e-3)
@@ -141,7 +141,7 @@ def test_every_lateral_servo_bends_by_its_own_cosine(name):
         if number in place.cables:
             expected = tail_kinematics.servo_angle(place.cable(number), -bend)  # positive is the tip to the right
         else:
-            expected = bend if place.servo_hinges[number] in range(*place.ahead.indices(999)) else -bend
+            expected = bend if place.servo_hinges[number] in range(*place.forward_hinges.indices(999)) else -bend
         np.testing.assert_allclose(targets[:, number], expected, atol=1e-12)
     others = [i for i, servo in enumerate(place.servos) if servo not in servos]
     assert np.ptp(targets[:, others], axis=0).max(initial=0.0) == 0.0

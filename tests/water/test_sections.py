@@ -41,8 +41,8 @@ def test_the_round_section_is_that_of_the_published_experiment():
     coarse, fine = (one for one in table() if (one.aspect, one.keulegan) == (1.0, 5.0))
     theirs = measured()
     assert fine.cells > coarse.cells
-    assert (fine.drag, fine.added) == pytest.approx(theirs, rel=0.03)
-    assert (coarse.drag, coarse.added) == pytest.approx(theirs, rel=0.06)
+    assert (fine.drag, fine.added_mass) == pytest.approx(theirs, rel=0.03)
+    assert (coarse.drag, coarse.added_mass) == pytest.approx(theirs, rel=0.06)
 
 
 def test_the_fit_to_the_published_curve_does_not_hang_on_how_it_is_read():
@@ -61,9 +61,9 @@ def test_interpolation_is_near_the_points_that_were_held_out():
 
 def test_nodes_are_what_was_computed():
     for one in table()[: len(sections.ASPECTS) * len(sections.KEULEGANS)]:
-        assert coefficients(one.aspect, one.keulegan) == pytest.approx((one.drag, one.added), rel=1e-9)
-        assert abs(one.drag / one.drag_before - 1.0) < 0.08  # periods repeat
-        assert abs(one.added / one.added_before - 1.0) < 0.05
+        assert coefficients(one.aspect, one.keulegan) == pytest.approx((one.drag, one.added_mass), rel=1e-9)
+        assert abs(one.drag / one.previous_drag - 1.0) < 0.08  # periods repeat
+        assert abs(one.added_mass / one.previous_added_mass - 1.0) < 0.05
 
 
 def test_the_page_says_how_the_swims_own_coefficients_compare():
@@ -113,9 +113,9 @@ def test_a_table_is_written_whole_or_not_at_all(tmp_path):
     outcomes = {
         name: FlowOutcome(
             case=name, digest=one.digest, quick=False, cells=one.cells, seconds=1.0,
-            curves={"drag": np.array([[1.5, 2.5], [one.drag_before, one.drag]]),
-                    "added": np.array([[1.5, 2.5], [one.added_before, one.added]]),
-                    "left": np.array([[1.5, 2.5], [one.left, one.left]])},
+            curves={"drag": np.array([[1.5, 2.5], [one.previous_drag, one.drag]]),
+                    "added": np.array([[1.5, 2.5], [one.previous_added_mass, one.added_mass]]),
+                    "left": np.array([[1.5, 2.5], [one.residual, one.residual]])},
         )
         for name, one in rows.items()
     }  # fmt: skip

@@ -47,7 +47,7 @@ def check_swim(robot, motion):
 
 def test_the_quarters_of_every_cycle_are_read_the_last_one_last():
     held = _held(lambda p: 3 - np.cos(2 * p), lambda p: 4 * np.sin(p), lambda p: 100 * np.sin(p) + 10)
-    first, last = Quarters.each(held)
+    first, last = Quarters.from_record(held)
     assert last.difference == pytest.approx([110, 10, -90, 10])
     assert first.difference == pytest.approx([220, 20, -180, 20])
     assert last.moves == pytest.approx(0.3)
@@ -57,15 +57,15 @@ def test_the_quarters_of_every_cycle_are_read_the_last_one_last():
 def test_a_sway_is_what_comes_once_a_cycle_and_its_noise_the_rest():
     t = np.arange(161) / 40
     once, twice = np.sin(2 * np.pi * t + 0.3), np.sin(4 * np.pi * t)
-    sway = Sway.of(0.02 * once + 0.005 * twice + 0.1 * t, 4)
+    sway = Sway.from_track(0.02 * once + 0.005 * twice + 0.1 * t, 4)
     assert sway.amplitude == pytest.approx(0.02)
     assert sway.noise == pytest.approx(2 * 0.005 / np.sqrt(2), rel=1e-3)
-    growing = Sway.of(0.01 * (1 + (t >= 2.0)) * once, 4)
+    growing = Sway.from_track(0.01 * (1 + (t >= 2.0)) * once, 4)
     assert growing.noise > 0.005
-    straight = Sway.of(0.3 * t, 4)
+    straight = Sway.from_track(0.3 * t, 4)
     assert straight.amplitude == pytest.approx(0.0, abs=1e-12)
     with pytest.raises(ValueError, match="no whole number"):
-        Sway.of(once[:-1], 4)
+        Sway.from_track(once[:-1], 4)
 
 
 def test_a_wave_of_the_form_is_found_and_another_is_not():
@@ -89,7 +89,7 @@ def test_a_swim_in_numbers():
             "heading": ("sample", 0.2 * np.cos(2 * np.pi * t)),
         }
     )
-    swum = SwimMeasures.of(free, 2.0)
+    swum = SwimMeasures.from_record(free, 2.0)
     assert swum.speed == 0.4
     assert swum.gain == pytest.approx(1 / 3)
     assert swum.slip == pytest.approx(0.25)
@@ -105,12 +105,12 @@ def test_a_swing_is_as_much_of_a_sine_as_it_is():
     swung = swing(np.column_stack([0.2 * pure + drift, zigzag, pure + twice, 0 * t]))
     np.testing.assert_allclose(swung.amplitude, [0.2, 8 / np.pi**2, 1.0, 0.0], atol=1e-3)
     assert swung.phase_lag[0] == pytest.approx(0.25)  # a sine comes a quarter of a cycle after a cosine
-    np.testing.assert_allclose(swung.share, [1.0, 96 / np.pi**4, 0.5, 0.0], atol=1e-3)
+    np.testing.assert_allclose(swung.variance_fraction, [1.0, 96 / np.pi**4, 0.5, 0.0], atol=1e-3)
 
 
 def test_every_reading_is_tried_and_the_table_says_why_not(robot):
     tried = attempts(robot, frequency=1.0)
-    made = {one.letter for one in tried if one.fitted is not None}
+    made = {one.letter for one in tried if one.fit is not None}
     assert {"A", "C", "F", "H", "I", "K"} <= made
     assert not made & {"B", "D", "G", "J"}
     table = readings_table(tried, {"I": "28.0 N/m"})

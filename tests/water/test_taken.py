@@ -44,7 +44,7 @@ def test_a_bend_that_is_shared_out_anew_is_another_midline_of_the_same_end():
     assert abs(found.stations[1, -1]) == pytest.approx(abs(meant.stations[1, -1]), rel=2e-3)
     assert unevenness(found, meant) > 0.05
     doubled = motion_of_record(OUTLINE, record([1 / 3] * 6), frequency=0.8, cycles=2)
-    behind = [OUTLINE.s > OUTLINE.places[8] + OUTLINE.reaches[8]]
+    behind = [OUTLINE.s > OUTLINE.joint_positions[8] + OUTLINE.reaches[8]]
     assert np.abs(doubled.stations[1] - meant.stations[1])[*behind] == pytest.approx(TAIL, rel=2e-3)
 
 

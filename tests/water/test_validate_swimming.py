@@ -31,7 +31,7 @@ def grids():
         setting = SwimSetting(cells=cells, viscosity=viscosity, cycles=3, free=TETHERED)
         held = resolved_swim(robot, fitted.gait, setting, turn=fitted.head)
         free = resolved_swim(robot, fitted.gait, SwimSetting(cells=cells, viscosity=viscosity, cycles=CYCLES))
-        swum = SwimMeasures.of(free, 1.0)
+        swum = SwimMeasures.from_record(free, 1.0)
         rows[cells] = {
             "speed": swum.speed,
             "gain": swum.gain,

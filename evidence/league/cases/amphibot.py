@@ -80,7 +80,7 @@ def _body(pitch: float, height: float, width: float, density: float) -> Drawing:
         length=length,
         mass=density * 3.1416 / 4.0 * width * height * length,
         density=density,
-        places=(0.0, round_off, 1.0 - round_off, 1.0),
+        stations=(0.0, round_off, 1.0 - round_off, 1.0),
         half_width=(0.6 * wide, wide, wide, 0.8 * wide),
         half_height=(0.6 * high, high, high, 0.8 * high),
         joints=tuple((i + 1) / _SEGMENTS for i in range(_JOINTS)),
@@ -101,7 +101,7 @@ def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
 
 def _gait(robot, numbers: Numbers) -> Gait:  # type: ignore[no-untyped-def]
     outline = Outline(robot)
-    number = [round(float(outline.places[servo.joints[0]]) / numbers["pitch"]) for servo in outline.servos]
+    number = [round(float(outline.joint_positions[servo.joints[0]]) / numbers["pitch"]) for servo in outline.servos]
     return swimming_gait(
         robot,
         name="amphibot_run1",

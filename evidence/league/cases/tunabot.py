@@ -28,7 +28,7 @@ def _body(length: float, wide: float, fin: float, density: float) -> Robot:
     )
     mass = density * 3.1416 * 0.9 * wide * area * length**3
     drawing = Drawing(
-        name="tunabot", length=length, mass=mass, density=density, places=places, half_width=half_width,
+        name="tunabot", length=length, mass=mass, density=density, stations=places, half_width=half_width,
         half_height=height, joints=_JOINTS, keel=0.4,
     )  # fmt: skip
     return drawing.robot(swim_servo_for(mass, length, 15.0))

@@ -278,7 +278,7 @@ def _electric(servo: Servo, torque: np.ndarray, speed: np.ndarray) -> dict[str, 
     if heat is None:
         return electric_loads
     loss = winding.volts * winding.stall_current * float((torque**2).mean()) / servo.torque**2
-    return {**electric_loads, "steady": heat.steady(loss), "warm_after": heat.reached_after(loss)}
+    return {**electric_loads, "steady": heat.steady_temperature(loss), "warm_after": heat.time_to_limit(loss)}
 
 
 def full_from(servo: Servo) -> float:
@@ -299,7 +299,7 @@ def use_of_each(robot: Robot, record: xr.Dataset) -> xr.DataArray:
     speed_along_torque = np.sign(torque) * (speed - step * (speed - previous_speed))
     limits = [
         xr.DataArray(
-            robot.servo(str(name)).given(speed_along_torque.sel(servo=name).values),
+            robot.servo(str(name)).available_torque(speed_along_torque.sel(servo=name).values),
             dims=[d for d in dims if d != "servo"],
         )
         for name in record.servo.values
@@ -327,5 +327,5 @@ def torque_use(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np
         torque: that a movement asks for [N m].
         speed: of the shaft [rad/s].
     """
-    available_torque = servo.given(np.sign(torque) * speed)
+    available_torque = servo.available_torque(np.sign(torque) * speed)
     return float(np.quantile(np.abs(torque) / np.maximum(available_torque, 1e-9), 1.0 - AT_LIMIT))

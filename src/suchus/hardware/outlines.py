@@ -91,7 +91,7 @@ def top_dxf(sheet: Sheet) -> str:
     bodies = [body.name for body in sheet.bodies]
     drawing = _drawing(ezdxf, {**{name: i % 6 + 1 for i, name in enumerate(bodies)}, "JOINTS": 7})
     space = drawing.modelspace()
-    origins = frames(sheet.robot, np.zeros(len(sheet.joints))).places
+    origins = frames(sheet.robot, np.zeros(len(sheet.joints))).positions
     origin_by_body = dict(zip(bodies, origins, strict=True))
     for body_part in sheet.parts:
         if body_part.kind not in ("rod", "shell", "foot"):

@@ -405,7 +405,7 @@ def _bodies(
 def _built_centre(robot: Robot, parts: Sequence[BodyPart], skin: float) -> tuple[float, float, float]:
     """Return the centre of mass of servos, walls and foam, all joints at zero [m]; NaN if servos are unknown."""
     place = layout(robot)
-    origins = frames(robot, np.zeros(len(place.hinges))).places
+    origins = frames(robot, np.zeros(len(place.hinges))).positions
     origin_by_body = {body.name: origins[i] for i, body in enumerate(place.bodies)}
     weights, points = [], []
     for body_part in parts:
@@ -422,7 +422,7 @@ def _built_centre(robot: Robot, parts: Sequence[BodyPart], skin: float) -> tuple
 def _joints(robot: Robot) -> tuple[HingePlace, ...]:
     """Return position, axis, range and actuator of each hinge, all joints at zero."""
     place = layout(robot)
-    origins = frames(robot, np.zeros(len(place.hinges))).places
+    origins = frames(robot, np.zeros(len(place.hinges))).positions
     cable_by_hinge = {hinge: cable.name for cable in place.robot.cables for hinge in cable.hinges}
     hinges = []
     for i, body in enumerate(place.bodies):
@@ -494,7 +494,7 @@ def _wires(
 ) -> tuple[ServoWire, ...]:
     """Return the chain of each bus from the root outward: each servo hangs on the nearest one that is wired already."""
     place = layout(robot)
-    origins = frames(robot, np.zeros(len(place.hinges))).places
+    origins = frames(robot, np.zeros(len(place.hinges))).positions
     origin_by_body = {body.name: origins[i] for i, body in enumerate(place.bodies)}
     seat_positions = {name: origin_by_body[body] + np.array(point) for name, (body, point) in seats.items()}
     wires: list[ServoWire] = []

@@ -170,7 +170,7 @@ def places(robot: Robot) -> list[tuple[str, ...]]:
 
 def with_motors(robot: Robot, motors: Mapping[str, Motor], volts: float) -> Robot:
     """Return a robot with servos that are sold, with the gains and gears of its own servos."""
-    servos = {name: Servo.of(motor, volts, template=robot.servo(name)) for name, motor in motors.items()}
+    servos = {name: Servo.from_motor(motor, volts, template=robot.servo(name)) for name, motor in motors.items()}
     return with_named_servos(robot, servos)
 
 
@@ -284,7 +284,7 @@ class _Search:
 
     def fits(self, motor: Motor, volts: float, names: Sequence[str], demands: Sequence[xr.Dataset]) -> bool:
         """Return whether a servo also supplies the torque at its speed, at some places."""
-        servo = Servo.of(motor, volts, template=self._robot.servo(names[0]))
+        servo = Servo.from_motor(motor, volts, template=self._robot.servo(names[0]))
         return self.bears(motor, names, demands) and all(
             torque_use(servo, demand.servo_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values)
             < FULL_WOUND
@@ -396,7 +396,7 @@ def with_better(
     while any(candidates.values()):
         trial_motors = {name: options[0] for name, options in candidates.items() if options}
         body = with_named_servos(
-            robot, {name: Servo.of(motor, template=robot.servo(name)) for name, motor in trial_motors.items()}
+            robot, {name: Servo.from_motor(motor, template=robot.servo(name)) for name, motor in trial_motors.items()}
         )
         (record,) = records_of_each([(cold(body), case)])
         then = measure_loads(body, record)

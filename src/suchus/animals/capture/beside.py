@@ -84,8 +84,8 @@ def _axial(walk: Walk, robot: Robot, gait: Gait) -> list[_Row]:
     ranges = np.abs(servo_ranges(robot)).min(axis=1)
     rows = []
     for region in ("trunk", "tail"):
-        hinge_indices = hinges.within(region)
-        animal_bends = _animal_bends(walk, region, [hinges.places[k] for k in hinge_indices])
+        hinge_indices = hinges.indices_in(region)
+        animal_bends = _animal_bends(walk, region, [hinges.axial_positions[k] for k in hinge_indices])
         for k, angle in zip(hinge_indices, animal_bends, strict=True):
             swing = complex(swings[k])
             residual = angle + (swing * turn).real  # the animal's is right positive, the hinge's left positive
@@ -147,7 +147,7 @@ def _limbs(walk: Walk, robot: Robot, gait: Gait) -> list[_Row]:
     phase = walk.phases.phase.values[::_PHASE_STEP]
     clock = _clock(walk, gait, phase)
     targets = cycle_targets(robot, gait, np.mod(clock, 1.0))
-    feet = plan.foot_places(clock[:, None] + np.array(gait.limb_phases))
+    feet = plan.foot_positions(clock[:, None] + np.array(gait.limb_phases))
     size = hips_ahead(robot, 0) / walk.value("trunk_length")
     rows = []
     for i, (limb, leg) in enumerate(zip(place.limbs, LEGS, strict=True)):

@@ -104,7 +104,7 @@ def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
         front, hind = place.limbs[0].girdle, place.limbs[-1].girdle
         points["neck"] = _midline_point(body_frames, place, front.segment, front.at + _NECK * hips_ahead(robot, 0))
         points["shoulder"] = _midline_point(body_frames, place, front.segment, front.at)
-    spine = [body_frames.places[:, _body_of_hinge(place, place.servos[servo])] for servo in place.trunk_yaw]
+    spine = [body_frames.positions[:, _body_of_hinge(place, place.servos[servo])] for servo in place.trunk_yaw]
     points |= {f"spine_{i}": spine[i - 1] for i in range(len(spine), 0, -1)}
     points |= {"hip": _midline_point(body_frames, place, hind.segment, hind.at)} if limbs else {}
     points |= _tail(place, body_frames) | {"tail_tip": marks.tail}
@@ -124,7 +124,7 @@ def _midline_point(body_frames: BodyFrames, place: Layout, segment: str, forward
     """
     body = [segment_body.name for segment_body in place.bodies].index(segment)
     return np.asarray(
-        body_frames.places[:, body] + (place.bodies[body].shift + forward_offset) * body_frames.turns[:, body, :, 0]
+        body_frames.positions[:, body] + (place.bodies[body].shift + forward_offset) * body_frames.turns[:, body, :, 0]
     )
 
 
@@ -142,5 +142,5 @@ def _tail(place: Layout, body_frames: BodyFrames) -> dict[str, np.ndarray]:
     marks = {*driven_bodies[::2], driven_bodies[-1], *(body for body in bodies if body == driven_bodies[-1] + 1)} - {
         bodies[0]
     }
-    tail_points = {f"tail_{i}": body_frames.places[:, body] for i, body in enumerate(sorted(marks), 1)}
-    return {"tail_base": body_frames.places[:, bodies[0]], **tail_points}
+    tail_points = {f"tail_{i}": body_frames.positions[:, body] for i, body in enumerate(sorted(marks), 1)}
+    return {"tail_base": body_frames.positions[:, bodies[0]], **tail_points}

@@ -143,7 +143,7 @@ def driven_fraction(robot: Robot) -> float:
     place = layout(robot)
     driven_names = {place.servos[i] for i in place.tail_yaw}
     driven_names |= {name for servo in place.cables for name in place.cable(servo).hinges}
-    tail_segments = robot.axis[robot.root_place :]
+    tail_segments = robot.axis[robot.root_index :]
     driven_indices = [
         i for i, segment in enumerate(tail_segments) if any(hinge.name in driven_names for hinge in segment.hinges)
     ]
@@ -269,7 +269,7 @@ def _bend_limits(robot: Robot, region: Literal["trunk", "tail"]) -> list[float]:
     """Return the greatest lateral bend of each hinge of trunk or tail, to either side [rad]."""
     place, ranges, hinges = layout(robot), np.abs(servo_ranges(robot)).min(axis=1), yaw_hinges(robot)
     cables = {servo: place.cable(servo).bend_limit / place.cable(servo).joints for servo in place.cables}
-    return [cables.get(hinges.servos[k], float(ranges[hinges.servos[k]])) for k in hinges.within(region)]
+    return [cables.get(hinges.servos[k], float(ranges[hinges.servos[k]])) for k in hinges.indices_in(region)]
 
 
 def _with_steps(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]) -> Gait:

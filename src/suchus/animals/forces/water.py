@@ -232,7 +232,7 @@ class _Bends:
         ])  # fmt: skip
         first_harmonic = self._first_harmonic + self._error * deviation
         hinges, servos = yaw_hinges(self._body), layout(self._body).servos
-        hinge_harmonics = _hinge_harmonics(first_harmonic, self._places, hinges.places)
+        hinge_harmonics = _hinge_harmonics(first_harmonic, self._places, hinges.axial_positions)
         lateral = lateral_servos(self._body)
         servo_harmonics = [
             sum(hinge_harmonics[k] for k in range(len(hinge_harmonics)) if servos[hinges.servos[k]] == name)

@@ -101,7 +101,7 @@ def _floating_beginning(task: Task, model: Any) -> Beginning:
     if np.array_equal(qpos, stands):
         raise InvalidDesign(
             f"robot {task.robot.name!r} touches the ground where its episode begins, at the world's origin with the "
-            f"level at {task.lake.at(0.0)[0]:g} m; a task that begins swimming needs deeper water: raise "
+            f"level at {task.lake.state_at(0.0)[0]:g} m; a task that begins swimming needs deeper water: raise "
             "task.lake.level."
         )
     return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
@@ -124,7 +124,7 @@ def _standing_beginning(robot: Robot, ground: Ground, timestep: float) -> Beginn
     if not batch.alive.all():
         raise Diverged(
             f"robot {robot.name!r} does not stand up: {batch.cause[0]}; an upright start needs one that does.",
-            time=float(batch.ended[0]),
+            time=float(batch.end_times[0]),
         )
     height, min_height = float(loop.sensors["snout_position"][0, 2]), _MIN_STANDING_FRACTION * stretched_length(robot)
     if height < min_height:

@@ -90,8 +90,8 @@ class SwimToGoal:
         sine, cosine = reading_columns(observations, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
         direction = reading_columns(observations, "goal_direction", robot).astype(float)
-        bend_fraction = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
-        steer = Steer(bend=self.hold.trunk_turn * bend_fraction, tail=self.hold.turn * bend_fraction)
+        hinge_counts = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
+        steer = Steer(bend=self.hold.trunk_turn * hinge_counts, tail=self.hold.turn * hinge_counts)
         phases = clock[:, None] + np.array(swim.gaits[0].limb_phases)
         targets = swim.targets(phases, swim.axis_of_clock(clock), steer)
         return np.clip((targets - np.array(self.centre)) / task.span, -1.0, 1.0)
@@ -127,7 +127,7 @@ class ControllerPolicy:
         """Call the controller for every control period of the step and return the last commanded angles as actions."""
         task, count = self._task, len(observations)
         if self._controller is None:
-            runs = Runs.alike(self._control, task.robot, self._gait, count=count, ticks=self._ticks)
+            runs = Runs.identical(self._control, task.robot, self._gait, count=count, ticks=self._ticks)
             self._controller = self._control.start(runs, self._period)
         sensed = decode_observations(observations, task.robot, self._tick * self._period)
         for _ in range(self._per_step):

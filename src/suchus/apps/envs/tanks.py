@@ -79,7 +79,11 @@ class Tanks:
             try:
                 swim.go(self._ticks[sim] * self._period, progress=silent)
             except _END_ERRORS as error:
-                self._batch.alive[sim], self._batch.ended[sim], self._batch.cause[sim] = False, swim.time, str(error)
+                self._batch.alive[sim], self._batch.end_times[sim], self._batch.cause[sim] = (
+                    False,
+                    swim.time,
+                    str(error),
+                )
                 continue
             swim.stepper.show(self._batch, sim)
             work[sim] = swim.effort - last_effort

@@ -454,7 +454,7 @@ class Task:
                     changes[name] = rescale(getattr(self, name), length_factor=length_factor, mass_factor=mass_factor)
             if self.lake is not None:
                 changes["lake"] = replace(
-                    self.lake, level=length_factor * self.lake.at(0.0)[0]
+                    self.lake, level=length_factor * self.lake.state_at(0.0)[0]
                 )  # the lake keeps its depth relative to the robot
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
 

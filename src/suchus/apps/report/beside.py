@@ -81,7 +81,7 @@ def _tail_length(robot: Robot, _: Results) -> float | None:
 def _tail_mass(robot: Robot, _: Results) -> float | None:
     if lacking(robot, _TAIL):
         return None
-    tail_segments = robot.axis[robot.root_place + 1 :]
+    tail_segments = robot.axis[robot.root_index + 1 :]
     return sum(shape.mass for segment in tail_segments for shape in segment.shapes) / robot.mass
 
 

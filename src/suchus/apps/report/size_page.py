@@ -162,7 +162,9 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
         sentences.append(
             f"{slower.name} would do{_slower(sizing, slower)}: {counts}, {min_price:.0f} to {max_price:.0f} EUR.",
         )
-    remembered = sorted({field.replace("_", " ") for motor in best.chosen.values() for field in motor.remembered})
+    remembered = sorted(
+        {field.replace("_", " ") for motor in best.chosen.values() for field in motor.unconfirmed_fields}
+    )
     if remembered:
         sentences.append(
             f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy."

@@ -296,10 +296,10 @@ class Session:
         self._live = Live(run, timestep=self._timestep)
         self._history = History(layout(self.robot).limb_names)
         self._push, self._due = None, 0.0
-        self._origin = self._live.now["centre_of_mass"]
+        self._origin = self._live.current_sample["centre_of_mass"]
         self.walk_count += 1
-        self.state = Instant(state=self._live.now, level=s.level if s.lake else None)
-        self._history.note(0.0, self._live.now, (0.0, 0.0))
+        self.state = Instant(state=self._live.current_sample, level=s.level if s.lake else None)
+        self._history.note(0.0, self._live.current_sample, (0.0, 0.0))
 
     def _change(self, settings: Settings) -> str:
         """Continue the walk with other settings; keep the old ones and return a sentence if that fails."""
@@ -317,7 +317,7 @@ class Session:
         except Diverged as error:
             self.state.trouble = f"{str(error).rstrip('.')}. Press reset to begin anew."
             return
-        time, state = self._live.time, self._live.now
+        time, state = self._live.time, self._live.current_sample
         if time <= START + 1e-9:
             self._origin = state["centre_of_mass"]
         forward, lateral_displacement, _ = state["centre_of_mass"] - self._origin

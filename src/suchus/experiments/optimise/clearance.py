@@ -65,7 +65,7 @@ def _pairs(robot: Robot) -> tuple[tuple[str, str], ...]:
     limbs = [[f"{limb.name} {link.name}" for link in limb.girdle.limb.links] for limb in robot_layout.limbs]
     trunk, tail = (
         [shape.name for segment in segments for shape in segment.shapes]
-        for segments in (robot.axis[: robot.root_place + 1], robot.axis[robot.root_place + 2 :])
+        for segments in (robot.axis[: robot.root_index + 1], robot.axis[robot.root_index + 2 :])
     )
     pairs = [pair for first_limb, second_limb in combinations(limbs, 2) for pair in product(first_limb, second_limb)]
     for limb, (first_link, *outer_links) in zip(robot_layout.limbs, limbs, strict=True):
@@ -95,7 +95,7 @@ def _segment(robot: Robot, segment: Segment, body_frames: BodyFrames) -> list[_C
     """
     bodies = layout(robot).bodies
     body = [tree_body.name for tree_body in bodies].index(segment.name)
-    position, rotation = body_frames.places[..., body, :], body_frames.turns[..., body, :, :]
+    position, rotation = body_frames.positions[..., body, :], body_frames.turns[..., body, :, :]
     girdle_of_shell = {_carrier(robot, girdle): girdle for girdle in robot.girdles if girdle.segment == segment.name}
     capsules = []
     for shape in segment.shapes:
@@ -125,7 +125,7 @@ def _limb(limb: LimbPlace, body_frames: BodyFrames) -> list[_Capsule]:
     links, capsules = limb.girdle.limb.links, []
     for number, link in enumerate(links):
         body = limb.tip - len(links) + 1 + number
-        start = body_frames.places[..., body, :]
+        start = body_frames.positions[..., body, :]
         end = start + body_frames.turns[..., body, :, :] @ np.array([link.end[0], limb.side * link.end[1], link.end[2]])
         radius = max(link.radius, limb.girdle.limb.foot.radius) if link is links[-1] else link.radius
         capsules.append(_Capsule(f"{limb.name} {link.name}", start, end, radius))

@@ -290,7 +290,9 @@ def _run_under_condition(run: Run, condition: Condition) -> Run:
         changed_run, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale}
     )
     return (
-        changed_run if condition.tolerance_seed is None else Tolerances().built(changed_run, condition.tolerance_seed)
+        changed_run
+        if condition.tolerance_seed is None
+        else Tolerances().draw_run(changed_run, condition.tolerance_seed)
     )
 
 

@@ -45,7 +45,7 @@ def evaluate(
             if limit_excess[i] == 0.0:
                 check_limits(run.robot, run.gait)
                 # raises if the control cannot steer this gait
-                run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))
+                run.control.start(Runs.identical(run.control, run.robot, run.gait), control_period(run.robot))
                 runs[i] = run
         except SuchusError:
             limit_excess[i] = np.inf

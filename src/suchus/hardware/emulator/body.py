@@ -184,7 +184,7 @@ class EmulatedBody:
         else:
             self._loop.advance()
         if not self._loop.batch.alive[0]:
-            time, cause = float(self._loop.batch.ended[0]), self._loop.batch.cause[0]
+            time, cause = float(self._loop.batch.end_times[0]), self._loop.batch.cause[0]
             raise Diverged(f"the emulated robot diverged at {time:.2f} s: {cause}.", time=time)
 
     def record(self) -> xr.Dataset:

@@ -111,10 +111,10 @@ def _in_metres(
         mistakes: those that are known already, by place.
     """
     reaches, keys = limb_reaches(robot), frozenset(data)
-    fallback = plain(asdict(GaitInMetres.near(base or _metric_gait(shelf), reaches)))
+    fallback = plain(asdict(GaitInMetres.from_gait(base or _metric_gait(shelf), reaches)))
     table = data if base is None else merged(fallback, data)
     metres = validated(table, GaitInMetres, fallback, name, mistakes)
-    return metres.gait(reaches) if base is None else metres.onto(base, keys, reaches)
+    return metres.gait(reaches) if base is None else metres.override(base, keys, reaches)
 
 
 def _by_places(
@@ -131,9 +131,9 @@ def _by_places(
     is_partial = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)
     fallback = plain(
         asdict(
-            GaitByPlaces.of(
+            GaitByPlaces.from_gait(
                 base or _metric_gait(shelf),
-                AxialWave.of(base, robot) if base is not None and is_partial else straight_wave,
+                AxialWave.from_gait(base, robot) if base is not None and is_partial else straight_wave,
             )
         )
     )

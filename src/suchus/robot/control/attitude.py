@@ -69,7 +69,7 @@ class Attitude:
         self._mean = np.zeros((2, len(robots)))
         self._is_initialised = False
 
-    def lower(self, sensed: Sensed) -> Float[np.ndarray, "run limb"]:
+    def foot_lowering(self, sensed: Sensed) -> Float[np.ndarray, "run limb"]:
         """Return how much lower each foot goes [m]."""
         tilt = np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)])
         if not self._is_initialised:

@@ -66,7 +66,7 @@ class Runs(NamedTuple):
     """Number of control periods to come."""
 
     @classmethod
-    def alike(cls, control: Any, robot: Robot, gait: Gait, *, count: int = 1, ticks: int = 1) -> "Runs":
+    def identical(cls, control: Any, robot: Robot, gait: Gait, *, count: int = 1, ticks: int = 1) -> "Runs":
         """Return several equal runs, all with the seed 0."""
         return cls((control,) * count, (robot,) * count, (gait,) * count, (0,) * count, ticks)
 

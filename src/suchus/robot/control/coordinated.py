@@ -140,7 +140,7 @@ class Coordinator:
         steers = any(control.heading is not None for control in controls)
         self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steers else None
         self._shared = initial_shared(len(robots), limbs)
-        self._steering = Steering.none(len(robots), limbs)
+        self._steering = Steering.straight(len(robots), limbs)
 
     def take_over(self, predecessor: "Coordinator") -> None:
         """Continue from another coordinator of the same runs, with other gaits or rules."""
@@ -193,7 +193,7 @@ class Coordinator:
     def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles; those of the table for runs without phase lead and steering."""
         table = self._table.command(tick, None).targets
-        is_adjusted = self._limbs.ahead.any(axis=1) | self._steering.any()
+        is_adjusted = self._limbs.phase_lead.any(axis=1) | self._steering.is_active()
         if not is_adjusted.any():
             return table
         steer = Steer(stroke=1.0 + self._steering.stroke, bend=self._steering.trunk)

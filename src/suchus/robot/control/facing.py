@@ -26,23 +26,23 @@ class HeadingEstimator:
         self._count = 0
         self._walks = False
         self._previous_facing = np.zeros(len(cycle))
-        self._turned = np.zeros(len(cycle))
+        self._turn_angle = np.zeros(len(cycle))
 
     def feel(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
         """Return the heading of each robot since the first call, left positive, averaged over its last cycle [rad]."""
         trunk = finite(sensed.servo_position[:, self._yaw]).sum(1)
         facing = rotation.yaw(finite(sensed.orientation)) + trunk / 2
         if self._walks:
-            self._turned = self._turned + (facing - self._previous_facing + pi) % (2 * pi) - pi
+            self._turn_angle = self._turn_angle + (facing - self._previous_facing + pi) % (2 * pi) - pi
         self._walks, self._previous_facing = True, facing
         self._count += 1
         size = len(self._summed)
         slot, previous_slot = self._count % size, (self._count - 1) % size
-        self._summed[slot] = self._summed[previous_slot] + self._turned
+        self._summed[slot] = self._summed[previous_slot] + self._turn_angle
         window = np.minimum(self._cycle, self._count)
         return np.asarray((self._summed[slot] - self._summed[(self._count - window) % size, self._runs]) / window)
 
     def take_over(self, predecessor: "HeadingEstimator") -> None:
         """Continue from another estimator of the same runs; the mean over the last cycle starts again."""
-        self._walks, self._turned = predecessor._walks, predecessor._turned
+        self._walks, self._turn_angle = predecessor._walks, predecessor._turn_angle
         self._previous_facing = predecessor._previous_facing

@@ -53,11 +53,11 @@ class Steering(NamedTuple):
     """Lasting bend of the trunk [rad]."""
 
     @classmethod
-    def none(cls, runs: int, limbs: int) -> "Steering":
+    def straight(cls, runs: int, limbs: int) -> "Steering":
         """Return zero steering for every run."""
         return cls(np.zeros((runs, limbs)), np.zeros(runs))
 
-    def any(self) -> Bool[np.ndarray, " run"]:
+    def is_active(self) -> Bool[np.ndarray, " run"]:
         """Return which runs are steered."""
         return self.stroke.any(axis=1) | (self.trunk != 0.0)
 
@@ -102,7 +102,7 @@ class Heading:
                 either.
         """
         if walking is False:
-            return Steering.none(len(self._runs), len(self._limb_sides))
+            return Steering.straight(len(self._runs), len(self._limb_sides))
         error = self._facing.feel(sensed) - self._direction
         offset = np.clip(
             self._offset - self._integral_gain * error / self._cycle, -self._max_steering, self._max_steering

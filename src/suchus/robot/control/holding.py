@@ -111,8 +111,8 @@ class HeadingHolds:
         """Return the mean bends of tail and trunk, left positive [rad]."""
         error = self._facing.feel(sensed) - self._direction
         self._offset = np.clip(self._offset - self._integral * error * self._period, -1.0, 1.0)
-        bend_fraction = np.clip(self._offset - self._gain * error, -1.0, 1.0)
-        return self._turn * bend_fraction, self._trunk * bend_fraction
+        hinge_counts = np.clip(self._offset - self._gain * error, -1.0, 1.0)
+        return self._turn * hinge_counts, self._trunk * hinge_counts
 
 
 class DepthHolds:

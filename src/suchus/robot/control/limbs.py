@@ -104,14 +104,14 @@ class Loads:
 
     def __init__(self, laws: Sequence[LimbLaw], robots: Sequence[Robot], gaits: Sequence[Gait], period: float) -> None:
         place = layout(robots[0])
-        self.felt = any(law.feels for law in laws)
+        self.has_feedback = any(law.feels for law in laws)
         self._weights = np.array([_weights(law, place) for law in laws])
         self._trunk, self._shift, self._clip = (
             np.array([getattr(law, name) for law in laws])[:, None] for name in ("trunk", "shift", "clip")
         )
         self._keep = np.array([decay_factor(law.delay, period) for law in laws])[:, None]
-        self._middle = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
-        self._share = np.array([robot.mass * GRAVITY / max(len(place.limbs), 1) for robot in robots])[:, None]
+        self._mid_stance_phase = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
+        self._weight_per_limb = np.array([robot.mass * GRAVITY / max(len(place.limbs), 1) for robot in robots])[:, None]
         self._torque = np.array([_trunk_torque(robot) for robot in robots])[:, None]
         self._sides = np.array([limb.side * (-1.0) ** limb.number for limb in place.limbs])
         self._yaw = list(place.trunk_yaw)
@@ -124,7 +124,7 @@ class Loads:
 
     def feel(self, sensed: Sensed) -> None:
         """Update the low-pass-filtered foot loads and trunk torque."""
-        load = np.minimum(finite(sensed.foot_pressure) / self._share, self._clip)
+        load = np.minimum(finite(sensed.foot_pressure) / self._weight_per_limb, self._clip)
         twist = finite(sensed.servo_torque[:, self._yaw]).sum(axis=1, keepdims=True) / self._torque
         self._load = load if self._load is None else load + self._keep * (self._load - load)
         self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
@@ -137,7 +137,7 @@ class Loads:
         """
         if self._load is None or self._twist is None:
             return np.zeros_like(phase)
-        angle = 2 * pi * (phase + self._middle)
+        angle = 2 * pi * (phase + self._mid_stance_phase)
         load_feedback = (self._weights * self._load[:, None, :]).sum(axis=-1)
         return np.asarray(
             np.cos(angle - self._shift) * load_feedback + self._trunk * np.cos(angle) * self._sides * self._twist
@@ -170,7 +170,7 @@ class Limbs:
         for law, gait in set(zip(laws, gaits, strict=True)):
             if law.pairs:
                 _refuse_others(gait, layout(robots[0]))
-        self.ahead = phase_lead
+        self.phase_lead = phase_lead
         self._loads = Loads(laws, robots, gaits, period)
         self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
 
@@ -185,22 +185,22 @@ class Limbs:
             clock: phase of each limb by the gait's clock [cycle].
             walking: whether the walk has begun; before, the phases stand still.
         """
-        if self._loads.felt and sensed is not None:
+        if self._loads.has_feedback and sensed is not None:
             self._loads.feel(sensed)
             if walking:
-                self.ahead = self.ahead - self._cycles_per_tick * self._loads.brake(shared.limb_phase)
-        return shared.written_by("limbs", limb_phase=clock + self.ahead)
+                self.phase_lead = self.phase_lead - self._cycles_per_tick * self._loads.brake(shared.limb_phase)
+        return shared.updated_by("limbs", limb_phase=clock + self.phase_lead)
 
     def take_over(self, predecessor: "Limbs") -> None:
         """Continue from the oscillators of the same runs; limbs without feedback return to the clock."""
-        if self._loads.felt:
-            self.ahead = predecessor.ahead
+        if self._loads.has_feedback:
+            self.phase_lead = predecessor.phase_lead
             self._loads.take_over(predecessor._loads)
 
     def kick(self, run: int, phase_lead: Float[np.ndarray, " limb"]) -> None:
         """Add a phase lead to the limbs of one run [cycle]."""
-        self.ahead = self.ahead.copy()
-        self.ahead[run] += phase_lead
+        self.phase_lead = self.phase_lead.copy()
+        self.phase_lead[run] += phase_lead
 
 
 def _trunk_torque(robot: Robot) -> float:

@@ -32,7 +32,7 @@ class TimeCourses:
         tables = group_indices([value if isinstance(value, tuple) else None for value in values])
         self._tables = [(np.array(table).T, runs) for table, runs in tables if table is not None]
 
-    def at(self, time: float) -> Float[np.ndarray, " run"]:
+    def values_at(self, time: float) -> Float[np.ndarray, " run"]:
         """Return the values at a time [s]."""
         current = self._steady.copy()
         for (times, values), runs in self._tables:
@@ -261,7 +261,7 @@ class Generator:
         self._sensed_drive = LoadDrive([control.load for control in controls], robots, period)
         _, amplitude = self._natural_rhythm(START)
         for i, (control, robot, gait, seed) in enumerate(zip(controls, robots, gaits, seeds, strict=True)):
-            parts = [segment.part for segment in self._posture[i].segments]
+            parts = [segment.limb_coupling for segment in self._posture[i].segments]
             lag = 1.0 / n if control.lag is None else control.lag
             couplings = couple(control.oscillators, parts, limbs, gait.limb_phases, lag)
             self.couplings.append(cut_couplings(couplings, control.lesions))
@@ -313,7 +313,7 @@ class Generator:
         previous_time = (tick - 1) * self._period
         if previous_time >= START - _SLACK:
             frequency, amplitude = self._natural_rhythm(previous_time)
-            if self._loads.felt:
+            if self._loads.has_feedback:
                 frequency[:, self._limbs] *= 1.0 - self._loads.brake(self.limb_phase)
             self._rhythm.advance(frequency, amplitude)
 
@@ -324,9 +324,9 @@ class Generator:
             tick: number of the control period.
             sensed: readings; None if no rule is on.
         """
-        if sensed is not None and self._loads.felt:
+        if sensed is not None and self._loads.has_feedback:
             self._loads.feel(sensed)
-        if sensed is not None and self._sensed_drive.felt:
+        if sensed is not None and self._sensed_drive.has_feedback:
             self._sensed_drive.feel(sensed)
         self.advance(tick)
         targets = self._targets(tick * self._period)
@@ -337,9 +337,11 @@ class Generator:
     def _natural_rhythm(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return own frequencies [Hz] and amplitudes [-] of all oscillators at a time."""
         common_drive = (
-            self._drive.at(time) + self._sensed_drive.drive if self._sensed_drive.felt else self._drive.at(time)
+            self._drive.values_at(time) + self._sensed_drive.drive
+            if self._sensed_drive.has_feedback
+            else self._drive.values_at(time)
         )
-        drive = common_drive[:, None] + self._asymmetry.at(time)[:, None] * self._sides
+        drive = common_drive[:, None] + self._asymmetry.values_at(time)[:, None] * self._sides
         frequency, amplitude = np.empty_like(drive), np.empty_like(drive)
         axis = slice(0, self._limbs.start)
         for parameters, runs in self._numbers:
@@ -351,7 +353,7 @@ class Generator:
         """Return the servo angles at a time [rad]."""
         fraction = np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0)
         wave, phase = self.wave, self.limb_phase
-        offset = self._steering.at(time)[:, None] * self._gain
+        offset = self._steering.values_at(time)[:, None] * self._gain
         group_targets = [
             (runs, posture.targets(phase[runs], fraction[runs], wave[runs], offset[runs]))
             for posture, runs in self._groups
@@ -376,7 +378,7 @@ def _grouped(
 
 def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
     places, factors = zip(*control.gradient, strict=True)
-    return [float(np.interp(segment.place, places, factors)) for segment in posture.segments]
+    return [float(np.interp(segment.axial_position, places, factors)) for segment in posture.segments]
 
 
 def _min_limb_amplitude(parameters: Oscillators) -> float:

@@ -47,7 +47,7 @@ class LoadDrive:
             robots: one for each run.
             period: of control [s].
         """
-        self.felt = any(rule is not None for rule in rules)
+        self.has_feedback = any(rule is not None for rule in rules)
         """Whether any run has such a rule."""
         active_rules = [rule or LoadRule(afloat=0.0) for rule in rules]
         self._afloat_drive, self._touch = (

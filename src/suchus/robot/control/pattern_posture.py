@@ -20,17 +20,17 @@ _FOLDED = radians(-85)  # yaw of a folded limb, backward along the body, as a sw
 class AxisSegment:
     """A yaw hinge of the axis, driven by a servo of its own or by a cable over several."""
 
-    place: float
+    axial_position: float
     """Along the body, 0 at the snout, 1 at the tip of the tail [-]."""
     servo: int
     """Index of the servo that bends it [-]."""
-    left: float
+    sign: float
     """1 where a positive angle of the servo bends to the left, -1 where to the right [-]."""
     amplitude: float
     """Amplitude of its bend in the gait [rad]."""
     offset: float
     """Steady bend of it in the gait, left positive [rad]."""
-    part: LimbCoupling
+    limb_coupling: LimbCoupling
     """The limbs that drive it, and its phase lag behind them."""
     steers: bool
     """Whether an offset on it turns the robot: it lies ahead of the hindmost limbs, or there are none."""
@@ -53,21 +53,21 @@ def axis_segments(robot: Robot, gait: Gait) -> tuple[AxisSegment, ...]:
             f"a pattern generator needs an axis that bends sideways; robot {robot.name!r} has no yaw hinge with a "
             "servo or a cable on its axis: let it walk in open loop."
         )
-    steady, amplitude = (yaw.offset / yaw.share)[0], yaw.amplitude()[0]
+    steady, amplitude = (yaw.offset / yaw.hinge_counts)[0], yaw.amplitude()[0]
     segments = []
     for k, (servo, sign, position) in enumerate(
-        zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)
+        zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.axial_positions, strict=True)
     ):
         girdles_ahead = [number for number, hip in enumerate(hips) if hip <= position]
         girdle = -1 if not hips else girdles_ahead[-1] if girdles_ahead else 0
         segments.append(
             AxisSegment(
-                place=position,
+                axial_position=position,
                 servo=servo,
-                left=sign,
+                sign=sign,
                 amplitude=float(amplitude[k]),
                 offset=float(steady[k]),
-                part=LimbCoupling(girdle, _lag(gait, complex(yaw.swing[0, k]), girdle)),
+                limb_coupling=LimbCoupling(girdle, _lag(gait, complex(yaw.swing[0, k]), girdle)),
                 steers=not hips or position < hips[-1],
             )
         )
@@ -87,13 +87,13 @@ class PatternPosture:
         self.segments = axis_segments(robot, gait)
         self.shift = 0.25 - gait.duty_factor / 2
         """What a limb's phase is ahead of its oscillator: a left oscillator bends the body to the left [cycle]."""
-        self._limbs, self._place = limb_movement(robot, gait), layout(robot)
-        self._limb_servos = [i for limb in self._place.limbs for i in range(limb.servos.start, limb.servos.stop)]
-        owner = [n for n, limb in enumerate(self._place.limbs) for _ in range(limb.servos.start, limb.servos.stop)]
+        self._limbs, self._layout = limb_movement(robot, gait), layout(robot)
+        self._limb_servos = [i for limb in self._layout.limbs for i in range(limb.servos.start, limb.servos.stop)]
+        owner = [n for n, limb in enumerate(self._layout.limbs) for _ in range(limb.servos.start, limb.servos.stop)]
         self._owner = np.array(owner, dtype=int)
         center = middle_stance(robot, gait)
-        self._silent_angles = (center if standing else _folded(self._place, gait, center))[self._limb_servos]
-        self._turns = np.array([_cranked(self._place, gait, limb) for limb in owner], dtype=bool)
+        self._silent_angles = (center if standing else _folded(self._layout, gait, center))[self._limb_servos]
+        self._turns = np.array([_cranked(self._layout, gait, limb) for limb in owner], dtype=bool)
         self._lower_bound, self._upper_bound = servo_ranges(robot).T
         self._steady = center
 
@@ -121,9 +121,9 @@ class PatternPosture:
         bend = amplitude * wave + steady + offset
         for servo in {segment.servo for segment in self.segments}:
             segment_indices = [i for i, segment in enumerate(self.segments) if segment.servo == servo]
-            angle = self.segments[segment_indices[0]].left * bend[:, segment_indices].sum(axis=1)
-            if servo in self._place.cables:
-                cable = self._place.cable(servo)
+            angle = self.segments[segment_indices[0]].sign * bend[:, segment_indices].sum(axis=1)
+            if servo in self._layout.cables:
+                cable = self._layout.cable(servo)
                 angle = tail_kinematics.servo_angle(cable, np.clip(angle, -cable.bend_limit, cable.bend_limit))
             targets[:, servo] = np.clip(angle, self._lower_bound[servo], self._upper_bound[servo])
         return targets
@@ -197,7 +197,8 @@ def initial_phases(
     """
     if has_active_limbs and limbs:
         sides = [
-            [limbs[2 * segment.part.girdle + side] - segment.part.phase_lag for segment in segments] for side in (0, 1)
+            [limbs[2 * segment.limb_coupling.girdle + side] - segment.limb_coupling.phase_lag for segment in segments]
+            for side in (0, 1)
         ]
     else:
         first_phase = limbs[0] if limbs else 0.0

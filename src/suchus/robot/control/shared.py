@@ -42,7 +42,7 @@ class Shared:
     tail_direction: Float[np.ndarray, " run"]
     """Bend of the tail a quarter of a cycle from now [rad]; owner: tail."""
 
-    def written_by(self, owner: str, **values: np.ndarray) -> "Shared":
+    def updated_by(self, owner: str, **values: np.ndarray) -> "Shared":
         """Return the shared variables with new values of one owner; the new arrays are read-only.
 
         Args:

@@ -68,7 +68,7 @@ class SpineController:
         """
         axis = gaits.axis_phase(shared.limb_phase, clock)
         bend, direction = gaits.bend_of("trunk", axis), gaits.bend_of("trunk", 1j * axis)
-        return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
+        return shared.updated_by("spine", trunk_bend=bend, trunk_direction=direction)
 
     def take_over(self, predecessor: "SpineController") -> None:
         """Continue from the trunks of the same runs."""

@@ -79,13 +79,13 @@ class TailController:
             gaits: of the runs.
             clock: since the walk began, for bodies without limbs [cycle].
         """
-        (trunk, trunk_steady), (tail, steady) = gaits.together("trunk"), gaits.together("tail")
+        (trunk, trunk_steady), (tail, steady) = gaits.swing_and_offset("trunk"), gaits.swing_and_offset("tail")
         bends = np.abs(trunk) > _BEND_TOLERANCE
         # bend and direction together are the trunk's whole wave, swing times order parameter
         wave = shared.trunk_bend - trunk_steady - 1j * (shared.trunk_direction - trunk_steady)
         follows = np.zeros_like(tail) if bends.all() else tail * gaits.axis_phase(shared.limb_phase, clock)
         follows[bends] = tail[bends] / trunk[bends] * wave[bends]
-        return shared.written_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
+        return shared.updated_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
 
     def take_over(self, predecessor: "TailController") -> None:
         """Continue from the tails of the same runs where the gait demands the same pitch."""

@@ -133,7 +133,7 @@ class Walker:
         )
         self._attitude = Attitude([control.attitude for control in controls], robots, period)
         self._switcher = Switcher([control.switching for control in controls], robots, gaits, period)
-        self._lower = np.zeros((n, len(place.limbs)))
+        self._foot_lowering = np.zeros((n, len(place.limbs)))
         self._batch = Batch(self._robots, self._gaits)
         self._previous_command = self._walk(0.0)
 
@@ -150,7 +150,9 @@ class Walker:
         """
         time = tick * self._period
         if sensed is not None:
-            self._lower = self._attitude.lower(sensed) if time >= START - _SLACK else np.zeros_like(self._lower)
+            self._foot_lowering = (
+                self._attitude.foot_lowering(sensed) if time >= START - _SLACK else np.zeros_like(self._foot_lowering)
+            )
         self._finish(time)
         current = self._walk(time)
         for run, target_gait in self._requested_gaits(time, sensed, current.phase):
@@ -160,7 +162,7 @@ class Walker:
             self._gaits[run] = target_gait
             self._batch = Batch(self._robots, self._gaits)
         for run, (start_time, course, start) in self._script.items():
-            current.targets[run] = course.at(time - start_time, start)
+            current.targets[run] = course.angles_at(time - start_time, start)
             current.phase[run] = self._previous_command.phase[run]
         self._previous_command = current
         return Command(current.targets.copy(), current.phase.copy())
@@ -201,7 +203,7 @@ class Walker:
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)
         clock = since / self._batch.periods + self._cycles
         phases = clock[:, None] + self._batch.phases
-        steer = Steer(size=size, stroke=self._stroke, lower=self._lower, bend=self._bend)
+        steer = Steer(size=size, stroke=self._stroke, lowering=self._foot_lowering, bend=self._bend)
         return Command(self._batch.targets(phases, self._batch.axis_phase(phases, clock), steer), phases)
 
 

@@ -235,7 +235,7 @@ def _cable(tail: Tail) -> Cable:
     )
     if tail.drive != "linear_actuator":
         return cable
-    ideal = LinearActuator.of(tail.cable_servo, tail.pulley, cable.cord_at(tail.bend_limit))
+    ideal = LinearActuator.from_servo(tail.cable_servo, tail.pulley, cable.cord_travel(tail.bend_limit))
     return replace(cable, servo=tail.actuator or ideal, pulley=0.0)
 
 

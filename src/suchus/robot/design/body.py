@@ -103,7 +103,7 @@ class Robot(_Hashed):
         return tuple(hinge for segment in self.axis for hinge in segment.hinges)
 
     @property
-    def root_place(self) -> int:
+    def root_index(self) -> int:
         """Index of the root among the segments of the axis [-]."""
         return [segment.name for segment in self.axis].index(self.root)
 
@@ -208,7 +208,7 @@ def _check_axis(robot: Robot, check: Checks) -> None:
         f"segment {last_segment.name} is the last one, so that its hinges join nothing; remove them",
     )
     place = {segment.name: i for i, segment in enumerate(robot.axis)}
-    root = robot.root_place
+    root = robot.root_index
     order = [(place[girdle.segment], -girdle.at) for girdle in robot.girdles]
     check.that(order == sorted(order), "the girdles must be listed from the front to the hind one")
     if robot.girdles:

@@ -67,7 +67,7 @@ class SectionCorrection:
         """Factors by the names of bodies."""
         return {body: link for link in self.links for body in link.bodies}
 
-    def outside(self, reynolds: float) -> str:
+    def validity_warning(self, reynolds: float) -> str:
         """Return a warning for a Reynolds number outside the range of the correction; an empty text inside it.
 
         Args:

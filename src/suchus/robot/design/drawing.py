@@ -36,7 +36,7 @@ class Drawing:
     density: float = WATER_DENSITY
     """Mass over volume of the whole body, its air and lungs included [kg/m3]: the drawn sections are made larger or
     smaller alike until the volume is right. One that hovers has the density of its water."""
-    places: tuple[float, ...]
+    stations: tuple[float, ...]
     """Where the drawing was measured, from the snout, rising from 0 to 1 [body length]."""
     half_width: tuple[float, ...]
     """Half of the width there [body length]."""
@@ -58,15 +58,16 @@ class Drawing:
             check.number("bend", 0.01, pi, "rad")
             check.number("keel", 0.0, 0.9, "")
             check.that(
-                len(self.places) >= 2 and self.places[0] == 0.0 and self.places[-1] == 1.0,
-                f"drawing.places reach from {self.places[:1]} to {self.places[-1:]}; they must begin at 0 and end at 1",
+                len(self.stations) >= 2 and self.stations[0] == 0.0 and self.stations[-1] == 1.0,
+                f"drawing.stations reach from {self.stations[:1]} to {self.stations[-1:]}; "
+                "they must begin at 0 and end at 1",
             )
             for field in ("half_width", "half_height"):
                 values = getattr(self, field)
                 check.that(
-                    len(values) == len(self.places) and all(0.0 < value < 0.5 for value in values),
-                    f"drawing.{field} has {len(values)} numbers for {len(self.places)} places; each place needs one, "
-                    "above 0 and below 0.5 body lengths",
+                    len(values) == len(self.stations) and all(0.0 < value < 0.5 for value in values),
+                    f"drawing.{field} has {len(values)} numbers for {len(self.stations)} stations; each station needs "
+                    "one, above 0 and below 0.5 body lengths",
                 )
 
     def robot(self, servo: Servo | None = None) -> Robot:
@@ -136,7 +137,7 @@ class Drawing:
         ellipsoids = []
         for place in places:
             half_width, half_height = (
-                np.interp(place, self.places, values) for values in (self.half_width, self.half_height)
+                np.interp(place, self.stations, values) for values in (self.half_width, self.half_height)
             )
             half_length = _OVERLAP * step
             if place != b and number == len(ends) - 2:

@@ -85,7 +85,7 @@ class Bumps:
         return REACH[0] * self.scale, REACH[1] * self.scale
 
     @property
-    def aside(self) -> float:
+    def half_width(self) -> float:
         """Half-width, to either side [m]."""
         return HALF_WIDTH * self.scale
 
@@ -141,7 +141,7 @@ def heights(relief: Relief | None, x: Float[np.ndarray, "*b"], y: Float[np.ndarr
         return np.where(is_on_stone, relief.height, 0.0)
     if isinstance(relief, Bumps):
         grid = field(relief)
-        grid_index = np.stack([(y + relief.aside) / relief.cell, (x - relief.reach[0]) / relief.cell])
+        grid_index = np.stack([(y + relief.half_width) / relief.cell, (x - relief.reach[0]) / relief.cell])
         return np.asarray(map_coordinates(grid, grid_index, order=1, cval=float(grid.min())))
     return np.zeros_like(x)
 

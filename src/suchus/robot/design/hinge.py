@@ -64,7 +64,7 @@ class Servo:
         """Speed at which its motor gives nothing, above ``speed``, at which it turns its gear alone [rad/s]."""
         return self.speed / (1.0 - self._idle / self.torque)
 
-    def given(self, speed: Float[np.ndarray, "..."]) -> Float[np.ndarray, "..."]:
+    def available_torque(self, speed: Float[np.ndarray, "..."]) -> Float[np.ndarray, "..."]:
         """Return the greatest torque of the motor at a speed, in the direction of that torque [N m].
 
         Args:
@@ -75,7 +75,7 @@ class Servo:
         return np.clip(self.torque * (1.0 - np.asarray(speed) / self.ideal_speed), 0.0, self.torque)
 
     @staticmethod
-    def of(motor: Motor, volts: float | None = None, *, template: Optional["Servo"] = None) -> "Servo":
+    def from_motor(motor: Motor, volts: float | None = None, *, template: Optional["Servo"] = None) -> "Servo":
         """Return a servo that is bought, at a supply.
 
         Torque, speed and winding are those of the motor. Data sheets do not give the gains of the loop and the friction
@@ -236,7 +236,7 @@ class LinearActuator:
                 )
 
     @classmethod
-    def of(cls, servo: Servo, radius: float, travel: float) -> Self:
+    def from_servo(cls, servo: Servo, radius: float, travel: float) -> Self:
         """Return the actuator that moves the cords as a servo with a pulley does.
 
         Args:
@@ -258,7 +258,7 @@ class LinearActuator:
             winding=servo.winding,
         )
 
-    def on(self, radius: float) -> Servo:
+    def equivalent_servo(self, radius: float) -> Servo:
         """Return the servo that moves the cords in the same way by a pulley.
 
         Args:
@@ -314,7 +314,7 @@ class Cable:
             if isinstance(self.servo, LinearActuator) and self.hinges:
                 if self.pulley == 0.0:
                     object.__setattr__(self, "pulley", self.cord_spacing / 2)
-                required_travel = self.cord_at(self.bend_limit)
+                required_travel = self.cord_travel(self.bend_limit)
                 check.that(
                     required_travel <= self.servo.travel * (1 + 1e-9),
                     f"cable {self.name} bends up to {self.bend_limit:.4g} rad, for which its linear actuator must "
@@ -331,14 +331,14 @@ class Cable:
     @property
     def turning(self) -> Servo:
         """The servo on its pulley; of a linear actuator the one that would do the same."""
-        return self.servo.on(self.pulley) if isinstance(self.servo, LinearActuator) else self.servo
+        return self.servo.equivalent_servo(self.pulley) if isinstance(self.servo, LinearActuator) else self.servo
 
     @property
     def linear(self) -> LinearActuator | None:
         """The linear actuator that moves the cords; None where a servo does by a pulley."""
         return self.servo if isinstance(self.servo, LinearActuator) else None
 
-    def cord_at(self, bend: float) -> float:
+    def cord_travel(self, bend: float) -> float:
         """Return by how much a cord is drawn in at a sum of the hinges' angles, the article's X [m].
 
         Args:

@@ -58,7 +58,7 @@ class LimbPlace:
     """Its hinges among all."""
     servos: slice
     """Its servos among all."""
-    driven: slice | tuple[int, ...]
+    driven_hinges: slice | tuple[int, ...]
     """Those of its hinges that a servo turns, of its own ones."""
     contralateral: int
     """The limb on the other side of its girdle."""
@@ -86,9 +86,9 @@ class Layout:
     """Every limb."""
     servo_hinges: tuple[int, ...]
     """The hinge that each servo turns directly; -1 for a cable."""
-    ahead: slice
+    forward_hinges: slice
     """Hinges of the axis from the root forward."""
-    behind: slice
+    backward_hinges: slice
     """Hinges of the axis from the root backward."""
     axial_yaw: tuple[int, ...]
     """Servos that bend the axis sideways directly, from head to tail."""
@@ -96,7 +96,7 @@ class Layout:
     """Servos that bend the axis up and down, from head to tail."""
     axial_left: tuple[float, ...]
     """For each of ``axial_yaw`` 1 where a positive angle bends the body to the left (concave there), else -1 [-]."""
-    axial_place: tuple[float, ...]
+    axial_positions: tuple[float, ...]
     """For each of ``axial_yaw`` its place along the body, 0 at the snout, 1 at the tip of the tail [-]."""
     trunk_yaw: tuple[int, ...]
     """Servos that bend the trunk sideways, from the root to the foremost girdle; positive is left."""
@@ -131,8 +131,8 @@ class Layout:
                 return limb
         raise UnknownName("limb", name, self.limb_names)
 
-    def cable_places(self, servo: int) -> tuple[float, ...]:
-        """Return where along the body the hinges are that a servo bends by its cable; see ``axial_place``."""
+    def cable_positions(self, servo: int) -> tuple[float, ...]:
+        """Return where along the body the hinges are that a servo bends by its cable; see ``axial_positions``."""
         return tuple(_place(self.robot, name) for name in self.cable(servo).hinges)
 
     def cable(self, servo: int) -> Cable:
@@ -143,7 +143,7 @@ class Layout:
 @lru_cache(maxsize=256)
 def layout(robot: Robot) -> Layout:
     """Return the layout of a robot."""
-    root = robot.root_place
+    root = robot.root_index
     forward_bodies = [_ahead_body(robot, i) for i in range(root - 1, -1, -1)]
     backward_bodies = [_behind_body(robot, i) for i in range(root + 1, len(robot.axis))]
     bodies = [LayoutBody(robot.root, -1, (0.0, 0.0, 0.0), 0.0, (), robot.axis[root].inertia)]
@@ -176,12 +176,12 @@ def layout(robot: Robot) -> Layout:
         servos=servos,
         limbs=_limbs(robot, hinges, servos, tips),
         servo_hinges=tuple(hinges.index(name) if name in hinges else -1 for name in servos),
-        ahead=slice(first_axis_hinge, first_axis_hinge + len(front)),
-        behind=slice(first_axis_hinge + len(front), len(hinges)),
+        forward_hinges=slice(first_axis_hinge, first_axis_hinge + len(front)),
+        backward_hinges=slice(first_axis_hinge + len(front), len(hinges)),
         axial_yaw=yaws,
         axial_pitch=servos_with_turn(by_head, "pitch"),
         axial_left=tuple(1.0 if servos[i] in front else -1.0 for i in yaws),
-        axial_place=tuple(_place(robot, servos[i]) for i in yaws),
+        axial_positions=tuple(_place(robot, servos[i]) for i in yaws),
         trunk_yaw=tuple(i for i in servos_with_turn(front, "yaw") if bends_trunk(servos[i])),
         trunk_pitch=servos_with_turn(_trunk_hinges(robot, front), "pitch"),
         tail_yaw=servos_with_turn(back, "yaw"),
@@ -246,7 +246,7 @@ def hips_ahead(robot: Robot, girdle: int) -> float:
     if girdle == len(robot.girdles) - 1:
         return 0.0
     names, distance = [segment.name for segment in robot.axis], -robot.girdles[-1].at
-    for place in range(robot.root_place, names.index(robot.girdles[girdle].segment), -1):
+    for place in range(robot.root_index, names.index(robot.girdles[girdle].segment), -1):
         distance += robot.axis[place].front + robot.axis[place - 1].rear
     return distance + robot.girdles[girdle].at
 
@@ -352,7 +352,7 @@ def _limbs(robot: Robot, hinges: tuple[str, ...], servos: tuple[str, ...], tips:
                 side=side,
                 hinges=slice(hinge_indices[0], hinge_indices[-1] + 1),
                 servos=slice(start, start + len(servo_indices)),
-                driven=_driven_hinges(girdle.limb),
+                driven_hinges=_driven_hinges(girdle.limb),
                 contralateral=2 * number + 1 - right,
                 ipsilateral=tuple(2 * n + right for n in neighbours),
                 diagonal=tuple(2 * n + 1 - right for n in neighbours),

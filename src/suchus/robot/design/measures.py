@@ -250,7 +250,7 @@ def spine_of(robot: "Robot") -> SpineMeasures | None:
     if not robot.girdles:
         return None
     front = [segment.name for segment in robot.axis].index(robot.girdles[0].segment)
-    segments = robot.axis[front : robot.root_place][::-1]
+    segments = robot.axis[front : robot.root_index][::-1]
     hinges = [segment.hinges[0] for segment in segments if len(segment.hinges) == 1]
     servos = [hinge.servo for hinge in hinges]
     turns = [hinge.turn for hinge in hinges]
@@ -266,7 +266,7 @@ def spine_of(robot: "Robot") -> SpineMeasures | None:
     rods = [shape.radius for segment in segments[:-1] for shape in segment.shapes if isinstance(shape, Rod)]
     pitched = hinges[1] if len(hinges) > 1 else hinges[0]
     return SpineMeasures(
-        base=robot.axis[robot.root_place].front,
+        base=robot.axis[robot.root_index].front,
         link=lengths[0] if lengths else 0.0,
         joints=len(hinges),
         radius=max(rods, default=0.0),
@@ -281,7 +281,7 @@ def spine_of(robot: "Robot") -> SpineMeasures | None:
 @lru_cache(maxsize=256)
 def tail_of(robot: "Robot") -> TailMeasures | None:
     """Return the measures of the tail behind the root, None of another chain."""
-    root, segments = robot.axis[robot.root_place], robot.axis[robot.root_place + 1 :]
+    root, segments = robot.axis[robot.root_index], robot.axis[robot.root_index + 1 :]
     if len(root.hinges) != 1 or len(segments) < 2 or root.hinges[0].turn != "pitch" or root.hinges[0].servo is None:
         return None
     driven_hinges = [s.hinges[0] for s in segments[:-1] if [h.turn for h in s.hinges] == ["yaw"]]

@@ -39,7 +39,7 @@ class Heat:
             check.number("ambient", -50.0, 100.0, "degC")
             check.that(self.limit > self.ambient, f"limit is {self.limit:g} degC, not above the air's {self.ambient:g}")
 
-    def steady(self, loss: float) -> float:
+    def steady_temperature(self, loss: float) -> float:
         """Return the steady temperature of a servo at a constant loss [degC]; infinite for thermal runaway.
 
         Args:
@@ -51,7 +51,7 @@ class Heat:
             return float("inf")
         return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM_TEMPERATURE)) / margin
 
-    def reached_after(self, loss: float) -> float:
+    def time_to_limit(self, loss: float) -> float:
         """Return the time in which a cold servo reaches its temperature limit [s]; infinite if it never does.
 
         Args:
@@ -183,7 +183,7 @@ class Motor:
         return dict(self.sources).get(field, "")
 
     @property
-    def remembered(self) -> tuple[str, ...]:
+    def unconfirmed_fields(self) -> tuple[str, ...]:
         """Fields whose numbers are from memory or a guess: to be confirmed before anybody buys by them."""
         return tuple(field for field, text in self.sources if text.startswith(("from memory", "a guess")))
 

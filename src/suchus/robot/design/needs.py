@@ -15,9 +15,9 @@ from suchus.robot.design.tables import ARTICLE_JOINTS
 class Need(NamedTuple):
     """Something that a robot has or lacks."""
 
-    words: str
+    text: str
     """How it is called, after ``needs``."""
-    met: Callable[[Robot], bool]
+    is_met: Callable[[Robot], bool]
     """Whether a robot has it."""
 
 
@@ -33,7 +33,7 @@ def _trunk(robot: Robot) -> bool:
 def _tail_yaw(robot: Robot) -> bool:
     place = layout(robot)
     cable_hinges = [place.hinges.index(place.cable(servo).hinges[0]) for servo in place.cables]
-    return bool(place.tail_yaw) or any(hinge >= place.behind.start for hinge in cable_hinges)
+    return bool(place.tail_yaw) or any(hinge >= place.backward_hinges.start for hinge in cable_hinges)
 
 
 def _legs(robot: Robot) -> bool:
@@ -52,7 +52,7 @@ def _hind_legs(robot: Robot) -> bool:
 
 
 def _tail_root(robot: Robot) -> bool:
-    root = robot.axis[robot.root_place]
+    root = robot.axis[robot.root_index]
     return any(hinge.turn == "pitch" and hinge.servo is not None for hinge in root.hinges)
 
 
@@ -115,7 +115,7 @@ STANDING = ("hind_legs", "trunk_pitch", "tail_root")
 
 def lacking(robot: Robot, needs: Sequence[str]) -> list[str]:
     """Return those of several needs that a robot does not meet."""
-    return [name for name in needs if not NEEDS[name].met(robot)]
+    return [name for name in needs if not NEEDS[name].is_met(robot)]
 
 
 def check_needs(robot: Robot, needs: Sequence[str], consumer: str) -> Robot:
@@ -131,6 +131,6 @@ def check_needs(robot: Robot, needs: Sequence[str], consumer: str) -> Robot:
     """
     missing = lacking(robot, needs)
     if missing:
-        words = ", and ".join(NEEDS[name].words for name in missing)
+        words = ", and ".join(NEEDS[name].text for name in missing)
         raise UnsuitedRobot(f"{consumer} needs {words}; robot {robot.name!r} lacks that: choose another robot.")
     return robot

@@ -22,7 +22,7 @@ class Profile(NamedTuple):
     """Half from the lowest to the highest point [m]."""
     area: Float[np.ndarray, " station"]
     """Area of the union of the shapes [m2]."""
-    middle: Float[np.ndarray, " station"]
+    centre_height: Float[np.ndarray, " station"]
     """Centre of the area above the axis [m]."""
 
 

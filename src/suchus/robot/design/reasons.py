@@ -14,11 +14,11 @@ class Reason(NamedTuple):
 
     pattern: str
     """Regular expression, searched for in the path."""
-    low: float
+    lower_fraction: float
     """Least plausible share of the value [-]."""
-    high: float
+    upper_fraction: float
     """Greatest plausible share of the value [-]."""
-    why: str
+    text: str
     """The reason."""
 
 
@@ -56,6 +56,6 @@ def assumptions_of(design: Any, reasons: Sequence[Reason], published: Sequence[s
             raise InvalidDesign(
                 f"{path} of {design.name!r} is {value:g} without a reason; give one, or say its source."
             )
-        lower_bound, upper_bound = sorted((reason.low * value, reason.high * value))
-        choices.append(Assumption(field=path, low=lower_bound, high=upper_bound, why=reason.why))
+        lower_bound, upper_bound = sorted((reason.lower_fraction * value, reason.upper_fraction * value))
+        choices.append(Assumption(field=path, low=lower_bound, high=upper_bound, why=reason.text))
     return tuple(choices)

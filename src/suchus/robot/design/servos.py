@@ -113,7 +113,7 @@ def with_spring(robot: Robot, hinges: Collection[str], stiffness: float) -> Robo
 def _with_drive(cable: Cable, servo: Servo) -> Cable:
     """Return a cable with another drive: the servo itself, or the linear actuator that is equivalent to it."""
     linear = cable.linear
-    drive = servo if linear is None else LinearActuator.of(servo, cable.pulley, linear.travel)
+    drive = servo if linear is None else LinearActuator.from_servo(servo, cable.pulley, linear.travel)
     return replace(cable, servo=drive)
 
 
@@ -122,9 +122,9 @@ def _with_changed_servos(design: Any, change: Callable[[Servo], Servo], radius: 
     if isinstance(design, Servo):
         return change(design)
     if isinstance(design, LinearActuator):
-        servo = design.on(radius)
+        servo = design.equivalent_servo(radius)
         new_servo = change(servo)
-        return design if new_servo == servo else LinearActuator.of(new_servo, radius, design.travel)
+        return design if new_servo == servo else LinearActuator.from_servo(new_servo, radius, design.travel)
     if isinstance(design, Tail):
         radius = design.cord_spacing / 2
     elif isinstance(design, Cable):

@@ -40,7 +40,7 @@ class PlainLeg(NamedTuple):
     """Length from knee to the foot's centre [m]."""
     foot_radius: float
     """Of the ball [m]."""
-    above: float
+    hip_height: float
     """Of the hip over the axis of the body [m]."""
 
     @property

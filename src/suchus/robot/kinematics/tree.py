@@ -19,7 +19,7 @@ from suchus.robot.kinematics.given import broadcast_to_shape, numbers, rows
 class BodyFrames(NamedTuple):
     """The frames of all bodies of ``layout(robot).bodies``, in the frame of the root."""
 
-    places: Float[np.ndarray, "*batch body 3"]
+    positions: Float[np.ndarray, "*batch body 3"]
     """Origins [m]."""
     turns: Float[np.ndarray, "*batch body 3 3"]
     """Rotation matrices."""
@@ -93,7 +93,7 @@ def landmarks(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Landma
         InvalidDesign: no array of numbers, or not one for each of the robot's hinges.
     """
     place, body_frames = layout(robot), frames(robot, angles)
-    feet = np.zeros((*body_frames.places.shape[:-2], len(place.limbs), 3))
+    feet = np.zeros((*body_frames.positions.shape[:-2], len(place.limbs), 3))
     for i, limb in enumerate(place.limbs):
         end = limb.girdle.limb.links[-1].end
         feet[..., i, :] = _point(body_frames, limb.tip, (end[0], limb.side * end[1], end[2]))
@@ -112,7 +112,7 @@ def centre_of_mass(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> F
     masses, moments = body_masses(robot)
     body_frames, total_mass = frames(robot, angles), masses.sum()
     rotated = np.einsum("...bij,bj->...i", body_frames.turns, moments / total_mass, optimize=True)
-    return np.asarray(np.einsum("b,...bi->...i", masses / total_mass, body_frames.places) + rotated)
+    return np.asarray(np.einsum("b,...bi->...i", masses / total_mass, body_frames.positions) + rotated)
 
 
 @lru_cache(maxsize=64)
@@ -148,4 +148,4 @@ def body_masses(robot: Robot) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _point(body_frames: BodyFrames, body: int, offset: Axis) -> np.ndarray:
-    return np.asarray(body_frames.places[..., body, :] + body_frames.turns[..., body, :, :] @ np.array(offset))
+    return np.asarray(body_frames.positions[..., body, :] + body_frames.turns[..., body, :, :] @ np.array(offset))

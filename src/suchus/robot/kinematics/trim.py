@@ -36,7 +36,7 @@ def level_chambers(
         if body not in names:
             raise UnknownName("body", body, names)
     ids, body_frames = table[:, 0].astype(int), frames(robot, angles)
-    x = body_frames.places[ids, 0] + np.einsum("nj,nj->n", body_frames.turns[ids, 0], column(table, "at"))
+    x = body_frames.positions[ids, 0] + np.einsum("nj,nj->n", body_frames.turns[ids, 0], column(table, "at"))
     front_center, rear_center = (np.average(x, weights=volume * (ids == names.index(body))) for body in (front, rear))
     mass, buoyancy = centre_of_mass(robot, angles)[0], np.average(x, weights=volume)
     target_center = mass + volume.sum() * (buoyancy - mass) / spare_volume(robot)

@@ -23,10 +23,10 @@ class Hinges(NamedTuple):
     """1 where a positive angle of the servo is a positive bend, else -1 [-]."""
     parts: tuple[AxisRegion, ...]
     """Part of the axis that each belongs to."""
-    places: tuple[float, ...]
+    axial_positions: tuple[float, ...]
     """Of each along the body, 0 at the snout and 1 at the tip of the tail [-]."""
 
-    def within(self, region: AxisRegion) -> list[int]:
+    def indices_in(self, region: AxisRegion) -> list[int]:
         """Return which of them a part has."""
         return [i for i, hinge_region in enumerate(self.parts) if region in ("axis", hinge_region)]
 
@@ -36,13 +36,13 @@ def yaw_hinges(robot: Robot) -> Hinges:
     """Return the driven hinges that bend a robot sideways; positive is concave to the left."""
     place = layout(robot)
     rows: list[tuple[float, str, int, float, AxisRegion]] = []
-    for servo, sign, position in zip(place.axial_yaw, place.axial_left, place.axial_place, strict=True):
+    for servo, sign, position in zip(place.axial_yaw, place.axial_left, place.axial_positions, strict=True):
         region: AxisRegion = "trunk" if servo in place.trunk_yaw else "tail" if servo in place.tail_yaw else "neck"
         rows.append((position, place.servos[servo], servo, sign, region))
     for servo in place.cables:
         hinges = place.cable(servo).hinges
-        is_tail = place.hinges.index(hinges[0]) >= place.behind.start
-        for position, name in zip(place.cable_places(servo), hinges, strict=True):
+        is_tail = place.hinges.index(hinges[0]) >= place.backward_hinges.start
+        for position, name in zip(place.cable_positions(servo), hinges, strict=True):
             rows.append((position, name, servo, -1.0, "tail" if is_tail else "trunk"))
     rows.sort(key=lambda row: row[0])
     places, names, servos, signs, parts = tuple(zip(*rows, strict=True)) or ((), (), (), (), ())
@@ -77,16 +77,16 @@ class Waves:
         """
         self.hinges = hinges
         shape = (len(gaits), len(hinges.servos))
-        self.swing, self.offset, self.share = np.zeros(shape, dtype=complex), np.zeros(shape), np.ones(shape)
+        self.swing, self.offset, self.hinge_counts = np.zeros(shape, dtype=complex), np.zeros(shape), np.ones(shape)
         for run, gait in enumerate(gaits):
-            bends = [bend for bend in gait.axis if bend.turn == turn and hinges.within(bend.part)]
+            bends = [bend for bend in gait.axis if bend.turn == turn and hinges.indices_in(bend.part)]
             for k in range(len(hinges.servos)):
-                hinge_bends = [bend for bend in bends if k in hinges.within(bend.part)]
-                counts = {len(hinges.within(bend.part)) for bend in hinge_bends}
+                hinge_bends = [bend for bend in bends if k in hinges.indices_in(bend.part)]
+                counts = {len(hinges.indices_in(bend.part)) for bend in hinge_bends}
                 hinge_count = counts.pop() if len(counts) == 1 else 1
-                self.share[run, k] = hinge_count
+                self.hinge_counts[run, k] = hinge_count
                 for bend in hinge_bends:
-                    indices = hinges.within(bend.part)
+                    indices = hinges.indices_in(bend.part)
                     scale = hinge_count / len(indices)
                     self.swing[run, k] += scale * _swing(bend, indices.index(k), len(indices))
                     self.offset[run, k] += scale * bend.offset
@@ -110,7 +110,9 @@ class Waves:
             swing_bend = np.asarray(size)[..., None] * swing_bend
         return np.asarray(swing_bend + self.offset if self._steady else swing_bend)
 
-    def whole(self, indices: Sequence[int], bends: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch"]:
+    def total_bend(
+        self, indices: Sequence[int], bends: Float[np.ndarray, "*batch hinge"]
+    ) -> Float[np.ndarray, "*batch"]:
         """Return the bend of some hinges together [rad].
 
         Args:
@@ -122,7 +124,7 @@ class Waves:
         is_shared_evenly, first_bend = self._takes_the_same(tuple(indices)), bends[..., indices[0]]
         if is_shared_evenly.all():  # the sum of n nths differs by rounding
             return np.asarray(first_bend)
-        parts = (bends[..., indices] / self.share[:, indices]).sum(axis=-1)
+        parts = (bends[..., indices] / self.hinge_counts[:, indices]).sum(axis=-1)
         return np.asarray(np.where(is_shared_evenly, first_bend, parts))
 
     def _takes_the_same(self, indices: tuple[int, ...]) -> Bool[np.ndarray, " run"]:
@@ -132,17 +134,17 @@ class Waves:
             is_equal = (self.swing[:, rows] == self.swing[:, first_row]) & (
                 self.offset[:, rows] == self.offset[:, first_row]
             )
-            self._is_evenly_shared[indices] = (is_equal & (self.share[:, rows] == len(indices))).all(axis=1)
+            self._is_evenly_shared[indices] = (is_equal & (self.hinge_counts[:, rows] == len(indices))).all(axis=1)
         return self._is_evenly_shared[indices]
 
-    def together(self, indices: Sequence[int]) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+    def swing_and_offset(self, indices: Sequence[int]) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return swing and steady bend of some hinges together [rad]."""
-        hinge_counts = self.share[:, indices]
+        hinge_counts = self.hinge_counts[:, indices]
         return (self.swing[:, indices] / hinge_counts).sum(axis=1), (self.offset[:, indices] / hinge_counts).sum(axis=1)
 
     def amplitude(self) -> Float[np.ndarray, "run hinge"]:
         """Return the most that each hinge turns to either side, its steady angle aside [rad]."""
-        return np.abs(self.swing) / self.share
+        return np.abs(self.swing) / self.hinge_counts
 
 
 def _swing(bend: Bend, place: int, count: int) -> complex:

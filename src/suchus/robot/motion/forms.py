@@ -134,7 +134,7 @@ class GaitInMetres:
         )
 
     @classmethod
-    def near(cls, gait: Gait, reaches: Sequence[float]) -> Self:
+    def from_gait(cls, gait: Gait, reaches: Sequence[float]) -> Self:
         """Return a gait in metres with the numbers of a gait, of its first limbs and knots where it has several.
 
         Args:
@@ -172,7 +172,7 @@ class GaitInMetres:
             tail_pitch=_first_bend(gait, "tail", "pitch").offset,
         )
 
-    def onto(self, base: Gait, field_names: Collection[str], reaches: Sequence[float]) -> Gait:
+    def override(self, base: Gait, field_names: Collection[str], reaches: Sequence[float]) -> Gait:
         """Return a gait with some numbers of this one and all others of a base.
 
         Args:
@@ -271,8 +271,8 @@ class AxialWave:
         hinges, region_bends = yaw_hinges(robot), []
         parts: tuple[Literal["neck", "trunk", "tail"], ...] = ("neck", "trunk", "tail")
         for region in parts:
-            hinge_indices = hinges.within(region)
-            positions = [hinges.places[k] for k in hinge_indices]
+            hinge_indices = hinges.indices_in(region)
+            positions = [hinges.axial_positions[k] for k in hinge_indices]
             amplitude = [len(hinge_indices) * float(np.interp(place, places, angles)) for place in positions]
             if not (any(amplitude) or (hinge_indices and self.offset)):
                 continue
@@ -291,15 +291,18 @@ class AxialWave:
         return tuple(region_bends)
 
     @classmethod
-    def of(cls, gait: Gait, robot: Robot) -> Self:
+    def from_gait(cls, gait: Gait, robot: Robot) -> Self:
         """Return the wave by which a gait bends the axis of a robot.
 
         Raises:
             OutsideLimits: its hinges bend as no such wave does.
         """
         hinges = yaw_hinges(robot)
-        gait_waves, places = Waves(hinges, "yaw", [gait]), np.array(hinges.places)
-        swings, offsets = gait_waves.swing[0] / gait_waves.share[0], gait_waves.offset[0] / gait_waves.share[0]
+        gait_waves, places = Waves(hinges, "yaw", [gait]), np.array(hinges.axial_positions)
+        swings, offsets = (
+            gait_waves.swing[0] / gait_waves.hinge_counts[0],
+            gait_waves.offset[0] / gait_waves.hinge_counts[0],
+        )
         is_bent = np.abs(swings) > _MIN_BEND
         lags = np.where(is_bent, np.mod(-np.angle(-swings) / (2 * pi), 1.0), 0.0)
         waves = _slope(places[is_bent], lags[is_bent])
@@ -398,7 +401,7 @@ class GaitByPlaces:
         )
 
     @classmethod
-    def of(cls, gait: Gait, wave: AxialWave) -> Self:
+    def from_gait(cls, gait: Gait, wave: AxialWave) -> Self:
         """Return a gait in this form, with a wave in the place of its bends."""
         return cls(
             name=gait.name,

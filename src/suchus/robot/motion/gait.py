@@ -218,7 +218,7 @@ class Gait:
 
     def numbers(self) -> dict[str, str]:
         """Return the names and units of the ``NUMBERS`` that the gait has."""
-        return {name: number.unit for name, number in NUMBERS.items() if number.there(self)}
+        return {name: number.unit for name, number in NUMBERS.items() if number.is_present(self)}
 
     def number(self, name: str) -> float:
         """Return one of the ``NUMBERS`` of the gait.
@@ -226,7 +226,7 @@ class Gait:
         Raises:
             UnknownName: there is no such number.
         """
-        return _number_of(name).read(self)
+        return _number_of(name).get_value(self)
 
     def with_numbers(self, **numbers: float) -> "Gait":
         """Return the gait with other ``NUMBERS``, as ``gait.with_numbers(stroke=0.2, axis_lag=0.5)``.
@@ -237,12 +237,12 @@ class Gait:
         """
         new_gait = self
         for name, value in numbers.items():
-            if not _number_of(name).there(self):
+            if not _number_of(name).is_present(self):
                 raise OutsideLimits(
-                    f"gait {self.name!r} has nothing that {name!r} could change ({NUMBERS[name].what}): choose another "
-                    "number, or a gait that has it."
+                    f"gait {self.name!r} has nothing that {name!r} could change ({NUMBERS[name].description}): "
+                    "choose another number, or a gait that has it."
                 )
-            new_gait = NUMBERS[name].write(new_gait, value)
+            new_gait = NUMBERS[name].set_value(new_gait, value)
         return new_gait
 
 
@@ -251,13 +251,13 @@ class Number(NamedTuple):
 
     unit: str
     """SI unit, or ``limb reach``."""
-    what: str
+    description: str
     """The quantity, in a clause."""
-    there: Callable[[Gait], bool]
+    is_present: Callable[[Gait], bool]
     """Returns whether a gait has it."""
-    read: Callable[[Gait], float]
+    get_value: Callable[[Gait], float]
     """Returns it."""
-    write: Callable[[Gait, float], Gait]
+    set_value: Callable[[Gait, float], Gait]
     """Returns the gait with another value."""
 
 

@@ -32,7 +32,7 @@ class Steer(NamedTuple):
     """Factor on strokes and bends, 0 where a robot stands [-]."""
     stroke: Float[np.ndarray, "*batch limb"] | float = 1.0
     """Factor on the stroke of each limb [-]."""
-    lower: Float[np.ndarray, "*batch limb"] | float = 0.0
+    lowering: Float[np.ndarray, "*batch limb"] | float = 0.0
     """How much lower than the gait says each foot is [m]."""
     bend: Float[np.ndarray, "*batch"] | float = 0.0
     """Steady bend of the trunk besides that of the gait, left positive [rad]."""
@@ -50,7 +50,7 @@ class LimbMotion:
     """
 
     def __init__(self, robot: Robot, gaits: Sequence[Gait], limb_indices: Sequence[int]) -> None:
-        self.robot, self.gaits, self.among = robot, tuple(gaits), tuple(limb_indices)
+        self.robot, self.gaits, self.limb_indices = robot, tuple(gaits), tuple(limb_indices)
         self.limb = layout(robot).limbs[limb_indices[0]]
         self._duty = np.array([gait.duty_factor for gait in gaits])
         self._numbers = _numbers(robot, gaits, self.limb.number)
@@ -73,16 +73,16 @@ class LimbMotion:
         Raises:
             OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
         """
-        phase, parameters = _limbs_first(limbs, self.among), self._numbers
+        phase, parameters = _limbs_first(limbs, self.limb_indices), self._numbers
         if parameters is None:
             return []
         if isinstance(parameters, np.ndarray):  # held
-            return [parameters] * len(self.among)
+            return [parameters] * len(self.limb_indices)
         if isinstance(parameters, _Crank):
             stance = parameters.stance
             if steer is not None:
                 stance = np.clip(
-                    np.asarray(steer.size) * _of_limbs(steer.stroke, self.among) * stance,
+                    np.asarray(steer.size) * _of_limbs(steer.stroke, self.limb_indices) * stance,
                     _MIN_STANCE_ANGLE,
                     _MAX_STANCE_ANGLE,
                 )
@@ -90,8 +90,8 @@ class LimbMotion:
         try:
             return list(self._angles_at(parameters, *self._feet(parameters, phase, steer), draw=draw))
         except Unreachable as error:
-            if len(self.among) > 1:  # name the first limb that fails
-                for i in self.among:
+            if len(self.limb_indices) > 1:  # name the first limb that fails
+                for i in self.limb_indices:
                     LimbMotion(self.robot, self.gaits, [i]).angles(limbs, steer, draw=draw)
             names = ", ".join(dict.fromkeys(repr(gait.name) for gait in self.gaits))
             raise OutsideLimits(
@@ -113,7 +113,7 @@ class LimbMotion:
                 f"gait {self.gaits[0].name!r} has no path for the foot of {self.limb.name}: choose a gait of foot "
                 "paths."
             )
-        return np.stack(self._feet(self._numbers, _limbs_first(limbs, self.among), None))
+        return np.stack(self._feet(self._numbers, _limbs_first(limbs, self.limb_indices), None))
 
     def _feet(
         self, parameters: "_Path", phase: np.ndarray, steer: Steer | None
@@ -122,8 +122,8 @@ class LimbMotion:
         forward, lifted = foot_path(phase, self._duty)
         stroke, lowering = parameters.stroke, np.zeros(())
         if steer is not None:
-            stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, self.among)
-            lowering = _of_limbs(steer.lower, self.among)
+            stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, self.limb_indices)
+            lowering = _of_limbs(steer.lowering, self.limb_indices)
         forward_position = parameters.ahead + stroke * forward
         return (
             forward_position,

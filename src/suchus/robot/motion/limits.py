@@ -32,10 +32,10 @@ def check_limits(robot: Robot, gait: Gait) -> None:
     gait_movement, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
     _check_cables(gait_movement)
     targets = cycle_targets(robot, gait, clock)
-    direct = len(gait_movement.place.servos) - len(gait_movement.place.cables)
+    direct = len(gait_movement.layout.servos) - len(gait_movement.layout.cables)
     targets = np.vstack([targets, _lateral_ends(gait_movement, targets[0])])
     for name, column, (lower_bound, upper_bound) in zip(
-        gait_movement.place.servos[:direct], targets.T[:direct], servo_ranges(robot)[:direct], strict=True
+        gait_movement.layout.servos[:direct], targets.T[:direct], servo_ranges(robot)[:direct], strict=True
     ):
         worst_angle = column[np.argmax(np.maximum(lower_bound - column, column - upper_bound))]
         if not lower_bound <= worst_angle <= upper_bound:
@@ -53,10 +53,10 @@ def _lateral_ends(gait_movement: Movement, posture: np.ndarray) -> np.ndarray:
         posture: servo angles at any time, shape (servo,) [rad].
     """
     ends, follows = np.array([posture, posture]), float(np.abs(gait_movement.axis_of_clock(np.zeros(1)))[0])
-    measured = {gait_movement.place.servos.index(curve.servo) for curve in gait_movement.gaits[0].curves}
-    hinges, hinge_counts = gait_movement.yaw.hinges, gait_movement.yaw.share[0]
+    measured = {gait_movement.layout.servos.index(curve.servo) for curve in gait_movement.gaits[0].curves}
+    hinges, hinge_counts = gait_movement.yaw.hinges, gait_movement.yaw.hinge_counts[0]
     for k, (servo, sign) in enumerate(zip(hinges.servos, hinges.signs, strict=True)):
-        if servo not in gait_movement.place.cables and servo not in measured:
+        if servo not in gait_movement.layout.cables and servo not in measured:
             swing = max(follows * float(np.abs(gait_movement.yaw.swing[0, k])) / hinge_counts[k] - _ROUNDING, 0.0)
             ends[:, servo] = sign * gait_movement.yaw.offset[0, k] / hinge_counts[k] + np.array([-swing, swing])
     return ends
@@ -65,17 +65,16 @@ def _lateral_ends(gait_movement: Movement, posture: np.ndarray) -> np.ndarray:
 def _check_cables(gait_movement: Movement) -> None:
     """Refuse bends beyond the limits of cables; the clipped angles of the pulleys would not show them."""
     follows = float(np.abs(gait_movement.axis_of_clock(np.zeros(1)))[0])
-    for servo in gait_movement.place.cables:
+    for servo in gait_movement.layout.cables:
         hinge_indices = [k for k, hinge_servo in enumerate(gait_movement.yaw.hinges.servos) if hinge_servo == servo]
-        swing, steady = gait_movement.yaw.together(hinge_indices)
+        swing, steady = gait_movement.yaw.swing_and_offset(hinge_indices)
         max_bend = float(follows * np.abs(swing[0]) + np.abs(steady[0]))
-        limit = gait_movement.place.cable(servo).bend_limit
+        limit = gait_movement.layout.cable(servo).bend_limit
         if max_bend > limit + _ROUNDING:
             raise OutsideLimits(
-                f"gait {gait_movement.gaits[0].name!r} asks the hinges of cable {gait_movement.place.servos[servo]} of "
-                f"robot {gait_movement.robot.name!r} for a bend of {max_bend:.3f} rad together; up to {limit:.3f} "
-                "rad is allowed: let "
-                "its axis bend less."
+                f"gait {gait_movement.gaits[0].name!r} asks the hinges of cable "
+                f"{gait_movement.layout.servos[servo]} of robot {gait_movement.robot.name!r} for a bend of "
+                f"{max_bend:.3f} rad together; up to {limit:.3f} rad is allowed: let its axis bend less."
             )
 
 
@@ -156,7 +155,7 @@ def excess(robot: Robot, gait: Gait) -> float:
     endless = np.isinf(ranges).any(axis=1)
     turns[:, endless] = (turns[:, endless] + np.pi) % (2 * np.pi) - np.pi  # a crank's angle jumps once a turn
     servo_speed = np.abs(turns).max(axis=0) * SAMPLES / gait.period
-    speed_limit = np.array([robot.servo(name).speed for name in gait_movement.place.servos])
+    speed_limit = np.array([robot.servo(name).speed for name in gait_movement.layout.servos])
     reach_excess = float(foot_distance.max(axis=0).sum()) if limbs.shape[1] else 0.0
     return float(
         reach_excess / _LENGTH + range_excess.sum() / _ANGLE + np.maximum(servo_speed - speed_limit, 0.0).sum() / _SPEED
@@ -204,7 +203,7 @@ def servo_parts(robot: Robot) -> dict[str, ServoPart]:
     for i, name in enumerate(place.servos):
         if any(i in range(limb.servos.start, limb.servos.stop) for limb in place.limbs):
             parts[name] = "limb"
-        elif i in place.cables or place.servo_hinges[i] >= place.behind.start:
+        elif i in place.cables or place.servo_hinges[i] >= place.backward_hinges.start:
             parts[name] = "tail"
         else:
             parts[name] = "trunk" if i in trunk else "neck"
@@ -221,7 +220,7 @@ def divide_axis(robot: Robot, gait: Gait) -> Gait:
             continue
         count = len(hinges.servos)
         for region in parts:
-            hinge_indices = hinges.within(region)
+            hinge_indices = hinges.indices_in(region)
             fraction = len(hinge_indices) / count
             if hinge_indices:
                 axis.append(

@@ -50,16 +50,16 @@ class Movement:
     def __init__(self, robot: Robot, gaits: Sequence[Gait]) -> None:
         for gait in gaits:
             check_limbs(robot, gait)
-        self.robot, self.gaits, self.place = robot, tuple(gaits), layout(robot)
+        self.robot, self.gaits, self.layout = robot, tuple(gaits), layout(robot)
         self.yaw, self.pitch = Waves(yaw_hinges(robot), "yaw", gaits), Waves(pitch_hinges(robot), "pitch", gaits)
         self._duty = np.array([gait.duty_factor for gait in gaits])
         self._phases = np.array([gait.limb_phases for gait in gaits], dtype=float)
         self._touch_down = 0.75 - self._duty / 2  # a quarter of a cycle before mid-stance
         self._signs, self._phase_remainder = _references(gaits)
-        servos, cables = self.yaw.hinges.servos, self.place.cables
+        servos, cables = self.yaw.hinges.servos, self.layout.cables
         self._direct = [k for k, servo in enumerate(servos) if servo not in cables]
-        self._limbs = [LimbMotion(robot, gaits, limb_indices) for limb_indices in girdles(self.place)]
-        self._curves = [_Measured(self.place, gaits, i) for i in range(len(gaits[0].curves))]
+        self._limbs = [LimbMotion(robot, gaits, limb_indices) for limb_indices in girdles(self.layout)]
+        self._curves = [_Measured(self.layout, gaits, i) for i in range(len(gaits[0].curves))]
         self._lower_bound, self._upper_bound = servo_ranges(robot).T
 
     def axis_phase(self, limbs: Float[np.ndarray, "*batch limb"]) -> Complex[np.ndarray, "*batch"]:
@@ -107,13 +107,13 @@ class Movement:
         Raises:
             OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
         """
-        targets = np.zeros((*np.broadcast_shapes(np.shape(limbs)[:-1], np.shape(axis)), len(self.place.servos)))
+        targets = np.zeros((*np.broadcast_shapes(np.shape(limbs)[:-1], np.shape(axis)), len(self.layout.servos)))
         for group in self._limbs:
             for i, of_limb in zip(
-                group.among, group.angles(limbs, steer, draw=draw or steer is not None), strict=False
+                group.limb_indices, group.angles(limbs, steer, draw=draw or steer is not None), strict=False
             ):
-                limb = self.place.limbs[i]
-                targets[..., limb.servos] = of_limb[..., limb.driven]
+                limb = self.layout.limbs[i]
+                targets[..., limb.servos] = of_limb[..., limb.driven_hinges]
         self._bend(targets, axis, steer)
         self._curve(targets, limbs, axis)
         return np.clip(targets, self._lower_bound, self._upper_bound) if steer is not None else targets
@@ -124,23 +124,23 @@ class Movement:
         Positive is concave to the left; measured curves are left aside.
         """
         start = self.axis_of_clock(np.zeros(len(self.gaits)))
-        return np.asarray(self.yaw.swing * start[:, None] / self.yaw.share)
+        return np.asarray(self.yaw.swing * start[:, None] / self.yaw.hinge_counts)
 
     def bend_of(self, region: AxisRegion, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
         """Return how far a part bends sideways, left positive, measured curves aside [rad]."""
-        return self.yaw.whole(self.yaw.hinges.within(region), self.yaw.bends(axis))
+        return self.yaw.total_bend(self.yaw.hinges.indices_in(region), self.yaw.bends(axis))
 
     def out_of_reach(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb"]:
         """Return how far each foot's place lies outside what its limb reaches; 0 without a foot path [m]."""
-        reach_error = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.place.limbs))))
+        reach_error = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.layout.limbs))))
         for group in self._limbs:
             if group.has_paths:
                 min_reach, max_reach = limb_kinematics.reach(group.limb.girdle.limb)
-                for i, distance in zip(group.among, np.linalg.norm(group.feet(limbs), axis=0), strict=True):
+                for i, distance in zip(group.limb_indices, np.linalg.norm(group.feet(limbs), axis=0), strict=True):
                     reach_error[..., i] = np.maximum(np.maximum(min_reach - distance, distance - max_reach), 0.0)
         return reach_error
 
-    def foot_places(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb 3"]:
+    def foot_positions(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb 3"]:
         """Return the intended foot centres, each in the D-H base frame of its limb (outward, forward, down) [m].
 
         Args:
@@ -153,7 +153,7 @@ class Movement:
         for group in self._limbs:
             forward, outward, down = group.feet(limbs)
             places |= zip(
-                group.among, np.stack([group.limb.girdle.aside + outward, forward, down], axis=-1), strict=True
+                group.limb_indices, np.stack([group.limb.girdle.aside + outward, forward, down], axis=-1), strict=True
             )
         return np.stack([places[i] for i in range(len(places))], axis=-2)
 
@@ -171,26 +171,28 @@ class Movement:
             hinges, bends, direct = self.yaw.hinges, self.yaw.bends(axis, size), self._direct
             if np.any(tail):
                 bends = bends + self._of_tail(tail)
-            servo_angles = np.array(hinges.signs)[direct] * bends[..., direct] / self.yaw.share[:, direct]
+            servo_angles = np.array(hinges.signs)[direct] * bends[..., direct] / self.yaw.hinge_counts[:, direct]
             targets[..., np.array(hinges.servos, dtype=int)[direct]] = servo_angles
-            for servo in self.place.cables:
+            for servo in self.layout.cables:
                 hinge_indices = [k for k, hinge_servo in enumerate(hinges.servos) if hinge_servo == servo]
-                bend_limit = self.place.cable(servo).bend_limit
-                total_bend = hinges.signs[hinge_indices[0]] * self.yaw.whole(hinge_indices, bends)
+                bend_limit = self.layout.cable(servo).bend_limit
+                total_bend = hinges.signs[hinge_indices[0]] * self.yaw.total_bend(hinge_indices, bends)
                 if steer is not None:
                     total_bend = np.clip(total_bend, -bend_limit, bend_limit)
-                targets[..., servo] = tail_kinematics.servo_angle(self.place.cable(servo), total_bend)
+                targets[..., servo] = tail_kinematics.servo_angle(self.layout.cable(servo), total_bend)
         if self.pitch.moves:
-            targets[..., list(self.pitch.hinges.servos)] = self.pitch.bends(axis, size) / self.pitch.share
-        if steer is not None and self.place.trunk_yaw:
-            targets[..., list(self.place.trunk_yaw)] += (np.asarray(steer.bend) / len(self.place.trunk_yaw))[..., None]
+            targets[..., list(self.pitch.hinges.servos)] = self.pitch.bends(axis, size) / self.pitch.hinge_counts
+        if steer is not None and self.layout.trunk_yaw:
+            targets[..., list(self.layout.trunk_yaw)] += (np.asarray(steer.bend) / len(self.layout.trunk_yaw))[
+                ..., None
+            ]
 
     def _of_tail(self, bend: np.ndarray | float) -> np.ndarray:
         """Return what a steady bend of the tail adds to ``Waves.bends`` at all hinges [rad]."""
-        tail_hinges = self.yaw.hinges.within("tail")
+        tail_hinges = self.yaw.hinges.indices_in("tail")
         weights = np.zeros(len(self.yaw.hinges.servos))
         weights[tail_hinges] = 1.0 / max(len(tail_hinges), 1)
-        return np.asarray(np.asarray(bend)[..., None] * weights * self.yaw.share)
+        return np.asarray(np.asarray(bend)[..., None] * weights * self.yaw.hinge_counts)
 
     def _curve(self, targets: np.ndarray, limbs: np.ndarray, axis: np.ndarray) -> None:
         """Write the servo angles of the measured curves.
@@ -213,8 +215,8 @@ class Movement:
 def trunk_amplitude(robot: Robot, gait: Gait) -> float:
     """Return the most that a gait bends the trunk sideways [rad]."""
     yaw = movement(robot, gait).yaw
-    trunk_hinges = yaw.hinges.within("trunk")
-    steady = np.abs(yaw.offset / yaw.share)
+    trunk_hinges = yaw.hinges.indices_in("trunk")
+    steady = np.abs(yaw.offset / yaw.hinge_counts)
     return float((yaw.amplitude() + steady)[0, trunk_hinges].sum())
 
 
@@ -275,12 +277,12 @@ class Batch:
             bend[runs] = movement.bend_of(region, axis[runs])
         return bend
 
-    def together(self, region: AxisRegion) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+    def swing_and_offset(self, region: AxisRegion) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return swing and steady bend of a part of each run: its bend is ``steady + Re(swing z)`` [rad]."""
         swing, steady = np.zeros(len(self.periods), dtype=complex), np.zeros(len(self.periods))
         for movement, runs in self.groups:
             yaw = movement.yaw
-            swing[runs], steady[runs] = yaw.together(yaw.hinges.within(region))
+            swing[runs], steady[runs] = yaw.swing_and_offset(yaw.hinges.indices_in(region))
         return swing, steady
 
 

@@ -154,7 +154,7 @@ class Curve:
         amplitudes[1 : (count + 1) // 2] *= 2.0
         return np.asarray(amplitudes)
 
-    def at(self, clock: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
+    def angle_at(self, clock: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
         """Return the angle at times in cycles [rad]."""
         turns = np.multiply.outer(np.asarray(clock, dtype=float), np.arange(len(self.harmonics)))
         return np.asarray((np.exp(2j * np.pi * turns) @ self.harmonics).real)
@@ -162,4 +162,4 @@ class Curve:
     def lagged(self, lag: float) -> "Curve":
         """Return the curve delayed in the cycle [cycle]."""
         count = len(self.angles)
-        return replace(self, angles=tuple(float(angle) for angle in self.at(np.arange(count) / count - lag)))
+        return replace(self, angles=tuple(float(angle) for angle in self.angle_at(np.arange(count) / count - lag)))

@@ -146,11 +146,11 @@ def upright(robot: Robot) -> Upright:
         UnsuitedRobot: it lacks one of them.
     """
     check_needs(robot, STANDING, "standing up on hind legs and tail")
-    place, hind, root = layout(robot), robot.girdles[-1], robot.axis[robot.root_place]
+    place, hind, root = layout(robot), robot.girdles[-1], robot.axis[robot.root_index]
     leg = leg_of(hind)
     assert leg is not None
     pitching = next(hinge for hinge in root.hinges if hinge.turn == "pitch" and hinge.servo is not None)
-    tail_segments = robot.axis[robot.root_place + 1 :]
+    tail_segments = robot.axis[robot.root_index + 1 :]
     lengths = [segment.front + segment.rear for segment in tail_segments]
     radii = [max(_half_height(shape) for shape in segment.shapes) for segment in tail_segments]
     centers = [fsum(lengths[:i]) + length / 2 for i, length in enumerate(lengths)]
@@ -176,8 +176,8 @@ def belly(robot: Robot) -> float:
     The trunk is what lies behind the front girdle's segment, up to the root and with it.
     """
     names = [segment.name for segment in robot.axis]
-    trunk = robot.axis[names.index(robot.girdles[0].segment) + 1 : robot.root_place + 1] or (
-        robot.axis[robot.root_place],
+    trunk = robot.axis[names.index(robot.girdles[0].segment) + 1 : robot.root_index + 1] or (
+        robot.axis[robot.root_index],
     )
     return max(shape.bottom for segment in trunk for shape in segment.shapes) + robot.girdles[-1].above
 

@@ -139,7 +139,7 @@ def cantilever_torque(robot: Robot) -> float:
     hinge = layout(robot).hinges[upright(robot).trunk[0]]
     bodies = layout(robot).bodies
     joint = next(i for i, body in enumerate(bodies) if any(name == hinge for _, name, _ in body.hinges))
-    forward = straight.places[:, 0] - straight.places[joint, 0]
+    forward = straight.positions[:, 0] - straight.positions[joint, 0]
     is_lifted = forward + moments[:, 0] / masses > 0.0
     return float(GRAVITY * np.sum((masses * forward + moments[:, 0])[is_lifted]))
 

@@ -78,7 +78,7 @@ def swimming_gait(
     count = {servo: hinges.servos.count(servo) for servo in number}
     axis = []
     for region in _PARTS:
-        region_servos = [hinges.servos[k] for k in hinges.within(region)]
+        region_servos = [hinges.servos[k] for k in hinges.indices_in(region)]
         if region_servos:
             sizes = tuple(
                 len(region_servos) / count[servo] * float(amplitude[number[servo]]) for servo in region_servos

@@ -36,7 +36,7 @@ class Transition(NamedTuple):
         """Of the whole [s]."""
         return float(self.times[-1])
 
-    def at(self, time: float, start: Float[np.ndarray, " servo"]) -> Float[np.ndarray, " servo"]:
+    def angles_at(self, time: float, start: Float[np.ndarray, " servo"]) -> Float[np.ndarray, " servo"]:
         """Return the servo angles at a time [rad].
 
         Args:
@@ -73,7 +73,7 @@ def transition(robot: Robot, old_gait: Gait, new_gait: Gait) -> Transition:
     old, new = replace(old_gait, height=height), replace(new_gait, height=height)
 
     def standing(gait: Gait, lifted: np.ndarray) -> np.ndarray:
-        steer = Steer(size=0.0, lower=-LIFT_HEIGHT * reach * lifted[None])
+        steer = Steer(size=0.0, lowering=-LIFT_HEIGHT * reach * lifted[None])
         phase = np.full((1, len(place.limbs)), _STANDING)
         return np.asarray(movement(robot, gait).targets(phase, np.zeros(1, dtype=complex), steer)[0])
 

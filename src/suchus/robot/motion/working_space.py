@@ -38,7 +38,7 @@ class Configurations(NamedTuple):
     """Angles of every hinge, in the order of ``joint_names(robot)`` [rad]."""
     pelvis: Float[np.ndarray, "n 3"]
     """x, z of the pelvis in the world [m], and its pitch, front end up positive [rad]."""
-    tried: int
+    sample_count: int
     """Number of postures that were drawn [-]."""
 
 
@@ -56,7 +56,7 @@ def sample_configurations(robot: Robot, gait: Gait, *, standing: bool, count: in
         seed: of the drawing.
     """
     lower_bound, upper_bound = _box(robot, standing)
-    metres = GaitInMetres.near(gait, limb_reaches(robot))
+    metres = GaitInMetres.from_gait(gait, limb_reaches(robot))
     fractions = qmc.Sobol(len(lower_bound), rng=seed).random_base2(max(count - 1, 1).bit_length())
     samples = lower_bound + (upper_bound - lower_bound) * fractions
     parts = [
@@ -215,10 +215,10 @@ def outline(
     place, body_frames, marks = layout(robot), frames(robot, angles), landmarks(robot, angles)
     names = [body.name for body in place.bodies]
     axis = [names.index(segment.name) for segment in reversed(robot.axis)]  # from the tail; frames stand at the joints
-    line = np.concatenate([marks.tail[:, None], body_frames.places[:, axis], marks.snout[:, None]], axis=1)
+    line = np.concatenate([marks.tail[:, None], body_frames.positions[:, axis], marks.snout[:, None]], axis=1)
     legs = np.empty((len(angles), len(place.limbs), 3, 3))
     for i, limb in enumerate(place.limbs):
-        legs[:, i, :2] = _to_world(pelvis, body_frames.places[:, limb.tip - 1 : limb.tip + 1])
+        legs[:, i, :2] = _to_world(pelvis, body_frames.positions[:, limb.tip - 1 : limb.tip + 1])
         legs[:, i, 2] = _to_world(pelvis, marks.feet[:, i])
     return _to_world(pelvis, line), legs
 
@@ -228,9 +228,9 @@ class Extent(NamedTuple):
 
     value: float
     """Middle of both [m2] or [m3]."""
-    low: float
+    lower_estimate: float
     """Cells whose neighbours on every side hold points too."""
-    high: float
+    upper_estimate: float
     """Cells that hold points, and those that more points would have found, after Chao."""
 
 

@@ -99,7 +99,7 @@ def catshark(length: float, mass: float, density: float, width_factor: float, ta
         length=length,
         mass=mass,
         density=density,
-        places=places,
+        stations=places,
         half_width=tuple(width_factor * value for value in half_width),
         half_height=tuple(scaled_height),
         joints=_CATSHARK_JOINTS,
@@ -122,7 +122,7 @@ def eel(length: float, mass: float, density: float, *, beat: float) -> Robot:
     """
     places = tuple(i / 20 for i in range(21))
     drawing = Drawing(
-        name="eel", length=length, mass=mass, density=density, places=places,
+        name="eel", length=length, mass=mass, density=density, stations=places,
         half_width=tuple(_eel_width(place) for place in places),
         half_height=tuple(max(0.08 * sqrt(max(1.0 - ((place - 0.51) / 0.51) ** 2, 0.0)), 0.006) for place in places),
         joints=_EEL_JOINTS,

@@ -8,7 +8,7 @@ from math import pi, radians
 from suchus.robot.design import Assumption, Contact, Head, Leg, Pelvis, Servo, Spine, Tables, Tail, Thorax, crocodile
 from suchus.robot.motors import motor
 
-_servo = Servo.of(
+_servo = Servo.from_motor(
     motor("STS3250"),
     template=Servo(
         kp=40.0,

@@ -207,10 +207,10 @@ def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """
     for n in range(LANES):
         a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
-        ua, ub, ut = dot(water.up, a), dot(water.up, b), dot(water.up, t)
+        ua, ub, ut = dot(water.up_axis, a), dot(water.up_axis, b), dot(water.up_axis, t)
         ua, ub, ut = table[lanes.HALF, n] * ua, table[lanes.HALF + 1, n] * ub, table[lanes.HALF + 2, n] * ut
         extent, centre = sqrt(ua * ua + ub * ub + ut * ut), lane(rows, lanes.CENTRE, n)
-        depth = (water.level + rows[lanes.ELEVATION, n] - dot(water.up, centre)) / extent
+        depth = (water.level + rows[lanes.ELEVATION, n] - dot(water.up_axis, centre)) / extent
         rows[lanes.DEPTH, n] = depth
         arm = blend(table[lanes.HALF, n] * ua, a, table[lanes.HALF + 1, n] * ub, b, table[lanes.HALF + 2, n] * ut, t)
         write_lane(rows, lanes.ARM, n, times(1.0 / extent, arm))
@@ -255,7 +255,7 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
         )
         r, omega, surge = lane(rows, lanes.LEVER, n), lane(rows, lanes.MOVING, n), lane(rows, lanes.SURGE, n)
         # buoyancy and the pressure of the waves, at the centre of what is under water
-        f = times(water.density * volume, plus(times(water.gravity, water.up), surge))
+        f = times(water.density * volume, plus(times(water.gravity, water.up_axis), surge))
         torque = cross(times(moment / fraction, lane(rows, lanes.ARM, n)), f)
         # drag across and along, and of a flat piece that rolls, over the share under water
         dense = water.density * fraction
@@ -279,12 +279,12 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
         end = times(table[lanes.SHED_POSITION, n], t)
         end_velocity = plus(lane(rows, lanes.AGAINST, n), cross(omega, end))
         u, wa, wb = dot(end_velocity, t), dot(end_velocity, a), dot(end_velocity, b)
-        momentum_flux = dense * water.added * water.shedding * max(u, 0.0)
+        momentum_flux = dense * water.added_mass_factor * water.shedding * max(u, 0.0)
         pa, pb = momentum_flux * table[lanes.SHED_MASS, n] * wa, momentum_flux * table[lanes.SHED_MASS + 1, n] * wb
         half = (
             0.5
             * dense
-            * water.added
+            * water.added_mass_factor
             * water.shedding
             * (table[lanes.SHED_MASS, n] * wa * wa + table[lanes.SHED_MASS + 1, n] * wb * wb)
         )
@@ -305,7 +305,7 @@ def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> N
         water: its properties.
     """
     for n in range(LANES):
-        dense = water.density * rows[lanes.WET_FRACTION, n] * water.added
+        dense = water.density * rows[lanes.WET_FRACTION, n] * water.added_mass_factor
         a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
         ma, mb, mt = (
             dense * table[lanes.ADDED_MASS, n],

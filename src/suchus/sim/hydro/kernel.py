@@ -66,7 +66,7 @@ def apply_water(model: int, data: int, offsets: np.ndarray) -> bool:
     if user[SUBMERGED_VOLUME] == 0.0:
         return False
     _hand_over(sums, bodies, motion)
-    if water.added <= 0.0:
+    if water.added_mass_factor <= 0.0:
         return False
     _burden(sums, bodies, motion)
     return True
@@ -95,7 +95,7 @@ def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: floa
     for n in range(count):
         block, lane = n // LANES, n % LANES
         origin = three(motion.xpos[int(table[block, _BODY, lane])], 0)
-        if water.level + height - dot(water.up, origin) > -table[block, _REACH, lane]:
+        if water.level + height - dot(water.up_axis, origin) > -table[block, _REACH, lane]:
             return False
     return True
 
@@ -127,7 +127,7 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
             write_lane(rows, lanes.BIAS + 3, n, three(bias[b], 3))
         place(block_table, rows)
         if block == 0 or motion.user[WAVE] != 0.0:
-            flow(rows, motion.user, motion.time, water.up)
+            flow(rows, motion.user, motion.time, water.up_axis)
         meet(block_table, rows, water)
         rub(rows, water)
         press(block_table, rows, water)
@@ -150,7 +150,7 @@ def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
     for b in range(1, len(bodies.parent)):
         parent_bias = bias[bodies.parent[b]]
         turns, moves = three(parent_bias, 0), three(parent_bias, 3)
-        for j in range(bodies.first[b], bodies.first[b] + bodies.dofs[b]):
+        for j in range(bodies.first_joint[b], bodies.first_joint[b] + bodies.dofs[b]):
             turns = plus(turns, times(motion.qvel[j], three(motion.cdof_dot[j], 0)))
             moves = plus(moves, times(motion.qvel[j], three(motion.cdof_dot[j], 3)))
         write(bias[b], 0, turns)

@@ -89,11 +89,11 @@ class WaterProperties(NamedTuple):
     """Drag coefficient of a section across [-]."""
     thickening: float
     """Factor on plate friction [-]."""
-    added: float
+    added_mass_factor: float
     """Factor on added mass [-]."""
     shedding: float
     """Factor on what is shed at the tail [-]."""
-    up: Vector
+    up_axis: Vector
     """Against gravity, unit vector."""
     gravity: float
     """Its size [m/s2]."""

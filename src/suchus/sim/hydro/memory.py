@@ -56,7 +56,7 @@ class Bodies(NamedTuple):
     """Of each body (body,)."""
     root: np.ndarray
     """First body of its tree (body,)."""
-    first: np.ndarray
+    first_joint: np.ndarray
     """First joint of each body (body,)."""
     dofs: np.ndarray
     """Number of its joints (body,)."""

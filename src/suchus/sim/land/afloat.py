@@ -39,7 +39,7 @@ def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
         lake: the water, as it is at the beginning.
     """
     table = pieces(robot)
-    lost_air = (1 - lake.at(0.0)[1]) * column(table, "air").sum()
+    lost_air = (1 - lake.state_at(0.0)[1]) * column(table, "air").sum()
     return float(column(table, "volume").sum() - lost_air), robot.mass / lake.water.density
 
 
@@ -82,7 +82,7 @@ def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"])
         Doubtful: it is heavier than its water by ``HEAVIER`` of its mass; upright its metacentric height is below zero
             by ``INDIFFERENT`` of its length; or a share ``AIRBORNE`` of its volume and more is above the surface.
     """
-    text = _doubt(robot, lake.water.density, lake.at(0.0)[1], tuple(map(float, posture)))
+    text = _doubt(robot, lake.water.density, lake.state_at(0.0)[1], tuple(map(float, posture)))
     if text:
         warnings.warn(text, Doubtful, stacklevel=2)
 
@@ -151,7 +151,7 @@ def surfaced(
         qpos: the posture on the ground.
         timestep: of the physics [s].
     """
-    level, air_fraction = lake.at(0.0)
+    level, air_fraction = lake.state_at(0.0)
     table = np.array(pieces(robot))
     volume, weight = capacity(robot, lake)
     if volume <= weight:

@@ -67,7 +67,7 @@ class Meter:
         """Store the sensor readings before the first step."""
         self._history[0] = self._sensors
 
-    def read(self, step: int) -> None:
+    def record_step(self, step: int) -> None:
         """Store water forces and sensor readings after a physics step."""
         self._did[step] = self._acts
         self._history[step + 1] = self._sensors
@@ -97,11 +97,11 @@ class SimulationBatch:
         """Compile the models, bind the physics' arrays, and apply ground, supply and medium of each run."""
         corrections = [None if run.lake is None else run.lake.correction for run in runs]
         bodies = [(run.robot, run.ground.relief, correction) for run, correction in zip(runs, corrections, strict=True)]
-        has_water = any(run.lake is not None or run.solved is not None for run in runs)
+        has_water = any(run.lake is not None or run.solved_flow is not None for run in runs)
         if has_water:
             wetting.install()
         max_pieces = max(len(pieces(run.robot)) for run in runs) if has_water else 0
-        is_solved = runs[0].solved is not None
+        is_solved = runs[0].solved_flow is not None
         models = {body: _model(body, timestep, max_pieces, is_solved=is_solved) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
         self.model = shared
@@ -136,10 +136,10 @@ class SimulationBatch:
             )
             for quantity in ("velocity", "torque")
         )
-        self.worked = np.zeros((len(runs), 5))
+        self.period_means = np.zeros((len(runs), 5))
         self._meters: dict[int, Meter] = {}
         self.alive = np.ones(len(runs), dtype=bool)
-        self.ended = np.full(len(runs), np.inf)
+        self.end_times = np.full(len(runs), np.inf)
         self.cause = [""] * len(runs)
 
     def field(self, name: str, sim: int) -> np.ndarray:
@@ -177,7 +177,7 @@ class SimulationBatch:
                 self.supply(sim, run.supply)
             if run.afloat is not None:
                 self._cast_off(sim, run.afloat)
-            if run.solved is not None:
+            if run.solved_flow is not None:
                 self._lift(sim)
 
     def _lift(self, sim: int) -> None:
@@ -258,7 +258,7 @@ class SimulationBatch:
         """
         self._external_forces[sim, self.model.body(body).id, :3] = force
 
-    def place(self, runs: Sequence[Run], initial_angles: np.ndarray) -> None:
+    def place_robots(self, runs: Sequence[Run], initial_angles: np.ndarray) -> None:
         """Put every robot on the ground in its first posture, nothing below the surface.
 
         Args:
@@ -284,30 +284,30 @@ class SimulationBatch:
                 self.qpos[sim] = floating_postures[float_key]
             self.ctrl[sim] = initial_angles[sim]
         self.physics.forward()
-        self.read(slice(None))
+        self.read_sensors(slice(None))
 
-    def read(self, selection: int | slice) -> None:
+    def read_sensors(self, selection: int | slice) -> None:
         """Copy the sensors of the selected runs into ``readings``; their mean loads become those of this instant."""
-        self.readings[selection], self._shafts[selection], self.worked[selection] = (
+        self.readings[selection], self._shafts[selection], self.period_means[selection] = (
             self.sensors[selection],
             self._lengths[selection],
             0.0,
         )
         if self.waters:
-            self.worked[selection, :4] = self.waters.acts()[selection]
+            self.period_means[selection, :4] = self.waters.acts()[selection]
 
-    def felt(self, sim: int) -> dict[str, np.ndarray]:
+    def controller_inputs(self, sim: int) -> dict[str, np.ndarray]:
         """Return copies of the inputs of a run's controllers and faults: sensors, shaft angles, positions, loads."""
         return {name: values[sim].copy() for name, values in self._decided_by.items()}
 
-    def feel(self, sim: int, inputs: Mapping[str, np.ndarray]) -> None:
-        """Set the inputs of a run's controllers and faults, as ``felt`` returned them at another time."""
+    def set_controller_inputs(self, sim: int, inputs: Mapping[str, np.ndarray]) -> None:
+        """Set the inputs of a run's controllers and faults, as ``controller_inputs`` returned them at another time."""
         for name, values in self._decided_by.items():
             values[sim] = inputs[name]
 
     @property
     def _decided_by(self) -> dict[str, np.ndarray]:
-        return {"readings": self.readings, "shafts": self._shafts, "qpos": self.qpos, "worked": self.worked}
+        return {"readings": self.readings, "shafts": self._shafts, "qpos": self.qpos, "worked": self.period_means}
 
     def restart(self, sim: int, begin: Beginning) -> None:
         """Put one robot into a state, without pushes, also after it has diverged; the injector handles its faults.
@@ -325,8 +325,8 @@ class SimulationBatch:
         self.activations[sim] = begin.act
         self.waters.refill(sim)
         self.physics.forward(sim_ids)
-        self.read(sim)
-        self.alive[sim], self.ended[sim], self.cause[sim] = True, np.inf, ""
+        self.read_sensors(sim)
+        self.alive[sim], self.end_times[sim], self.cause[sim] = True, np.inf, ""
 
     def advance(
         self,
@@ -340,7 +340,7 @@ class SimulationBatch:
     ) -> None:
         """Command servo angles and advance the runs that are alive by some physics steps.
 
-        A run that diverges is stopped; ``ended`` and ``cause`` hold the time and the reason.
+        A run that diverges is stopped; ``end_times`` and ``cause`` hold the time and the reason.
 
         On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure
         sensor filters them, everything else as it is now.
@@ -374,9 +374,9 @@ class SimulationBatch:
                 going = self._going(selection)
             self._sum += self._live_forces
             if meter is not None:
-                meter.read(call)
+                meter.record_step(call)
         if meter is not None:
-            meter.mean(self.worked, slice(None) if selection is None else selection)
+            meter.mean(self.period_means, slice(None) if selection is None else selection)
         self.readings[:], self._shafts[:] = self.sensors, self._lengths
         np.divide(self._sum, calls, out=self._mean)
         np.abs(self.qvel, out=self._speeds)
@@ -394,10 +394,10 @@ class SimulationBatch:
         """
         self.physics.state[sims] = self.physics.state[whom]
         self.readings[sims], self._shafts[sims] = self.readings[whom], self._shafts[whom]
-        self.worked[sims] = self.worked[whom]
+        self.period_means[sims] = self.period_means[whom]
         for sim, source in zip(sims, whom, strict=True):
             if not self.alive[source]:
-                self._end(int(sim), float(self.ended[source]), self.cause[source])
+                self._end(int(sim), float(self.end_times[source]), self.cause[source])
 
     def _sense(self, is_on: bool) -> None:
         """Switch the computation of sensors on or off; the computed states are the same."""
@@ -434,7 +434,7 @@ class SimulationBatch:
 
     def _end(self, sim: int, time: float, cause: str) -> None:
         if self.alive[sim]:
-            self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
+            self.alive[sim], self.end_times[sim], self.cause[sim] = False, time, cause
 
 
 def _model(

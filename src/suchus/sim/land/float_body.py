@@ -37,7 +37,7 @@ class FloatBody:
     """Principal moments of inertia about the centre of mass: forward, left, up [kg m2]."""
     centre: Point = (0.0, 0.0, 0.0)
     """Centre of mass in the frame of the shape [m]."""
-    added: Point = (0.0, 0.0, 0.0)
+    added_mass_ratio: Point = (0.0, 0.0, 0.0)
     """Added mass over the displaced mass, forward, left, up [-]."""
     parts: int = 1
     """Strips along a cylinder, or columns along each side of a box [-]."""
@@ -48,7 +48,7 @@ class FloatBody:
             check.each("half", ("length", "width", "height"), 1e-4, 100.0, "m")
             check.number("mass", 1e-6, 1e6, "kg")
             check.each("inertia", ("forward", "left", "up"), 1e-12, 1e9, "kg m2")
-            check.each("added", ("forward", "left", "up"), 0.0, 100.0, "")
+            check.each("added_mass_ratio", ("forward", "left", "up"), 0.0, 100.0, "")
             check.whole("parts", 1, 200)
 
     @property
@@ -70,7 +70,7 @@ class FloatBody:
             centres = [(c * m, a * n, 0.0) for m in positions for n in positions]
             kind, half = SLAB, (c / self.parts, a / self.parts, b)
             axis_a, axis_b, axis_t = axis_t, axis_a, axis_b
-        added_mass = np.array(self.added)[
+        added_mass = np.array(self.added_mass_ratio)[
             [("xyz").index("xyz"[int(np.argmax(axis))]) for axis in (axis_a, axis_b, axis_t)]
         ]
         table = np.zeros((len(centres), WIDTH))
@@ -115,7 +115,7 @@ class FloatTank:
         self.data.userdata[:] = lake.numbers(_UP_AXIS)
         self._table = unpack_table(self.model.numeric_data)
 
-    def place(self, centre: Point, turn: Float[np.ndarray, "4"] | None = None, velocity: Point = (0, 0, 0),
+    def set_pose(self, centre: Point, turn: Float[np.ndarray, "4"] | None = None, velocity: Point = (0, 0, 0),
               spin: Point = (0, 0, 0)) -> None:  # fmt: skip
         """Put the body somewhere.
 
@@ -136,7 +136,7 @@ class FloatTank:
         mujoco.mj_forward(self.model, data)
 
     @property
-    def middle(self) -> Float[np.ndarray, "3"]:
+    def centre(self) -> Float[np.ndarray, "3"]:
         """Position of the middle of the shape in the world [m]."""
         return np.array(self.data.xpos[1] + self.data.xmat[1].reshape(3, 3) @ _SHAPE_CENTRE)
 
@@ -147,7 +147,7 @@ class FloatTank:
 
     def statics(self) -> Float[np.ndarray, "5"]:
         """Return what ``hydro.forces.hydrostatic`` says of the body as it lies."""
-        level, air_fraction = self._lake.at(self.data.time)
+        level, air_fraction = self._lake.state_at(self.data.time)
         return np.asarray(
             hydrostatic(self._table, self.data.xpos, self.data.xmat, _UP_AXIS, level, (air_fraction, air_fraction))
         )
@@ -206,7 +206,7 @@ class FloatTank:
         steps, samples = round(period / self.model.opt.timestep), round(duration / period)
         rows = []
         for i in range(samples + 1):
-            rows.append((self.middle, np.array(self.data.qpos[3:7]), self.energy(), self.momenta()))
+            rows.append((self.centre, np.array(self.data.qpos[3:7]), self.energy(), self.momenta()))
             if i < samples:
                 self.step(steps)
         middle, turn, energy, momenta = (np.array(column) for column in zip(*rows, strict=True))

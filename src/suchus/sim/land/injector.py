@@ -265,7 +265,7 @@ class Disturbances:
         start, end = tick * self._period, (tick + 1) * self._period
         forces: dict[str, np.ndarray] = {}
         for push in self._pushes[sim]:
-            force = push.share(start, end) * np.array(push.force)
+            force = push.overlap_fraction(start, end) * np.array(push.force)
             forces[push.body] = forces.get(push.body, np.zeros(3)) + force
         for body, force in forces.items():
             self._batch.push(sim, body, force)

@@ -98,13 +98,13 @@ class Lake:
             check.course("level", -DEEPEST, DEEPEST, "m")
             check.course("air_fraction", 0.0, 1.0, "")
 
-    def at(self, time: float) -> tuple[float, float]:
+    def state_at(self, time: float) -> tuple[float, float]:
         """Return level [m] and air fraction [-] at a time [s]."""
         return _value_at(self.level, time), _value_at(self.air_fraction, time)
 
     def shore(self, uphill: float) -> float:
         """Return where the level at time 0 meets ground that rises by ``uphill`` [rad], ahead along the ground [m]."""
-        return self.at(0.0)[0] / sin(uphill)
+        return self.state_at(0.0)[0] / sin(uphill)
 
     def changes(self) -> bool:
         """Return whether level or air fraction change while the run goes."""
@@ -118,7 +118,7 @@ class Lake:
             time: [s].
         """
         row = np.zeros(hydro.NUMBERS)
-        row[hydro.LEVEL], row[hydro.AIR_FRACTION : hydro.AIR_FRACTION + 2] = self.at(time)
+        row[hydro.LEVEL], row[hydro.AIR_FRACTION : hydro.AIR_FRACTION + 2] = self.state_at(time)
         row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
         row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
         row[hydro.ADDED_MASS_FACTOR], row[hydro.SHEDDING] = self.added_mass, self.shedding
@@ -205,7 +205,7 @@ class Waters:
                 None for all.
         """
         for sim, lake in self._changing.items():
-            self.rows[sim, hydro.LEVEL], self.rows[sim, _AIR_FRACTION] = lake.at(time)
+            self.rows[sim, hydro.LEVEL], self.rows[sim, _AIR_FRACTION] = lake.state_at(time)
         if air_fraction is not None and self._lakes:
             commanded = np.isfinite(air_fraction).all(axis=1)
             self.rows[commanded, _AIR_FRACTION] = air_fraction[commanded]

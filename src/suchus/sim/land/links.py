@@ -24,7 +24,7 @@ class LinkShape(NamedTuple):
     size: tuple[float, float, float]
     """Radius of a ball; radius and half the length between the middles of a rod's round ends; half-axes of an ellipsoid
     [m]."""
-    at: tuple[float, float, float]
+    centre: tuple[float, float, float]
     """Its middle in the link's frame [m]."""
     turn: tuple[float, float, float, float]
     """Quaternion that turns its frame into the link's, scalar first; a rod lies along its frame's z [-]."""

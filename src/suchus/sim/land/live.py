@@ -62,7 +62,7 @@ class Live:
         return self._loop.time
 
     @property
-    def now(self) -> dict[str, np.ndarray]:
+    def current_sample(self) -> dict[str, np.ndarray]:
         """What a record would hold of this instant: the variables of ``record.VARIABLES``, without run and time."""
         return self._current_sample
 
@@ -79,7 +79,7 @@ class Live:
         """
         self._loop.advance()
         if not self._loop.batch.alive[0]:
-            time, cause = float(self._loop.batch.ended[0]), self._loop.batch.cause[0]
+            time, cause = float(self._loop.batch.end_times[0]), self._loop.batch.cause[0]
             raise Diverged(f"the walk diverged at {time:.2f} s: {cause}.", time=time)
         self._beat += 1
         if self._beat >= self._start + self._cycle(self.run):

@@ -93,7 +93,7 @@ class Loop:
         for run, posture in zip(runs, initial_angles, strict=True):
             if run.lake is not None and _swims(run.control):
                 check_afloat(run.robot, run.lake, posture)
-        self.batch.place(runs, initial_angles)
+        self.batch.place_robots(runs, initial_angles)
         self._deduplication = Deduplication(runs, initial_angles, self.period)
         self.disturbances = Disturbances(runs, self.batch, ticks, self.period)
         self.tick = 0
@@ -151,13 +151,13 @@ class Loop:
             return
         targets, _, air_fraction = self.command
         shared = self._deduplication
-        shared.part(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
+        shared.separate(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
         self.batch.waters.flood(self.time, air_fraction)
-        if shared.others.size:
+        if shared.followers.size:
             self.batch.advance(
-                targets, self.steps, self.time, shared.first, need_forces=need_forces, need_readings=need_readings
+                targets, self.steps, self.time, shared.is_leader, need_forces=need_forces, need_readings=need_readings
             )
-            self.batch.copy(shared.others, shared.whom)
+            self.batch.copy(shared.followers, shared.leader_of)
         else:
             self.batch.advance(targets, self.steps, self.time, need_forces=need_forces, need_readings=need_readings)
         self._count()
@@ -167,7 +167,7 @@ class Loop:
         targets, _, air_fraction = self.command
         self.batch.waters.flood(self.time, air_fraction)
         self.batch.advance(previous_targets, steps, self.time)
-        means, early_fraction = (self.batch.pressed, self.batch.worked), steps / self.steps
+        means, early_fraction = (self.batch.pressed, self.batch.period_means), steps / self.steps
         early_means = [early_fraction * mean for mean in means]
         self.batch.advance(targets, self.steps - steps, self.time)
         for mean, early_mean in zip(means, early_means, strict=True):
@@ -240,7 +240,7 @@ class Deduplication:
         self._count = len(runs)
         self._number()
 
-    def part(self, tick: int, targets: np.ndarray) -> None:
+    def separate(self, tick: int, targets: np.ndarray) -> None:
         """Remove runs from their groups whose first fault or push is due, or whose commands differ.
 
         Args:
@@ -269,7 +269,7 @@ class Deduplication:
 
     def _number(self) -> None:
         """Select the first run of each group as its leader, and note the leader of each other run."""
-        self.first = np.ones(self._count, dtype=bool)
-        self.others = np.array([sim for members in self._groups for sim in members[1:]], dtype=int)
-        self.whom = np.array([members[0] for members in self._groups for _ in members[1:]], dtype=int)
-        self.first[self.others] = False
+        self.is_leader = np.ones(self._count, dtype=bool)
+        self.followers = np.array([sim for members in self._groups for sim in members[1:]], dtype=int)
+        self.leader_of = np.array([members[0] for members in self._groups for _ in members[1:]], dtype=int)
+        self.is_leader[self.followers] = False

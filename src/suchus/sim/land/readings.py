@@ -98,7 +98,7 @@ class Recorder:
         self._phase = np.full((*shape, len(robot_layout.limbs)), np.nan)
         self._targets = np.full((*shape, len(robot_layout.servos)), np.nan)
         self._water = np.full((*shape, batch.waters.rows.shape[1]), np.nan)
-        self._period_means = np.full((*shape, batch.worked.shape[1]), np.nan)
+        self._period_means = np.full((*shape, batch.period_means.shape[1]), np.nan)
         self._temperature_columns = warming(batch.model, runs[0].robot)
         self._air = np.array([ambient(run.robot) for run in runs])
         heated = len(robot_layout.servos) if (self._temperature_columns >= 0).any() else 0
@@ -118,7 +118,7 @@ class Recorder:
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
         self._water[alive, sample] = self._batch.waters.rows[alive]
-        self._period_means[alive, sample] = self._batch.worked[alive]
+        self._period_means[alive, sample] = self._batch.period_means[alive]
         if self._temperature.shape[-1]:
             self._temperature[alive, sample] = (
                 self._batch.activations[alive][:, self._temperature_columns] + self._air[alive]
@@ -156,7 +156,7 @@ class Recorder:
         robots = [run.robot for run in self._runs]
         # parts of a block of all sensors would keep the whole block
         arrays = {name: np.ascontiguousarray(values) for name, values in self._arrays().items()}
-        end_times = np.minimum(self._batch.ended, time[-1])
+        end_times = np.minimum(self._batch.end_times, time[-1])
         per_run = {
             "mass": np.array([robot.mass for robot in robots]),
             "period": np.array([run.gait.period for run in self._runs]),
@@ -164,7 +164,7 @@ class Recorder:
             "ended": end_times,
             "cause": np.array(self._batch.cause),
             "stands_on": np.array(
-                [ground_text(None if run.afloat or run.solved else run.ground) for run in self._runs]
+                [ground_text(None if run.afloat or run.solved_flow else run.ground) for run in self._runs]
             ),
         }
         coordinates: dict[str, Sequence[object] | np.ndarray] = {

@@ -67,7 +67,7 @@ class Push:
             check.number("at", 0.0, 86400.0, "s")
             check.number("duration", 1e-3, 86400.0, "s")
 
-    def share(self, start: float, end: float) -> float:
+    def overlap_fraction(self, start: float, end: float) -> float:
         """Return how much of the time from ``start`` to ``end`` the push lasts, 0 to 1 [-]."""
         overlap = min(end, self.at + self.duration) - max(start, self.at)
         return max(overlap, 0.0) / (end - start)
@@ -140,7 +140,7 @@ class Run:
             )
             dry = self.lake is None and self.afloat is None and self.ground == Ground()
             check.that(
-                self.solved is None or dry,
+                self.solved_flow is None or dry,
                 "a flow that is solved together with the robot has neither surface nor ground, and the robot no weight "
                 'in it: leave out lake, afloat and ground, or take water="sections"',
             )
@@ -159,7 +159,7 @@ class Run:
             object.__setattr__(self, "lake", self.water.lake)
 
     @property
-    def solved(self) -> Slice | Space | None:
+    def solved_flow(self) -> Slice | Space | None:
         """The flow that is solved together with the robot, if any is."""
         return self.water if isinstance(self.water, Slice | Space) else None
 

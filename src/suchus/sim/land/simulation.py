@@ -120,7 +120,7 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, stride: int) -
     for pair in {(run.robot, run.gait) for run in runs}:
         check_limits(*pair)
     for run in runs:
-        if run.solved is not None:
+        if run.solved_flow is not None:
             raise InvalidDesign(
                 f"the water of run {run.label or run.gait.name!r} is a flow that is solved together with the robot; "
                 "give the runs to suchus.swimming.coupling.simulate."

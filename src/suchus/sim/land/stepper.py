@@ -47,7 +47,7 @@ class CoordinateState:
     world and its angular velocity about its own axes.
     """
 
-    place: Float[np.ndarray, " place"]
+    position: Float[np.ndarray, " place"]
     """Root along, to the left and its yaw, then the joints; in space see above [m, rad, -]."""
     rate: Float[np.ndarray, " coordinate"]
     """Their rates [m/s, rad/s]."""
@@ -61,11 +61,11 @@ class StepInterval:
     end, along the mean of its velocities at both ends: they add up to the kinetic energy that is gained.
     """
 
-    way: Float[np.ndarray, " coordinate"]
+    displacement: Float[np.ndarray, " coordinate"]
     """Integral of the coordinates' velocities [m, rad]."""
-    worked: float
+    servo_work: float
     """Work of the servos on the joints [J]."""
-    yielded: float
+    passive_work: float
     """Work of springs, dampers, friction and joint limits on the joints [J]."""
     energy: float
     """Kinetic energy at its end, the water's not counted [J]."""
@@ -74,7 +74,7 @@ class StepInterval:
     momentum: Float[np.ndarray, " axis"]
     """Momentum of the whole robot at its end, along and to the left, in space upwards too, the water's not counted
     [kg m/s]."""
-    strayed: Float[np.ndarray, " axis"]
+    momentum_defect: Float[np.ndarray, " axis"]
     """Momentum gained without a force, since MuJoCo's step uses the mass matrix of its start [kg m/s]."""
 
 
@@ -117,7 +117,7 @@ class _Decision(NamedTuple):
     external_force: np.ndarray
     """Forces from outside [N]."""
     inputs: dict[str, np.ndarray]
-    """What controller and faults decided by; see ``SimulationBatch.felt``."""
+    """What controller and faults decided by; see ``SimulationBatch.controller_inputs``."""
 
 
 class Stepper:
@@ -182,7 +182,7 @@ class Stepper:
         self._smooth, self._bias = self._physics.bind("qfrc_smooth"), self._physics.bind("qfrc_bias")
         self._mass_matrix = np.zeros((self.model.nv, self.model.nv))
         self.steps = 0
-        self.at_begin: CoordinateState = self.now
+        self.initial_coordinates: CoordinateState = self.coordinates
         """State in which the present stretch began."""
         self._saved: _Saved | None = None
         self._decision: _Decision | None = None
@@ -192,9 +192,9 @@ class Stepper:
         ticks_of = [np.ceil(fault.at / loop.period - 1e-9) for fault in run.faults]
         ticks_of += [round_(end) for end in ends for round_ in (np.floor, np.ceil)]
         self._troubles = np.unique(np.array(ticks_of, int)) * self._per_tick
-        self.burden(np.zeros((len(self.dofs), len(self.dofs))))
+        self.set_added_mass(np.zeros((len(self.dofs), len(self.dofs))))
         self._physics.forward()
-        self._batch.read(slice(None))
+        self._batch.read_sensors(slice(None))
         self._is_looked_at = False
         self._update_kinematics()
         self._damping = damping_of(self.model, self._data)
@@ -208,15 +208,15 @@ class Stepper:
         return self.steps * self.timestep
 
     @property
-    def now(self) -> CoordinateState:
+    def coordinates(self) -> CoordinateState:
         """Root and joints now."""
         qpos, qvel = self._batch.qpos[0], self._batch.qvel[0]
         if not self.in_plane:
-            return CoordinateState(place=qpos.copy(), rate=qvel.copy())
+            return CoordinateState(position=qpos.copy(), rate=qvel.copy())
         w, x, y, z = qpos[3:7]
         yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
         return CoordinateState(
-            place=np.array([qpos[0], qpos[1], yaw, *qpos[self._places]]), rate=np.array(qvel[self.dofs])
+            position=np.array([qpos[0], qpos[1], yaw, *qpos[self._places]]), rate=np.array(qvel[self.dofs])
         )  # fmt: skip
 
     @property
@@ -229,7 +229,7 @@ class Stepper:
         return bent_joint, bends.get(bent_joint, 0.0)
 
     @property
-    def at_stops(self) -> dict[str, float]:
+    def stopped_joints(self) -> dict[str, float]:
         """Joints that are at the end of their range, with their angles [rad]."""
         angles, (lower_limits, upper_limits) = self._batch.qpos[0, self._places], self._ranges.T
         joint_indices = np.flatnonzero((angles <= lower_limits) | (angles >= upper_limits))
@@ -248,7 +248,7 @@ class Stepper:
     def show(self, batch: SimulationBatch, row: int) -> None:
         """Let a run of another batch of such robots be where this one is, and feel the same."""
         self._read_sensors()
-        batch.feel(row, self._batch.felt(0))
+        batch.set_controller_inputs(row, self._batch.controller_inputs(0))
         batch.physics.state[row] = self._physics.state[0]
 
     def _update_kinematics(self) -> None:
@@ -266,7 +266,7 @@ class Stepper:
 
     # --- what the water does -----------------------------------------------------------------------------------
 
-    def burden(
+    def set_added_mass(
         self, added_mass: Float[np.ndarray, "coordinate coordinate"]
     ) -> Float[np.ndarray, "coordinate coordinate"]:
         """Let joints and root have an added mass from now on; return how much of it MuJoCo's matrix has room for.
@@ -302,27 +302,27 @@ class Stepper:
         return matrix
 
     @property
-    def axes(self) -> int:
+    def axis_count(self) -> int:
         """Axes in which the root moves [-]."""
         return 2 if self.in_plane else 3
 
     def _momentum(self) -> Float[np.ndarray, " axis"]:
         """Return the momentum of the whole robot along the axes in which the root moves [kg m/s]."""
         self._update_kinematics()
-        return np.asarray(self._mass_matrix[: self.axes] @ self._batch.qvel[0])
+        return np.asarray(self._mass_matrix[: self.axis_count] @ self._batch.qvel[0])
 
     # --- going on ----------------------------------------------------------------------------------------------
 
     def begin(self) -> None:
         """Begin an interval in the present state."""
-        self.at_begin = self.now
+        self.initial_coordinates = self.coordinates
         state, passive, bias = self._physics.state[0].copy(), self._passive[0].copy(), self._bias[0].copy()
         added_mass, momentum = self._added_mass_matrix(), self._momentum()
         self._saved = _Saved(
             state, self.steps, self._decision, passive, bias, self._mass_matrix + added_mass, added_mass, momentum
         )  # fmt: skip
 
-    def until(self, time: float, max_steps: int, landing: int = 0) -> int:
+    def steps_until(self, time: float, max_steps: int, landing: int = 0) -> int:
         """Return the number of physics steps of the next interval; it ends at a time [s], fault or push at the latest.
 
         Args:
@@ -379,7 +379,7 @@ class Stepper:
             tape.smooth.append(self._smooth[0].copy())
             tape.power.append(float(np.abs(sensors[speeds] * sensors[torques]).sum()))
             self.steps += 1
-        return self.now
+        return self.coordinates
 
     def account(self) -> StepInterval:
         """Return displacement, works and momentum of the last iteration of the interval."""
@@ -393,15 +393,15 @@ class Stepper:
         damped = -gained @ self._damping
         end_rate, momentum = rate[-1], self._momentum()
         impulse = dt * (np.array(tape.smooth) + np.array(tape.bias[:-1]) + np.array(tape.constraint_force)).sum(axis=0)
-        applied_impulse = (impulse - saved.added_mass @ (end_rate - rate[0]))[: self.axes]
+        applied_impulse = (impulse - saved.added_mass @ (end_rate - rate[0]))[: self.axis_count]
         return StepInterval(
-            way=displacement.sum(axis=0)[self.dofs],
-            worked=float(((np.array(tape.servo_force) + implicit_force - damped) * displacement).sum()),
-            yielded=float(
+            displacement=displacement.sum(axis=0)[self.dofs],
+            servo_work=float(((np.array(tape.servo_force) + implicit_force - damped) * displacement).sum()),
+            passive_work=float(
                 ((np.array(tape.passive[:-1]) + np.array(tape.constraint_force) + damped) * displacement).sum()
             ),
             energy=0.5 * float(end_rate @ self._mass_matrix @ end_rate), effort=dt * sum(tape.power),
-            momentum=momentum, strayed=momentum - saved.momentum - applied_impulse,
+            momentum=momentum, momentum_defect=momentum - saved.momentum - applied_impulse,
         )  # fmt: skip
 
     def _decide(self, saved: _Saved) -> None:
@@ -421,14 +421,14 @@ class Stepper:
             self._store(tick)
 
     def _thought(self, tick: int) -> _Decision:
-        inputs = self._batch.felt(0)
+        inputs = self._batch.controller_inputs(0)
         self._loop.tick = self._loop.clocks[:] = tick
         self._loop.decide()
         return _Decision(self._loop.command, self._external_forces[0].copy(), inputs)
 
     def _read_sensors(self) -> None:
         if not self._is_read:
-            self._batch.read(slice(None))
+            self._batch.read_sensors(slice(None))
 
     def _store(self, tick: int) -> None:
         assert self._decision is not None
@@ -451,7 +451,7 @@ class Stepper:
             "steps": np.array(self.steps), "physics": self._physics.state[0].copy(),
             "targets": np.array([decision.command.targets[0] for decision in self._decided]),
             **{f"felt.{name}": np.array([sample[name] for sample in inputs]) for name in (inputs[0] if inputs else ())},
-            **{f"now.{name}": values for name, values in self._batch.felt(0).items()},
+            **{f"now.{name}": values for name, values in self._batch.controller_inputs(0).items()},
             **{f"samples.{name}": values for name, values in self._recorder.state().items()},
         }  # fmt: skip
 
@@ -463,7 +463,7 @@ class Stepper:
         """
         parts = {kind: _with_prefix(state, f"{kind}.") for kind in ("felt", "now", "samples")}
         for tick, targets in enumerate(state["targets"]):
-            self._batch.feel(0, {name: values[tick] for name, values in parts["felt"].items()})
+            self._batch.set_controller_inputs(0, {name: values[tick] for name, values in parts["felt"].items()})
             self._decision = self._thought(tick)
             self._decided.append(self._decision)
             if not np.array_equal(self._decision.command.targets[0], targets):
@@ -473,16 +473,16 @@ class Stepper:
                 )
         self.steps = int(state["steps"])
         self._recorder.resume(parts["samples"])
-        self._batch.feel(0, parts["now"])
+        self._batch.set_controller_inputs(0, parts["now"])
         self._physics.state[0] = state["physics"]
         self._physics.forward(None, int(mujoco.mjtStage.mjSTAGE_VEL))
         self._is_looked_at = False
         self._is_read = self.steps % self._per_tick == 0
-        self.at_begin = self.now
+        self.initial_coordinates = self.coordinates
 
     def end(self, time: float, cause: str) -> None:
         """Let the run have ended at a time [s], with the last samples that were taken until then."""
-        self._batch.alive[0], self._batch.ended[0], self._batch.cause[0] = False, time, cause
+        self._batch.alive[0], self._batch.end_times[0], self._batch.cause[0] = False, time, cause
 
     def record(self) -> xr.Dataset:
         """Return what was read, in the schema of a run; NaN where nothing has been yet."""

@@ -44,7 +44,7 @@ class Tolerances:
             check.number("friction", 0.0, 0.9, "")
             check.number("mass", 0.0, 0.9, "")
 
-    def built(self, run: Run, seed: int) -> Run:
+    def draw_run(self, run: Run, seed: int) -> Run:
         """Return a run with one robot that was built of its design, on one ground.
 
         Args:
@@ -68,7 +68,7 @@ class Tolerances:
     def repeats(self, runs: Iterable[Run], count: int, seed: int = 0) -> list[Run]:
         """Return so many built robots of each run, run by run; the i-th of each has the same errors."""
         seeds = np.random.SeedSequence(seed).generate_state(count).tolist()
-        return [self.built(run, robot_seed) for run in runs for robot_seed in seeds]
+        return [self.draw_run(run, robot_seed) for run in runs for robot_seed in seeds]
 
 
 def _weighted(robot: Robot, factors: list[float]) -> Robot:

@@ -16,9 +16,9 @@ class DecisionBoundary(NamedTuple):
 
     parameter: int
     """Index of the parameter, from 0 [-]."""
-    at: float
+    threshold: float
     """Its value there, in the parameter's unit."""
-    above: bool
+    holds_above: bool
     """Whether the statement rather holds above."""
     separation: float
     """Share of the samples where it holds, less that where it does not, on the side where it rather holds [-].

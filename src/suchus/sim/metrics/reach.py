@@ -47,7 +47,7 @@ def _tops(robot: Robot, q: np.ndarray, position: np.ndarray, angles: np.ndarray)
             local_up = np.einsum(
                 "...i,...ij->...j", up_axis, body_frames.turns[..., i, :, :]
             )  # upward, in the frame of the body
-            base = np.einsum("...i,...i", up_axis, body_frames.places[..., i, :])
+            base = np.einsum("...i,...i", up_axis, body_frames.positions[..., i, :])
             if isinstance(shape, Rod):
                 ends = [np.array(end) + shift for end in (shape.start, shape.end)]
                 tops.append(base + np.maximum(*(local_up @ end for end in ends)) + shape.radius)

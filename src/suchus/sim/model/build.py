@@ -438,7 +438,7 @@ def _raise(spec: Any, bumps: Bumps) -> float:
     x_centre = (x_start + x_end) / 2
     spec.add_hfield(
         name=RELIEF,
-        size=[x_end - x_centre, bumps.aside, max_height - min_height, _BASE * bumps.scale],
+        size=[x_end - x_centre, bumps.half_width, max_height - min_height, _BASE * bumps.scale],
         nrow=heights.shape[0],
         ncol=heights.shape[1],
         userdata=((heights - min_height) / (max_height - min_height)).ravel(),

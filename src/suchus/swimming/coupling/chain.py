@@ -26,7 +26,7 @@ RECENT = 8
 class ChainState(NamedTuple):
     """Coordinates and rates of a chain in the frame of the flow."""
 
-    place: Float[np.ndarray, " coordinate"]
+    position: Float[np.ndarray, " coordinate"]
     """Root (x, y, angle) and joints [m, rad]."""
     rate: Float[np.ndarray, " coordinate"]
     """Their rates [m/s, rad/s]."""
@@ -39,11 +39,11 @@ BodyState = tuple[flow.MidlineState, flow.Pose]
 class Points(NamedTuple):
     """The midline at some arc lengths; ``along`` its derivatives by the coordinates."""
 
-    place: Float[np.ndarray, "2 point"]
+    position: Float[np.ndarray, "2 point"]
     """Where they are [m]."""
     heading: Float[np.ndarray, " point"]
     """Direction from head to tail [rad]."""
-    along: Float[np.ndarray, "2 point coordinate"]
+    jacobian: Float[np.ndarray, "2 point coordinate"]
     """Derivative of the places [-, m]."""
     turning: Float[np.ndarray, "point coordinate"]
     """Derivative of the headings [1/m, -]."""
@@ -59,7 +59,7 @@ class MidlineChain:
     """Parts, at least [-]."""
     start: tuple[float, float] = (0.0, 0.0)
     """Place of the root in the world at the beginning [m]."""
-    axes: ClassVar[int] = 2
+    axis_count: ClassVar[int] = 2
     """Axes in which it moves [-]."""
 
     @property
@@ -87,7 +87,7 @@ class MidlineChain:
         """Signs that convert coordinates of the robot to those of the chain and back."""
         return np.array([-1.0, -1.0] + (self.size - 2) * [1.0])
 
-    def seen(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
+    def flow_state(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
         """Return a state of the robot in the frame of the flow."""
         flow_place, moving = self._signs * place, self._signs * rate
         flow_place[:2] += np.array([self.root + self.start[0], self.start[1]])
@@ -97,11 +97,11 @@ class MidlineChain:
         """Return a generalised force or an added mass in the robot's own coordinates."""
         return self._signs * values if values.ndim == 1 else self._signs[:, None] * values * self._signs
 
-    def way(self, time: float, posture: ChainState) -> "ChainPath":
+    def start_path(self, time: float, posture: ChainState) -> "ChainPath":
         """Return a path that begins at a posture."""
         return ChainPath(time, posture)
 
-    def turned(self, place: np.ndarray, other_place: np.ndarray) -> float:
+    def rotation_between(self, place: np.ndarray, other_place: np.ndarray) -> float:
         """Return the greatest angle between root and joints of two postures [rad]."""
         return float(np.abs(place[2:] - other_place[2:]).max())
 
@@ -115,7 +115,7 @@ class MidlineChain:
     @cached_property
     def ends(self) -> Float[np.ndarray, " end"]:
         """Arc lengths of the ends of the parts, from snout to tip [m]."""
-        places, length = np.sort(self.outline.places), self.outline.robot.length
+        places, length = np.sort(self.outline.joint_positions), self.outline.robot.length
         coarse, part_length = [0.0, *places.tolist(), length], length / self.parts
         fine = [np.linspace(a, b, max(int((b - a) / part_length), 1), endpoint=False) for a, b in pairwise(coarse)]
         return np.array([*np.concatenate(fine), length])
@@ -129,7 +129,7 @@ class MidlineChain:
     def links(self) -> Float[np.ndarray, " part"]:
         """Index of the link that each part belongs to, from the head on [-]."""
         middle = 0.5 * (self.ends[1:] + self.ends[:-1])
-        return np.searchsorted(np.sort(self.outline.places), middle)
+        return np.searchsorted(np.sort(self.outline.joint_positions), middle)
 
     @cached_property
     def _shares(self) -> tuple[np.ndarray, np.ndarray]:
@@ -187,7 +187,7 @@ class MidlineChain:
             if len(cache) == RECENT:
                 del cache[next(iter(cache))]
             line, mean = self.midline(place), self._means
-            cache[key] = Points(line.place @ mean.T, mean @ line.heading, mean @ line.along, mean @ line.turning)
+            cache[key] = Points(line.position @ mean.T, mean @ line.heading, mean @ line.jacobian, mean @ line.turning)
         return cache[key]
 
     @cached_property
@@ -208,7 +208,7 @@ class MidlineChain:
             min_half_width: half-width below which the body is thickened [m].
         """
         middle, station = self._shares
-        (place, rate), station_angles = posture, station @ np.stack([posture.place[3:], posture.rate[3:]], axis=1)
+        (place, rate), station_angles = posture, station @ np.stack([posture.position[3:], posture.rate[3:]], axis=1)
         tangent, normal = self._tangents(place[2] + middle @ place[3:])
         swept = self._from_root(np.concatenate([tangent, normal * (rate[2] + middle @ rate[3:])]))
         heading, turn = place[2] + station_angles[:, 0], rate[2] + station_angles[:, 1]
@@ -232,9 +232,9 @@ class MidlineChain:
         """
         points = self.centres(place)
         pull, turn = loads.parts.force[:, :2], loads.parts.torque
-        offset = points.place.T - origin - loads.reference_point[:2]
+        offset = points.position.T - origin - loads.reference_point[:2]
         torque = turn - (offset[:, 0] * pull[:, 1] - offset[:, 1] * pull[:, 0])
-        generalised_force = np.einsum("cpk,pc->k", points.along, pull) + torque @ points.turning
+        generalised_force = np.einsum("cpk,pc->k", points.jacobian, pull) + torque @ points.turning
         return generalised_force + self.unpressed(place, loads.internal_pressure, origin + loads.reference_point[:2])
 
     @cached_property
@@ -258,15 +258,15 @@ class MidlineChain:
         """
         points = self.centres(place)
         offset, normals = (
-            points.place.T - reference_point,
+            points.position.T - reference_point,
             np.stack([-np.sin(points.heading), np.cos(points.heading)], axis=1),
         )
         moment = ((pressed[..., 1:3] - pressed[..., :1] * offset) * normals).sum(axis=-1)
         return np.concatenate([np.zeros((*moment.shape[:-1], 3)), moment @ self._bends], axis=-1)
 
-    def felt(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
+    def link_loads(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
         """Return the load on each link in the world: force, and torque about the vertical through its middle."""
-        points = self.centres(place).place.T - origin
+        points = self.centres(place).position.T - origin
         pull, turn = loads.parts.force[:, :2], loads.parts.torque
         link_loads = np.zeros((len(self.names), 4))
         for link in range(len(link_loads)):
@@ -287,7 +287,7 @@ class MidlineChain:
             axes: of the flow [-].
         """
         points = self.centres(place)
-        reference_points, linear = points.place.T - origin, (points.along @ rate).T
+        reference_points, linear = points.position.T - origin, (points.jacobian @ rate).T
         turn = (points.turning @ rate)[:, None]
         if axes == 3:
             reference_points, linear = (
@@ -306,7 +306,7 @@ class MidlineChain:
         """Return the robot as a body of the flow that moves along a path."""
 
         def spine(time: float) -> flow.MidlineState:
-            return path.seen(time, lambda posture: self.state(posture, min_half_width))[0]
+            return path.evaluate(time, lambda posture: self.state(posture, min_half_width))[0]
 
         if axes == 2:
             return flow.Midline(spine=spine, cuts=self.cuts)
@@ -314,7 +314,9 @@ class MidlineChain:
 
     def motion(self, path: "ChainPath", axes: int, min_half_width: float) -> Callable[[float], flow.Pose]:
         """Return the function that gives the pose of the body's centre at a time [s]."""
-        return lambda time: path.seen(time, lambda posture: self.state(posture, min_half_width))[1].in_dimensions(axes)
+        return lambda time: path.evaluate(time, lambda posture: self.state(posture, min_half_width))[1].in_dimensions(
+            axes
+        )
 
 
 class ChainPath:
@@ -324,10 +326,10 @@ class ChainPath:
         self._start, self._end, self._times = posture, posture, (time, time)
         self._states_by_time: dict[float, BodyState] = {}
 
-    def seen(self, time: float, state: Callable[[ChainState], BodyState]) -> BodyState:
+    def evaluate(self, time: float, state: Callable[[ChainState], BodyState]) -> BodyState:
         """Return a function of the posture at a time [s], from a cache; all calls must use the same function."""
         if time not in self._states_by_time:
-            self._states_by_time[time] = state(self.at(time))
+            self._states_by_time[time] = state(self.posture_at(time))
         return self._states_by_time[time]
 
     def go(self, time: float, posture: ChainState, end: float, then: ChainState) -> None:
@@ -335,7 +337,7 @@ class ChainPath:
         self._times, self._start, self._end = (time, end), posture, then
         self._states_by_time.clear()
 
-    def at(self, time: float) -> ChainState:
+    def posture_at(self, time: float) -> ChainState:
         """Return the posture at a time [s], extrapolated at constant rates beyond the ends."""
         (start_time, end_time), (p, v), (q, w) = self._times, self._start, self._end
         if time <= start_time or end_time == start_time:

@@ -31,7 +31,7 @@ class ForceParts:
 
     flow: Float[np.ndarray, " sample"]
     """Of the flow [N]."""
-    added: Float[np.ndarray, " sample"]
+    added_mass: Float[np.ndarray, " sample"]
     """Of sections, by the acceleration [N]."""
     drag: Float[np.ndarray, " sample"]
     """Of sections, by the speed [N]."""
@@ -43,7 +43,7 @@ class ForceParts:
 class LinkJudgement:
     """The factors of one link, and whether they are valid."""
 
-    added: float
+    added_mass_factor: float
     """Factor on added mass that was fitted [-]."""
     added_interval: tuple[float, float]
     """Its interval [-]."""
@@ -61,11 +61,11 @@ class LinkJudgement:
 
 def judge_link(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgement:
     """Return the factors of a link that one swim gives, and whether they reduce the error in other swims."""
-    added_factor, drag_factor = fit_factors(fit.flow, fit.added, fit.drag).tolist()
-    draws = bootstrap_factors(fit.flow, fit.added, fit.drag, fit.block)
+    added_factor, drag_factor = fit_factors(fit.flow, fit.added_mass, fit.drag).tolist()
+    draws = bootstrap_factors(fit.flow, fit.added_mass, fit.drag, fit.block)
     lower_bound, upper_bound = np.quantile(draws, [(1 - COVERAGE) / 2, (1 + COVERAGE) / 2], axis=0)
-    shipped = tuple(r2(swim.flow, swim.added + swim.drag) for swim in test_swims)
-    corrected = tuple(r2(swim.flow, added_factor * swim.added + drag_factor * swim.drag) for swim in test_swims)
+    shipped = tuple(r2(swim.flow, swim.added_mass + swim.drag) for swim in test_swims)
+    corrected = tuple(r2(swim.flow, added_factor * swim.added_mass + drag_factor * swim.drag) for swim in test_swims)
     refusal = ""
     if not test_swims:
         refusal = "no other swim to hold them against"
@@ -76,7 +76,7 @@ def judge_link(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgeme
     elif not all(_gain(swim, added_factor, drag_factor) > 0.0 for swim in test_swims):
         refusal = "no gain in every other swim"
     return LinkJudgement(
-        added=added_factor, added_interval=(float(lower_bound[0]), float(upper_bound[0])), drag=drag_factor,
+        added_mass_factor=added_factor, added_interval=(float(lower_bound[0]), float(upper_bound[0])), drag=drag_factor,
         drag_interval=(float(lower_bound[1]), float(upper_bound[1])), shipped=shipped, corrected=corrected,
         why_not=refusal,
     )  # fmt: skip
@@ -85,8 +85,8 @@ def judge_link(fit: ForceParts, test_swims: Sequence[ForceParts]) -> LinkJudgeme
 def _gain(swim: ForceParts, added_factor: float, drag_factor: float) -> float:
     """Return by how much the factors reduce the mean square residual: lower bound of its 95 % interval [N2]."""
     shipped_residual, corrected_residual = (
-        swim.flow - swim.added - swim.drag,
-        swim.flow - added_factor * swim.added - drag_factor * swim.drag,
+        swim.flow - swim.added_mass - swim.drag,
+        swim.flow - added_factor * swim.added_mass - drag_factor * swim.drag,
     )
     count = len(swim.flow) // swim.block
     if count < BLOCKS:
@@ -117,7 +117,7 @@ def earned_correction(
         parts = [
             ForceParts(
                 flow=comparison.flow[comparison.keep, k],
-                added=comparison.added[comparison.keep, k],
+                added_mass=comparison.added_mass[comparison.keep, k],
                 drag=comparison.drag[comparison.keep, k],
                 block=max(round(0.5 * period / comparison.step), 2),
             )
@@ -127,8 +127,8 @@ def earned_correction(
     reynolds = robot.length**2 / (period * viscosity)
     factors = tuple(
         LinkFactors(
-            bodies=bodies, added=judgement.added, drag=judgement.drag, added_interval=judgement.added_interval,
-            drag_interval=judgement.drag_interval,
+            bodies=bodies, added=judgement.added_mass_factor, drag=judgement.drag,
+            added_interval=judgement.added_interval, drag_interval=judgement.drag_interval,
         )
         for bodies, judgement in zip(links, judgements.values(), strict=True)
         if not judgement.why_not
@@ -150,7 +150,7 @@ def judgement_text(judgements: dict[str, LinkJudgement], swims: Sequence[str]) -
         factors = (
             f"{value:.2f} ({lower_bound:.2f} to {upper_bound:.2f})" if lower_bound <= upper_bound else f"{value:.2f}"
             for value, (lower_bound, upper_bound) in (
-                (judgement.added, judgement.added_interval),
+                (judgement.added_mass_factor, judgement.added_interval),
                 (judgement.drag, judgement.drag_interval),
             )
         )

@@ -32,7 +32,7 @@ class LinkChain:
         start: place of the root at the beginning [m].
     """
 
-    axes = 3
+    axis_count = 3
     """Axes in which it moves [-]."""
 
     def __init__(self, robot: Robot, links: RobotLinks, start: Float[np.ndarray, "3"]) -> None:
@@ -58,7 +58,7 @@ class LinkChain:
         """Names of the coordinates."""
         return "root_x", "root_y", "root_z", "root_roll", "root_pitch", "root_yaw", *self.joints
 
-    def seen(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
+    def flow_state(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
         """Return a state of the robot; its coordinates are those of the chain."""
         return ChainState(place, rate)
 
@@ -84,17 +84,17 @@ class LinkChain:
 
     def states(self, posture: ChainState) -> flow.LinkStates:
         """Return the links in the frame of the flow."""
-        jacobian = self._jacobian(posture.place)
-        unit = posture.place.copy()
+        jacobian = self._jacobian(posture.position)
+        unit = posture.position.copy()
         unit[3:7] /= np.linalg.norm(unit[3:7])
         rate = jacobian @ posture.rate
         return self._recent[unit.tobytes()][0]._replace(velocity=rate[:, :3], spin=rate[:, 3:])
 
-    def way(self, time: float, posture: ChainState) -> "LinkPath":
+    def start_path(self, time: float, posture: ChainState) -> "LinkPath":
         """Return a path that begins at a posture."""
         return LinkPath(self, time, posture)
 
-    def turned(self, place: np.ndarray, other_place: np.ndarray) -> float:
+    def rotation_between(self, place: np.ndarray, other_place: np.ndarray) -> float:
         """Return the greatest angle between root and joints of two postures [rad]."""
         root = 2.0 * np.arccos(np.clip(abs(place[3:7] @ other_place[3:7]), 0.0, 1.0))
         return float(max(root, np.abs(place[7:] - other_place[7:]).max(initial=0.0)))
@@ -118,7 +118,7 @@ class LinkChain:
         link_origins = self.states(ChainState(place, np.zeros(self.size))).position - origin - loads.reference_point
         return loads.parts.force, loads.parts.moment - np.cross(link_origins, loads.parts.force)
 
-    def felt(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
+    def link_loads(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
         """Return the load on each link in the world: force, and torque about the vertical through its origin."""
         force, torque = self._wrenches(place, loads, origin)
         return np.column_stack([force @ _HALF_TURN, torque[:, 2]])
@@ -182,7 +182,7 @@ class LinkPath(ChainPath):
         self._states = self._chain.states(posture), self._chain.states(then)
         self._seen_links.clear()
 
-    def at(self, time: float) -> ChainState:
+    def posture_at(self, time: float) -> ChainState:
         """Return the posture at the end of the path that is nearer to a time [s]; between the ends only links exist."""
         start_time, end_time = self._times
         return self._start if abs(time - start_time) < abs(time - end_time) else self._end
@@ -206,12 +206,12 @@ def _piece(shape: LinkShape) -> flow.LinkPiece:
     if shape.kind == "ellipsoid":
         length, width, height = (2 * half for half in shape.size)
         ellipsoid: flow.Ellipsoid | flow.Spherocylinder = flow.Ellipsoid(length=length, width=width, height=height)
-        return flow.LinkPiece(link=shape.link, shape=ellipsoid, position=shape.at, quaternion=shape.turn)
+        return flow.LinkPiece(link=shape.link, shape=ellipsoid, position=shape.centre, quaternion=shape.turn)
     length = 2 * shape.size[1] if shape.kind == "rod" else 0.0
     w, x, y, z = rotation.multiply(np.array(shape.turn), _ROD_TURN).tolist()
     return flow.LinkPiece(
         link=shape.link,
         shape=flow.Spherocylinder(length=length, radius=shape.size[0]),
-        position=shape.at,
+        position=shape.centre,
         quaternion=(w, x, y, z),
     )

@@ -12,6 +12,9 @@ from suchus.sim.record import COUPLED, WATER
 from suchus.swimming.coupling.chain import MidlineChain
 from suchus.swimming.coupling.linked import LinkChain
 
+_STATE_KEYS = {"work": "worked"}
+"""Names in a checkpoint of the fields of ``Series`` that have another name there."""
+
 
 @dataclass(slots=True)
 class Series:
@@ -27,7 +30,7 @@ class Series:
     """Force left over, before and after the corrections, over the greatest so far [-]."""
     corrections: list[int] = field(default_factory=list)
     """Corrections made [-]."""
-    worked: list[tuple[float, float, float, float]] = field(default_factory=list)
+    work: list[tuple[float, float, float, float]] = field(default_factory=list)
     """Work of the servos, of springs, dampers and limits, of the water by force and way, and of it by the flow's own
     account [J]."""
     energy: list[float] = field(default_factory=list)
@@ -38,13 +41,20 @@ class Series:
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all stored quantities as arrays, by name."""
-        return {series_field.name: np.array(getattr(self, series_field.name)) for series_field in fields(self)}
+        names = [series_field.name for series_field in fields(self)]
+        return {_STATE_KEYS.get(name, name): np.array(getattr(self, name)) for name in names}
 
     @classmethod
-    def of(cls, state: Mapping[str, np.ndarray]) -> "Series":
+    def from_state(cls, state: Mapping[str, np.ndarray]) -> "Series":
         """Return the series of a state that ``state`` returned."""
         arrays = ("force", "links")
-        return cls(**{name: list(values) if name in arrays else values.tolist() for name, values in state.items()})
+        field_names = {key: name for name, key in _STATE_KEYS.items()}
+        return cls(
+            **{
+                field_names.get(key, key): list(values) if key in arrays else values.tolist()
+                for key, values in state.items()
+            }
+        )
 
 
 def coupling_record(
@@ -64,7 +74,11 @@ def coupling_record(
         name: (("run", *dims), values[name][None], {"units": unit, "long_name": meaning})
         for name, (dims, unit, meaning) in {**WATER, **COUPLED}.items()
     }
-    kind = {"solved": type(run.solved).__name__.lower(), **asdict(run.solved)} if run.solved is not None else {}
+    kind = (
+        {"solved": type(run.solved_flow).__name__.lower(), **asdict(run.solved_flow)}
+        if run.solved_flow is not None
+        else {}
+    )
     attributes = {"units": "1", "long_name": "the flow as JSON, with its settings"}
     names = list(chain.coordinates)
     inertia = {"units": "kg, kg m, kg m2", "long_name": "added mass at the start, of each coordinate in each"}
@@ -114,7 +128,7 @@ def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset
         dims = {name: declaration[0] for name, declaration in {**WATER, **COUPLED}.items()}
         return {name: np.full([sizes[dim] for dim in dimensions], np.nan) for name, dimensions in dims.items()}
     links, force = np.array(series.links), np.array(series.force)
-    work, energy = np.array(series.worked), np.array(series.energy)
+    work, energy = np.array(series.work), np.array(series.energy)
     sums = work.cumsum(axis=0)
     servo_work = np.maximum(np.maximum.accumulate(sums[:, 0]), 1e-300)
     missing = (sums[:, 0] + sums[:, 1] + sums[:, 2] - energy) / servo_work

@@ -32,7 +32,7 @@ _SMOOTHED, _ORDER = 9, 4
 class RecordedMotion(NamedTuple):
     """Root and lateral joints along a record."""
 
-    place: Float[np.ndarray, "sample coordinate"]
+    position: Float[np.ndarray, "sample coordinate"]
     """[m, rad]."""
     rate: Float[np.ndarray, "sample coordinate"]
     """[m/s, rad/s]."""
@@ -73,7 +73,7 @@ def residual_table(
         parts.keep & (parts.time >= 0.5 * (start_time + parts.time[-1])),
     )
     rows = [
-        _row(parts.flow[:, k], parts.added[:, k], parts.drag[:, k], parts.keep, halves, period / parts.step)
+        _row(parts.flow[:, k], parts.added_mass[:, k], parts.drag[:, k], parts.keep, halves, period / parts.step)
         for k in range(len(parts.names))
     ]
     names = (
@@ -98,7 +98,7 @@ class SectionComparison(NamedTuple):
     """Whether each sample counts [-]."""
     flow: Float[np.ndarray, "sample part"]
     """Force of the flow across each link, moment at each joint [N, N m]."""
-    added: Float[np.ndarray, "sample part"]
+    added_mass: Float[np.ndarray, "sample part"]
     """The sections' part by the acceleration, with what is shed."""
     drag: Float[np.ndarray, "sample part"]
     """Their part by the speed."""
@@ -168,7 +168,7 @@ def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:
 
 def _lateral_loads(loads: SectionLoads, motion: RecordedMotion) -> np.ndarray:
     """Return the force across each link, to the left of the root's heading, and the moments, shape (sample, part)."""
-    yaw = motion.place[:, 2, None]
+    yaw = motion.position[:, 2, None]
     lateral_force = -np.sin(yaw) * loads.links[:, :, 0] + np.cos(yaw) * loads.links[:, :, 1]
     return np.column_stack([lateral_force, loads.joints])
 

@@ -51,7 +51,7 @@ def simulate(
         Unwritable: a run cannot be kept.
     """
     runs = tuple(runs)
-    flow_indices = [i for i, run in enumerate(runs) if run.solved is not None]
+    flow_indices = [i for i, run in enumerate(runs) if run.solved_flow is not None]
     if not flow_indices:
         return land.simulate(runs, duration=duration, timestep=timestep, sample_stride=sample_stride, progress=progress)
     check_checkpoint_folder("" if keep is None else str(keep))

@@ -91,6 +91,8 @@ _CHANGING = {
     "start_added": "_start_added",
 }
 """Attributes that change during a swim, by their names in a checkpoint."""
+_POSTURE_FIELDS = {"place": "position", "rate": "rate"}
+"""Fields of a ``ChainState``, by their names in a checkpoint."""
 _WIDER = 1.25
 """Swing for which the box is made, over that of the commanded midline [-]."""
 
@@ -108,7 +110,7 @@ def check_swim(run: Run, duration: float) -> None:
     check_limits(run.robot, run.gait)
     check_faults(run.faults, run.robot, duration)
     check_pushes(run.pushes, run.robot, duration)
-    linked = isinstance(run.solved, Space) and run.solved.linked
+    linked = isinstance(run.solved_flow, Space) and run.solved_flow.linked
     if not linked and not any(hinge.turn == "yaw" for hinge in run.robot.axis_hinges):
         raise InvalidDesign(
             f"robot {run.robot.name!r} has no joint that bends its axis sideways, and the flow is around a body "
@@ -119,8 +121,9 @@ def check_swim(run: Run, duration: float) -> None:
     check_floats(run.robot, Lake(level=run.robot.length))
     for name in ("depth", "pitch"):
         if getattr(run.control, name, None) is not None:
+            flow_name = type(run.solved_flow).__name__.lower()
             raise InvalidDesign(
-                f"the control holds the {name}, and in a {type(run.solved).__name__.lower()} the body stays in its "
+                f"the control holds the {name}, and in a {flow_name} the body stays in its "
                 f'plane: leave out {name}, or take water="sections".'
             )
 
@@ -233,7 +236,7 @@ class Swim:
         begin: Beginning | None = None,
     ) -> None:
         """Set up robot and flow, and compute the added mass."""
-        water = run.solved
+        water = run.solved_flow
         assert water is not None
         self.run, self.water = run, water
         check_swim(run, duration)
@@ -247,27 +250,29 @@ class Swim:
             run, None if self._linked else self.outline.joints, self.timestep, self.ticks, controller=controller,
             begin=begin,
         )  # fmt: skip
-        start = self.stepper.now.place
+        start = self.stepper.coordinates.position
         self.chain: MidlineChain | LinkChain = (
             LinkChain(run.robot, self.stepper.links, start[:3])
             if self._linked
             else MidlineChain(self.outline, water.parts, (float(start[0]), float(start[1])))
         )
-        self.path = self.chain.way(0.0, self._flow_state(self.stepper.now))
+        self.path = self.chain.start_path(0.0, self._flow_state(self.stepper.coordinates))
         self.sim = flow.Simulation(self._setup(), thread_count=thread_count)
         self.series = Series()
         self._effort = 0.0
         self._force = np.zeros(self.chain.size)
         self._push = np.zeros(self.chain.size)
         self._residual_impulse = np.zeros(self.chain.size)  # impulse of the water that the robot has not been given yet
-        self._momentum_defect = np.zeros(self.stepper.axes)  # see ``Stretch.strayed``; of the last step
+        self._momentum_defect = np.zeros(
+            self.stepper.axis_count
+        )  # see ``StepInterval.momentum_defect``; of the last step
         self._added_mass = np.zeros((self.chain.size, self.chain.size))
         self._implicit_added_mass = self._added_mass
         self._computed: np.ndarray | None = None
         self._max_force, self._strikes = 0.0, 0
         self._greatest_momentum = 0.0
         self._warned_joints: set[str] = set()
-        self._flow_posture = self.path.at(0.0)  # posture for which the water was told last where the body is
+        self._flow_posture = self.path.posture_at(0.0)  # posture for which the water was told last where the body is
         self.samples = Samples()
         """What a ``watch`` of ``go`` keeps; a checkpoint holds it too."""
         self._renew()
@@ -372,15 +377,15 @@ class Swim:
 
     def _flow_state(self, state: CoordinateState) -> ChainState:
         """Return a state of the robot in the frame of the flow."""
-        return self.chain.seen(state.place, state.rate)
+        return self.chain.flow_state(state.position, state.rate)
 
     @property
     def _origin(self) -> np.ndarray:
-        return np.array(self.sim.frame[0, : self.chain.axes])
+        return np.array(self.sim.frame[0, : self.chain.axis_count])
 
     def _water_force(self, began: ChainState, posture: ChainState) -> np.ndarray:
         """Return the generalised force of the water in the last step, in the robot's own coordinates."""
-        loads, place = self.sim.last_loads(self.run.robot.name), 0.5 * (began.place + posture.place)
+        loads, place = self.sim.last_loads(self.run.robot.name), 0.5 * (began.position + posture.position)
         return self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
 
     # --- going on ----------------------------------------------------------------------------------------------
@@ -401,23 +406,26 @@ class Swim:
         The argument ``anew`` forces it: corrections that do not converge show that the added mass is not valid any
         more.
         """
-        posture = self.path.at(self.time)
+        posture = self.path.posture_at(self.time)
         is_first_step = len(self.series.time) == 1
         reference_place = None if is_first_step or anew else self._computed
-        if reference_place is not None and self.chain.turned(posture.place, reference_place) < self.water.renewed:
+        if (
+            reference_place is not None
+            and self.chain.rotation_between(posture.position, reference_place) < self.water.renewed
+        ):
             return
-        self._computed = posture.place
+        self._computed = posture.position
         previous_mass = self._added_mass
-        modes = self.chain.modes(posture.place, self._origin, self._axes)
+        modes = self.chain.modes(posture.position, self._origin, self._axes)
         added_mass = self.sim.added_mass(self.run.robot.name, modes)
-        internal_mass = self.chain.unpressed(posture.place, added_mass.internal_pressure, self._origin)
+        internal_mass = self.chain.unpressed(posture.position, added_mass.internal_pressure, self._origin)
         water_mass = added_mass.matrix - 0.5 * (internal_mass + internal_mass.T)
         self._added_mass = never_negative(self._times * self.chain.of_robot(water_mass), self.stepper.mass())
         if len(self.series.time):
             inertia = self.stepper.mass() + previous_mass
             eigenvalues = np.linalg.eigvals(np.linalg.solve(inertia, self._added_mass - previous_mass))
             self.series.radius.append((self.time, float(np.abs(eigenvalues).max())))
-        self._implicit_added_mass = self.stepper.burden(self._added_mass)
+        self._implicit_added_mass = self.stepper.set_added_mass(self._added_mass)
 
     def _newton(self) -> np.ndarray:
         """Return the derivative of the missing acceleration with respect to the guess, without the servos."""
@@ -434,7 +442,7 @@ class Swim:
         Returns the state at the end, the mean acceleration, and the force beyond the implicit part. The rounds end when
         the acceleration agrees with ``guess``. Broyden's method updates ``newton`` in place.
         """
-        h, start_rate = count * self.timestep, self.stepper.at_begin.rate
+        h, start_rate = count * self.timestep, self.stepper.initial_coordinates.rate
         explicit_mass = self._added_mass - self._implicit_added_mass
         missing = change = np.zeros_like(push)
         for round_ in range(_MAX_ROUNDS):
@@ -468,7 +476,7 @@ class Swim:
     def _adrift(self, impulse: np.ndarray) -> float:
         """Return the norm of an impulse on the whole robot over its greatest momentum so far [-]."""
         max_momentum = self._greatest_momentum
-        return float(np.linalg.norm(impulse[: self.stepper.axes])) / max_momentum if max_momentum > 0.0 else 0.0
+        return float(np.linalg.norm(impulse[: self.stepper.axis_count])) / max_momentum if max_momentum > 0.0 else 0.0
 
     def step(self, end_time: float) -> None:
         """Take one step of the flow and of the robot that ends at a time or before it [s].
@@ -493,8 +501,8 @@ class Swim:
         max_steps = max(int(allowed / self.timestep), 1)
         if self._linked:
             max_steps = incommensurate_steps(max_steps, round(stepper.period / self.timestep))
-        count = stepper.until(end_time, max_steps, MAX_EVENED_STEPS)
-        h, start, began = count * self.timestep, self.time, self._flow_state(stepper.now)
+        count = stepper.steps_until(end_time, max_steps, MAX_EVENED_STEPS)
+        h, start, began = count * self.timestep, self.time, self._flow_state(stepper.coordinates)
         stepper.begin()
         newton = self._newton()
         foreseen = self._momentum_defect
@@ -521,12 +529,12 @@ class Swim:
         self._max_force = max(self._max_force, self._size(water_force))
         residual = first_residual = self._size(water_force - applied_force) / max(self._max_force, 1e-300)
         stretch, correction_count, mass = stepper.account(), 0, stepper.mass()
-        residual_impulse = _lessened(h * (water_force - applied_force), stretch.strayed - foreseen)
+        residual_impulse = _lessened(h * (water_force - applied_force), stretch.momentum_defect - foreseen)
         while (
             correction_count < self.water.corrections
             and max(residual, self._adrift(residual_impulse)) > self.water.tolerance
         ):
-            foreseen = stretch.strayed
+            foreseen = stretch.momentum_defect
             base_force, base_acceleration = water_force, push
             likely = push + np.linalg.solve(mass + self._added_mass, water_force - applied_force)
             end, push, extra_force = self._solve_motion(
@@ -535,7 +543,7 @@ class Swim:
             applied_force = base_force - self._added_mass @ (push - base_acceleration) + extra_force
             corrected_posture = self._flow_state(end)
             twist_change = self.chain.twists(
-                posture.place, corrected_posture.rate - posture.rate, self._origin, self._axes
+                posture.position, corrected_posture.rate - posture.rate, self._origin, self._axes
             )
             posture = corrected_posture
             self.path.go(start, began, start + h, posture)
@@ -546,7 +554,7 @@ class Swim:
             )
             residual, correction_count = self._size(water_force - applied_force) / self._max_force, correction_count + 1
             stretch = stepper.account()
-            residual_impulse = _lessened(h * (water_force - applied_force), stretch.strayed - foreseen)
+            residual_impulse = _lessened(h * (water_force - applied_force), stretch.momentum_defect - foreseen)
         self._effort += stretch.effort
         self._note(
             stretch,
@@ -561,7 +569,7 @@ class Swim:
             water_force,
             push,
             residual_impulse,
-            stretch.strayed,
+            stretch.momentum_defect,
         )
         self._watch(residual)
         self._renew(anew=correction_count > 0 and residual > self.water.tolerance)
@@ -571,8 +579,8 @@ class Swim:
 
         The part of the force that depends on accelerations changes within a step, because the servos get new commands.
         """
-        mean = 0.5 * h * (self.stepper.at_begin.rate + self.stepper.now.rate)
-        return float((self._implicit_added_mass @ push) @ (stretch.way - mean))
+        mean = 0.5 * h * (self.stepper.initial_coordinates.rate + self.stepper.coordinates.rate)
+        return float((self._implicit_added_mass @ push) @ (stretch.displacement - mean))
 
     def _note(
         self, stretch: StepInterval, water_force: np.ndarray, fluctuation_work: float, posture: ChainState,
@@ -585,11 +593,16 @@ class Swim:
         power = self._times * float(loads.total.power - loads.total.force @ self._drift())
         series.time.append(self.time)
         series.force.append(water_force)
-        series.links.append(self._times * self.chain.felt(posture.place, loads, self._origin))
+        series.links.append(self._times * self.chain.link_loads(posture.position, loads, self._origin))
         series.residual.append(residual)
         series.corrections.append(correction_count)
-        series.worked.append(
-            (stretch.worked, stretch.yielded, float(water_force @ stretch.way) + fluctuation_work, -power * h)
+        series.work.append(
+            (
+                stretch.servo_work,
+                stretch.passive_work,
+                float(water_force @ stretch.displacement) + fluctuation_work,
+                -power * h,
+            )
         )
         series.energy.append(stretch.energy)
 
@@ -605,7 +618,7 @@ class Swim:
                 f"the body to stay in, more than {OFF_PLANE:g} rad; take a gait that stays in it, "
                 'water=Space(linked=True), or water="sections".'
             )
-        for joint, angle in self.stepper.at_stops.items():
+        for joint, angle in self.stepper.stopped_joints.items():
             if joint not in self._warned_joints:
                 self._warned_joints.add(joint)
                 warnings.warn(
@@ -675,11 +688,11 @@ class Swim:
 
     def state(self) -> store.State:
         """Return all variables of flow and robot that change between two steps."""
-        current_posture = self.path.at(self.time)
+        current_posture = self.path.posture_at(self.time)
         postures = {
-            f"{label}.{name}": getattr(posture, name)
+            f"{label}.{name}": getattr(posture, field)
             for label, posture in (("posture", current_posture), ("placed", self._flow_posture))
-            for name in ChainState._fields
+            for name, field in _POSTURE_FIELDS.items()
         }
         parts = {
             "flow": self.sim.state(), "robot": self.stepper.state(), "series": self.series.state(),
@@ -703,14 +716,20 @@ class Swim:
             return {key.removeprefix(start): value for key, value in state.items() if key.startswith(start)}
 
         self.stepper.resume(component_state("robot"))
-        self._flow_posture, posture = (ChainState(**component_state(name)) for name in ("placed", "posture"))
+        self._flow_posture, posture = (
+            ChainState(**{_POSTURE_FIELDS[key]: values for key, values in component_state(name).items()})
+            for name in ("placed", "posture")
+        )
         self.path.go(self.time, self._flow_posture, self.time, self._flow_posture)
         self.sim.resume(component_state("flow"))
         self.path.go(self.time, posture, self.time, posture)
         self.sim.clear_shape_cache()
         for name, value in component_state("own").items():
             setattr(self, _CHANGING[name], value if value.ndim else value.item())
-        self.series, self.samples = Series.of(component_state("series")), Samples.of(component_state("samples"))
+        self.series, self.samples = (
+            Series.from_state(component_state("series")),
+            Samples.from_state(component_state("samples")),
+        )
 
     # --- what is kept ------------------------------------------------------------------------------------------
 

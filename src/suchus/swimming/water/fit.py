@@ -34,7 +34,7 @@ class Fit:
     """Harmonic of the head's direction: its angle is ``Re(head exp(2 pi i f t))`` [rad]."""
     misfit: float
     """Rms distance of the joints' midline from the wave's, over the greatest swing of the wave's tail [-]."""
-    asked: tuple[float, ...]
+    requested_bends: tuple[float, ...]
     """Greatest bend that the wave asks of each joint where it stands, in the order of ``Outline.joints`` [rad]."""
 
 
@@ -80,7 +80,7 @@ def fit(
     lags = [round(-float(np.angle(bend)) / (2 * np.pi), 12) for bend in bends]
     # a servo behind the root turns the tip right where its angle is positive, and a gait's bends are to the left
     left_lags = [
-        lag if servo.ahead else lag - 0.5 if lag > 0.0 else lag + 0.5
+        lag if servo.is_ahead_of_root else lag - 0.5 if lag > 0.0 else lag + 0.5
         for servo, lag in zip(outline.servos, lags, strict=True)
     ]
     gait = swimming_gait(
@@ -98,7 +98,7 @@ def fit(
             f"bends by {requested_bends[worst_joint]:.2f} rad and the joint by {limits[worst_joint]:.2f} rad at "
             "most: take a longer or a flatter wave."
         )
-    return Fit(gait=gait, head=head, misfit=misfit, asked=tuple(requested_bends.tolist()))
+    return Fit(gait=gait, head=head, misfit=misfit, requested_bends=tuple(requested_bends.tolist()))
 
 
 def _misfit(outline: Outline, gait: Gait, head: complex, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
@@ -106,7 +106,7 @@ def _misfit(outline: Outline, gait: Gait, head: complex, time: np.ndarray, x: np
 
     At every instant both curves have the same mean position.
     """
-    curve = undulation(outline, gait).held(turn=head).curve(time)
+    curve = undulation(outline, gait).with_head_motion(turn=head).curve(time)
     differences = [a - b - (a - b).mean(axis=-1, keepdims=True) for a, b in ((curve.x, x), (curve.y, y))]
     swing = float(np.abs(y[:, -1]).max())
     return float(np.sqrt(np.mean(differences[0] ** 2 + differences[1] ** 2)) / swing) if swing > 0 else 0.0
@@ -116,7 +116,12 @@ def _requested_bends(outline: Outline, heading: np.ndarray) -> np.ndarray:
     """Return the greatest bend of a wave over the length that belongs to each joint [rad]."""
     half = 0.5 * outline.spacings
     ends = [
-        np.array([np.interp(outline.places + side * half, outline.s, instant_heading) for instant_heading in heading])
+        np.array(
+            [
+                np.interp(outline.joint_positions + side * half, outline.s, instant_heading)
+                for instant_heading in heading
+            ]
+        )
         for side in (-1, 1)
     ]
     return np.asarray(np.abs(ends[1] - ends[0]).max(axis=0))
@@ -187,7 +192,7 @@ class Attempt(NamedTuple):
 
     letter: str
     """Letter of ``kinematics.wave.READINGS``."""
-    fitted: Fit | None
+    fit: Fit | None
     """The nearest motion of the joints, None if they cannot make the wave."""
     refusal: str
     """Why not: the joint and by how much."""

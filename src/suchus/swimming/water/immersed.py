@@ -39,7 +39,7 @@ def immersed(
         grow: time over which the motion grows from nothing [s].
         min_half_width: half-width below which the body is thickened, its ends made round [m].
     """
-    body_motion = undulation(outline, motion).held(sway, turn)
+    body_motion = undulation(outline, motion).with_head_motion(sway, turn)
     half_width = outline.silhouette.half_width
 
     @lru_cache(maxsize=2)  # the flow asks up to ten times for the same two instants of a step
@@ -122,7 +122,7 @@ def trunk(
         turn: harmonic of the head's direction [rad].
     """
     spine = immersed(outline, motion, sway=sway, turn=turn, grow=grow).spine
-    cuts, half_height = tuple(sorted(outline.places.tolist())), half_heights(outline, tail_height)
+    cuts, half_height = tuple(sorted(outline.joint_positions.tolist())), half_heights(outline, tail_height)
     if limbs:
         return flow.Limbed(spine=spine, half_height=half_height, cuts=cuts, limbs=folded_limbs(outline.robot))
     return flow.Trunk(spine=spine, half_height=half_height, cuts=cuts)

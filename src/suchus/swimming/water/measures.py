@@ -21,7 +21,7 @@ class Quarters(NamedTuple):
     """Force to the right [N/m]."""
 
     @classmethod
-    def each(cls, record: xr.Dataset) -> "list[Quarters]":
+    def from_record(cls, record: xr.Dataset) -> "list[Quarters]":
         """Return the quarters of every cycle but the first of a tethered slice, the last cycle at the end."""
         cycles = [record.isel(settled=i) for i in range(record.sizes["settled"])]
         return [cls(*(cycle[f"quarter_{name}"].values.tolist() for name in cls._fields)) for cycle in cycles]
@@ -54,7 +54,7 @@ class LateralSwing(NamedTuple):
     """Amplitude of the sine [m]."""
     phase_lag: Float[np.ndarray, " station"]
     """Phase lag of the sine behind a cosine that begins with the samples, 0 to 1 [cycle]."""
-    share: Float[np.ndarray, " station"]
+    variance_fraction: Float[np.ndarray, " station"]
     """Fraction of the variance about the mean line that the sine has [-]."""
 
 
@@ -81,7 +81,7 @@ class Sway(NamedTuple):
     """Twice the standard deviation of what is left of the track about its mean line without that sine [m]."""
 
     @classmethod
-    def of(cls, track: Float[np.ndarray, " sample"], cycles: int) -> "Sway":
+    def from_track(cls, track: Float[np.ndarray, " sample"], cycles: int) -> "Sway":
         """Return the sway of a lateral track over whole cycles, first and last instant included [m].
 
         Raises:
@@ -142,7 +142,7 @@ class SwimMeasures(NamedTuple):
     """Amplitude of the head's direction [rad]."""
 
     @classmethod
-    def of(cls, free: xr.Dataset, frequency: float) -> "SwimMeasures":
+    def from_record(cls, free: xr.Dataset, frequency: float) -> "SwimMeasures":
         """Return the measures of a record of a free slice."""
         speed, power = float(free.speed[-1]), float(free.power[-1])
         return cls(

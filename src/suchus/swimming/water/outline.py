@@ -64,7 +64,7 @@ class LateralServo(NamedTuple):
     """Name of the servo."""
     joints: tuple[int, ...]
     """Its hinges among ``Outline.joints``, which share its bend evenly."""
-    ahead: bool
+    is_ahead_of_root: bool
     """Whether they lie ahead of the root, so that a moment about them is that of what lies toward the snout."""
 
 
@@ -100,16 +100,20 @@ class Outline:
     def joints(self) -> tuple[str, ...]:
         """The hinges that bend the midline sideways: those ahead of the root from there forward, then those behind."""
         place, lateral = layout(self.robot), {h.name for h in self.robot.axis_hinges if h.turn == "yaw"}
-        return tuple(name for name in (*place.hinges[place.ahead], *place.hinges[place.behind]) if name in lateral)
+        return tuple(
+            name
+            for name in (*place.hinges[place.forward_hinges], *place.hinges[place.backward_hinges])
+            if name in lateral
+        )
 
     @cached_property
-    def ahead(self) -> int:
+    def joint_count_ahead(self) -> int:
         """Number of ``joints`` ahead of the root.
 
         A positive angle of such a joint turns the front end left; behind the root it turns the tip right.
         """
         place = layout(self.robot)
-        return sum(name in place.hinges[place.ahead] for name in self.joints)
+        return sum(name in place.hinges[place.forward_hinges] for name in self.joints)
 
     @cached_property
     def servos(self) -> tuple[LateralServo, ...]:
@@ -119,9 +123,11 @@ class Outline:
         joints_by_servo = {
             name: tuple(order[joint] for joint in hinges.get(name, (name,))) for name in lateral_servos(self.robot)
         }
-        return tuple(LateralServo(name, joints, joints[0] < self.ahead) for name, joints in joints_by_servo.items())
+        return tuple(
+            LateralServo(name, joints, joints[0] < self.joint_count_ahead) for name, joints in joints_by_servo.items()
+        )
 
-    def at_servos(self, moments: Float[np.ndarray, "*b joint"]) -> Float[np.ndarray, "*b servo"]:
+    def servo_torques(self, moments: Float[np.ndarray, "*b joint"]) -> Float[np.ndarray, "*b servo"]:
         """Return the torques of ``servos`` for moments about ``joints``, each at its own shaft [N m].
 
         A cable bends its joints equally. Its servo carries the mean of their moments, over the ratio of half the
@@ -149,7 +155,7 @@ class Outline:
         return tuple(cable.name for cable in self.robot.cables)
 
     @cached_property
-    def places(self) -> Float[np.ndarray, " joint"]:
+    def joint_positions(self) -> Float[np.ndarray, " joint"]:
         """Positions of the joints, from the snout [m]."""
         ends = np.cumsum([segment.front + segment.rear for segment in self.robot.axis])
         hinge_positions = {
@@ -166,7 +172,7 @@ class Outline:
         """
         cables = {joint: servo.name for servo in self.servos if servo.name in self._cables for joint in servo.joints}
         drive = ["" if i in self.passive else cables.get(i, "servo") for i in range(len(self.joints))]
-        distances = np.abs(self.places[:, None] - self.places)
+        distances = np.abs(self.joint_positions[:, None] - self.joint_positions)
         np.fill_diagonal(distances, np.inf)
         same_drive_distances = np.where(np.array(drive)[:, None] == np.array(drive), distances, np.inf).min(
             axis=1, initial=np.inf
@@ -174,7 +180,7 @@ class Outline:
         nearest_distances = np.where(
             np.isfinite(same_drive_distances), same_drive_distances, distances.min(axis=1, initial=np.inf)
         )
-        ends = np.minimum(self.places, self.robot.length - self.places)
+        ends = np.minimum(self.joint_positions, self.robot.length - self.joint_positions)
         return np.asarray(np.where(np.isfinite(nearest_distances), nearest_distances, ends))
 
     @cached_property
@@ -201,15 +207,15 @@ class Outline:
         A joint's bend is distributed over some length; its part ahead of the point counts. The sign is negative for
         joints ahead of the root, because they turn the front end to the left.
         """
-        reach_fraction = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
+        reach_fraction = np.clip((s[:, None] - self.joint_positions) / self.reaches, -1.0, 1.0)
         shares = np.asarray(0.5 * (1.0 + reach_fraction + np.sin(np.pi * reach_fraction) / np.pi))
-        shares[:, : self.ahead] *= -1.0
+        shares[:, : self.joint_count_ahead] *= -1.0
         return shares
 
 
 def tail_root(robot: Robot) -> float:
     """Return where the tail of a straight robot begins, at the end of its root's segment, from the snout [m]."""
-    return sum(segment.front + segment.rear for segment in robot.axis[: robot.root_place + 1])
+    return sum(segment.front + segment.rear for segment in robot.axis[: robot.root_index + 1])
 
 
 def cumulative_positions(

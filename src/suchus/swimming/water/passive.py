@@ -83,7 +83,7 @@ class _Load:
         self._mass = water.density * np.pi * half_width * half_height
         lateral_speed = np.abs(self._rate * y + speed * slope)
         self._drag = water.density * water.cross_drag * half_height * 8.0 / (3.0 * np.pi) * lateral_speed
-        self._joints = outline.places[list(outline.passive)]
+        self._joints = outline.joint_positions[list(outline.passive)]
 
     def moments(self, y: np.ndarray, slope: np.ndarray) -> np.ndarray:
         """Return the moments about the passive joints of the water's load beyond them in a lateral motion [N m]."""

@@ -204,7 +204,7 @@ def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.Midline
 
 
 def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
-    """Return the torque of the water at the shaft of each lateral servo; see ``Outline.at_servos`` [N m].
+    """Return the torque of the water at the shaft of each lateral servo; see ``Outline.servo_torques`` [N m].
 
     Every section has the height of the robot and the pressure of the flow in the plane. Real water also flows over and
     under the body, and requires less torque.
@@ -215,7 +215,7 @@ def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.Midline
         midline: where the joints are now.
     """
     height = 2.0 * np.interp(surface.markers.station, outline.s, outline.silhouette.half_height)
-    return outline.at_servos(_moments(outline, surface, midline, height))
+    return outline.servo_torques(_moments(outline, surface, midline, height))
 
 
 def _moments(
@@ -225,9 +225,9 @@ def _moments(
     m = surface.markers
     fx, fy = surface.traction * m.weight * height
     moments = []
-    for i, place in enumerate(outline.places):
+    for i, place in enumerate(outline.joint_positions):
         x, y = np.interp(place, outline.s, midline.x), np.interp(place, outline.s, midline.y)
-        is_beyond = m.station < place if i < outline.ahead else m.station > place
+        is_beyond = m.station < place if i < outline.joint_count_ahead else m.station > place
         moments.append(float(np.sum(((m.x - x) * fy - (m.y - y) * fx)[is_beyond])))
     return np.array(moments)
 

@@ -81,9 +81,9 @@ def resolved_swim(
         pressures along the tail over the last cycle, fields at its quarters; ``quarter_*`` hold what was at the
         quarters of every cycle but the first, which sets the water in motion. *Free, in space*: per cycle ``speed`` and
         ``thrust`` forward and ``power`` on the water; ``joint_torque`` over the last cycle, that of the water on what
-        lies behind each place of ``Outline.places``; wake and vortices at the end. *Tethered, in space*: over the last
-        cycle ``thrust`` forward, ``aside`` to the right, ``power`` on the water, their means per cycle, ``sway`` [m]
-        and ``turn`` [rad] of the head, cosine and sine.
+        lies behind each of ``Outline.joint_positions``; wake and vortices at the end. *Tethered, in space*: over the
+        last cycle ``thrust`` forward, ``aside`` to the right, ``power`` on the water, their means per cycle, ``sway``
+        [m] and ``turn`` [rad] of the head, cosine and sine.
 
     Raises:
         OutsideLimits: the joints or servos cannot follow the motion.

@@ -50,7 +50,7 @@ class Samples:
         return {f"{series}/{name}": values for series in self._series for name, values in self.series(series).items()}
 
     @classmethod
-    def of(cls, state: Mapping[str, np.ndarray]) -> "Samples":
+    def from_state(cls, state: Mapping[str, np.ndarray]) -> "Samples":
         """Return the samples of a state that ``state`` returned."""
         samples = cls()
         for key, values in state.items():
@@ -87,7 +87,7 @@ class Samples:
         state = store.arrays(data, path)
         try:
             end_time, owner_hash = float(state.pop("until")), str(state.pop("about"))
-            series_by_name = self.of(state)._series
+            series_by_name = self.from_state(state)._series
             sound = all(f"{series}/time" in state for series in series_by_name)
         except (ValueError, TypeError, LookupError):
             sound = False

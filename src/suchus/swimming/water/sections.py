@@ -46,13 +46,13 @@ class SectionFlow(NamedTuple):
     """Cells a height of the flow [-]."""
     drag: float
     """Drag coefficient by height Cd of the last period [-]."""
-    added: float
+    added_mass: float
     """Added mass over that of the same section in ideal water, Ca [-]."""
-    drag_before: float
+    previous_drag: float
     """Cd of the period before [-]."""
-    added_before: float
+    previous_added_mass: float
     """Ca of the period before [-]."""
-    left: float
+    residual: float
     """Rms of the force that drag and added mass do not explain, over that of the force [-]."""
     digest: str
     """Of set-up and code of the flow."""
@@ -151,7 +151,7 @@ def held_out_errors(path: Path = TABLE) -> Float[np.ndarray, "point 2"]:
         for section_flow in table(path)
         if (section_flow.aspect, section_flow.keulegan) in HELD_OUT
     }
-    pairs = [(coefficients(*point, path), (flows[point].drag, flows[point].added)) for point in HELD_OUT]
+    pairs = [(coefficients(*point, path), (flows[point].drag, flows[point].added_mass)) for point in HELD_OUT]
     return np.array(
         [[abs(estimate / reference - 1.0) for estimate, reference in zip(*pair, strict=True)] for pair in pairs]
     )

@@ -106,7 +106,7 @@ class SwimSetting:
         """Whether the body itself is resolved, and not a slice of it."""
         return self.axes == 3
 
-    def least_half_width(self, length: float) -> float:
+    def min_half_width(self, length: float) -> float:
         """Return the half-width below which a body of a length [m] is thickened [m]."""
         return self.blunt * length / self.cells
 

@@ -132,7 +132,7 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
 def cycle(outline: Outline, motion: Motion, sway: complex = 0j, turn: complex = 0j) -> MidlineCurve:
     """Return the midline over one cycle, shape (time, station), with given sway of the snout and turn of the head."""
     body_motion = undulation(outline, motion)
-    return body_motion.held(sway, turn).curve(np.arange(_TIMES) / _TIMES / body_motion.frequency)
+    return body_motion.with_head_motion(sway, turn).curve(np.arange(_TIMES) / _TIMES / body_motion.frequency)
 
 
 class Cruise(NamedTuple):

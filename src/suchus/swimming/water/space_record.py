@@ -56,7 +56,7 @@ class FreeInSpace:
             thin=((), sim.thin_fractions[sim.setup.bodies[0].name], {"units": "1"}),
             steps=((), float(len(last_cycle.time)), {"units": "1", "long_name": "in the last cycle"}),
             million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
-            joint_place=("joint", outline.places, {"units": "m"}),
+            joint_place=("joint", outline.joint_positions, {"units": "m"}),
         )
         data = data.assign_coords(servo=servos, cycle=np.arange(1, cycles + 1)).merge(self._loads(sim)).merge(wake(sim))
         return data.merge(self._film.record(samples)).merge(course(sim, samples, period, cycles))
@@ -65,12 +65,12 @@ class FreeInSpace:
         """Return the torques of the last cycle at joints and servos, and the weight."""
         outline, setting = self._swim.outline, self._swim.setting
         last_cycle = sim.record.select_after((setting.cycles - 1) * self._swim.period * (1.0 + SLACK))
-        torques = last_cycle.part_series("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
+        torques = last_cycle.part_series("torque_behind")[:, 1 + np.argsort(np.argsort(outline.joint_positions))]
         return xr.Dataset(
             {
                 "moment": ("moment", last_cycle.time, {"units": "s"}),
                 "joint_torque": (("moment", "joint"), torques, {"units": "N m"}),
-                "servo_torque": (("moment", "servo"), outline.at_servos(torques), {"units": "N m"}),
+                "servo_torque": (("moment", "servo"), outline.servo_torques(torques), {"units": "N m"}),
                 "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
             }
         )
@@ -126,7 +126,7 @@ class TetheredInSpace:
             "thrust": (np.interp(turns, step_times, -force[:, 0]), "N"),
             "aside": (np.interp(turns, step_times, force[:, 1]), "N"),
         }
-        if swim.outline.places.size:  # else it is not divided
+        if swim.outline.joint_positions.size:  # else it is not divided
             parts = np.stack([series.part_series("force_x"), series.part_series("force_y")])
             part_forces = np.array(
                 [[np.interp(turns, step_times, part_force) for part_force in axis.T] for axis in parts]
@@ -153,7 +153,7 @@ class TetheredInSpace:
         outline = self._swim.outline
         spine = sim.setup.bodies[0].shape.spine(time)  # type: ignore[union-attr]
         normals = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
-        edges = np.array([0.0, *np.sort(outline.places), outline.robot.length])
+        edges = np.array([0.0, *np.sort(outline.joint_positions), outline.robot.length])
         push = 0.0
         for part_index, (front, rear) in enumerate(pairwise(edges)):
             if 0.5 * (front + rear) > outline.tail_root:

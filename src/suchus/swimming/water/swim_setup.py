@@ -149,7 +149,7 @@ def body_shape(
         return trunk(
             outline, motion, grow=grow, tail_height=setting.tail_height, limbs=setting.limbs, sway=sway, turn=turn
         )
-    min_half_width = setting.least_half_width(outline.robot.length)
+    min_half_width = setting.min_half_width(outline.robot.length)
     return immersed(outline, motion, sway=sway, turn=turn, grow=grow, min_half_width=min_half_width)
 
 

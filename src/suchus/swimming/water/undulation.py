@@ -62,7 +62,7 @@ class Undulation:
     sway: Complex[np.ndarray, " harmonic"]
     """Way of the snout to the right [m]."""
 
-    def held(self, sway: complex = 0j, turn: complex = 0j) -> "Undulation":
+    def with_head_motion(self, sway: complex = 0j, turn: complex = 0j) -> "Undulation":
         """Return the motion with a first harmonic added to the head's displacement [m] and direction [rad]."""
         middles, stations, snout = self.middles.copy(), self.stations.copy(), self.sway.copy()
         middles[1] += turn

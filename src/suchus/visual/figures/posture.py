@@ -51,8 +51,8 @@ def skeleton(robot: Robot, record: xr.Dataset, time: float) -> Skeleton:
     R, root_position = rotation.matrix(state.orientation.values.astype(float)), state.position.values.astype(float)
     body_frames, marks = frames(robot, angles), landmarks(robot, angles)
     names = [body.name for body in robot_layout.bodies]
-    front_joints = body_frames.places[[names.index(name) for name in robot_layout.trunk[1:]]].reshape(-1, 3)
-    tail_joints = body_frames.places[[names.index(name) for name in robot_layout.tail]].reshape(-1, 3)
+    front_joints = body_frames.positions[[names.index(name) for name in robot_layout.trunk[1:]]].reshape(-1, 3)
+    tail_joints = body_frames.positions[[names.index(name) for name in robot_layout.tail]].reshape(-1, 3)
     legs = [_leg(robot_layout, limb, body_frames, marks.feet[i]) for i, limb in enumerate(robot_layout.limbs)]
     shoulders = [leg[0] for leg in legs[:1]]
     trunk = np.array([*tail_joints[:1], np.zeros(3), *front_joints, *shoulders, marks.snout])
@@ -70,8 +70,8 @@ def _leg(robot_layout: Layout, limb: LimbPlace, body_frames: BodyFrames, foot: n
     first_body = limb.tip - len(limb.girdle.limb.links) + 1
     parent = robot_layout.bodies[first_body].parent
     x, _, z = robot_layout.bodies[first_body].offset
-    midline = body_frames.places[parent] + body_frames.turns[parent] @ np.array([x, 0.0, z])
-    return np.array([midline, *body_frames.places[first_body : limb.tip + 1], foot])
+    midline = body_frames.positions[parent] + body_frames.turns[parent] @ np.array([x, 0.0, z])
+    return np.array([midline, *body_frames.positions[first_body : limb.tip + 1], foot])
 
 
 def silhouette_at(robot: Robot, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:

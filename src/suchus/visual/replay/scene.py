@@ -167,7 +167,7 @@ def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:
             "shape": list(heights.shape),
             "scale": max_height / np.iinfo(np.int16).max,
             "x0": relief.reach[0],
-            "y0": -relief.aside,
+            "y0": -relief.half_width,
             "cell": relief.cell,
         }
     if isinstance(relief, Step):

@@ -241,7 +241,7 @@ class Feedback(Experiment):
         open_loop_laws = [law for law, control in controls.items() if not control.feels and law not in _DISTANCE_LAWS]
         cells = [(law, i) for law in laws for i in range(self.starts) if i == 0 or law not in open_loop_laws]
         runs = [
-            self.tolerances.built(
+            self.tolerances.draw_run(
                 Run(robot=self.robot, gait=self.gait, control=controls[law], seed=self.seed + i), self.seed + i
             )
             for law, i in cells

@@ -28,7 +28,7 @@ SPHEROID = FloatBody(
     half=(0.3, 0.1, 0.08),
     mass=4e3 / 3 * pi * 0.0024,
     inertia=(0.05, 0.2, 0.22),
-    added=(0.1, 0.7, 1.1),
+    added_mass_ratio=(0.1, 0.7, 1.1),
     centre=(0.01, 0.02, -0.01),
 )
 """A neutrally buoyant spheroid whose centre of mass is off its centre."""
@@ -87,7 +87,7 @@ def draft_of(body: FloatBody) -> float:
     tank = FloatTank(body, SURFACE_LAKE)
 
     def net(depth: float) -> float:
-        tank.place((0.0, 0.0, -depth))
+        tank.set_pose((0.0, 0.0, -depth))
         return float(tank.data.userdata[FORCE + 2]) - body.mass * GRAVITY
 
     half_height = body.half[2] * (1 - 1e-12)
@@ -108,11 +108,14 @@ def simulate_heave(
     waterline_area = 0.3 * 0.15 * 4
     # half submerged, the box is as heavy as the displaced water, and the added mass counts in the same proportion
     body = replace(
-        BOX, added=(0.0, 0.0, added_mass_ratio), centre=(0.0, 0.0, 0.0), mass=0.5 * WATER.density * BOX.volume
+        BOX,
+        added_mass_ratio=(0.0, 0.0, added_mass_ratio),
+        centre=(0.0, 0.0, 0.0),
+        mass=0.5 * WATER.density * BOX.volume,
     )
     exact = 2 * pi * sqrt((1 + added_mass_ratio) * body.mass / (WATER.density * GRAVITY * waterline_area))
     tank = FloatTank(body, SURFACE_LAKE, timestep=timestep)
-    tank.place((0.0, 0.0, amplitude))
+    tank.set_pose((0.0, 0.0, amplitude))
     return tank.watch(periods * exact, timestep), exact
 
 
@@ -137,7 +140,7 @@ def simulate_rocking(duration: float, integrator: Integrator, timestep: float) -
         rotation.from_axis_angle(np.array([0.0, 1.0, 0.0]), 0.1),
         rotation.from_axis_angle(np.array([1.0, 0.0, 0.0]), 0.4),
     )
-    tank.place((0.0, 0.0, 0.02), quaternion)
+    tank.set_pose((0.0, 0.0, 0.02), quaternion)
     return tank.watch(duration, 0.1)
 
 
@@ -147,7 +150,7 @@ def relative_energy_gain(motion: xr.Dataset) -> float:
     Equilibrium is the state of least potential energy: BOX upright and half submerged.
     """
     rest_tank = FloatTank(BOX, SURFACE_LAKE)
-    rest_tank.place((0.0, 0.0, 0.0))
+    rest_tank.set_pose((0.0, 0.0, 0.0))
     energy = motion.energy.values
     return float((energy.max() - energy[0]) / (energy[0] - rest_tank.energy()))
 
@@ -161,7 +164,7 @@ def simulate_drift(integrator: Integrator, timestep: float) -> xr.Dataset:
     """
     tank = FloatTank(SPHEROID, DEEP_LAKE, timestep=timestep, integrator=integrator)
     tank.model.opt.gravity[:] = 0.0
-    tank.place((0.0, 0.0, 0.0), velocity=(0.5, 0.2, 0.1), spin=(0.8, 0.5, -1.0))
+    tank.set_pose((0.0, 0.0, 0.0), velocity=(0.5, 0.2, 0.1), spin=(0.8, 0.5, -1.0))
     return tank.watch(2.0, 0.1)
 
 
@@ -203,7 +206,7 @@ def volume_errors(body: FloatBody, poses: int, points: int) -> np.ndarray:
     tank, errors = FloatTank(body, SURFACE_LAKE), []
     for turn, depth in zip(rng.normal(size=(poses, 4)), rng.uniform(-0.12, 0.12, poses), strict=True):
         quaternion = turn / np.linalg.norm(turn)
-        tank.place((0.0, 0.0, -depth), quaternion)
+        tank.set_pose((0.0, 0.0, -depth), quaternion)
         height = rotation.rotate(quaternion, cloud)[:, 2] - depth
         errors.append(tank.statics()[0] / body.volume - float((height < 0).mean()))
     return np.abs(errors)
@@ -215,15 +218,15 @@ def public_table() -> dict[str, float]:
     The keys are ``neutral`` [m/s2], ``ballast`` [N] and ``keel`` [rad/s2].
     """
     neutral = FloatTank(CENTERED_SPHEROID, DEEP_LAKE)
-    neutral.place((0.0, 0.0, 0.0))
+    neutral.set_pose((0.0, 0.0, 0.0))
     float_ = FloatBody(
         shape="box", half=(0.15, 0.15, 0.15), mass=WATER.density * 0.027 + BALLAST_MASS, inertia=_UNIT_INERTIA
     )
     ballasted = FloatTank(float_, DEEP_LAKE)
-    ballasted.place((0.0, 0.0, 0.0))
+    ballasted.set_pose((0.0, 0.0, 0.0))
     hull = keeled_hull()
     keel = FloatTank(hull, DEEP_LAKE)
-    keel.place((0.0, 0.0, 0.0), rotation.from_axis_angle(np.array([1.0, 0.0, 0.0]), radians(45)))
+    keel.set_pose((0.0, 0.0, 0.0), rotation.from_axis_angle(np.array([1.0, 0.0, 0.0]), radians(45)))
     return {
         "neutral": float(neutral.acceleration[0][2]),
         "ballast": float(ballasted.acceleration[0][2]) * float_.mass,
@@ -231,7 +234,7 @@ def public_table() -> dict[str, float]:
     }
 
 
-CENTERED_SPHEROID = replace(SPHEROID, centre=(0.0, 0.0, 0.0), added=(0.0, 0.0, 0.0))
+CENTERED_SPHEROID = replace(SPHEROID, centre=(0.0, 0.0, 0.0), added_mass_ratio=(0.0, 0.0, 0.0))
 """A neutrally buoyant spheroid whose centre of mass is its centre."""
 
 

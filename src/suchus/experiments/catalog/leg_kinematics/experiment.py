@@ -88,7 +88,7 @@ class LegKinematics(Experiment):
         errors = []
         for gait in (self.gait, self.other_gait):
             phase = np.arange(self.phases)[:, None] / self.phases + np.array(gait.limb_phases)
-            foot_positions = movement(self.robot, gait).foot_places(phase)
+            foot_positions = movement(self.robot, gait).foot_positions(phase)
             legs = [self.robot.front_leg if name in ("LF", "RF") else self.robot.hind_leg for name in LEGS]
             errors.append([_printed_error(limb, foot_positions[:, i]) for i, limb in enumerate(legs)])
         metre = {"units": "m", "long_name": "foot error of (14) along the gait"}

@@ -226,8 +226,8 @@ class PatternGeneratorExperiment(Experiment):
             coords={
                 "drive": drives,
                 "segment": np.arange(1, n + 1),
-                "place": ("segment", [segment.place for segment in segments], {"units": "1"}),
-                "girdle": ("segment", [segment.part.girdle for segment in segments]),
+                "place": ("segment", [segment.axial_position for segment in segments], {"units": "1"}),
+                "girdle": ("segment", [segment.limb_coupling.girdle for segment in segments]),
             },
             attrs={"frequency_scale": self._pace, "length": self.robot.length},
         )

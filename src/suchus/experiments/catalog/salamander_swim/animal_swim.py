@@ -78,7 +78,7 @@ def _midline(robot: Robot, angles: Float[np.ndarray, "time joint"]) -> Float[np.
     """Return snout, joints of the axis and tail tip in the frame of the root [m]."""
     body_frames, marks = frames(robot, angles), landmarks(robot, angles)
     names = [body.name for body in layout(robot).bodies]
-    axis = body_frames.places[:, [names.index(segment.name) for segment in robot.axis]]
+    axis = body_frames.positions[:, [names.index(segment.name) for segment in robot.axis]]
     points = np.concatenate([marks.snout[:, None], axis, marks.tail[:, None]], axis=1)
     order = np.argsort(-points[0, :, 0], kind="stable")
     return np.asarray(points[:, order])

@@ -44,7 +44,7 @@ from suchus.swimming.water import swim_of
 _DRY_LEVEL, _DEEP_LEVEL = -10.0, 3.0
 """Levels of the water: far below dry land, and far above the ground [m]."""
 _WADE = replace(
-    GaitInMetres.near(GAITS["semi_erect"], LIMBS), name="wade", period=1.6, duty_factor=0.5, stroke=0.05,
+    GaitInMetres.from_gait(GAITS["semi_erect"], LIMBS), name="wade", period=1.6, duty_factor=0.5, stroke=0.05,
     hip_height=0.09, limb_phases=(0.0, 0.5, 0.5, 0.0), trunk_bend=0.0, tail_pitch=-0.1,
 ).gait(LIMBS)  # fmt: skip
 """A walk for feet that carry little weight. With a duty factor of a half the feet swing forward no faster than they
@@ -179,7 +179,7 @@ class Shore(Experiment):
         cases = self._cases()
         runs = [run for _, _, run in cases]
         record = simulate(
-            [self.tolerances.built(run, run.seed) for run in runs],
+            [self.tolerances.draw_run(run, run.seed) for run in runs],
             duration=self.duration,
             timestep=self.timestep,
             sample_stride=_SAMPLE_INTERVAL,

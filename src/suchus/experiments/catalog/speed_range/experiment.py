@@ -311,8 +311,8 @@ def _lying_fraction(robot: Robot, excerpt: xr.Dataset) -> float:
         for i in numbers
     ]
     last_body, tip_offset = numbers[-1], -(segments[-1].front + segments[-1].rear)
-    tip = body_frames.places[:, last_body] + tip_offset * body_frames.turns[:, last_body, :, 0]
-    points = np.concatenate([body_frames.places[:, numbers], tip[:, None]], axis=1)
+    tip = body_frames.positions[:, last_body] + tip_offset * body_frames.turns[:, last_body, :, 0]
+    points = np.concatenate([body_frames.positions[:, numbers], tip[:, None]], axis=1)
     up_axis = rotation.upward(sampled.orientation.transpose("time", "wxyz").values)
     height = np.einsum("tk,tpk->tp", up_axis, points) + sampled.position.sel(xyz="z").values[:, None]
     lengths = np.array([segment.front + segment.rear for segment in segments])

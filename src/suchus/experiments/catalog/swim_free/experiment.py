@@ -226,7 +226,7 @@ class SwimFree(Experiment):
     def _doubt_correction(self) -> None:
         """Warn if the requested correction was fitted at another Reynolds number."""
         if self._correction is not None:
-            doubt = self._correction.outside(self.frequency * self.robot.length**2 / Water().viscosity)
+            doubt = self._correction.validity_warning(self.frequency * self.robot.length**2 / Water().viscosity)
             if doubt:
                 warn(doubt, Doubtful, stacklevel=2)
 

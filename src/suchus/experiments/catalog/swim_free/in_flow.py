@@ -59,7 +59,7 @@ def flow_runs(
 
 def is_linked(run: Run) -> bool:
     """Return whether a run's flow is around all pieces of the robot, each with its own pose."""
-    return isinstance(run.solved, Space) and run.solved.linked
+    return isinstance(run.solved_flow, Space) and run.solved_flow.linked
 
 
 def passive_joints(robot: Robot) -> list[str]:
@@ -170,7 +170,7 @@ def swim_in_flow(runs: Sequence[Run], cycles: int, keep: str, progress: Progress
         "link": first_record.link.values, "joint": first_record.joint.values,
         "xyz": first_record.xyz.values, "wxyz": first_record.wxyz.values,
     }  # fmt: skip
-    water = runs[0].solved
+    water = runs[0].solved_flow
     assert water is not None
     period, viscosity = runs[0].gait.period, swims[0].viscosity
     complete_records = [record for record in records if np.isfinite(record.coupling_residual.values[1:]).all()]

@@ -55,7 +55,9 @@ def swim_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progr
         motion: gait at 1 Hz.
         progress: called with the fraction that is done.
     """
-    numbers = SwimMeasures.of(resolved_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
+    numbers = SwimMeasures.from_record(
+        resolved_swim(robot, motion, setting, progress=progress), motion.frequency
+    )._asdict()
     return xr.Dataset({name: ((), numbers[name], {"units": unit}) for name, unit in _SWIM_UNITS.items()})
 
 
@@ -285,7 +287,7 @@ def _amplitudes(robot: Robot, gait: Gait) -> list[str]:
     """Return the amplitudes of the joints of trunk and tail, from the root, in words."""
     yaw, words = movement(robot, gait).yaw, []
     for body_part in ("trunk", "tail"):
-        bends = [f"{bend:.2f}" for bend in yaw.amplitude()[0][yaw.hinges.within(body_part)]]
+        bends = [f"{bend:.2f}" for bend in yaw.amplitude()[0][yaw.hinges.indices_in(body_part)]]
         from_root = bends[::-1] if body_part == "trunk" else bends
         if from_root:
             words.append(f"{body_part} {', '.join(dict.fromkeys(from_root))} rad per joint")

@@ -295,7 +295,7 @@ class PlaneSwims(Experiment):
             [],
         )
         for i, letter in enumerate(further):
-            wave_fit, stage = attempts_by_letter[letter].fitted, portion(progress, i, len(further))
+            wave_fit, stage = attempts_by_letter[letter].fit, portion(progress, i, len(further))
             if wave_fit is None:
                 thrust.append(float("nan"))
                 continue
@@ -361,7 +361,7 @@ def _thrusts(record: xr.Dataset, held_swim: xr.Dataset, reading: str) -> Iterato
 
 def _tethered(held_swim: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     """Yield pressure differences, forces and power of the tethered body at the quarters of the cycle."""
-    cycle_quarters = Quarters.each(held_swim)
+    cycle_quarters = Quarters.from_record(held_swim)
     yield "convex_higher_share", Measure(convex_higher(held_swim), "-")
     yield "power_held", Measure(float(held_swim.cycle_power[1:].mean()), "W/m")
     yield "force_noise", Measure(float(held_swim.noise), "-")
@@ -388,7 +388,7 @@ def _free_swim(
         frequency: of the wave [Hz].
         reynolds: frequency times length squared over viscosity [-].
     """
-    swim_result = SwimMeasures.of(free_swim, frequency)
+    swim_result = SwimMeasures.from_record(free_swim, frequency)
     yield "speed_free", Measure(swim_result.speed, "m/s")
     yield "speed_free_lengths", Measure(swim_result.speed / robot.length, "1/s")
     yield "speed_free_gain_last_cycle", Measure(swim_result.gain, "-")

@@ -530,7 +530,7 @@ def _swaying(centre: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumb
     """Yield the sway amplitude of the centre of mass, and the part of its track that is no sine [body length]."""
 
     def sway(a: int, b: int) -> Sway:
-        return Sway.of(centre[a * TICKS : b * TICKS + 1], b - a)
+        return Sway.from_track(centre[a * TICKS : b * TICKS + 1], b - a)
 
     size = max(sway(1, cycles).amplitude, MIN_VISIBLE_SWAY) if isfinite(centre.sum()) else nan
     yield "track_sway", settle(lambda a, b: [sway(a, b).amplitude], cycles, size)
@@ -556,12 +556,12 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumbe
         )  # so that a mirrored swim gives the same bytes
         swing_fit = swing(side * excerpt, b - a)
         linear, quadratic, waves, share = wave_form(s, swing_fit.amplitude, swing_fit.phase_lag)
-        sine = float(np.average(swing_fit.share, weights=swing_fit.amplitude**2))
+        sine = float(np.average(swing_fit.variance_fraction, weights=swing_fit.amplitude**2))
         return sine * share, waves, abs(0.5 * linear + 0.25 * quadratic), abs(linear + quadratic)
 
     def tip(a: int, b: int) -> list[float]:
         cycle_courses = [course[i * TICKS : (i + 1) * TICKS + 1, -1:] for i in range(a, b)]
-        return [float(np.mean([swing(cycle_course, 1).share[0] for cycle_course in cycle_courses]))]
+        return [float(np.mean([swing(cycle_course, 1).variance_fraction[0] for cycle_course in cycle_courses]))]
 
     is_moving = float(np.ptp(course[:, -1])) > 0.0  # neither NaN nor at rest
     no_number = SettledNumber(nan, nan, nan, nan)

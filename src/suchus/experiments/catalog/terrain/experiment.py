@@ -293,7 +293,7 @@ class Terrain(Experiment):
         """
         grounds, arms = self.grounds(), {name: arm for name, arm in self.arms().items() if name in names or not names}
         runs = [
-            self.tolerances.built(
+            self.tolerances.draw_run(
                 Run(robot=self.robot, gait=gait, control=control, ground=Ground(relief=relief), label=arm, seed=seed),
                 seed,
             )

@@ -73,7 +73,7 @@ class WorkingSpace(Experiment):
                 self.robot, self.gait, standing=state == "standing", count=getattr(self, state), seed=self.seed
             )
             record[f"snout_{state}"] = ((f"kept_{state}", "xyz"), samples.snout, {"units": "m"})
-            record[f"tried_{state}"] = ((), samples.tried, {"units": "1"})
+            record[f"tried_{state}"] = ((), samples.sample_count, {"units": "1"})
             record = record.merge(_highest_posture(self.robot, samples, state))
         return SimulationResult(record=record)
 
@@ -93,8 +93,8 @@ class WorkingSpace(Experiment):
             for name, (size, unit) in extents[state].items():
                 measures |= {
                     f"{name}_{state}": Measure(size.value, unit),
-                    f"{name}_{state}_low": Measure(size.low, unit),
-                    f"{name}_{state}_high": Measure(size.high, unit),
+                    f"{name}_{state}_low": Measure(size.lower_estimate, unit),
+                    f"{name}_{state}_high": Measure(size.upper_estimate, unit),
                 }
             measures[f"highest_{state}"] = Measure(float(snout[:, 2].max()) if len(snout) else float("nan"), "m")
             measures[f"possible_{state}"] = Measure(len(snout) / float(record[f"tried_{state}"]), "-")
@@ -121,8 +121,8 @@ def _quotient(numerator: Extent, denominator: Extent) -> dict[str, float]:
     """Return the ratio of two extents with its bounds; NaN where the denominator is 0."""
     pairs = {
         "": (numerator.value, denominator.value),
-        "_low": (numerator.low, denominator.high),
-        "_high": (numerator.high, denominator.low),
+        "_low": (numerator.lower_estimate, denominator.upper_estimate),
+        "_high": (numerator.upper_estimate, denominator.lower_estimate),
     }
     return {end: a / b if b > 0 else float("nan") for end, (a, b) in pairs.items()}
 

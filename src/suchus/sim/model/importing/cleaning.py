@@ -195,7 +195,7 @@ def _add_link(clean_root: ElementTree.Element, link: ElementTree.Element, meshes
         if geometry is None or not len(geometry):
             continue
         if mesh is not None:
-            asset_name = meshes.given(mesh.get("filename", ""))
+            asset_name = meshes.asset_name(mesh.get("filename", ""))
             if asset_name is None:
                 unread_file = mesh.get("filename", "")
                 continue
@@ -203,7 +203,7 @@ def _add_link(clean_root: ElementTree.Element, link: ElementTree.Element, meshes
         collision = ElementTree.SubElement(copy, "collision")
         collision.extend(e for e in shape if e.tag in ("origin", "geometry"))
     if unread_file and copy.find("collision") is None:
-        meshes.bare[f"link {link.get('name', '')}"] = unread_file
+        meshes.shapeless_bodies[f"link {link.get('name', '')}"] = unread_file
 
 
 def _drive(joint: ElementTree.Element) -> Drive:
@@ -294,7 +294,7 @@ def clean_mjcf(
                     f"the MJCF makes bodies with <{element.tag}>; write them out first, as with mujoco.mj_saveLastXML."
                 )
         clean_root.append(_cleaned(world, _BODY_TAGS, unread_meshes))
-        meshes.bare |= _shapeless_bodies(world, unread_meshes)
+        meshes.shapeless_bodies |= _shapeless_bodies(world, unread_meshes)
     unread_tags = sorted({element.tag for element in root if element.tag not in _UNTOLD})
     if unread_tags:
         remarks += (f"Of the MJCF these are not part of a body and were not read: {', '.join(unread_tags)}.",)
@@ -344,7 +344,7 @@ def _meshes(root: ElementTree.Element, clean_root: ElementTree.Element, meshes: 
         name = element.get("name") or Path(file_name).stem
         attributes = {k: v for k, v in element.attrib.items() if k in ("class", "scale", "refpos", "refquat", "vertex")}
         if file_name or "vertex" not in attributes:
-            asset_name = meshes.given(file)
+            asset_name = meshes.asset_name(file)
             if asset_name is None:
                 unread_meshes[name] = file
                 continue

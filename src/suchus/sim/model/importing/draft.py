@@ -78,7 +78,7 @@ def draft_of(plan: BodyPlan, name: str, words: Words) -> Draft:
             root=root,
             axis=axis,
             girdles=tuple(
-                _seated(girdle, axis[left_chain.on].name, ends[left_chain.on])
+                _seated(girdle, axis[left_chain.axis_index].name, ends[left_chain.axis_index])
                 for girdle, (left_chain, _) in zip(girdles, plan.pairs, strict=True)
             ),
             cables=(),
@@ -91,7 +91,7 @@ def draft_of(plan: BodyPlan, name: str, words: Words) -> Draft:
     notes = {note_path: text for note_path, text in making.notes.items() if note_path not in needless}
     return Draft(
         robot=robot,
-        matches=tuple(sorted(making.matches, key=lambda match: order.index(match.ours))),
+        matches=tuple(sorted(making.matches, key=lambda match: order.index(match.hinge))),
         remarks=(*plan.remarks, *dict.fromkeys([*arms, *making.remarks, *_balance(making, robot)])),
         notes=notes | {f"contact.{key}": text for key, text in _CONTACT.items()},
     )
@@ -149,7 +149,7 @@ def _legs(plan: BodyPlan, words: Words) -> tuple[BodyPlan, list[str]]:
         depth = -lowest_foot_height(draft_girdle(making, number))
         if depth < _LEG * making.size.length:
             pair = plan.pairs[number]
-            parts = " and ".join(plan.part(chain.parts[0]).name for chain in pair)
+            parts = " and ".join(plan.tree_part(chain.parts[0]).name for chain in pair)
             remarks.append(
                 f"{parts} reach {max(depth, 0.0):.3g} m below the axis, so they are arms or fins and were left out; "
                 "their masses went to the part that carries them."
@@ -186,10 +186,12 @@ def draft_axis(making: Making) -> tuple[tuple[Segment, ...], str, list[float]]:
         UnreadableFile: the axis is not drawn stretched.
     """
     plan = making.plan
-    parts = [plan.part(i) for i in plan.axis]
-    root = plan.pairs[-1][0].on if plan.pairs else _free_root(plan)
+    parts = [plan.tree_part(i) for i in plan.axis]
+    root = plan.pairs[-1][0].axis_index if plan.pairs else _free_root(plan)
     groups = [_joints(making, i, root) for i in range(len(parts) - 1)]
-    joint_positions = [float(np.mean([making.into(joint.anchor)[0] for joint, *_ in group])) for group in groups]
+    joint_positions = [
+        float(np.mean([making.to_robot_frame(joint.anchor)[0] for joint, *_ in group])) for group in groups
+    ]
     ends = _ends(making, parts, joint_positions)
     _tell_offsets(making, groups, joint_positions)
     hinges = _hinges(making, groups, root)
@@ -220,17 +222,17 @@ def _hinges(making: Making, groups: Sequence[Sequence[AxisHinge]], root: int) ->
         root: index of the root among the segments.
     """
     plan = making.plan
-    front = plan.pairs[0][0].on if plan.pairs else 0
+    front = plan.pairs[0][0].axis_index if plan.pairs else 0
     words = ["tail" if i >= root else "neck" if i < front else "spine" for i in range(len(groups))]
     order = [*range(root - 1, -1, -1), *range(root, len(groups))]
     flat = [(i, *axis_hinge) for i in order for axis_hinge in groups[i]]
     names = axis_names([(turn, words[i], joint.name) for i, joint, turn, _, _ in flat])
     hinges: list[list[Hinge]] = [[] for _ in plan.axis]
     for (i, joint, turn, sign, _), name in zip(flat, names, strict=True):
-        moving_body = plan.part(plan.axis[i if i < root else i + 1])
+        moving_body = plan.tree_part(plan.axis[i if i < root else i + 1])
         hinge = hinge_of(name, turn, sign, joint, making.size, moving_body.mass / making.heaviest, lone=False)
         making.note_hinge(f"axis[{i}].hinges[{len(hinges[i])}]", hinge, joint, sign)
-        making.matches.append(Match(ours=name, theirs=joint.name, sign=sign, zero=joint.zero))
+        making.matches.append(Match(hinge=name, file_hinge=joint.name, sign=sign, zero=joint.zero))
         hinges[i].append(hinge)
     return [tuple(group) for group in hinges]
 
@@ -251,8 +253,8 @@ def _joints(making: Making, i: int, root: int) -> list[AxisHinge]:
     inner_index, outer_index = (axis[i + 1], axis[i]) if is_ahead else (axis[i], axis[i + 1])
     hinges = []
     for joint, is_outward in links_between(making.plan, inner_index, outer_index):
-        turn, sense = turn_of(joint, making.turned(joint.axis), making.remarks)
-        axis_offset = 0.0 if turn == "yaw" else abs(float(making.into(joint.anchor)[2]))
+        turn, sense = turn_of(joint, making.rotate_to_robot_frame(joint.axis), making.remarks)
+        axis_offset = 0.0 if turn == "yaw" else abs(float(making.to_robot_frame(joint.anchor)[2]))
         hinges.append((joint, turn, axial_sign(turn, sense, is_ahead=is_ahead, is_outward=is_outward), axis_offset))
     return hinges
 
@@ -268,8 +270,8 @@ def _ends(making: Making, parts: list[TreePart], joint_positions: list[float]) -
     limbs = [chain for pair in making.plan.pairs for chain in pair]
 
     def reach(index: int) -> list[float]:
-        hips = [float(making.into(making.hip(chain))[0]) for chain in limbs if chain.on == index]
-        return [*making.into(parts[index].corners)[:, 0].tolist(), *hips]
+        hips = [float(making.to_robot_frame(making.hip(chain))[0]) for chain in limbs if chain.axis_index == index]
+        return [*making.to_robot_frame(parts[index].corners)[:, 0].tolist(), *hips]
 
     front, rear = max(reach(0)), min(reach(len(parts) - 1))
     min_length = _MIN_LENGTH_RATIO * making.size.length
@@ -283,7 +285,9 @@ def _tell_offsets(making: Making, groups: Sequence[Sequence[AxisHinge]], joint_p
     offsets = [(offset, j.name) for group in groups for j, _, _, offset in group]
     for group, joint_position in zip(groups, joint_positions, strict=True):
         offsets += [
-            (abs(float(making.into(j.anchor)[0]) - joint_position), j.name) for j, turn, _, _ in group if turn != "roll"
+            (abs(float(making.to_robot_frame(j.anchor)[0]) - joint_position), j.name)
+            for j, turn, _, _ in group
+            if turn != "roll"
         ]
     max_offset = max(offsets, default=(0.0, ""))
     if max_offset[0] > JOINED * making.size.length:
@@ -320,7 +324,7 @@ def _shapes(making: Making, tree_part: TreePart, front: float, length: float, nu
     for i, piece in enumerate(pieces):
         name = tree_part.name if i == 0 else f"{tree_part.name}_{i + 1}"
         mass = tree_part.mass * piece.volume / volume
-        points = making.into(piece.ends) - start
+        points = making.to_robot_frame(piece.ends) - start
         half = _half(making, piece)
         if len(points) == 2:
             shapes.append(Rod(name=name, start=point(points[0]), end=point(points[1]), radius=half[0], mass=mass))
@@ -338,7 +342,7 @@ def _half(making: Making, piece: ShapePiece) -> tuple[float, float, float]:
 
 
 def _overlaps(making: Making, piece: ShapePiece, front: float, length: float) -> bool:
-    axial = making.into(piece.corners)[:, 0]
+    axial = making.to_robot_frame(piece.corners)[:, 0]
     return bool(axial.min() <= front and axial.max() >= front - length)
 
 
@@ -359,12 +363,16 @@ def draft_girdle(making: Making, number: int) -> Girdle:
     """
     left_chain, right_chain = making.plan.pairs[number]
     left_joints, right_joints = (
-        [j for i in chain.parts for j in making.plan.part(i).joints] for chain in (left_chain, right_chain)
+        [j for i in chain.parts for j in making.plan.tree_part(i).joints] for chain in (left_chain, right_chain)
     )
     count = len(making.plan.pairs)
     name = _NAMES[count][number] if count in _NAMES else f"G{number + 1}"
-    left_turns = [limb_turn(joint, making.turned(joint.axis), 1.0, making.remarks) for joint in left_joints]
-    right_turns = [limb_turn(joint, making.turned(joint.axis), -1.0, making.remarks) for joint in right_joints]
+    left_turns = [
+        limb_turn(joint, making.rotate_to_robot_frame(joint.axis), 1.0, making.remarks) for joint in left_joints
+    ]
+    right_turns = [
+        limb_turn(joint, making.rotate_to_robot_frame(joint.axis), -1.0, making.remarks) for joint in right_joints
+    ]
     if [turn for turn, _ in left_turns] != [turn for turn, _ in right_turns]:
         raise UnreadableFile(
             f"the limbs of {left_joints[0].name} and {right_joints[0].name} have their hinges in another order."
@@ -375,10 +383,10 @@ def draft_girdle(making: Making, number: int) -> Girdle:
     _tell_sides(making, (left_joints, right_joints), [s for _, s in left_turns], [s for _, s in right_turns])
     for side, side_joints, signs in (("L", left_joints, left_turns), ("R", right_joints, right_turns)):
         making.matches += [
-            Match(ours=f"{side}{name}_{label}", theirs=joint.name, sign=sign, zero=joint.zero)
+            Match(hinge=f"{side}{name}_{label}", file_hinge=joint.name, sign=sign, zero=joint.zero)
             for label, joint, (_, sign) in zip(labels, side_joints, signs, strict=True)
         ]
-    hip = making.into(making.hip(left_chain))
+    hip = making.to_robot_frame(making.hip(left_chain))
     if hip[1] < _MIN_HIP_OFFSET:
         placement_text = f"the draft has them {_MIN_HIP_OFFSET:g} m beside it"
         making.remarks.append(f"The hips of girdle {name} lie in the midline; {placement_text}.")
@@ -410,12 +418,12 @@ def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], lab
         labels: name of each hinge without the limb's.
         note_path: place of the limb in the robot's file.
     """
-    parts = [making.plan.part(i) for i in chain.parts]
+    parts = [making.plan.tree_part(i) for i in chain.parts]
     stations: list[tuple[np.ndarray, list[tuple[int, Joint]], list[TreePart]]] = []
     number = 0
     for tree_part in parts:
         for joint in tree_part.joints:
-            anchor = making.into(joint.anchor)
+            anchor = making.to_robot_frame(joint.anchor)
             if not stations or np.linalg.norm(anchor - stations[-1][0]) > _POINT:
                 stations.append((anchor, [], []))
             stations[-1][1].append((number, joint))
@@ -456,7 +464,7 @@ def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], lab
 
 def _link_name(carried_parts: list[TreePart], number: int, chain: LimbChain, making: Making) -> str:
     """Return the name of a link: that of its part without the limb's name, if all its parts begin with that."""
-    names = [making.plan.part(i).name for i in chain.parts]
+    names = [making.plan.tree_part(i).name for i in chain.parts]
     part_name = carried_parts[-1].name if carried_parts else ""
     head, separator, tail = part_name.partition("_")
     has_same_head = all(name.partition("_")[0] == head for name in names)
@@ -474,8 +482,10 @@ def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, note_path: st
         note_path: place of the limb in the robot's file.
     """
     foot_part = parts[-1]
-    balls = [(making.into(piece.centre), float(piece.half[0])) for piece in foot_part.pieces if piece.ball]
-    rods = [(making.into(end), float(p.half[0])) for p in foot_part.pieces if len(p.ends) == 2 for end in p.ends]
+    balls = [(making.to_robot_frame(piece.centre), float(piece.half[0])) for piece in foot_part.pieces if piece.ball]
+    rods = [
+        (making.to_robot_frame(end), float(p.half[0])) for p in foot_part.pieces if len(p.ends) == 2 for end in p.ends
+    ]
     for candidates, reason in ((balls, ""), (rods, "guess: the round end of the link's rod")):
         far_ends = [candidate for candidate in candidates if np.linalg.norm(candidate[0] - knee) > _POINT]
         if far_ends:
@@ -485,7 +495,9 @@ def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, note_path: st
     reach = sum(
         float(np.linalg.norm(outer.joints[0].anchor - inner.joints[0].anchor)) for inner, outer in pairwise(parts)
     )
-    ends = [making.into(point) for point in (*foot_part.points, *(c for p in foot_part.pieces for c in p.corners))]
+    ends = [
+        making.to_robot_frame(point) for point in (*foot_part.points, *(c for p in foot_part.pieces for c in p.corners))
+    ]
     far_end = max(ends, key=lambda end: float(np.linalg.norm(end - knee)), default=knee)
     if np.linalg.norm(far_end - knee) < max(0.1 * reach, _POINT):
         far_end = knee - np.array([0.0, 0.0, reach or 0.2 * making.size.length])
@@ -497,7 +509,7 @@ def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, note_path: st
             "guess: straight down, as long as the links before it"
         )
     elif foot_part.pieces:
-        mean_centre = np.mean([making.into(piece.centre) for piece in foot_part.pieces], axis=0)
+        mean_centre = np.mean([making.to_robot_frame(piece.centre) for piece in foot_part.pieces], axis=0)
         far_end = np.array([*mean_centre[:2], far_end[2]]) if abs(far_end[2] - knee[2]) > _POINT else far_end
         making.remarks.append(f"{foot_part.name} has no ball for a foot; the draft has the foot at its farthest end.")
     radius = _FOOT * max(reach + float(np.linalg.norm(far_end - knee)), _POINT)
@@ -527,8 +539,10 @@ def _tell_sides(
         right_signs: sign of each right hinge against the file.
     """
     for left_joint, right_joint, a, b in zip(*joints, left_signs, right_signs, strict=True):
-        gap = making.into(left_joint.anchor) * np.array([1.0, -1.0, 1.0]) - making.into(right_joint.anchor)
-        line = making.turned(right_joint.axis)
+        gap = making.to_robot_frame(left_joint.anchor) * np.array([1.0, -1.0, 1.0]) - making.to_robot_frame(
+            right_joint.anchor
+        )
+        line = making.rotate_to_robot_frame(right_joint.axis)
         mirror_offset = float(np.linalg.norm(gap - (gap @ line) * line))
         if mirror_offset > _SIDE_TOLERANCE * making.size.length:
             making.remarks.append(

@@ -62,8 +62,10 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
         model, inertia_remarks = _compiled(clean, meshes)
     except SuchusError as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
-    if meshes.lost:
-        remarks += (f"{len(meshes.lost)} meshes were not read: {'; '.join(list(meshes.lost.values())[:3])}.",)
+    if meshes.read_errors:
+        remarks += (
+            f"{len(meshes.read_errors)} meshes were not read: {'; '.join(list(meshes.read_errors.values())[:3])}.",
+        )
     return Loaded(kind=kind, model=model, drives=drives, remarks=(*remarks, *inertia_remarks))
 
 

@@ -25,9 +25,9 @@ _WIDEST = 3.1416  # rad; of a range in a robot's file
 class Match:
     """A hinge of the robot and the one of the file that it was read from."""
 
-    ours: str
+    hinge: str
     """Name in the robot's layout."""
-    theirs: str
+    file_hinge: str
     """Name in the file."""
     sign: float
     """1 where positive angles turn the same way, else -1 [-]."""
@@ -201,11 +201,11 @@ class Making:
     notes: dict[str, str] = field(default_factory=dict)
     """Guesses by the place of the number in the robot's file."""
 
-    def into(self, points: np.ndarray) -> np.ndarray:
+    def to_robot_frame(self, points: np.ndarray) -> np.ndarray:
         """Return points of the file in the robot's frame, shape (..., 3) [m]."""
-        return np.asarray(self.plan.plane.into(points) - np.array([0.0, 0.0, self.level]))
+        return np.asarray(self.plan.plane.to_robot_frame(points) - np.array([0.0, 0.0, self.level]))
 
-    def turned(self, axis: np.ndarray) -> np.ndarray:
+    def rotate_to_robot_frame(self, axis: np.ndarray) -> np.ndarray:
         """Return a direction of the file in the robot's frame, shape (3,) [-]."""
         return np.asarray(self.plan.plane.turn @ axis)
 
@@ -226,14 +226,14 @@ class Making:
         rotated_tensor = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
         self.notes[f"{note_path}.inertia.moments"] = "of the file, as its centre and its products"
         return Inertia(
-            centre=point(self.into(com) - origin),
+            centre=point(self.to_robot_frame(com) - origin),
             moments=point(np.diag(rotated_tensor)),
             products=point(rotated_tensor[[0, 0, 1], [1, 2, 2]]),
         )
 
     def hip(self, chain: LimbChain) -> np.ndarray:
         """Return where a limb begins in the frame of the file, shape (3,) [m]."""
-        return self.plan.part(chain.parts[0]).joints[0].anchor
+        return self.plan.tree_part(chain.parts[0]).joints[0].anchor
 
     def note_hinge(self, note_path: str, hinge: Hinge, joint: Joint, sign: float) -> None:
         """Add notes to a hinge: its name in the file, and which of its values are guesses."""
@@ -255,7 +255,7 @@ class Making:
 
 def making_of(plan: BodyPlan, words: Words) -> Making:
     """Return a draft that has not begun."""
-    corners = plan.plane.into(np.concatenate([plan.part(i).corners for i in plan.axis]))
+    corners = plan.plane.to_robot_frame(np.concatenate([plan.tree_part(i).corners for i in plan.axis]))
     length = max(float(np.ptp(corners[:, 0])), 0.2 * plan.tree.size)
     return Making(
         plan=plan,
@@ -274,7 +274,7 @@ def point(values: np.ndarray) -> Point:
 def _level(plan: BodyPlan) -> float:
     """Return the height of the axis: that of its pitch and roll hinges in the middle, else of the root's origin [m]."""
     heights = [
-        float(plan.plane.into(joint.anchor)[2])
+        float(plan.plane.to_robot_frame(joint.anchor)[2])
         for inner_index, outer_index in zip(plan.axis[:-1], plan.axis[1:], strict=True)
         for joint, _ in links_between(plan, inner_index, outer_index)
         if abs((plan.plane.turn @ joint.axis)[2]) < 0.5
@@ -282,4 +282,4 @@ def _level(plan: BodyPlan) -> float:
     if heights:
         return sorted(heights)[len(heights) // 2]
     root_index = 0 if 0 in plan.axis else plan.axis[0]
-    return float(plan.plane.into(plan.part(root_index).origin)[2])
+    return float(plan.plane.to_robot_frame(plan.tree_part(root_index).origin)[2])

@@ -28,13 +28,13 @@ class Meshes:
         """STL files by the names under which MuJoCo finds them."""
         self.open: list[str] = []
         """Those of ``assets`` that are no closed surfaces."""
-        self.lost: dict[str, str] = {}
+        self.read_errors: dict[str, str] = {}
         """Reason why a mesh was not read, by its name in the file."""
-        self.bare: dict[str, str] = {}
+        self.shapeless_bodies: dict[str, str] = {}
         """The mesh that was lost, by the body that has no other shape."""
         self._size = 0
 
-    def given(self, name: str) -> str | None:
+    def asset_name(self, name: str) -> str | None:
         """Return the name under which MuJoCo finds a mesh of the file; None where it is not read."""
         try:
             mesh_file = self._locate(name)
@@ -42,7 +42,7 @@ class Meshes:
         except NoMeshes:
             raise
         except UnreadableFile as error:
-            self.lost[name] = str(error).rstrip(".")
+            self.read_errors[name] = str(error).rstrip(".")
             return None
         stored_name = next((key for key, stored_data in self.assets.items() if stored_data == stl), None)
         asset = stored_name or f"mesh_{len(self.assets)}.stl"
@@ -57,13 +57,14 @@ class Meshes:
         Raises:
             UnreadableFile: there are such; it names them, and what to do.
         """
-        if not self.bare:
+        if not self.shapeless_bodies:
             return
-        body, name = next(iter(self.bare.items()))
-        others_text = f" and of {len(self.bare) - 1} more" if len(self.bare) > 1 else ""
+        body, name = next(iter(self.shapeless_bodies.items()))
+        others_text = f" and of {len(self.shapeless_bodies) - 1} more" if len(self.shapeless_bodies) > 1 else ""
         raise UnreadableFile(
-            f"the shape of {body}{others_text} is a mesh that was not read: {self.lost[name]}. Say --packages FOLDER "
-            "for the folder in which the package lies, or --without-meshes to have rods in the place of such shapes."
+            f"the shape of {body}{others_text} is a mesh that was not read: {self.read_errors[name]}. "
+            "Say --packages FOLDER for the folder in which the package lies, "
+            "or --without-meshes to have rods in the place of such shapes."
         )
 
     def _locate(self, name: str) -> Path:

@@ -69,7 +69,7 @@ class Plane:
         c, s = _level(self.heading)
         return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
-    def into(self, points: np.ndarray) -> np.ndarray:
+    def to_robot_frame(self, points: np.ndarray) -> np.ndarray:
         """Return points of the file in the robot's frame, shape (..., 3) [m]."""
         return np.asarray((points - self.point) @ self.turn.T)
 
@@ -135,8 +135,8 @@ def _candidates(tree: Tree, front_com: np.ndarray | None, heading: float | None)
 
 def _rank(tree: Tree, plane: Plane, split: Split) -> tuple[bool, int, float]:
     """Return the rank of a plane: not across a slender body, hinges in mirrored branches, length of the body."""
-    paired = [i for pair in split.pairs for branch in pair for i in tree.below(branch)]
-    extent = np.ptp(np.concatenate([plane.into(tree_part.corners) for tree_part in tree.parts]), axis=0)
+    paired = [i for pair in split.pairs for branch in pair for i in tree.subtree(branch)]
+    extent = np.ptp(np.concatenate([plane.to_robot_frame(tree_part.corners) for tree_part in tree.parts]), axis=0)
     hinges = sum(len(tree.parts[i].joints) for i in paired)
     return bool(extent[0] >= _MIN_ASPECT_RATIO * extent[1]), hinges, round(float(extent[0]) / tree.size, 3)
 
@@ -171,17 +171,18 @@ def split_by(tree: Tree, plane: Plane) -> Split:
             single.append(branch)
             continue
         open_branches.remove(twin)
-        lateral = float(np.mean([plane.into(tree.parts[i].com)[1] for i in tree.below(branch)]))
+        lateral = float(np.mean([plane.to_robot_frame(tree.parts[i].com)[1] for i in tree.subtree(branch)]))
         pairs.append((branch, twin) if lateral > 0 else (twin, branch))
     return Split(axis=tuple(axis), pairs=tuple(pairs), single=tuple(single))
 
 
 def _is_in_plane(tree_part: TreePart, plane: Plane, tolerance: float) -> bool:
     """Return whether a part lies in the plane: its centre of mass, and its hinges but those across the plane."""
-    if abs(plane.into(tree_part.com)[1]) > tolerance:
+    if abs(plane.to_robot_frame(tree_part.com)[1]) > tolerance:
         return False
     return all(
-        abs((plane.turn @ j.axis)[1]) > _LEVEL or abs(plane.into(j.anchor)[1]) <= tolerance for j in tree_part.joints
+        abs((plane.turn @ j.axis)[1]) > _LEVEL or abs(plane.to_robot_frame(j.anchor)[1]) <= tolerance
+        for j in tree_part.joints
     )
 
 
@@ -205,14 +206,14 @@ def _twins(
 
 def _branch(tree: Tree, index: int, plane: Plane) -> tuple[int, np.ndarray, np.ndarray]:
     """Return the part that a branch hangs on, and the lines of its hinges."""
-    joints = [joint for i in tree.below(index) for joint in tree.parts[i].joints]
+    joints = [joint for i in tree.subtree(index) for joint in tree.parts[i].joints]
     return tree.parts[index].parent, *_hinge_lines(joints, plane)
 
 
 def _hinge_lines(joints: Sequence[Joint], plane: Plane) -> tuple[np.ndarray, np.ndarray]:
     """Return points and directions of axes of hinges in the plane's coordinates, each of shape (n, 3)."""
     anchors, axes = (np.array([getattr(j, name) for j in joints]).reshape(-1, 3) for name in ("anchor", "axis"))
-    return plane.into(anchors), axes @ plane.turn.T
+    return plane.to_robot_frame(anchors), axes @ plane.turn.T
 
 
 def _meet(
@@ -228,14 +229,14 @@ def _forward(tree: Tree, plane: Plane, front_com: np.ndarray | None) -> tuple[fl
     """Return 1 if the plane's x points forward, else -1, and whether an option or names decide it."""
     if front_com is not None:
         return float(np.sign((plane.turn @ (front_com - tree.com))[0]) or 1.0), True
-    votes, centre = 0.0, plane.into(tree.com)[0]
+    votes, centre = 0.0, plane.to_robot_frame(tree.com)[0]
     for tree_part in tree.parts:
         for name, position in [
             *((n, tree_part.com) for n in tree_part.names),
             *((j.name, j.anchor) for j in tree_part.joints),
         ]:
             says = bool(_FRONT_NAMES.search(name)) - bool(_REAR_NAMES.search(name))
-            votes += says * np.sign(plane.into(position)[0] - centre)
+            votes += says * np.sign(plane.to_robot_frame(position)[0] - centre)
     if votes:
         return float(np.sign(votes)), True
     c, s = _level(plane.heading)
@@ -260,7 +261,7 @@ def _level(degrees: float) -> tuple[float, float]:
 class LimbChain:
     """A limb: parts from the hip to the foot."""
 
-    on: int
+    axis_index: int
     """Place along the axis, from the front, of the part that carries it."""
     parts: tuple[int, ...]
     """Places in the tree."""
@@ -281,7 +282,7 @@ class BodyPlan:
     remarks: tuple[str, ...]
     """What was guessed, and what was not taken."""
 
-    def part(self, index: int) -> TreePart:
+    def tree_part(self, index: int) -> TreePart:
         """Return a part of the tree."""
         return self.tree.parts[index]
 
@@ -305,7 +306,10 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
             continue
         left_path, right_path = (_main(tree, plane, limb_root) for limb_root in (left_root, right_root))
         pairs.append(
-            (LimbChain(on=axis.index(carrier), parts=left_path), LimbChain(on=axis.index(carrier), parts=right_path))
+            (
+                LimbChain(axis_index=axis.index(carrier), parts=left_path),
+                LimbChain(axis_index=axis.index(carrier), parts=right_path),
+            )
         )
     if not pairs and len(axis) == 1:
         single_names = ", ".join(tree.parts[i].name for i, _ in dropped_branches[:4])
@@ -320,13 +324,13 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
     ]
     reasons = dict(dropped_branches)
     for i in omitted_roots:
-        names = [tree.parts[k].name for k in tree.below(i) if k not in plan_parts]
+        names = [tree.parts[k].name for k in tree.subtree(i) if k not in plan_parts]
         reason = reasons.get(i) or ("in the middle, but not between front and rear" if i in split.axis else "a fork")
         remarks.append(
             f"{', '.join(names[:4])}{' ...' if len(names) > 4 else ''} was left out ({reason}); its mass went to the "
             f"part that carries it. {'See --neck and --tail.' if i in split.axis else ''}".rstrip()
         )
-    hips = {pair: plane.into(tree.parts[pair[0].parts[0]].joints[0].anchor)[0] for pair in pairs}
+    hips = {pair: plane.to_robot_frame(tree.parts[pair[0].parts[0]].joints[0].anchor)[0] for pair in pairs}
     return BodyPlan(
         tree=_lumped(tree, plan_parts),
         plane=plane,
@@ -353,11 +357,11 @@ def links_between(plan: BodyPlan, inner: int, outer: int) -> Iterator[tuple[Join
         inner: index of the part nearer to the robot's root.
         outer: index of the other part.
     """
-    if plan.part(outer).parent == inner:
-        for joint in plan.part(outer).joints:
+    if plan.tree_part(outer).parent == inner:
+        for joint in plan.tree_part(outer).joints:
             yield joint, True
     else:
-        for joint in reversed(plan.part(inner).joints):
+        for joint in reversed(plan.tree_part(inner).joints):
             yield joint, False
 
 
@@ -389,7 +393,7 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
             raise UnknownName("body", name, [body_name for tree_part in tree.parts for body_name in tree_part.names])
         if index == 0:
             raise UnreadableFile(f"--leave {name} is the root, which carries everything; name a branch.")
-        removed_parts |= set(tree.below(index))
+        removed_parts |= set(tree.subtree(index))
     if not removed_parts:
         return tree, []
     remaining_parts = [i for i in range(len(tree.parts)) if i not in removed_parts]
@@ -405,7 +409,7 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
 
 def _chain(tree: Tree, plane: Plane, plane_parts: Sequence[int], words: Words) -> tuple[int, ...]:
     """Return the path through the parts in the plane from the foremost to the hindmost one."""
-    ends = {i: plane.into(tree.parts[i].corners)[:, 0] for i in plane_parts}
+    ends = {i: plane.to_robot_frame(tree.parts[i].corners)[:, 0] for i in plane_parts}
     front = (
         _place(tree, words.neck, plane_parts) if words.neck else max(plane_parts, key=lambda i: float(ends[i].max()))
     )
@@ -438,9 +442,9 @@ def _main(tree: Tree, plane: Plane, limb_root: int) -> tuple[int, ...]:
     def rank(index: int) -> tuple[int, float]:
         path = [i for i in _upward(tree, index) if i >= limb_root]
         hinges = sum(len(tree.parts[i].joints) for i in path)
-        return hinges, -float(plane.into(tree.parts[index].corners)[:, 2].min())
+        return hinges, -float(plane.to_robot_frame(tree.parts[index].corners)[:, 2].min())
 
-    branch = tree.below(limb_root)
+    branch = tree.subtree(limb_root)
     end = max((i for i in branch if not any(tree.parts[k].parent == i for k in branch)), key=rank)
     return tuple(i for i in reversed(_upward(tree, end)) if i in branch)
 
@@ -453,7 +457,7 @@ def _lumped(tree: Tree, plan_parts: set[int]) -> Tree:
             masses[tree.parts[i].parent] += masses[i]
             masses[i] = []
     for i in range(len(tree.parts)):  # what lies above the axis hands its mass down
-        child = next((k for k in tree.children(i) if plan_parts & set(tree.below(k))), None)
+        child = next((k for k in tree.children(i) if plan_parts & set(tree.subtree(k))), None)
         if i not in plan_parts and child is not None:
             masses[child] += masses[i]
             masses[i] = []

@@ -102,7 +102,7 @@ def _turn(parts: list[TreePart], plan: BodyPlan, part_index: int, joint_index: i
         return np.asarray(pivot.anchor + rotation.apply(points - pivot.anchor))
 
     limits = None if pivot.range is None else (pivot.range[0] - angle, pivot.range[1] - angle)
-    for i in plan.tree.below(part_index):
+    for i in plan.tree.subtree(part_index):
         joints = list(parts[i].joints)
         for k, joint in enumerate(joints):
             if i != part_index or k > joint_index:

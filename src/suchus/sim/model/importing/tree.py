@@ -199,7 +199,7 @@ class Tree:
         """Return the places of the parts that a part carries."""
         return [i for i, tree_part in enumerate(self.parts) if tree_part.parent == index]
 
-    def below(self, index: int) -> list[int]:
+    def subtree(self, index: int) -> list[int]:
         """Return the places of a part and of all that hangs on it, parents first."""
         indices = [index]
         for i in range(index + 1, len(self.parts)):
