@@ -72,7 +72,7 @@ class Fields:
         Raises:
             InvalidDesign: in space, where ``vorticity_at_centres`` has it.
         """
-        if self.water.axes == 3:
+        if self.water.ndim == 3:
             raise InvalidDesign(
                 "the vorticity at corners is for plane grids, and this one has three axes; take vorticity_at_centres."
             )
