@@ -31,6 +31,7 @@ def simulate(
     duration: float = 9.0,
     timestep: float | None = None,
     sample_stride: int = 1,
+    effort: bool = True,
     progress: Progress = silent,
 ) -> xr.Dataset:
     """Simulate a batch of runs.
@@ -45,11 +46,14 @@ def simulate(
         timestep: of the physics [s], a whole part of the control period; that of the robots' size if None, and where
             one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints.
         sample_stride: keep one sample of so many control periods.
+        effort: whether the record holds what the servos do (``record.EFFORT``), without which there is no work, cost
+            of transport or heat. It needs the sensors in each physics step.
         progress: told the share that is done.
 
     Returns:
         A record with the dimensions ``run`` and ``time`` (see ``record.schema``), the first sample at time 0.
-        Contact forces are means over the control period before each sample, torques those of its last physics step.
+        Contact forces are means over the control period before each sample. ``servo_torque`` is that of its last
+        physics step. What servos do (``record.EFFORT``) is over all physics steps since the sample before.
 
     Raises:
         NoMemory: the memory does not suffice.
@@ -70,7 +74,9 @@ def simulate(
         grouped = [runs[i] for i in members]
         with out_of_memory():
             parts.append(
-                _simulate_group(grouped, ticks, timestep, sample_stride, portion(progress, number, len(groups)))
+                _simulate_group(
+                    grouped, ticks, timestep, sample_stride, portion(progress, number, len(groups)), has_effort=effort
+                )
             )
         order.extend(members)
     parts = with_equal_variables(parts)
@@ -145,7 +151,9 @@ def _groups(runs: Sequence[Run]) -> list[list[int]]:
     return list(groups.values())
 
 
-def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, stride: int, progress: Progress) -> xr.Dataset:
+def _simulate_group(
+    runs: Sequence[Run], ticks: int, timestep: float, stride: int, progress: Progress, *, has_effort: bool
+) -> xr.Dataset:
     """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled.
 
     Args:
@@ -154,16 +162,20 @@ def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, stride: in
         timestep: of the physics [s].
         stride: control periods for each sample [-].
         progress: called with the finished fraction.
+        has_effort: whether the record holds what the servos do.
     """
     loop = Loop(runs, timestep, ticks=ticks + 1)
-    recorder = loop.recorder(ticks // stride + 1)
+    recorder = loop.recorder(ticks // stride + 1, has_effort=has_effort)
     for tick in range(ticks + 1):
         loop.decide()
         if tick % stride == 0:
             recorder.store(tick // stride, loop.command.phase, loop.command.targets)
         if tick < ticks:
-            need_readings = loop.feels or (tick + 1) % stride == 0
-            loop.advance(need_forces=need_readings, need_readings=need_readings)
+            is_sample = (tick + 1) % stride == 0
+            need_readings = loop.feels or is_sample
+            loop.advance(need_forces=need_readings, need_readings=need_readings, need_effort=has_effort)
+            if has_effort and not is_sample:
+                recorder.gather()
         if tick % 16 == 0:
             progress("simulating", tick / ticks)
     progress("simulating", 1.0)

@@ -381,7 +381,7 @@ def paths(record: xr.Dataset, runs: list[Run], interval: int) -> xr.Dataset:
         "ground": shares,
         "walks": walks.astype(float),
         "tilt": np.arccos(np.clip(np.einsum("rti,ri->rt", body_up, ups), -1.0, 1.0)),
-        "power": record.servo_power.values,
+        "power": record.servo_power.sum("servo", skipna=False).values,
     }
     means = ("feet", "ground", "power")
     count = record.sizes["time"] // interval
@@ -490,7 +490,7 @@ def metres(record: xr.Dataset, names: Sequence[str], duration: float) -> xr.Data
                 np.hypot(*displacement_xy.transpose("xyz", "run").values) / duration,
                 {"units": "m/s"},
             ),
-            "metre_power": ("where", excerpt.servo_power.mean("time").values, {"units": "W"}),
+            "metre_power": ("where", excerpt.servo_power.sum("servo").mean("time").values, {"units": "W"}),
             "metre_depth": ("where", depth.values, {"units": "m"}),
             "metre_swing": ("where", np.ptp(np.einsum("rti,ri->rt", tip, lateral_axes), axis=1), {"units": "m"}),
             "metre_weight": ("where", GRAVITY * record.mass.values, {"units": "N"}),
