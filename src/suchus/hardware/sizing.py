@@ -287,7 +287,9 @@ class _Search:
         """Return whether a servo also supplies the torque at its speed, at some places."""
         servo = Servo.of(motor, volts, template=self._robot.servo(names[0]))
         return self.bears(motor, names, demands) and all(
-            torque_use(servo, demand.servo_mean_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values)
+            torque_use(
+                servo, demand.servo_mean_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values
+            )
             < FULL_WOUND
             for demand in demands
             for name in names

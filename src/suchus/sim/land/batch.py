@@ -292,7 +292,13 @@ class SimulationBatch:
 
     @property
     def _decided_by(self) -> dict[str, np.ndarray]:
-        return {"readings": self.readings, "shafts": self._shafts, "qpos": self.qpos, "worked": self.worked, "effort": self.effort}
+        return {
+            "readings": self.readings,
+            "shafts": self._shafts,
+            "qpos": self.qpos,
+            "worked": self.worked,
+            "effort": self.effort,
+        }
 
     def restart(self, sim: int, begin: Beginning) -> None:
         """Put one robot into a state, without pushes, also after it has diverged; the injector handles its faults.
@@ -404,9 +410,7 @@ class SimulationBatch:
     def _meter(self, steps: int) -> Meter:
         """Return the meter of a control period, which is kept from one to the next."""
         if steps not in self._meters:
-            self._meters[steps] = Meter(
-                self.waters.rows, self.sensors, self.velocities, self.torques, self.laws, steps
-            )
+            self._meters[steps] = Meter(self.waters.rows, self.sensors, self.velocities, self.torques, self.laws, steps)
         self._meters[steps].begin()
         return self._meters[steps]
 

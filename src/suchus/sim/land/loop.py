@@ -4,6 +4,7 @@ A batch of runs, a live walk and the learning environments are its clients.
 """
 
 from collections.abc import Sequence
+from functools import partial
 from math import floor
 
 import numpy as np
@@ -153,15 +154,17 @@ class Loop:
             self._advance_late(*late_command)
             return
         targets, _, air_fraction = self.command
-        needs = {"need_forces": need_forces, "need_readings": need_readings, "need_effort": need_effort}
+        advance = partial(
+            self.batch.advance, need_forces=need_forces, need_readings=need_readings, need_effort=need_effort
+        )
         shared = self._deduplication
         shared.part(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
         self.batch.waters.flood(self.time, air_fraction)
         if shared.others.size:
-            self.batch.advance(targets, self.steps, self.time, shared.first, **needs)
+            advance(targets, self.steps, self.time, shared.first)
             self.batch.copy(shared.others, shared.whom)
         else:
-            self.batch.advance(targets, self.steps, self.time, **needs)
+            advance(targets, self.steps, self.time)
         self._count()
 
     def _advance_late(self, previous_targets: np.ndarray, steps: int) -> None:
@@ -174,9 +177,7 @@ class Loop:
         self.batch.advance(targets, self.steps - steps, self.time)
         for mean, early_mean in zip(means, early_means, strict=True):
             mean[:] = early_mean + (1.0 - early_fraction) * mean
-        self.batch.effort[:] = joint_effort(
-            [early_effort, self.batch.effort], [early_fraction, 1.0 - early_fraction]
-        )
+        self.batch.effort[:] = joint_effort([early_effort, self.batch.effort], [early_fraction, 1.0 - early_fraction])
         self._count()
 
     def skip(self, periods: int) -> None:

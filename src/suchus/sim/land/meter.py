@@ -173,9 +173,7 @@ def servo_effort(
     return effort
 
 
-def joint_effort(
-    efforts: Sequence[Float[np.ndarray, "... 6"]], weights: Sequence[float]
-) -> Float[np.ndarray, "... 6"]:
+def joint_effort(efforts: Sequence[Float[np.ndarray, "... 6"]], weights: Sequence[float]) -> Float[np.ndarray, "... 6"]:
     """Return the effort over several intervals from that over each.
 
     Args:

@@ -17,7 +17,7 @@ from suchus.sim.land.lake import lake_text, up_direction
 from suchus.sim.land.meter import joint_effort
 from suchus.sim.land.run import Run
 from suchus.sim.model import ambient, joint_addresses, sensor_names, warming
-from suchus.sim.record import EFFORT, HEAT, WATER, dataset, ground_text
+from suchus.sim.record import EFFORT, WATER, dataset, ground_text
 
 
 class Sensors:

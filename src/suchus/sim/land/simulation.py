@@ -1,7 +1,7 @@
 """Simulate a batch of runs from beginning to end, or one: physics in MuJoCo, a controller for the whole batch."""
 
 from collections.abc import Sequence
-from math import ceil
+from math import ceil, gcd
 
 import numpy as np
 import xarray as xr
@@ -45,7 +45,8 @@ def simulate(
         duration: [s].
         timestep: of the physics [s], a whole part of the control period; that of the robots' size if None, and where
             one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints.
-        sample_stride: keep one sample of so many control periods.
+        sample_stride: keep one sample of at most so many control periods: of the greatest number for which the first
+            second, in which robots settle, and the run end with a sample.
         effort: whether the record holds what the servos do (``record.EFFORT``), without which there is no work, cost
             of transport or heat. It needs the sensors in each physics step.
         progress: told the share that is done.
@@ -66,8 +67,9 @@ def simulate(
         raise InvalidDesign("there are no runs to simulate; give at least one.")
     timestep = _own_step(runs) if timestep is None else timestep
     period = _check(runs, duration, timestep, sample_stride)
-    check_extent(runs, duration, timestep, period, sample_stride)
     ticks = round(duration / period)
+    sample_stride = _even_stride(sample_stride, ticks, round(START / period))
+    check_extent(runs, duration, timestep, period, sample_stride)
     parts, order = [], []
     groups = _groups(runs)
     for number, members in enumerate(groups):
@@ -86,6 +88,18 @@ def simulate(
     record = record.assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=timestep, control_period=period)
     return record
+
+
+def _even_stride(stride: int, ticks: int, start_ticks: int) -> int:
+    """Return the greatest stride up to ``stride`` whose samples include the end of a run and that of its first second.
+
+    Args:
+        stride: control periods for each sample at most [-].
+        ticks: control periods of the run [-].
+        start_ticks: control periods in which robots settle; a run that ends before needs its end alone [-].
+    """
+    common = gcd(ticks, start_ticks) if ticks > start_ticks else ticks
+    return max(candidate for candidate in range(1, stride + 1) if common % candidate == 0)
 
 
 def _own_step(runs: Sequence[Run]) -> float:

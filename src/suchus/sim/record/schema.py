@@ -49,8 +49,8 @@ WATER: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 }
 """Further variables of runs in water, as in ``VARIABLES``.
 
-Force and power are means over the time since the sample before; they hold what the added mass took by the accelerations of the
-physics step before.
+Force and power are means over the time since the sample before. They hold what the added mass took by the accelerations
+of the physics step before.
 """
 
 EFFORT: Mapping[str, tuple[tuple[str, ...], str, str]] = {
