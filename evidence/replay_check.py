@@ -310,7 +310,7 @@ LIMITS: Mapping[str, float] = {
 
 
 def runs() -> list[Run]:
-    """Return the runs that are replayed: each body of the registry in its gaits, and the article's robot with faults."""
+    """Return the runs that are replayed: each body in its gaits, and the article's robot with faults."""
     bodies = [
         Run(robot=robot, gait=gait, label=f"{robot.name} {gait.name}")
         for robot in suchus.ROBOTS.values()

@@ -73,5 +73,5 @@ def test_records_that_cannot_be_replayed_are_refused():
     with pytest.raises(IncompatibleRecord, match="no ground"):
         replay(floats, CAIMAN)
     thinned = simulate([SAMPLE["crawl"]], duration=1.0, sample_stride=10).isel(run=0)
-    with pytest.raises(IncompatibleRecord, match="every 0.1 s from 0 s"):
+    with pytest.raises(IncompatibleRecord, match=r"every 0\.1 s from 0 s"):
         replay(thinned, CAIMAN)

@@ -99,7 +99,7 @@ def test_an_unpowered_servo_does_no_work(robot, crawl_gait):
 
 @pytest.mark.parametrize("gait", ["high_walk", "semi_erect", "low_crawl"])
 def test_work_and_heat_hardly_depend_on_the_time_step(robot, gait):
-    """The sampled torque made the work of the high walk 27 % too small, and that of each step's start is 30 % too great.
+    """The sampled torque makes the work of the high walk a quarter too small; that of each step's start too great.
 
     A control period of 10 ms has two steps at 5 ms: there the motion itself is another, and work differs by up to 4 %.
     """

@@ -50,7 +50,7 @@ class ServoLaws:
         self.limit = np.zeros(shape)
         """Greatest torque of the servo's drive [N m]."""
         self.damping = np.zeros(shape)
-        """Minus the derivative of the torque with respect to the speed, as MuJoCo's implicit step has it [N m s/rad]."""
+        """Loss of torque with speed that MuJoCo's implicit step takes into account [N m s/rad]."""
         self.falling_torque = self.stall_torque / no_load_speed
         """Torque that a speed in its direction takes away, over that speed [N m s/rad]."""
         self.is_implicit = np.ones(len(robots), dtype=bool)
