@@ -162,7 +162,7 @@ def servo_effort(
     power *= applied
     power *= 0.5
     effort[..., POWER], effort[..., ABSOLUTE_POWER] = mean(power), mean(np.abs(power))
-    effort[..., PEAK] = size.max(axis=0)
+    np.minimum(size.max(axis=0), laws.limit, out=effort[..., PEAK])  # an implicit step may go beyond it
     available = np.copysign(laws.falling_torque, applied)
     available *= end_speed
     np.subtract(laws.supplied_torque, available, out=available)

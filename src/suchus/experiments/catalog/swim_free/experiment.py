@@ -415,10 +415,10 @@ class SwimFree(Experiment):
                 "slip": Measure(speed["whole"] / float(record.wave_speed), "-"),
                 "servo_power": Measure(float(whole_swim.servo_power.sum("servo").mean()), "W"),
                 "water_power": Measure(-float(whole_swim.water_power.mean()), "W"),
-                "cost_of_transport": Measure(
+                "net_cost_of_transport": Measure(
                     float(whole_swim.servo_power.sum("servo").mean()) / (weight * absolute_speed), "-"
                 ),
-                "cost_of_transport_water": Measure(
+                "water_cost_of_transport": Measure(
                     -float(whole_swim.water_power.mean()) / (weight * absolute_speed), "-"
                 ),
                 "turn_radius": Measure(
