@@ -377,7 +377,7 @@ def _of_run(run, one: ModelSwimmer, cycles: int) -> SwimPrediction:  # type: ign
     return SwimPrediction(
         frequency=1.0 / period,
         speed=float(speeds[-LAST:].mean()),
-        power=float(run.servo_power.values[last].mean()),
+        power=float(run.servo_power.sum("servo").values[last].mean()),
         periods=tuple(float(value) for value in speeds),
         swing=float(np.ptp(aside - drift)),
         coast=np.nan,

@@ -176,7 +176,7 @@ def test_a_metre_on_land_at_the_surface_and_at_depth_costs_power_over_speed_and_
     assert [found[f"work_per_metre_{where}"].value for where in ("land", "surface", "deep")] == pytest.approx(
         [30, 6, 10]
     )
-    assert found["cost_of_transport_surface"].value == pytest.approx(0.2)
+    assert found["net_cost_of_transport_surface"].value == pytest.approx(0.2)
     assert found["depth_error"].value == pytest.approx(0.03)
     assert found["strouhal_surface"].value == pytest.approx(1.5 * 0.1 / 0.2)
     assert found["froude_deep"].value == pytest.approx(0.1 / (9.81 * 0.8) ** 0.5, rel=1e-3)
@@ -193,14 +193,14 @@ def test_metres_are_read_from_the_last_seconds_along_the_course():
             "tail_tip": (("run", "time", "xyz"), way[None] + aside - [0.3, 0.4, 0.0]),
             "position": (("run", "time", "xyz"), way[None] + [0, 0, 2.4]),
             "water_level": (("run", "time"), np.full((1, 5), 3.0)),
-            "servo_power": (("run", "time"), np.array([[9.0, 9.0, 2.0, 3.0, 4.0]])),
+            "servo_power": (("run", "time", "servo"), np.array([[9.0, 9.0, 2.0, 3.0, 4.0]])[..., None]),
             "mass": ("run", [2.0]),
         },
         {"time": time, "xyz": list("xyz")},
     )
     found = shore.metres(record, ["deep"], 2.0)
     assert found.metre_speed.item() == pytest.approx(0.5)
-    assert found.metre_power.item() == pytest.approx(3.0)
+    assert found.metre_power.item() == pytest.approx(3.5)  # of the two intervals between three samples
     assert found.metre_depth.item() == pytest.approx(0.6)
     assert found.metre_swing.item() == pytest.approx(0.2)
 

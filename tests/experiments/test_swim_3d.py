@@ -313,7 +313,7 @@ def test_measures_are_of_the_finest_grid_and_its_last_cycle():
     assert m["speed_gain"] == pytest.approx(1.0)
     assert m["speed_over_grids"] == pytest.approx(1.0)
     assert m["power_over_grids"] == pytest.approx(-0.5)
-    assert m["cost_of_transport"] == pytest.approx(1.0 / (20.0 * 0.04))
+    assert m["water_cost_of_transport"] == pytest.approx(1.0 / (20.0 * 0.04))
     assert m["strouhal"] == pytest.approx(0.2 / 0.04)
     assert m["slip"] == pytest.approx(0.04)
     assert m["reynolds_of_speed"] == pytest.approx(7000 * 0.04 / ROBOT.length)
@@ -342,10 +342,10 @@ def test_motions_and_tails_are_compared_on_one_grid():
     m = made()
     assert (m["speed_trunk_and_tail"], m["speed_trunk_only"], m["speed_as_printed"]) == (0.02, 0.01, -0.01)
     assert m["speed_tail_0_1"] == 0.06
-    assert m["cost_of_transport_tail_0_1"] == pytest.approx(2.0 / (30.0 * 0.06))
-    assert m["cost_of_transport_as_printed"] > 0
+    assert m["water_cost_of_transport_tail_0_1"] == pytest.approx(2.0 / (30.0 * 0.06))
+    assert m["water_cost_of_transport_as_printed"] > 0
     assert m["speed_limbs_folded"] == 0.015
-    assert m["cost_of_transport_limbs_folded"] == pytest.approx(2.0 / (25.0 * 0.015))
+    assert m["water_cost_of_transport_limbs_folded"] == pytest.approx(2.0 / (25.0 * 0.015))
     told = ASKED.explain(m)
     assert "40.0 mm/s in cycle 2 on 96 cells a length" in told
     assert "10 times as fast" in told

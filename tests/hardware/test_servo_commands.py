@@ -169,13 +169,11 @@ def test_the_allowed_share_and_the_allowed_error_are_thresholds(robot, crawl_gai
 
 
 def test_the_share_at_the_limit_counts_samples_of_each_servo(robot):
-    torque = np.zeros((2, 4, 19))
-    torque[0, 1, 0] = -robot.servo("LF_yaw").torque
-    torque[1, :3, 18] = robot.servo("tail_cable").torque
-    torque[1, 3, 18] = 0.5 * robot.servo("tail_cable").torque
-    still = (("run", "time", "servo"), np.zeros((2, 4, 19)))
+    use = np.zeros((2, 4, 19))
+    use[0, 1, 0] = use[1, :3, 18] = 1.0
+    use[1, 3, 18] = 0.5
     coords = {"servo": list(servo_names()), "time": 0.01 * np.arange(4)}
-    record = xr.Dataset({"servo_torque": (("run", "time", "servo"), torque), "servo_velocity": still}, coords=coords)
+    record = xr.Dataset({"servo_torque_use": (("run", "time", "servo"), use)}, coords=coords)
     share = share_at_limit(robot, record)
     assert share.sizes == {"run": 2, "servo": 19}
     assert share.sel(run=0, servo="LF_yaw") == 0.25

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from suchus.core.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.hardware import cases, loads_of_cases, share_at_limit, size, with_better, with_motors
-from suchus.hardware.loads import FULL_WOUND, measure_loads, torque_use, use_of_each
+from suchus.hardware.loads import FULL_WOUND, measure_loads, torque_use
 from suchus.hardware.sizing import FACTORS, does, families_of, places, use
 from suchus.robot.design import Servo, layout, servo_names, with_servos
 from suchus.robot.design.motor import COPPER
@@ -40,19 +40,21 @@ def made(robot, torque, speed, target=0.0):
     def each(values):
         return (("time", "servo"), np.repeat(np.broadcast_to(values, count)[:, None], len(names), axis=1))
 
-    data = {"servo_torque": each(torque), "servo_velocity": each(speed)}
+    torque, speed = np.broadcast_to(torque, count), np.broadcast_to(speed, count)
+    use = np.abs(torque) / robot.servo("LF_yaw").given(np.sign(torque) * speed)
+    data = {
+        "servo_velocity": each(speed), "servo_mean_torque": each(torque), "servo_mean_square_torque": each(torque**2),
+        "servo_power": each(torque * speed), "servo_absolute_power": each(np.abs(torque * speed)),
+        "servo_peak_torque": each(np.abs(torque)), "servo_torque_use": each(use),
+    }  # fmt: skip
     data |= {"servo_target": each(target), "servo_angle": each(0.0)}
     return xr.Dataset(data, coords={"servo": names, "time": 1.0 + 0.01 * np.arange(count)}, attrs={"step": 0.002})
 
 
-def test_what_a_servo_uses_is_told_by_its_line(bought):
+def test_a_servo_is_at_its_limit_in_the_periods_in_which_it_uses_all_of_its_torque(bought):
     servo = bought.servo("LF_yaw")
     speed = 3.0
     given = float(servo.available_torque(np.array(speed)))
-    record = made(bought, np.full(50, 0.5 * given), np.full(50, speed))
-    assert use_of_each(bought, record).sel(servo="LF_yaw").values == pytest.approx(0.5)
-    braking = made(bought, np.full(50, -0.5 * servo.torque), np.full(50, speed))
-    assert use_of_each(bought, braking).sel(servo="LF_yaw").values == pytest.approx(0.5)
     full = made(bought, np.r_[np.full(2, given), np.full(48, 0.9 * given)], np.full(50, speed))
     assert float(share_at_limit(bought, full).sel(servo="LF_yaw")) == pytest.approx(2 / 50)
     assert torque_use(servo, np.full(50, 0.5 * given), np.full(50, speed)) == pytest.approx(0.5)

@@ -18,9 +18,12 @@ from suchus.sim.metrics import (
     lateral_bend,
     line_distance,
     line_distance_max,
+    net_cost_of_transport,
+    net_work,
     path_length,
     path_speed,
     peak_torque,
+    rms_torque,
     roll_peak_to_peak,
     sensed_phase,
     slip,
@@ -39,6 +42,7 @@ from suchus.sim.metrics import (
     two_feet_share,
     work,
 )
+from suchus.sim.record import EFFORT
 
 TIME = np.arange(0, 901) * 0.01
 LEGS = ["LF", "RF", "LH", "RH"]
@@ -60,6 +64,7 @@ def hand_made(**changes) -> xr.Dataset:
         "tail_tip": (("time", "xyz"), np.tile([-0.5, 0.0, 0.01], (n, 1))),
         "servo_torque": (("time", "servo"), np.zeros((n, 2))),
         "servo_velocity": (("time", "servo"), np.zeros((n, 2))),
+        **{name: (dims, np.zeros((n, 2))) for name, (dims, _, _) in EFFORT.items()},
         "limb_phase": (("time", "leg"), np.tile([0.0, 0.5, 0.5, 0.0], (n, 1))),
         "mass": ((), 2.0),
         "period": ((), 4.0),
@@ -159,12 +164,20 @@ def test_a_foot_slips_by_what_it_slides_times_what_it_carries():
 
 
 def test_work_counts_braking_as_much_as_driving():
-    torque = np.column_stack([np.full(len(TIME), 2.0), np.full(len(TIME), -1.0)])
-    rate = np.column_stack([np.full(len(TIME), 0.5), np.full(len(TIME), 0.25)])
-    record = hand_made(servo_torque=torque, servo_velocity=rate, centre_of_mass=moving(x=0.2 * TIME))
+    """One servo drives with 1 W, another brakes with 0.25 W; what happened before the window does not count."""
+    each = np.ones((len(TIME), 1))
+    power, peaks = each * [1.0, -0.25], each * [2.0, 1.0]
+    power[TIME <= START + 1e-9] = peaks[TIME <= START + 1e-9] = 99.0
+    record = hand_made(
+        servo_power=power, servo_absolute_power=np.abs(power), servo_peak_torque=peaks,
+        servo_mean_square_torque=peaks**2, centre_of_mass=moving(x=0.2 * TIME),
+    )  # fmt: skip
     assert float(work(record)) == pytest.approx(8 * 1.25)
+    assert float(net_work(record)) == pytest.approx(8 * 0.75)
     assert float(cost_of_transport(record)) == pytest.approx(10.0 / (2.0 * 9.81 * 1.6))
+    assert float(net_cost_of_transport(record)) == pytest.approx(6.0 / (2.0 * 9.81 * 1.6))
     assert peak_torque(record).values == pytest.approx([2.0, 1.0])
+    assert rms_torque(record).values == pytest.approx([2.0, 1.0])
 
 
 def test_support_is_the_hull_of_the_standing_feet():

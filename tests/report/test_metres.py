@@ -11,7 +11,7 @@ def result(**measures):
 
 
 SHORE = result(
-    speed_land=(0.1, "m/s"), work_per_metre_land=(30.0, "J/m"), cost_of_transport_land=(0.86, "-"),
+    speed_land=(0.1, "m/s"), work_per_metre_land=(30.0, "J/m"), net_cost_of_transport_land=(0.86, "-"),
     speed_deep=(0.16, "m/s"), work_per_metre_deep=(7.5, "J/m"),
     speed_surface=(None, "m/s"), work_per_metre_surface=(6.0, "J/m"),
     speed_wading=(0.2, "m/s"),

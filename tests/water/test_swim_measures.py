@@ -94,7 +94,7 @@ def test_a_swim_in_numbers():
     assert swum.gain == pytest.approx(1 / 3)
     assert swum.slip == pytest.approx(0.25)
     assert swum.strouhal == pytest.approx(2.0 * 0.2 / 0.4, rel=1e-6)
-    assert swum.cost_of_transport == pytest.approx(0.2)
+    assert swum.water_cost_of_transport == pytest.approx(0.2)
     assert swum.head_yaw == pytest.approx(0.2)
     assert efficiency(5.0, 0.4, 8.0) == pytest.approx(0.25)
 
@@ -128,7 +128,7 @@ def test_a_survey_follows_frequency_and_amplitude(robot):
     assert np.all(speed[:, 2] < 0.6 * speed[:, 1])
     assert found.possible.values.tolist() == [True, True, True, False]
     assert np.all((found.efficiency > 0) & (found.efficiency < 1))
-    assert np.all(found.cost_of_transport > 0)
+    assert np.all(found.water_cost_of_transport > 0)
 
 
 def test_the_greatest_amplitude_is_the_last_that_can_be_followed(robot):

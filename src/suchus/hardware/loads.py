@@ -236,76 +236,60 @@ def measure_loads(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None
         walk: the part that counts.
         strong_walk: the same of ``with_strong_servos`` servos; that of the robot itself if None.
     """
-    use, elapsed_time = use_of_each(robot, walk), walk.time.values - START
-    required_torque = np.abs((walk if strong_walk is None else strong_walk).servo_torque)
+    use, elapsed_time = walk.servo_torque_use, walk.time.values - START
+    required_torque = (walk if strong_walk is None else strong_walk).servo_peak_torque
     tracking_error = np.abs(walk.servo_target - walk.servo_angle)
     load_by_servo = {}
     for name in layout(robot).servos:
         servo, servo_record = robot.servo(name), walk.sel(servo=name)
-        torque, speed = servo_record.servo_torque.values, servo_record.servo_velocity.values
+        peaks, speed = servo_record.servo_peak_torque.values, servo_record.servo_velocity.values
+        mean_square, power = servo_record.servo_mean_square_torque.values, servo_record.servo_power.values
         full = use.sel(servo=name).values >= full_from(servo)
         cables = [cable for cable in robot.cables if cable.name == name]
         load_by_servo[name] = ServoLoad(
-            torque=float(np.abs(torque).max()),
+            torque=float(peaks.max()),
             limit=servo.torque,
             at_limit=float(full.mean()),
             first=float(elapsed_time[np.argmax(full)]) if full.any() else nan,
             off=float(np.quantile(tracking_error.sel(servo=name), 1.0 - AT_LIMIT)),
             needed=float(np.quantile(required_torque.sel(servo=name), 1.0 - AT_LIMIT)),
-            rms=float(np.sqrt((torque**2).mean())),
+            rms=float(np.sqrt(mean_square.mean())),
             speed=float(np.abs(speed).max()),
-            power=float(max((torque * speed).max(), 0.0)),
+            power=float(max(power.max(), 0.0)),
             line=float(np.quantile(use.sel(servo=name), 1.0 - AT_LIMIT)),
-            tension=float(np.abs(torque).max() / cables[0].pulley) if cables else nan,
+            tension=float(peaks.max() / cables[0].pulley) if cables else nan,
             radius=cables[0].pulley if cables and cables[0].linear is not None else nan,
         )
-        load_by_servo[name] = replace(load_by_servo[name], **_electric(servo, torque, speed))
+        load_by_servo[name] = replace(load_by_servo[name], **_electric(servo, mean_square, power))
     return load_by_servo
 
 
-def _electric(servo: Servo, torque: np.ndarray, speed: np.ndarray) -> dict[str, Any]:
-    """Return currents and heat of a servo at these torques and speeds; empty without a winding."""
+def _electric(servo: Servo, mean_square: np.ndarray, power: np.ndarray) -> dict[str, Any]:
+    """Return currents and heat of a servo; empty without a winding. Currents are means over control periods.
+
+    Args:
+        servo: with its winding.
+        mean_square: of the torque in each control period, shape (time,) [N2 m2].
+        power: mean mechanical power in it, shape (time,) [W].
+    """
     winding = servo.winding
     if winding is None:
         return {}
-    torque_fraction = torque / servo.torque
     load_current = winding.stall_current * np.maximum(
-        torque_fraction**2 + torque_fraction * speed / servo.ideal_speed, 0.0
+        mean_square / servo.torque**2 + power / (servo.torque * servo.ideal_speed), 0.0
     )
     currents = winding.idle_current + load_current
     electric_loads = {"current": float(currents.mean()), "peak_current": float(currents.max())}
     heat = winding.heat
     if heat is None:
         return electric_loads
-    loss = winding.volts * winding.stall_current * float((torque**2).mean()) / servo.torque**2
+    loss = winding.volts * winding.stall_current * float(mean_square.mean()) / servo.torque**2
     return {**electric_loads, "steady": heat.steady_temperature(loss), "warm_after": heat.time_to_limit(loss)}
 
 
 def full_from(servo: Servo) -> float:
     """Return the fraction of a servo's capability above which it counts as being at its limit [-]."""
     return FULL if servo.winding is None else FULL_WOUND
-
-
-def use_of_each(robot: Robot, record: xr.Dataset) -> xr.DataArray:
-    """Return the torque of each servo over the torque that it can give at its speed [-].
-
-    A servo with a winding gives less torque at speed in the direction of the torque. The torque was given one physics
-    step before the sample, at the speed of that instant.
-    """
-    dims = record.servo_torque.dims
-    torque, speed = record.servo_torque, record.servo_velocity
-    step = record.attrs.get("step", record.attrs.get("timestep", 0.0)) / float(record.time[1] - record.time[0])
-    previous_speed = speed.shift(time=1).fillna(speed)
-    speed_along_torque = np.sign(torque) * (speed - step * (speed - previous_speed))
-    limits = [
-        xr.DataArray(
-            robot.servo(str(name)).available_torque(speed_along_torque.sel(servo=name).values),
-            dims=[d for d in dims if d != "servo"],
-        )
-        for name in record.servo.values
-    ]
-    available_torque = xr.concat(limits, "servo").assign_coords(servo=record.servo).transpose(*dims)
-    return np.abs(torque) / np.maximum(available_torque, 1e-9)
 
 
 def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
@@ -316,7 +300,7 @@ def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
         record: of the time that counts, as ``metrics.time_window`` cuts it.
     """
     full = xr.DataArray([full_from(robot.servo(str(name))) for name in record.servo.values], dims="servo")
-    return (use_of_each(robot, record) >= full).mean("time")
+    return (record.servo_torque_use >= full).mean("time")
 
 
 def torque_use(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np.ndarray, " time"]) -> float:

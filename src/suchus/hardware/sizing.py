@@ -275,10 +275,11 @@ class _Search:
     def bears(self, motor: Motor, names: Sequence[str], demands: Sequence[xr.Dataset]) -> bool:
         """Return whether a servo supplies the torque at standstill, and bears the heat, at some places."""
         for demand in demands:
-            torque = demand.servo_torque.sel(servo=list(names)).values
-            if np.quantile(np.abs(torque), 1.0 - AT_LIMIT, axis=0).max() > motor.stall_torque:
+            torque = demand.servo_peak_torque.sel(servo=list(names)).values
+            if np.quantile(torque, 1.0 - AT_LIMIT, axis=0).max() > motor.stall_torque:
                 return False
-            if np.sqrt((torque**2).mean(axis=0)).max() > motor.continuous_torque:
+            mean_square = demand.servo_mean_square_torque.sel(servo=list(names)).mean("time")
+            if float(mean_square.max()) ** 0.5 > motor.continuous_torque:
                 return False
         return True
 
@@ -286,7 +287,9 @@ class _Search:
         """Return whether a servo also supplies the torque at its speed, at some places."""
         servo = Servo.from_motor(motor, volts, template=self._robot.servo(names[0]))
         return self.bears(motor, names, demands) and all(
-            torque_use(servo, demand.servo_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values)
+            torque_use(
+                servo, demand.servo_mean_torque.sel(servo=name).values, demand.servo_velocity.sel(servo=name).values
+            )
             < FULL_WOUND
             for demand in demands
             for name in names
@@ -303,8 +306,8 @@ class _Search:
     def _lacks(self, names: Sequence[str], case: LoadCase, demand: xr.Dataset) -> str:
         """Return a sentence: no servo of a family is strong enough for some servos in a case."""
         servo_demand = demand.sel(servo=list(names))
-        torque, speed = float(np.abs(servo_demand.servo_torque).max()), float(np.abs(servo_demand.servo_velocity).max())
-        rms = float(np.sqrt((servo_demand.servo_torque**2).mean("time")).max())
+        torque, speed = float(servo_demand.servo_peak_torque.max()), float(np.abs(servo_demand.servo_velocity).max())
+        rms = float(np.sqrt(servo_demand.servo_mean_square_torque.mean("time")).max())
         return (
             f"none of it is enough for {names[0]} in {case.name} with a period of {case.gait.period:.3g} s, which asks "
             f"for up to {torque:.2f} N m, {rms:.2f} N m root mean square, and {speed:.1f} rad/s"

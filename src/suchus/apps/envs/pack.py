@@ -32,6 +32,7 @@ from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.batch import Beginning
 from suchus.sim.land.lake import up_direction
 from suchus.sim.land.loop import Loop
+from suchus.sim.land.meter import ABSOLUTE_POWER
 from suchus.sim.land.run import check_pushes
 from suchus.sim.model import activations, compile_model, standing
 from suchus.sim.model.export import home
@@ -192,7 +193,6 @@ class Pack:
         self._commanded = self._actor.target  # a view; the actor writes it
         self._command_change = np.zeros_like(self._commanded)
         self._phases = np.zeros(count)
-        self._power = np.zeros_like(self._commanded)
         self.chances = [Chance()] * count
         self.faults = np.full(count, "", dtype=object)
         """Sentence on the fault of each episode, see ``Chance.fault``."""
@@ -277,7 +277,7 @@ class Pack:
                 self.loop.advance(
                     need_forces=period == self._actor.periods
                 )  # contact loads are read at the end of the action only
-                work += self._servo_power() * self.loop.period
+                work += self.loop.batch.effort[..., ABSOLUTE_POWER].sum(axis=1) * self.loop.period
         self._command_change = np.where(active_mask[:, None], command_change, self._command_change)
         return self._terms(active_mask, last_position, last_goal_distance, work, (command_change**2).sum(axis=1))
 
@@ -308,12 +308,6 @@ class Pack:
         if task.goal is not None:
             begin = self.loop.sensors["centre_of_mass"][robot, :2]
             self._goals[robot] = task.goal.position(begin, self.chances[robot].bearing, task.ground, task.lake)
-
-    def _servo_power(self) -> Float[np.ndarray, " run"]:
-        """Return torque times speed, summed over the servos [W]."""
-        batch, power = self.loop.batch, self._power
-        np.multiply(batch.readings[:, batch.velocities], batch.readings[:, batch.torques], out=power)
-        return np.asarray(np.abs(power, out=power).sum(axis=1))
 
     def _terms(
         self,

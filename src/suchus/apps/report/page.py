@@ -148,7 +148,7 @@ def _drawing(robot: Robot) -> dict[str, str]:
         return {"source": embedded(svg, png), "caption": figures.caption(figure)}
 
 
-_MEASURES = ("speed", "work_per_metre", "cost_of_transport")
+_MEASURES = ("speed", "work_per_metre", "net_cost_of_transport")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -72,10 +72,10 @@ def _slip(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 def _torque(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     """Return the root mean square of the torque of the highest-loaded servo, over its limit."""
-    torque = metrics.time_window(record).servo_torque.transpose("run", "time", "servo").values
+    torque = metrics.rms_torque(record).transpose("run", "servo").values
     names = [str(name) for name in record.servo.values]
     limits = np.array([[run.robot.servo(name).torque for name in names] for run in runs])
-    return np.asarray((np.sqrt((torque**2).mean(axis=1)) / limits).max(axis=1))
+    return np.asarray((torque / limits).max(axis=1))
 
 
 def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:

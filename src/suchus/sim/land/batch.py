@@ -11,7 +11,6 @@ from mujoco.batch import Batch, SimulationError
 
 from suchus.core import threads
 from suchus.robot.design import Robot, layout
-from suchus.robot.design import water_table as hydro
 from suchus.robot.design.correction import SectionCorrection
 from suchus.robot.design.ground import Ground, Relief
 from suchus.robot.design.pieces import pieces
@@ -20,11 +19,14 @@ from suchus.sim.land import wetting
 from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.corrected import correct
 from suchus.sim.land.lake import Waters, gravity, up_direction
+from suchus.sim.land.meter import Meter, ServoLaws, servo_effort
 from suchus.sim.land.run import Afloat, Run
 from suchus.sim.model import SUPPLY, activations, compile_model, force_sensors, standing, supplies
 from suchus.sim.model.wet import wet_model
+from suchus.sim.record import EFFORT
 
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has diverged
+_SERVO_FIELDS = ("actuator_gainprm", "actuator_biasprm", "actuator_forcerange")
 _CURRENT = int(mujoco.mjtStage.mjSTAGE_VEL)  # after a step, positions and velocities describe the new state
 
 
@@ -39,51 +41,6 @@ class Beginning(NamedTuple):
     """Inner states of the servos: slew-limited targets and integrals."""
     commanded: Float[np.ndarray, " servo"]
     """Last commanded angle of each servo [rad]."""
-
-
-class Meter:
-    """Records forces and powers of water and servos in each physics step, since both vary within a control period.
-
-    Args:
-        water: of the batch, shape (run, ``hydro.NUMBERS``); read anew at every step.
-        sensors: of the batch, shape (run, sensor); likewise.
-        velocities: where the servos' speeds are among the sensors.
-        torques: where their torques are.
-        steps: of the physics in a control period.
-    """
-
-    def __init__(self, water: np.ndarray, sensors: np.ndarray, velocities: slice, torques: slice, steps: int) -> None:
-        """Reserve arrays for the readings of one control period."""
-        first_sensor, last_sensor = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
-        self._acts, self._sensors = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, first_sensor:last_sensor]
-        self._did, self._history = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._sensors.shape))
-        speeds = self._history[..., velocities.start - first_sensor : velocities.stop - first_sensor]
-        self._start_speeds, self._end_speeds = speeds[:-1], speeds[1:]
-        self._torque = self._history[1:, :, torques.start - first_sensor : torques.stop - first_sensor]
-        self._sum = np.zeros(self._torque.shape)
-        self._share = np.full(steps, 1.0 / steps)
-
-    def begin(self) -> None:
-        """Store the sensor readings before the first step."""
-        self._history[0] = self._sensors
-
-    def record_step(self, step: int) -> None:
-        """Store water forces and sensor readings after a physics step."""
-        self._did[step] = self._acts
-        self._history[step + 1] = self._sensors
-
-    def mean(self, means: np.ndarray, selection: np.ndarray | slice) -> None:
-        """Write the means of force and power of the water and of the power of the servos, shape (run, 5).
-
-        The power of a servo in a step is its torque times the mean of its speeds before and after.
-
-        Args:
-            means: written, shape (run, 5) [N, W].
-            selection: runs for which they are written.
-        """
-        np.add(self._start_speeds, self._end_speeds, out=self._sum)
-        means[selection, :4] = (self._share @ self._did.reshape(len(self._did), -1)).reshape(-1, 4)[selection]
-        means[selection, 4] = (0.5 * self._share @ np.vecdot(self._sum, self._torque))[selection]
 
 
 class SimulationBatch:
@@ -109,8 +66,12 @@ class SimulationBatch:
         self._models: list[Any] = [] if self._single else [models[body] for body in bodies]
         self._owned: set[int] = set()
         self._is_modified = False
+        self._expanded: set[str] = set()
         self._timestep, self._robots = timestep, [run.robot for run in runs]
         self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
+        self.laws = ServoLaws(shared, self._robots)
+        """The numbers by which the torques of the servos follow."""
+        self._rewired: set[int] = set(range(len(runs)))
         self._lay_ground(runs)
         if self._models:
             self.physics.set_models(self._models)
@@ -136,7 +97,10 @@ class SimulationBatch:
             )
             for quantity in ("velocity", "torque")
         )
-        self.period_means = np.zeros((len(runs), 5))
+        self.period_means = np.zeros((len(runs), 4))
+        """Means of force and power of the water over the last control period, shape (run, 4) [N, W]."""
+        self.effort = np.zeros((len(runs), len(names), len(EFFORT)))
+        """What each servo did in it, in the order of ``record.EFFORT``."""
         self._meters: dict[int, Meter] = {}
         self.alive = np.ones(len(runs), dtype=bool)
         self.end_times = np.full(len(runs), np.inf)
@@ -144,7 +108,10 @@ class SimulationBatch:
 
     def field(self, name: str, sim: int) -> np.ndarray:
         """Return a run's own values of a model field, for writing; ``commit`` after it."""
+        if name.startswith("actuator_"):
+            self._rewired.add(sim)
         if self._single:
+            self._expanded.add(name)
             values: np.ndarray = self.physics.expand(name)[sim]
             return values
         self._is_modified = True
@@ -154,10 +121,22 @@ class SimulationBatch:
         return np.asarray(owner)
 
     def commit(self) -> None:
-        """Let the physics know of written model fields."""
+        """Let the physics know of written model fields, and the meters of changed servos."""
         if self._models and self._is_modified:
             self.physics.set_models(self._models)
             self._is_modified = False
+        for sim in self._rewired:
+            self.laws.read(sim, *(self._now(name, sim) for name in _SERVO_FIELDS))
+        self._rewired.clear()
+
+    def _now(self, name: str, sim: int) -> np.ndarray:
+        """Return a run's present values of a model field, for reading."""
+        if not self._single:
+            return np.asarray(getattr(self._models[sim], name))
+        if name in self._expanded:
+            values: np.ndarray = self.physics.expand(name)[sim]
+            return values
+        return np.asarray(getattr(self.model, name))
 
     def _private_model(self, sim: int) -> Any:
         """Return a run's model, which it shares with no other from now on."""
@@ -192,6 +171,7 @@ class SimulationBatch:
         self._set_option("density", sim, medium.density)
         self._set_option("viscosity", sim, medium.viscosity)
         self._set_option("integrator", sim, int(mujoco.mjtIntegrator.mjINT_RK4))
+        self.laws.is_implicit[sim] = False
         no_contact = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
 
@@ -212,6 +192,8 @@ class SimulationBatch:
             is_powered: whether it gets its torque.
         """
         bit = 1 << int(self.model.actuator(servo).group[0])
+        self.laws.is_powered[sim, int(self.model.actuator(servo).id)] = is_powered
+        self._rewired.add(sim)
         disabled_groups = (
             self.physics.expand("opt.disableactuator")[sim]
             if self._single
@@ -287,14 +269,17 @@ class SimulationBatch:
         self.read_sensors(slice(None))
 
     def read_sensors(self, selection: int | slice) -> None:
-        """Copy the sensors of the selected runs into ``readings``; their mean loads become those of this instant."""
+        """Copy the sensors of the selected runs into ``readings``; means become the values of this instant."""
         self.readings[selection], self._shafts[selection], self.period_means[selection] = (
             self.sensors[selection],
             self._lengths[selection],
             0.0,
         )
         if self.waters:
-            self.period_means[selection, :4] = self.waters.acts()[selection]
+            self.period_means[selection] = self.waters.acts()[selection]
+        self.commit()
+        torques, speeds = self.sensors[None, :, self.torques], self.sensors[None, :, self.velocities]
+        self.effort[selection] = servo_effort(torques, speeds, speeds, self.laws)[selection]
 
     def controller_inputs(self, sim: int) -> dict[str, np.ndarray]:
         """Return copies of the inputs of a run's controllers and faults: sensors, shaft angles, positions, loads."""
@@ -307,7 +292,13 @@ class SimulationBatch:
 
     @property
     def _decided_by(self) -> dict[str, np.ndarray]:
-        return {"readings": self.readings, "shafts": self._shafts, "qpos": self.qpos, "worked": self.period_means}
+        return {
+            "readings": self.readings,
+            "shafts": self._shafts,
+            "qpos": self.qpos,
+            "worked": self.period_means,
+            "effort": self.effort,
+        }
 
     def restart(self, sim: int, begin: Beginning) -> None:
         """Put one robot into a state, without pushes, also after it has diverged; the injector handles its faults.
@@ -337,6 +328,7 @@ class SimulationBatch:
         *,
         need_forces: bool = True,
         need_readings: bool = True,
+        need_effort: bool = True,
     ) -> None:
         """Command servo angles and advance the runs that are alive by some physics steps.
 
@@ -354,6 +346,7 @@ class SimulationBatch:
                 is faster.
             need_readings: whether ``readings`` are needed; if not, they stay as they were, and a step takes a ninth
                 less time.
+            need_effort: whether ``effort`` is needed; if not, it stays as it was. It needs the sensors in each step.
         """
         # what all runs share is done at once: with one run alone each of these lines shows in its time
         going = self._going(selection)
@@ -361,7 +354,7 @@ class SimulationBatch:
             self.ctrl[:] = targets
         else:
             self.ctrl[self.alive] = targets[self.alive]
-        meter = self._meter(steps)
+        meter = self._meter(steps) if need_effort or self.waters else None
         self._sense(need_readings or meter is not None)
         calls = steps if need_forces or meter is not None else 1
         self._sum.fill(0.0)
@@ -376,7 +369,7 @@ class SimulationBatch:
             if meter is not None:
                 meter.record_step(call)
         if meter is not None:
-            meter.mean(self.period_means, slice(None) if selection is None else selection)
+            meter.finish(self.period_means, self.effort, slice(None) if selection is None else selection)
         self.readings[:], self._shafts[:] = self.sensors, self._lengths
         np.divide(self._sum, calls, out=self._mean)
         np.abs(self.qvel, out=self._speeds)
@@ -394,7 +387,7 @@ class SimulationBatch:
         """
         self.physics.state[sims] = self.physics.state[whom]
         self.readings[sims], self._shafts[sims] = self.readings[whom], self._shafts[whom]
-        self.period_means[sims] = self.period_means[whom]
+        self.period_means[sims], self.effort[sims] = self.period_means[whom], self.effort[whom]
         for sim, source in zip(sims, whom, strict=True):
             if not self.alive[source]:
                 self._end(int(sim), float(self.end_times[source]), self.cause[source])
@@ -414,12 +407,10 @@ class SimulationBatch:
         self._is_modified = True
         self.commit()
 
-    def _meter(self, steps: int) -> Meter | None:
-        """Return the meter of a control period, which is kept from one to the next; None on dry land."""
-        if not self.waters:
-            return None
+    def _meter(self, steps: int) -> Meter:
+        """Return the meter of a control period, which is kept from one to the next."""
         if steps not in self._meters:
-            self._meters[steps] = Meter(self.waters.rows, self.sensors, self.velocities, self.torques, steps)
+            self._meters[steps] = Meter(self.waters.rows, self.sensors, self.velocities, self.torques, self.laws, steps)
         self._meters[steps].begin()
         return self._meters[steps]
 

@@ -4,6 +4,7 @@ A batch of runs, a live walk and the learning environments are its clients.
 """
 
 from collections.abc import Sequence
+from functools import partial
 from math import floor
 
 import numpy as np
@@ -18,6 +19,7 @@ from suchus.sim.fault import Fault
 from suchus.sim.land.afloat import check_afloat
 from suchus.sim.land.batch import Beginning, SimulationBatch
 from suchus.sim.land.injector import Disturbances
+from suchus.sim.land.meter import joint_effort
 from suchus.sim.land.readings import Recorder, Sensors
 from suchus.sim.land.run import Push, Run
 
@@ -107,9 +109,9 @@ class Loop:
         """Time since the beginning [s]."""
         return self.tick * self.period
 
-    def recorder(self, samples: int) -> Recorder:
-        """Return what keeps samples of this batch, with room for so many."""
-        return Recorder(self.batch, self.sensors, self.runs, samples)
+    def recorder(self, samples: int, *, has_effort: bool = True) -> Recorder:
+        """Return what keeps samples of this batch, with room for so many; what servos do if ``has_effort``."""
+        return Recorder(self.batch, self.sensors, self.runs, samples, has_effort=has_effort)
 
     def sensed(self) -> Sensed:
         """Return the present sensor readings of the robots, with their sensor faults."""
@@ -136,6 +138,7 @@ class Loop:
         *,
         need_forces: bool = True,
         need_readings: bool = True,
+        need_effort: bool = True,
         late_command: tuple[np.ndarray, int] | None = None,
     ) -> None:
         """Let one control period pass in which the servos do as they are commanded.
@@ -143,6 +146,7 @@ class Loop:
         Args:
             need_forces: whether contact forces will be read after it, see ``SimulationBatch.advance``.
             need_readings: whether any sensor will be.
+            need_effort: whether the effort of the servos will be.
             late_command: servo angles that still act at the beginning, shape (run, servo) [rad], and for how many
                 physics steps, fewer than the period has, where a command arrives late; of a loop of one run.
         """
@@ -150,16 +154,17 @@ class Loop:
             self._advance_late(*late_command)
             return
         targets, _, air_fraction = self.command
+        advance = partial(
+            self.batch.advance, need_forces=need_forces, need_readings=need_readings, need_effort=need_effort
+        )
         shared = self._deduplication
         shared.separate(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
         self.batch.waters.flood(self.time, air_fraction)
         if shared.followers.size:
-            self.batch.advance(
-                targets, self.steps, self.time, shared.is_leader, need_forces=need_forces, need_readings=need_readings
-            )
+            advance(targets, self.steps, self.time, shared.is_leader)
             self.batch.copy(shared.followers, shared.leader_of)
         else:
-            self.batch.advance(targets, self.steps, self.time, need_forces=need_forces, need_readings=need_readings)
+            advance(targets, self.steps, self.time)
         self._count()
 
     def _advance_late(self, previous_targets: np.ndarray, steps: int) -> None:
@@ -168,10 +173,11 @@ class Loop:
         self.batch.waters.flood(self.time, air_fraction)
         self.batch.advance(previous_targets, steps, self.time)
         means, early_fraction = (self.batch.pressed, self.batch.period_means), steps / self.steps
-        early_means = [early_fraction * mean for mean in means]
+        early_means, early_effort = [early_fraction * mean for mean in means], self.batch.effort.copy()
         self.batch.advance(targets, self.steps - steps, self.time)
         for mean, early_mean in zip(means, early_means, strict=True):
             mean[:] = early_mean + (1.0 - early_fraction) * mean
+        self.batch.effort[:] = joint_effort([early_effort, self.batch.effort], [early_fraction, 1.0 - early_fraction])
         self._count()
 
     def skip(self, periods: int) -> None:

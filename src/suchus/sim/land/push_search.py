@@ -97,7 +97,9 @@ class _Trial(NamedTuple):
             for force in levels
         ]
         end = self.push.at + self.push.duration + self.wait
-        record = simulate(batch, duration=end, timestep=self.timestep, sample_stride=10, progress=progress)
+        record = simulate(
+            batch, duration=end, timestep=self.timestep, sample_stride=10, effort=False, progress=progress
+        )
         return np.asarray(self.fell(record).values, dtype=bool).reshape(forces.shape)
 
 

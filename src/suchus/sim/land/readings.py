@@ -14,9 +14,10 @@ from suchus.robot.design.pieces import chambers, pieces
 from suchus.robot.design.water_table import column
 from suchus.sim.land.batch import SimulationBatch
 from suchus.sim.land.lake import lake_text, up_direction
+from suchus.sim.land.meter import joint_effort
 from suchus.sim.land.run import Run
 from suchus.sim.model import ambient, joint_addresses, sensor_names, warming
-from suchus.sim.record import HEAT, WATER, dataset, ground_text
+from suchus.sim.record import EFFORT, WATER, dataset, ground_text
 
 
 class Sensors:
@@ -85,9 +86,12 @@ class Recorder:
         sensors: of the batch.
         runs: of the batch.
         samples: for how many there is room.
+        has_effort: whether what the servos do is kept too.
     """
 
-    def __init__(self, batch: SimulationBatch, sensors: Sensors, runs: Sequence[Run], samples: int) -> None:
+    def __init__(
+        self, batch: SimulationBatch, sensors: Sensors, runs: Sequence[Run], samples: int, *, has_effort: bool = True
+    ) -> None:
         """Reserve an array of NaN for each quantity that is sampled."""
         self._batch, self._sensors, self._runs = batch, sensors, runs
         self._layout = robot_layout = sensors.layout
@@ -99,10 +103,27 @@ class Recorder:
         self._targets = np.full((*shape, len(robot_layout.servos)), np.nan)
         self._water = np.full((*shape, batch.waters.rows.shape[1]), np.nan)
         self._period_means = np.full((*shape, batch.period_means.shape[1]), np.nan)
+        self._has_effort = has_effort
+        self._effort = np.full((*shape, *batch.effort.shape[1:]) if has_effort else (*shape, 0, 0), np.nan)
+        self._gathered: list[tuple[np.ndarray, np.ndarray]] = []
         self._temperature_columns = warming(batch.model, runs[0].robot)
         self._air = np.array([ambient(run.robot) for run in runs])
         heated = len(robot_layout.servos) if (self._temperature_columns >= 0).any() else 0
         self._temperature = np.full((*shape, heated), np.nan)
+
+    def gather(self) -> None:
+        """Note what water and servos did in a control period that ends between two samples."""
+        self._gathered.append((self._batch.period_means.copy(), self._batch.effort.copy()))
+
+    def _since_sample(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return what water and servos did since the sample before, and begin anew."""
+        water, effort = self._batch.period_means, self._batch.effort
+        if self._gathered:
+            waters, efforts = zip(*self._gathered, (water, effort), strict=True)
+            water = np.mean(waters, axis=0)
+            effort = joint_effort(efforts, [1.0 / len(efforts)] * len(efforts))
+            self._gathered.clear()
+        return water, effort
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
         """Store one sample of the runs that are alive.
@@ -118,7 +139,10 @@ class Recorder:
         self._phase[alive, sample] = phase[alive]
         self._targets[alive, sample] = targets[alive]
         self._water[alive, sample] = self._batch.waters.rows[alive]
-        self._period_means[alive, sample] = self._batch.period_means[alive]
+        water_means, effort = self._since_sample()
+        self._period_means[alive, sample] = water_means[alive]
+        if self._has_effort:
+            self._effort[alive, sample] = effort[alive]
         if self._temperature.shape[-1]:
             self._temperature[alive, sample] = (
                 self._batch.activations[alive][:, self._temperature_columns] + self._air[alive]
@@ -137,18 +161,20 @@ class Recorder:
     def _stored_arrays(self) -> dict[str, np.ndarray]:
         return {
             "readings": self._readings, "qpos": self._qpos, "phase": self._phase, "targets": self._targets,
-            "water": self._water, "worked": self._period_means, "temperature": self._temperature,
+            "water": self._water, "worked": self._period_means, "effort": self._effort,
+            "temperature": self._temperature,
         }  # fmt: skip
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
-        """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time.
+        """Return one stored sample of one run: ``record.VARIABLES`` and ``record.EFFORT`` without run and time.
 
         In water those of ``record.WATER`` too, with servos that warm up that of ``record.HEAT``.
         """
         arrays = self._arrays()
         water_arrays = self._water_arrays(arrays["foot_force"]) if self._water.shape[-1] else {}
         return {
-            name: np.array(values[run, sample]) for name, values in (arrays | water_arrays | self._warmed()).items()
+            name: np.array(values[run, sample])
+            for name, values in (arrays | self._efforts() | water_arrays | self._warmed()).items()
         }
 
     def record(self, time: np.ndarray) -> xr.Dataset:
@@ -178,15 +204,18 @@ class Recorder:
             "gait": [run.gait.name for run in self._runs],
             "label": [run.label or run.gait.name for run in self._runs],
         }
-        record = dataset(arrays, per_run, coordinates)
-        for name, values in self._warmed().items():
-            dims, unit, long_name = HEAT[name]
-            record[name] = (("run", *dims), values, {"units": unit, "long_name": long_name})
+        record = dataset(arrays | self._efforts() | self._warmed(), per_run, coordinates)
         if not self._water.shape[-1]:
             return record
         return _with_water(
             record, self._water_arrays(arrays["foot_force"]), [lake_text(run.lake) for run in self._runs]
         )
+
+    def _efforts(self) -> dict[str, np.ndarray]:
+        """Return the samples of what servos do by the names of ``record.EFFORT``."""
+        if not self._has_effort:
+            return {}
+        return {name: np.ascontiguousarray(self._effort[..., k]) for k, name in enumerate(EFFORT)}
 
     def _warmed(self) -> dict[str, np.ndarray]:
         """Return how warm the servos are, by the name of ``record.HEAT``; nothing where none warms up."""
@@ -208,7 +237,6 @@ class Recorder:
             "share_under": water[..., hydro.SUBMERGED_VOLUME] / total[:, None],
             "water_force": period_means[..., :3],
             "water_power": period_means[..., 3],
-            "servo_power": period_means[..., 4],
             "feet_share": (foot_force.sum(axis=2) @ ups[:, :, None])[..., 0] / weight[:, None],
         }
 
@@ -243,6 +271,23 @@ class Recorder:
             "angular_velocity": rows[..., self._sensors.columns("imu_gyroscope")],
             "acceleration": rows[..., self._sensors.columns("imu_accelerometer")],
         }
+
+
+def thin(record: xr.Dataset, stride: int) -> xr.Dataset:
+    """Return every ``stride``-th sample of a record from the first, with the effort of all samples in between."""
+    thinned = record.isel(time=slice(None, None, stride))
+    if stride == 1:
+        return thinned
+    efforts = np.stack([record[name].transpose("time", ...).values for name in EFFORT], axis=-1)
+    intervals = [efforts[end - stride + 1 : end + 1] for end in range(stride, record.sizes["time"], stride)]
+    means = np.stack([efforts[0], *(joint_effort(list(rows), [1.0 / stride] * stride) for rows in intervals)])
+    dims = ("time", *(dim for dim in record["servo_power"].dims if dim != "time"))
+    return thinned.assign(
+        {
+            name: xr.DataArray(means[..., k], dims=dims, attrs=record[name].attrs).transpose(*record[name].dims)
+            for k, name in enumerate(EFFORT)
+        }
+    )
 
 
 def with_equal_variables(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:

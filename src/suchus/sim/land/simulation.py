@@ -1,7 +1,7 @@
 """Simulate a batch of runs from beginning to end, or one: physics in MuJoCo, a controller for the whole batch."""
 
 from collections.abc import Sequence
-from math import ceil
+from math import ceil, gcd
 
 import numpy as np
 import xarray as xr
@@ -31,6 +31,7 @@ def simulate(
     duration: float = 9.0,
     timestep: float | None = None,
     sample_stride: int = 1,
+    effort: bool = True,
     progress: Progress = silent,
 ) -> xr.Dataset:
     """Simulate a batch of runs.
@@ -44,12 +45,16 @@ def simulate(
         duration: [s].
         timestep: of the physics [s], a whole part of the control period; that of the robots' size if None, and where
             one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints.
-        sample_stride: keep one sample of so many control periods.
+        sample_stride: keep one sample of at most so many control periods: of the greatest number for which the first
+            second, in which robots settle, and the run end with a sample.
+        effort: whether the record holds what the servos do (``record.EFFORT``), without which there is no work, cost
+            of transport or heat. It needs the sensors in each physics step.
         progress: told the share that is done.
 
     Returns:
         A record with the dimensions ``run`` and ``time`` (see ``record.schema``), the first sample at time 0.
-        Contact forces are means over the control period before each sample, torques those of its last physics step.
+        Contact forces are means over the control period before each sample. ``servo_torque`` is that of its last
+        physics step. What servos do (``record.EFFORT``) is over all physics steps since the sample before.
 
     Raises:
         NoMemory: the memory does not suffice.
@@ -62,15 +67,18 @@ def simulate(
         raise InvalidDesign("there are no runs to simulate; give at least one.")
     timestep = _own_step(runs) if timestep is None else timestep
     period = _check(runs, duration, timestep, sample_stride)
-    check_extent(runs, duration, timestep, period, sample_stride)
     ticks = round(duration / period)
+    sample_stride = _even_stride(sample_stride, ticks, round(START / period))
+    check_extent(runs, duration, timestep, period, sample_stride)
     parts, order = [], []
     groups = _groups(runs)
     for number, members in enumerate(groups):
         grouped = [runs[i] for i in members]
         with out_of_memory():
             parts.append(
-                _simulate_group(grouped, ticks, timestep, sample_stride, portion(progress, number, len(groups)))
+                _simulate_group(
+                    grouped, ticks, timestep, sample_stride, portion(progress, number, len(groups)), has_effort=effort
+                )
             )
         order.extend(members)
     parts = with_equal_variables(parts)
@@ -80,6 +88,18 @@ def simulate(
     record = record.assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=timestep, control_period=period)
     return record
+
+
+def _even_stride(stride: int, ticks: int, start_ticks: int) -> int:
+    """Return the greatest stride up to ``stride`` whose samples include the end of a run and that of its first second.
+
+    Args:
+        stride: control periods for each sample at most [-].
+        ticks: control periods of the run [-].
+        start_ticks: control periods in which robots settle; a run that ends before needs its end alone [-].
+    """
+    common = gcd(ticks, start_ticks) if ticks > start_ticks else ticks
+    return max(candidate for candidate in range(1, stride + 1) if common % candidate == 0)
 
 
 def _own_step(runs: Sequence[Run]) -> float:
@@ -145,7 +165,9 @@ def _groups(runs: Sequence[Run]) -> list[list[int]]:
     return list(groups.values())
 
 
-def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, stride: int, progress: Progress) -> xr.Dataset:
+def _simulate_group(
+    runs: Sequence[Run], ticks: int, timestep: float, stride: int, progress: Progress, *, has_effort: bool
+) -> xr.Dataset:
     """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled.
 
     Args:
@@ -154,16 +176,20 @@ def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, stride: in
         timestep: of the physics [s].
         stride: control periods for each sample [-].
         progress: called with the finished fraction.
+        has_effort: whether the record holds what the servos do.
     """
     loop = Loop(runs, timestep, ticks=ticks + 1)
-    recorder = loop.recorder(ticks // stride + 1)
+    recorder = loop.recorder(ticks // stride + 1, has_effort=has_effort)
     for tick in range(ticks + 1):
         loop.decide()
         if tick % stride == 0:
             recorder.store(tick // stride, loop.command.phase, loop.command.targets)
         if tick < ticks:
-            need_readings = loop.feels or (tick + 1) % stride == 0
-            loop.advance(need_forces=need_readings, need_readings=need_readings)
+            is_sample = (tick + 1) % stride == 0
+            need_readings = loop.feels or is_sample
+            loop.advance(need_forces=need_readings, need_readings=need_readings, need_effort=has_effort)
+            if has_effort and not is_sample:
+                recorder.gather()
         if tick % 16 == 0:
             progress("simulating", tick / ticks)
     progress("simulating", 1.0)

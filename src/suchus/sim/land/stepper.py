@@ -29,6 +29,7 @@ from suchus.robot.design import water_table as hydro
 from suchus.sim.land.batch import Beginning, SimulationBatch
 from suchus.sim.land.links import RobotLinks
 from suchus.sim.land.loop import Loop
+from suchus.sim.land.meter import ABSOLUTE_POWER, servo_effort
 from suchus.sim.land.readings import Recorder
 from suchus.sim.land.run import Run
 from suchus.sim.model import joint_addresses
@@ -95,7 +96,7 @@ class _Saved:
 
 @dataclass(slots=True)
 class _Tape:
-    """Velocities, forces and power in each physics step of an interval.
+    """Velocities and forces in each physics step of an interval.
 
     Velocities, passive and bias forces have one more entry, that of the start.
     """
@@ -106,7 +107,6 @@ class _Tape:
     servo_force: list[np.ndarray] = field(default_factory=list)
     constraint_force: list[np.ndarray] = field(default_factory=list)
     smooth: list[np.ndarray] = field(default_factory=list)
-    power: list[float] = field(default_factory=list)
 
 
 class _Decision(NamedTuple):
@@ -187,6 +187,7 @@ class Stepper:
         self._saved: _Saved | None = None
         self._decision: _Decision | None = None
         self._decided: list[_Decision] = []
+        self._servo_steps: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         self._is_read = False
         ends = [time / loop.period for push in run.pushes for time in (push.at, push.at + push.duration)]
         ticks_of = [np.ceil(fault.at / loop.period - 1e-9) for fault in run.faults]
@@ -316,6 +317,8 @@ class Stepper:
     def begin(self) -> None:
         """Begin an interval in the present state."""
         self.initial_coordinates = self.coordinates
+        period_start = self.steps - self._per_tick
+        self._servo_steps = {step: row for step, row in self._servo_steps.items() if step >= period_start}
         state, passive, bias = self._physics.state[0].copy(), self._passive[0].copy(), self._bias[0].copy()
         added_mass, momentum = self._added_mass_matrix(), self._momentum()
         self._saved = _Saved(
@@ -362,6 +365,7 @@ class Stepper:
         for _ in range(count):
             if self.steps % self._per_tick == 0:
                 self._decide(saved)
+            start_speeds = sensors[speeds].copy()
             assert self._decision is not None
             self._batch.ctrl[0] = self._decision.command.targets[0]
             try:
@@ -377,7 +381,7 @@ class Stepper:
             tape.servo_force.append(self._servo_force[0].copy())
             tape.constraint_force.append(self._constraint_force[0].copy())
             tape.smooth.append(self._smooth[0].copy())
-            tape.power.append(float(np.abs(sensors[speeds] * sensors[torques]).sum()))
+            self._servo_steps[self.steps] = sensors[torques].copy(), start_speeds, sensors[speeds].copy()
             self.steps += 1
         return self.coordinates
 
@@ -400,7 +404,8 @@ class Stepper:
             passive_work=float(
                 ((np.array(tape.passive[:-1]) + np.array(tape.constraint_force) + damped) * displacement).sum()
             ),
-            energy=0.5 * float(end_rate @ self._mass_matrix @ end_rate), effort=dt * sum(tape.power),
+            energy=0.5 * float(end_rate @ self._mass_matrix @ end_rate),
+            effort=dt * len(displacement) * float(self._effort(saved.step, self.steps)[:, ABSOLUTE_POWER].sum()),
             momentum=momentum, momentum_defect=momentum - saved.momentum - applied_impulse,
         )  # fmt: skip
 
@@ -432,8 +437,16 @@ class Stepper:
 
     def _store(self, tick: int) -> None:
         assert self._decision is not None
+        if tick > 0:
+            self._batch.effort[0] = self._effort(self.steps - self._per_tick, self.steps)
         if tick <= self._ticks:
             self._recorder.store(tick, self._decision.command.phase, self._decision.command.targets)
+
+    def _effort(self, start: int, end: int) -> Float[np.ndarray, "servo 6"]:
+        """Return what the servos did between two physics steps, in the order of ``record.EFFORT``."""
+        rows = [self._servo_steps[step] for step in range(start, end)]
+        torque, start_speed, end_speed = (np.array(values)[:, None] for values in zip(*rows, strict=True))
+        return servo_effort(torque, start_speed, end_speed, self._batch.laws)[0]
 
     def finish(self) -> None:
         """Keep the last sample, if the run has come to the end of a control period."""
@@ -449,11 +462,16 @@ class Stepper:
         inputs = [decision.inputs for decision in self._decided]
         return {
             "steps": np.array(self.steps), "physics": self._physics.state[0].copy(),
+            "servo_steps": np.array([self._servo_steps[step] for step in self._recent_steps(self.steps)]),
             "targets": np.array([decision.command.targets[0] for decision in self._decided]),
             **{f"felt.{name}": np.array([sample[name] for sample in inputs]) for name in (inputs[0] if inputs else ())},
             **{f"now.{name}": values for name, values in self._batch.controller_inputs(0).items()},
             **{f"samples.{name}": values for name, values in self._recorder.state().items()},
         }  # fmt: skip
+
+    def _recent_steps(self, end: int) -> range:
+        """Return the last physics steps before ``end``, as many as a control period has."""
+        return range(max(end - self._per_tick, 0), end)
 
     def resume(self, state: Mapping[str, np.ndarray]) -> None:
         """Go on from the state of a run of the same robot that was stopped; to be asked of a fresh one.
@@ -472,6 +490,7 @@ class Stepper:
                     f"otherwise at t = {tick * self.period:.4g} s than it did. Delete what was kept to start anew."
                 )
         self.steps = int(state["steps"])
+        self._servo_steps = dict(zip(self._recent_steps(self.steps), map(tuple, state["servo_steps"]), strict=True))
         self._recorder.resume(parts["samples"])
         self._batch.set_controller_inputs(0, parts["now"])
         self._physics.state[0] = state["physics"]

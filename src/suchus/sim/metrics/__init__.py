@@ -15,7 +15,16 @@ from suchus.sim.metrics.bends import (
     tail_swing_least,
     tail_swings,
 )
-from suchus.sim.metrics.energy import cost_of_transport, peak_torque, work
+from suchus.sim.metrics.energy import (
+    cost_of_transport,
+    effort,
+    mean_effort,
+    net_cost_of_transport,
+    net_work,
+    peak_torque,
+    rms_torque,
+    work,
+)
 from suchus.sim.metrics.gait import (
     diagonal_phase_error,
     duty_factor,
@@ -61,6 +70,7 @@ __all__ = [
     "displacement",
     "duty_factor",
     "each_cycle",
+    "effort",
     "first_harmonic",
     "flight_share",
     "foot_clearance",
@@ -76,11 +86,15 @@ __all__ = [
     "longest_hold",
     "loss",
     "mean_cycle",
+    "mean_effort",
+    "net_cost_of_transport",
+    "net_work",
     "path_length",
     "path_speed",
     "peak_torque",
     "reach",
     "require_complete",
+    "rms_torque",
     "roll_angle",
     "roll_peak_to_peak",
     "roll_rate",

@@ -3,6 +3,7 @@
 from suchus.sim.record.schema import (
     BUS_VARIABLES,
     COUPLED,
+    EFFORT,
     HEAT,
     PER_RUN,
     VARIABLES,
@@ -16,6 +17,7 @@ from suchus.sim.record.schema import (
 __all__ = [
     "BUS_VARIABLES",
     "COUPLED",
+    "EFFORT",
     "HEAT",
     "PER_RUN",
     "VARIABLES",

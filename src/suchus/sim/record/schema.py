@@ -45,13 +45,26 @@ WATER: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "share_under": (("time",), "1", "volume under water over the whole volume, foam included"),
     "water_force": (("time", "xyz"), "N", "of the water on the robot, in the world"),
     "water_power": (("time",), "W", "of the water on the robot"),
-    "servo_power": (("time",), "W", "of all servos on the joints"),
     "feet_share": (("time",), "1", "of the weight that the feet carry"),
 }
 """Further variables of runs in water, as in ``VARIABLES``.
 
-Force and powers are means over the control period; they hold what the added mass took by the accelerations of the
-physics step before.
+Force and power are means over the time since the sample before. They hold what the added mass took by the accelerations
+of the physics step before.
+"""
+
+EFFORT: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "servo_mean_torque": (("time", "servo"), "N m", "mean torque at the servo's shaft"),
+    "servo_mean_square_torque": (("time", "servo"), "N2 m2", "mean of the torque squared at the servo's shaft"),
+    "servo_power": (("time", "servo"), "W", "mean power of the servo on its joint, negative where it brakes"),
+    "servo_absolute_power": (("time", "servo"), "W", "mean power of the servo, braking counted as much as driving"),
+    "servo_peak_torque": (("time", "servo"), "N m", "greatest magnitude of the torque at the servo's shaft"),
+    "servo_torque_use": (("time", "servo"), "1", "greatest torque over the torque that the servo has at its speed"),
+}
+"""What servos do between the sample before and each sample, as in ``VARIABLES``: over all physics steps between them.
+
+``servo_torque`` of ``VARIABLES`` is the reading of a sensor at the instant of the sample, when the servo has answered
+its last command. Work, heat and peaks are those of this table. The first sample has the values of its instant.
 """
 
 HEAT: Mapping[str, tuple[tuple[str, ...], str, str]] = {
@@ -119,7 +132,7 @@ def dataset(
     """Put arrays into the schema.
 
     Args:
-        arrays: one per name of ``VARIABLES``, each ``(run, *dimensions)``.
+        arrays: one per name of ``VARIABLES``, each ``(run, *dimensions)``; further ones of ``EFFORT`` and ``HEAT``.
         per_run: one per name of ``PER_RUN``, each ``(run,)``.
         coordinates: labels of the dimensions ``run``, ``time``, ``leg``, ``segment``, ``joint``, ``servo``; further
             ones belong to ``run``.
@@ -142,7 +155,8 @@ def dataset(
     data.coords["time"].attrs["units"] = "s"
     sampled = {
         name: (("run", *dims), arrays[name], {"units": unit, "long_name": long_name})
-        for name, (dims, unit, long_name) in VARIABLES.items()
+        for name, (dims, unit, long_name) in {**VARIABLES, **EFFORT, **HEAT}.items()
+        if name in arrays
     }
     of_runs = {
         name: ("run", per_run[name], {"units": u, "long_name": long_name}) for name, (u, long_name) in PER_RUN.items()

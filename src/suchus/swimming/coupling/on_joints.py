@@ -110,7 +110,7 @@ class _OnJoints(FreeInSpace):
             flow_record.sizes["cycle"],
         )
         bounds = [round(cycle * period / self._coupled_swim.stepper.period) for cycle in range(cycles + 1)]
-        power = [float(record.servo_power[a + 1 : b + 1].mean()) for a, b in pairwise(bounds)]
+        power = [float(record.servo_power[a + 1 : b + 1].sum("servo").mean()) for a, b in pairwise(bounds)]
         settled_record = record.isel(time=slice(bounds[1], None))
         cable = [name for robot_cable in robot.cables for name in robot_cable.hinges]
         half = np.ptp(record.joint_angle.isel(time=slice(bounds[-2], None)).sel(joint=cable).values, axis=0) / 2

@@ -155,7 +155,6 @@ def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset
         "share_under": flat + 1.0,
         "water_force": pull.sum(axis=1),
         "water_power": mean(work[:, 3] / steps),
-        "servo_power": mean(work[:, 0] / steps),
         "feet_share": flat,
     }
 

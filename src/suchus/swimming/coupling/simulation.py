@@ -11,7 +11,7 @@ from suchus.core.errors import Diverged, InvalidDesign
 from suchus.core.fingerprint import fingerprint
 from suchus.core.progress import Progress, portion, silent
 from suchus.sim import land
-from suchus.sim.land.readings import with_equal_variables
+from suchus.sim.land.readings import thin, with_equal_variables
 from suchus.sim.land.run import Run
 from suchus.swimming.coupling.swim import Swim
 from suchus.swimming.water.samples import check_checkpoint_folder
@@ -75,7 +75,7 @@ def simulate(
             kept_path = None if keep is None else Path(keep) / f"{fingerprint(swim.setup)[:16]}.kept-swim"
             run_progress = portion(progress, number, count)
             swim.go(swim.ticks * swim.stepper.period, progress=run_progress, checkpoint=kept_path)
-        parts.append(swim.record().isel(time=slice(None, None, sample_stride)))
+        parts.append(thin(swim.record(), sample_stride))
         order.append(i)
     records = with_equal_variables(parts)
     record = records[0] if len(records) == 1 else xr.concat(records, "run", join="outer", data_vars="all")

@@ -136,7 +136,7 @@ class SwimMeasures(NamedTuple):
     """Speed over that of the body wave [-]."""
     strouhal: float
     """Frequency times the peak-to-peak amplitude of the tail's tip, over speed [-]."""
-    cost_of_transport: float
+    water_cost_of_transport: float
     """Power over displaced weight and speed [-]."""
     head_yaw: float
     """Amplitude of the head's direction [rad]."""

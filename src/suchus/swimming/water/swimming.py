@@ -18,7 +18,7 @@ from suchus.swimming.water.undulation import Motion, straight_motion, undulation
 
 MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
 """The models by name."""
-VALUES = {"speed": "m/s", "efficiency": "1", "cost_of_transport": "1", "strouhal": "1", "slip": "1"}
+VALUES = {"speed": "m/s", "efficiency": "1", "water_cost_of_transport": "1", "strouhal": "1", "slip": "1"}
 """Quantities that are computed for each motion, with units."""
 
 
@@ -69,7 +69,7 @@ _PER_MODEL = {
     "power": ("W", "of the joints on the water"),
     "slip": ("1", "speed over that of the body wave"),
     "strouhal": ("1", SIMILARITY["strouhal"]),
-    "cost_of_transport": ("1", "power over displaced weight and speed"),
+    "water_cost_of_transport": ("1", "power over displaced weight and speed"),
     "head_yaw": ("rad", "amplitude of the head's direction"),
     **{name: ("1", SIMILARITY[name]) for name in ("reynolds", "froude", "swimming_number")},
 }
@@ -100,7 +100,7 @@ def _numbers(
         **swim_numbers(
             speed=speed, length=robot.length, frequency=motion.frequency, swing=swing, viscosity=water.viscosity
         )._asdict(),
-        "cost_of_transport": power / (weight * abs(speed)) if moving else float("nan"),
+        "water_cost_of_transport": power / (weight * abs(speed)) if moving else float("nan"),
         "head_yaw": float(np.ptp(curve.heading[:, 0])) / 2,
     }
 

@@ -241,6 +241,7 @@ class BipedalReach(Experiment):
             duration=duration,
             timestep=_COARSE_TIMESTEP,
             sample_stride=10,
+            effort=False,
             progress=staged(progress, "", 0.5, 1.0),
         )
         heights = reach(self.robot, repeats).values.reshape(2, self.repeats, -1)
@@ -276,7 +277,9 @@ class BipedalReach(Experiment):
             max(upright_time(robot) for robot, feasible in zip(robots, is_feasible, strict=True) if feasible)
             + self.wait
         )
-        record = simulate(runs, duration=duration, timestep=_COARSE_TIMESTEP, sample_stride=10, progress=progress)
+        record = simulate(
+            runs, duration=duration, timestep=_COARSE_TIMESTEP, sample_stride=10, effort=False, progress=progress
+        )
         final_interval = record.sel(time=slice(duration - 0.5, None))
         for i, case in enumerate(np.flatnonzero(is_feasible)):
             final_record = final_interval.isel(run=i)
@@ -351,6 +354,7 @@ class BipedalReach(Experiment):
             duration=START + self.gait.period,
             timestep=_COARSE_TIMESTEP,
             sample_stride=5,
+            effort=False,
             progress=staged(progress, "", 0.5, 1.0),
         ).sel(time=slice(START, None))
         heights = np.array([float(reach(robot, record.isel(run=i)).max()) for i, (robot, _) in enumerate(crawls)])

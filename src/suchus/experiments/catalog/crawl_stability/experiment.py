@@ -136,7 +136,9 @@ class CrawlStability(TwoGroups):
         """
         strokes = np.linspace(1.0, max_stroke_factor(self.robot, self.control_group), 10)
         runs = [Run(robot=self.robot, gait=self.control_group.strode(float(s))) for s in strokes]
-        sweep = simulate(runs, duration=end, timestep=coarse_step(self.robot), sample_stride=100, progress=progress)
+        sweep = simulate(
+            runs, duration=end, timestep=coarse_step(self.robot), sample_stride=100, effort=False, progress=progress
+        )
         distances = displacement(sweep).sel(xyz="x").values
         target_distance = float(displacement(record).sel(xyz="x")[0])
         return float(np.interp(target_distance, np.maximum.accumulate(distances), strokes))

@@ -26,7 +26,7 @@ from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, roll
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
-from suchus.sim.metrics import peak_torque, require_complete, roll_rate, time_window
+from suchus.sim.metrics import mean_effort, peak_torque, require_complete, roll_rate, time_window
 from suchus.sim.model import longest_step
 
 _STIFFNESS_TOLERANCE = 1.25  # [-]; stiffness ratio from which the time steps are shortened
@@ -222,7 +222,10 @@ class DeathRoll(Experiment):
         """Return rate, power and loads of each roll, and the residual angular momentum in vacuum."""
         start = self._window(self.frequency)
         torque, window = peak_torque(record, start), time_window(record, start)
-        power = (window.servo_torque * window.servo_velocity).clip(min=0.0).sum("servo").mean("time")
+        absolute_power, net_power = (
+            mean_effort(record, name, start).sum("servo") for name in ("servo_absolute_power", "servo_power")
+        )
+        power = (absolute_power + net_power) / 2  # that of driving alone
         speed = abs(window.servo_velocity).max("time")
         measures = Measures()
         for medium in _MEDIA:

@@ -124,7 +124,14 @@ class Displacement(TwoGroups):
         lagged_gaits = [self.gait.lagged(p) for p in self.phases]
         runs = [Run(robot=self.robot, gait=gait) for gait in (*limb_gaits, *bent_gaits, *pitched_gaits, *lagged_gaits)]
         distances = _forward(
-            simulate(runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=100, progress=progress)
+            simulate(
+                runs,
+                duration=duration,
+                timestep=coarse_step(self.robot),
+                sample_stride=100,
+                effort=False,
+                progress=progress,
+            )
         ).values
         distance_groups = np.split(distances, np.cumsum([len(limb_gaits), len(bent_gaits), len(pitched_gaits)]))
         metres = {"units": "m"}

@@ -248,7 +248,7 @@ class Feedback(Experiment):
         ]
         duration = START + self.cycles * self.gait.period
         record = simulate(
-            runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, progress=progress
+            runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, effort=False, progress=progress
         )
         shape = (len(STARTS), self.starts, record.sizes["time"])
         phase, distance = np.full((*shape, record.sizes["leg"]), np.nan), np.full(shape, np.nan)
@@ -303,7 +303,7 @@ class Feedback(Experiment):
         runs = [self._disturbed_run(control, name) for name in names for control in arms.values()]
         duration = self._disturbance_time + self.after * self.gait.period
         record = simulate(
-            runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, progress=progress
+            runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, effort=False, progress=progress
         )
         dims, shape = ("disturbance", "arm", "time"), (len(names), len(arms), record.sizes["time"])
         track = record.centre_of_mass.transpose("run", "time", "xyz").values

@@ -223,6 +223,7 @@ class JointFaults(TwoGroups):
                 duration=self._duration,
                 timestep=self.timestep,
                 sample_stride=_SAMPLING_STRIDE,
+                effort=False,
                 progress=progress,
             )
         )
@@ -266,7 +267,12 @@ class JointFaults(TwoGroups):
             for a, j, h in points
         ]
         record = simulate(
-            runs, duration=self._duration, timestep=self.timestep, sample_stride=_SAMPLING_STRIDE, progress=progress
+            runs,
+            duration=self._duration,
+            timestep=self.timestep,
+            sample_stride=_SAMPLING_STRIDE,
+            effort=False,
+            progress=progress,
         )
         distance = displacement(require_complete(record)).sel(xyz="x").values
         locked_distances = distance[len(ARMS) :].reshape(len(ARMS), len(self._failing_joints), len(self.holds))

@@ -30,7 +30,7 @@ from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.land.stand import on_stand
-from suchus.sim.metrics import displacement, require_complete, time_window
+from suchus.sim.metrics import displacement, require_complete, rms_torque, time_window
 from suchus.visual.figures import captioned
 
 TESTS = ("step", "load", "let_go")
@@ -99,7 +99,7 @@ class JointLoops(Experiment):
             xr.concat([self._crawl_record(i, robot, progress) for i, robot in enumerate(robots)], "run")
         )
         walk = time_window(crawls)
-        load = float(np.sqrt((walk.servo_torque.isel(run=0).sel(servo=self.joint) ** 2).mean()))
+        load = float(rms_torque(crawls.isel(run=0)).sel(servo=self.joint))
         data = _tracking(walk, self.robot, displacement(crawls).sel(xyz="x").values)
         progress("stand", 0.7)
         step = physics_step(self.robot)

@@ -152,7 +152,9 @@ class PatternGeneratorExperiment(Experiment):
         walks, ramped = self._land(progress)
         stage = staged(progress, "one drive across the shore", 0.85, 1.0)
         shore_runs = one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
-        shore_record = simulate(shore_runs, duration=self.shore_time, sample_stride=_SAMPLE_INTERVAL, progress=stage)
+        shore_record = simulate(
+            shore_runs, duration=self.shore_time, sample_stride=_SAMPLE_INTERVAL, effort=False, progress=stage
+        )
         record = xr.merge([*parts, walks, one_drive.reduced(shore_record, self.water_line)]).assign_attrs(
             within=self.within, hold=self.hold, silent_above=_OSCILLATORS.limb_drives[1], walk=self.walk, swim=self.swim
         )
@@ -326,7 +328,7 @@ class PatternGeneratorExperiment(Experiment):
         """
         runs = [Run(robot=self.robot, gait=self.gait, control=control, label=name) for name, control in arms.items()]
         duration = START + self.cycles * self.gait.period
-        record = simulate(runs, duration=duration, sample_stride=_SAMPLE_INTERVAL, progress=progress)
+        record = simulate(runs, duration=duration, sample_stride=_SAMPLE_INTERVAL, effort=False, progress=progress)
         phase = record.limb_phase.isel(leg=0)
         initial_phase = phase.sel(time=START, method="nearest")
         units = {"forward": "m", "turned": "rad", "walked": "1"}
@@ -346,7 +348,7 @@ class PatternGeneratorExperiment(Experiment):
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
         stage = staged(progress, "drive ramp", 0.65, 0.85)
-        return walks, simulate([ramped], duration=end, sample_stride=2, progress=stage)
+        return walks, simulate([ramped], duration=end, sample_stride=2, effort=False, progress=stage)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
         """Return the replay of the walk under the drive ramp, by file name."""

@@ -36,7 +36,7 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Lake, Run, Tolerances, simulate
 from suchus.sim.land.afloat import check_floats, hovers
 from suchus.sim.land.lake import up_direction
-from suchus.sim.metrics import swim_numbers
+from suchus.sim.metrics import mean_effort, swim_numbers
 from suchus.sim.metrics.energy import METRES
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swimming.water import swim_of
@@ -381,7 +381,7 @@ def paths(record: xr.Dataset, runs: list[Run], interval: int) -> xr.Dataset:
         "ground": shares,
         "walks": walks.astype(float),
         "tilt": np.arccos(np.clip(np.einsum("rti,ri->rt", body_up, ups), -1.0, 1.0)),
-        "power": record.servo_power.values,
+        "power": record.servo_power.sum("servo", skipna=False).values,
     }
     means = ("feet", "ground", "power")
     count = record.sizes["time"] // interval
@@ -490,7 +490,7 @@ def metres(record: xr.Dataset, names: Sequence[str], duration: float) -> xr.Data
                 np.hypot(*displacement_xy.transpose("xyz", "run").values) / duration,
                 {"units": "m/s"},
             ),
-            "metre_power": ("where", excerpt.servo_power.mean("time").values, {"units": "W"}),
+            "metre_power": ("where", mean_effort(excerpt, "servo_power", 0.0).sum("servo").values, {"units": "W"}),
             "metre_depth": ("where", depth.values, {"units": "m"}),
             "metre_swing": ("where", np.ptp(np.einsum("rti,ri->rt", tip, lateral_axes), axis=1), {"units": "m"}),
             "metre_weight": ("where", GRAVITY * record.mass.values, {"units": "N"}),
@@ -510,7 +510,7 @@ def _metre_costs(record: xr.Dataset) -> Measures:
         )
         measures[f"speed_{condition}"] = Measure(speed, "m/s")
         measures[f"work_per_metre_{condition}"] = Measure(work, "J/m")
-        measures[f"cost_of_transport_{condition}"] = Measure(work / float(condition_record.metre_weight), "-")
+        measures[f"net_cost_of_transport_{condition}"] = Measure(work / float(condition_record.metre_weight), "-")
         if condition != "land":
             numbers = swim_numbers(
                 speed=speed, length=record.attrs["length"], frequency=record.attrs["beat"],

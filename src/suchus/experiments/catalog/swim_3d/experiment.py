@@ -439,7 +439,7 @@ def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[
     yield "speed_lengths", Measure(speed / robot.length, "1/s")
     yield "speed_gain", Measure(_gain(speeds), "-")
     yield "power", Measure(power, "W")
-    yield "cost_of_transport", Measure(power / (weight * abs(speed)), "-")
+    yield "water_cost_of_transport", Measure(power / (weight * abs(speed)), "-")
     numbers = swim_numbers(
         speed=speed, length=robot.length, frequency=frequency, swing=float(record["swing"]),
         viscosity=frequency * robot.length**2 / float(record.reynolds),
@@ -486,7 +486,7 @@ def _comparison_measures(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
         yield f"speed_gain_{key}", Measure(_gain(speed), "-")
         yield f"power_{key}", Measure(power, "W")
         yield (
-            f"cost_of_transport_{key}",
+            f"water_cost_of_transport_{key}",
             Measure(power / (float(motion_record.weight_compared) * abs(float(speed[-1]))), "-"),
         )
     for name in record.taken_arm.values if "taken_away" in record else ():

@@ -413,10 +413,12 @@ class SwimFree(Experiment):
                 "yaw_amplitude": Measure(float(np.ptp(yaw)) / 2, "rad"),
                 "share_above": Measure(float(1.0 - whole_swim.share_under.mean()), "-"),
                 "slip": Measure(speed["whole"] / float(record.wave_speed), "-"),
-                "servo_power": Measure(float(whole_swim.servo_power.mean()), "W"),
+                "servo_power": Measure(float(whole_swim.servo_power.sum("servo").mean()), "W"),
                 "water_power": Measure(-float(whole_swim.water_power.mean()), "W"),
-                "cost_of_transport": Measure(float(whole_swim.servo_power.mean()) / (weight * absolute_speed), "-"),
-                "cost_of_transport_water": Measure(
+                "net_cost_of_transport": Measure(
+                    float(whole_swim.servo_power.sum("servo").mean()) / (weight * absolute_speed), "-"
+                ),
+                "water_cost_of_transport": Measure(
                     -float(whole_swim.water_power.mean()) / (weight * absolute_speed), "-"
                 ),
                 "turn_radius": Measure(

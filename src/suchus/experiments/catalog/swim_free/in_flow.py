@@ -357,7 +357,9 @@ def flow_measures(record: xr.Dataset) -> Measures:
     for name in (str(label) for label in record.flow_run.values if FIN not in str(label)):
         ending = rung if name == "whole" else f"{rung}_{name}"
         measures[f"speed_{ending}"] = Measure(flow_speed(record, name), "m/s")
-        measures[f"servo_power_{ending}"] = Measure(float(last_cycle.flow_servo_power.sel(flow_run=name).mean()), "W")
+        measures[f"servo_power_{ending}"] = Measure(
+            float(last_cycle.flow_servo_power.sel(flow_run=name).sum("servo").mean()), "W"
+        )
         if record.attrs["cable"]:
             angles = last_cycle.flow_joint_angle.sel(flow_run=name, joint=record.attrs["cable"]).values
             half = np.ptp(angles, axis=0) / 2

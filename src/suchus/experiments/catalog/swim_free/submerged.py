@@ -67,7 +67,7 @@ def dive_record(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
         "deep_pitch": (rotation.pitch(record.orientation.values), "rad"),
         "deep_depth": ((record.water_level - record.position.sel(xyz="z")).values, "m"),
         "deep_along": (record.centre_of_mass.sel(xyz="x").values, "m"),
-        "deep_power": (record.servo_power.values, "W"),
+        "deep_power": (record.servo_power.sum("servo", skipna=False).values, "W"),
         "deep_air_fraction": (record.air_fraction.values, "1"),
     }
     air = np.array([chambers(run.robot) for run in runs])

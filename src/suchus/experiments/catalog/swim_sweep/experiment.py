@@ -42,7 +42,7 @@ _PEERS = (
 )  # fmt: skip
 
 _HERTZ = 1.0  # [Hz]; frequency of the points
-_SWIM_UNITS = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
+_SWIM_UNITS = {"speed": "m/s", "water_cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
 """Stored numbers of a swim by CFD, with units; see ``water.SwimMeasures``."""
 
 
@@ -68,7 +68,7 @@ class SwimSweep(Experiment):
     The whole map by the two slender-body models of the round body; some points by CFD as a check, from rest,
     their last cycle measured. By CFD the frequency is no independent parameter: at one Reynolds number
     f L^2 / nu, speeds are proportional to it. ``efficiency`` is the power that towing the straight body takes over that
-    of the joints, ``cost_of_transport`` that of the joints over displaced weight and speed. What joints or servos
+    of the joints, ``water_cost_of_transport`` that of the joints over displaced weight and speed. What joints or servos
     cannot follow is hatched.
     """
 
@@ -219,8 +219,8 @@ class SwimSweep(Experiment):
                 _power(record.amplitude, speed.isel(frequency=0)), "-"
             )
             measures[f"efficiency_most_{model}"] = Measure(float(by_waves.efficiency_by_waves.max()), "-")
-            cheapest = float(by_waves.cost_of_transport_by_waves.min())
-            measures[f"cost_of_transport_least_{model}"] = Measure(cheapest, "-")
+            cheapest = float(by_waves.water_cost_of_transport_by_waves.min())
+            measures[f"water_cost_of_transport_least_{model}"] = Measure(cheapest, "-")
             errors = record.point_model_speed.sel(model=model) / record.point_speed - 1
             measures[f"error_mean_{model}"] = Measure(float(errors.mean()), "-")
             measures[f"error_worst_{model}"] = Measure(float(errors[int(np.argmax(np.abs(errors.values)))]), "-")

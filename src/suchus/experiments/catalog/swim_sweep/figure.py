@@ -21,7 +21,7 @@ _AXES = ("frequency", "waves")
 _ROWS: tuple[tuple[str, str], ...] = (
     ("speed", "speed [m/s]"),
     ("efficiency", "efficiency [-]"),
-    ("cost_of_transport", "cost of transport [-]"),
+    ("water_cost_of_transport", "cost of transport [-]"),
 )
 """Rows of the maps: quantity and label."""
 _DARK_TEXT_LEVEL = 0.55

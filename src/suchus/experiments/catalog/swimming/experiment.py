@@ -403,7 +403,7 @@ def _free_swim(
         "efficiency",
         Measure(efficiency(float(record.towed_drag), swim_result.speed, float(free_swim.power[-1])), "-"),
     )
-    yield "cost_of_transport", Measure(swim_result.cost_of_transport, "-")
+    yield "water_cost_of_transport", Measure(swim_result.water_cost_of_transport, "-")
     yield "head_yaw", Measure(swim_result.head_yaw, "rad")
     for model in record.model.values:
         yield f"speed_{model}", Measure(float(record.model_speed.sel(model=model)), "m/s")
