@@ -24,6 +24,8 @@ gait = Gait(
 """The walk of the crank-legged robot."""
 made_for = ("salamandra",)
 """Robots of the shelf whose gait it is."""
+trunk_steering = {"salamandra": 0.37}
+"""Change of heading per cycle over a lasting bend of the trunk, by robot [rad/rad]."""
 
 _REASONS = (
     Reason(
