@@ -25,7 +25,7 @@ class HeadingRule:
     The body's direction is that of the pelvis by the IMU plus half of the trunk's sensed bend. With psi its error,
     averaged over the last cycle, and T the period, the legs' strokes become A (1 - u) on the left and A (1 + u) on
     the right, and u = -(gain psi + integral_gain sum(psi dt)/T). The trunk's bend is shifted by ``trunk`` u. Strokes
-    end at the limbs' reach and the bend at the trunk's range, each by itself.
+    end at the limbs' reach and at the speed of their servos, the bend at the trunk's range, each by itself.
 
     The direction counts from the heading with which the walk begins. If the loop is switched on during a walk, it
     counts from the mean heading of the next cycle, in which nothing is steered.
@@ -134,10 +134,11 @@ class Heading:
             return Steering.none(len(self._runs), len(self._limb_sides))
         error = self._facing.feel(sensed) - self._direction
         is_steered = walking & self._facing.has_reference
-        offset = np.clip(
-            self._offset - self._integral_gain * error / self._cycle, -self._max_steering, self._max_steering
-        )
-        self._offset = np.where(is_steered, offset, 0.0)
+        step = -self._integral_gain * error / self._cycle
+        demand = self._offset + step - self._gain * error
+        # anti-windup: integrate toward a limit only up to it
+        is_answerable = (np.abs(demand) <= self._max_steering) | (demand * step < 0.0)
+        self._offset = np.where(is_steered, self._offset + is_answerable * step, 0.0)
         target = np.clip(self._offset - self._gain * error, -self._max_steering, self._max_steering)
         change = np.clip(target - self._steer, -self._max_change, self._max_change)
         self._steer = np.where(is_steered, self._steer + change, 0.0)
@@ -155,12 +156,12 @@ class Heading:
 
 
 def _stroke_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
-    """Return the greatest steering command u that the limbs' strokes can follow [-]; 0 in a gait without strokes."""
+    """Return the greatest steering command u that the limbs and their servos can follow [-]; 0 without strokes."""
     if not gait.has("strokes"):
         return 0.0
     if rule.gain == rule.integral_gain == 0.0:  # nothing steers; computing the limbs' reach would be slow
         return rule.most
-    return min(rule.most, max(max_stroke_factor(robot, gait) - 1.0, 0.0))
+    return min(rule.most, max(max_stroke_factor(robot, gait, limit_speed=True) - 1.0, 0.0))
 
 
 def _bend_limit(robot: Robot, gait: Gait) -> float:
