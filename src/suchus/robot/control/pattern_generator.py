@@ -267,6 +267,12 @@ class Generator:
         self._min_amplitude = np.array(
             [max(_min_limb_amplitude(c.oscillators), _AMPLITUDE_TOLERANCE) for c in controls]
         )[:, None]
+        self._max_fold_change, self._max_steering_change = (
+            period * np.array([rate(posture) for posture in self._posture])[:, None]
+            for rate in (PatternPosture.fold_rate, PatternPosture.bend_rate)
+        )
+        max_bend = np.abs(self._gain).max(axis=1, keepdims=True, initial=_AMPLITUDE_TOLERANCE)
+        self._max_steering_change = self._max_steering_change / max_bend
         self.couplings = []
         """Of each run; see ``oscillators.Couplings``."""
         phases = []
@@ -286,6 +292,8 @@ class Generator:
             self.couplings, [control.oscillators for control in controls], pace, np.array(phases), amplitude, period
         )
         self._loads = Loads([control.limbs for control in controls], robots, gaits, period)
+        self._fraction = self._limb_fraction()
+        self._steer = self._steering.at(0.0)[:, None]
         self._rules = Rules(
             [control.spine for control in controls], [control.tail for control in controls], robots, gaits, period
         )
@@ -314,7 +322,7 @@ class Generator:
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
-        return self._targets(0.0)
+        return self._targets()
 
     def advance(self, tick: int) -> None:
         """Advance the oscillators from the last control period to this one, once the walk has begun.
@@ -341,7 +349,10 @@ class Generator:
         if sensed is not None and self._sensed_drive.felt:
             self._sensed_drive.feel(sensed)
         self.advance(tick)
-        targets = self._targets(tick * self._period)
+        self._fraction = _approach(self._fraction, self._limb_fraction(), self._max_fold_change)
+        steering = self._steering.at(tick * self._period)[:, None]
+        self._steer = _approach(self._steer, steering, self._max_steering_change)
+        targets = self._targets()
         if sensed is not None and tick * self._period >= START - _SLACK:
             targets = self._rules.correct(targets, sensed)
         return Command(targets, self.limb_phase)
@@ -359,14 +370,16 @@ class Generator:
                 frequency[runs, group], amplitude[runs, group] = law(drive[runs, group])
         return frequency, amplitude
 
-    def _targets(self, time: float) -> Float[np.ndarray, "run servo"]:
-        """Return the servo angles at a time [rad]."""
-        fraction = np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0)
-        wave, phase = self.wave, self.limb_phase
-        steering = self._steering.at(time)
+    def _limb_fraction(self) -> Float[np.ndarray, "run limb"]:
+        """Return how far the amplitude of each limb lets it follow its path, 0 to 1 [-]."""
+        return np.asarray(np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0))
+
+    def _targets(self) -> Float[np.ndarray, "run servo"]:
+        """Return the servo angles [rad]."""
+        fraction, wave, phase, steering = self._fraction, self.wave, self.limb_phase, self._steer
         if fraction.shape[1]:  # with silent limbs a bend turns the body to its own side
-            steering = steering * (1.0 + fraction.mean(axis=1) * (self._walk_side - 1.0))
-        offset = steering[:, None] * self._gain
+            steering = steering * (1.0 + fraction.mean(axis=1) * (self._walk_side - 1.0))[:, None]
+        offset = steering * self._gain
         group_targets = [
             (runs, posture.targets(phase[runs], fraction[runs], wave[runs], offset[runs]))
             for posture, runs in self._groups
@@ -392,6 +405,13 @@ def _grouped(
 def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
     places, factors = zip(*control.gradient, strict=True)
     return [float(np.interp(segment.place, places, factors)) for segment in posture.segments]
+
+
+def _approach(current: np.ndarray, target: np.ndarray, max_change: np.ndarray) -> np.ndarray:
+    """Return values that move from ``current`` to ``target`` by ``max_change`` at most, exactly where they arrive."""
+    change = target - current
+    is_near = np.abs(change) <= max_change
+    return np.where(is_near, target, current + np.clip(change, -max_change, max_change))
 
 
 def _steering_bend(control: PatternGenerator) -> float:
