@@ -134,7 +134,9 @@ def max_stroke_factor(robot: Robot, gait: Gait, *, limit_speed: bool = False) ->
     lower_bound, upper_bound = 1.0, _MAX_STROKE_FACTOR
     while upper_bound - lower_bound > _STROKE_TOLERANCE:
         trial = 0.5 * (lower_bound + upper_bound)
-        lower_bound, upper_bound = (trial, upper_bound) if _strides(robot, gait, trial, max_period) else (lower_bound, trial)
+        lower_bound, upper_bound = (
+            (trial, upper_bound) if _strides(robot, gait, trial, max_period) else (lower_bound, trial)
+        )
     return lower_bound
 
 
