@@ -5,10 +5,10 @@ from math import pi
 
 import numpy as np
 import pytest
-from body_files import imported_quadruped, rigid
 from tests.bodies import hatchling
 from tests.felt import felt
 
+from body_files import imported_quadruped, rigid
 from suchus.core import rotation
 from suchus.core.errors import OutsideLimits
 from suchus.robot.control import (
