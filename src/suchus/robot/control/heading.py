@@ -165,14 +165,14 @@ def _stroke_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
 
 
 def _bend_limit(robot: Robot, gait: Gait) -> float:
-    """Return the lasting bend of the trunk that its servos allow beyond the swing of the gait [rad]."""
+    """Return the curvature offset of the trunk that its servos allow beyond the swing of the gait [rad]."""
     yaw = list(layout(robot).trunk_yaw)
     max_bend = float(np.abs(servo_ranges(robot)[yaw]).min(axis=1, initial=np.inf).sum())
     return max(max_bend - trunk_amplitude(robot, gait), 0.0)
 
 
 def _trunk_per_steering(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
-    """Return the lasting bend of the trunk per u, left positive [rad].
+    """Return the curvature offset of the trunk per u, left positive [rad].
 
     Raises:
         OutsideLimits: nothing is known that would turn the robot: the gait has no strokes, and the effect of a bend is

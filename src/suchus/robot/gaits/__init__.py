@@ -105,11 +105,11 @@ def in_size(gait: Gait, robot: Robot, maker: Robot) -> Gait:
 
 
 MIN_TRUNK_STEERING = 0.05
-"""Change of heading per cycle and lasting bend of the trunk below which a bend does not steer [rad/rad]."""
+"""Change of heading per cycle and curvature offset of the trunk below which a bend does not steer [rad/rad]."""
 
 
 def trunk_steering(robot: Robot, gait: Gait) -> float | None:
-    """Return how a lasting bend of the trunk turns a robot in a gait of the shelf, both left positive [rad/rad].
+    """Return how a curvature offset of the trunk turns a robot in a gait of the shelf, both left positive [rad/rad].
 
     It is the change of heading in a cycle over the bend. The module of a gait declares it as ``trunk_steering``, for
     each robot on which it was measured (``suchus.sim.land.measure_trunk_steering``). A robot that is not among them

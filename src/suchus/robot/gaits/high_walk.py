@@ -27,7 +27,7 @@ gait = GaitInMetres(
 ).gait(LIMBS)
 """A walking trot, each hind foot a little after its diagonal front foot."""
 trunk_steering = {"caiman": 0.45}
-"""Change of heading per cycle over a lasting bend of the trunk, by robot [rad/rad]."""
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _HIND_LAG_REASON = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls less"
 _ROWS: tuple[tuple[str, float, float, str], ...] = (

@@ -23,7 +23,7 @@ gait = Gait(
 made_for = ("salamander",)
 """Robots of the shelf whose gait it is."""
 trunk_steering = {"salamander": 0.21, "caiman": -0.55}
-"""Change of heading per cycle over a lasting bend of the trunk, by robot [rad/rad]."""
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _REASONS = (
     Reason(

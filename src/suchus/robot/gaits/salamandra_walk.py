@@ -25,7 +25,7 @@ gait = Gait(
 made_for = ("salamandra",)
 """Robots of the shelf whose gait it is."""
 trunk_steering = {"salamandra": 0.37}
-"""Change of heading per cycle over a lasting bend of the trunk, by robot [rad/rad]."""
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _REASONS = (
     Reason(

@@ -102,7 +102,7 @@ class Loop:
         self.clocks: Int[np.ndarray, " run"] = np.zeros(len(runs), dtype=int)
         """Number of the control period of each run since it began."""
         self._going = np.ones(len(runs), dtype=bool)
-        self._endless = np.isinf(servo_ranges(runs[0].robot)).any(axis=1)
+        self._unbounded = np.isinf(servo_ranges(runs[0].robot)).any(axis=1)
         self._intended_command = Command(initial_angles, np.zeros((len(runs), 0)))
 
     @property
@@ -131,15 +131,15 @@ class Loop:
         self.disturb()
 
     def _continued(self, command: Command) -> Command:
-        """Return a command whose endless servos go on from the last command.
+        """Return a command whose unbounded servos go on from the last command.
 
         A beat that begins anew with each cycle would turn a crank back by a whole turn.
         """
-        if not self._endless.any():
+        if not self._unbounded.any():
             return command
         previous, targets = self._intended_command.targets, command.targets.copy()
         turns = np.round((previous - targets) / (2 * np.pi))
-        targets[:, self._endless] += 2 * np.pi * turns[:, self._endless]
+        targets[:, self._unbounded] += 2 * np.pi * turns[:, self._unbounded]
         return command._replace(targets=targets)
 
     def disturb(self) -> None:

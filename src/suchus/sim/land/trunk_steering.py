@@ -1,4 +1,4 @@
-"""How a lasting bend of the trunk turns a robot in a gait: found by walking."""
+"""How a curvature offset of the trunk turns a robot in a gait: found by walking."""
 
 from suchus.core.checks import require
 from suchus.robot.control import Walking
@@ -17,7 +17,7 @@ DEFAULT_CYCLES = 4
 def measure_trunk_steering(
     robot: Robot, gait: Gait, *, bend: float = DEFAULT_BEND, cycles: int = DEFAULT_CYCLES
 ) -> float:
-    """Return the change of heading per cycle over the lasting bend of the trunk, both left positive [rad/rad].
+    """Return the change of heading per cycle over the curvature offset of the trunk, both left positive [rad/rad].
 
     The robot walks once with the trunk bent to the left and once to the right, on even ground. A gait of the shelf
     keeps the number in its module, as ``trunk_steering = {"caiman": 0.9}``; the controllers read it there.
