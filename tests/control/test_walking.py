@@ -58,7 +58,8 @@ def test_feet_on_the_side_that_sinks_go_lower_and_the_front_ones_when_the_nose_s
     def lowered(**felt):
         walker = started(Walking(attitude=AttitudeRule()), robot, GAITS["high_walk"])
         walker.command(150, sensed())
-        walker.command(151, sensed(**felt))
+        for tick in range(151, 171):  # for five time constants of the filter
+            walker.command(tick, sensed(**felt))
         return walker._foot_lowering[0]
 
     assert (lowered(roll=0.05) * [1, -1, 1, -1] < -0.002).all()  # left side up: left feet give way

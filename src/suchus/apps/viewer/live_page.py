@@ -65,7 +65,7 @@ _SWITCHES: tuple[tuple[Switch, str, str], ...] = (
     (
         "heading",
         "feedback: heading loop",
-        "Keeps the heading at which it is switched on, by longer strokes on one side.",
+        "Keeps the mean heading of the cycle after it is switched on, by longer strokes on one side.",
     ),
 )
 

@@ -141,6 +141,7 @@ class Coordinator:
         self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steers else None
         self._shared = initial_shared(len(robots), limbs)
         self._steering = Steering.straight(len(robots), limbs)
+        self._has_walked = False
 
     def take_over(self, predecessor: "Coordinator") -> None:
         """Continue from another coordinator of the same runs, with other gaits or rules."""
@@ -148,8 +149,17 @@ class Coordinator:
         self._spine.take_over(predecessor._spine)
         self._tail.take_over(predecessor._tail)
         self._shared = predecessor._shared
+        self._has_walked = predecessor._has_walked
         if self._heading is not None and predecessor._heading is not None:
             self._heading.take_over(predecessor._heading)
+        elif self._has_walked:
+            self.begin_in_motion()
+
+    def begin_in_motion(self) -> None:
+        """Let the heading loops count from the mean heading of the coming cycle, for robots that move already."""
+        self._has_walked = True
+        if self._heading is not None:
+            self._heading.begin_in_motion()
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
@@ -171,6 +181,7 @@ class Coordinator:
         self._share(tick, sensed, walking=walking)
         if sensed is not None and self._heading is not None:
             self._steering = self._heading.step(sensed, walking=walking)
+        self._has_walked = self._has_walked or walking
         targets = self._posture(tick)
         if sensed is not None and walking:
             targets = self._spine.correct(targets, self._shared.trunk_bend + self._steering.trunk, sensed)

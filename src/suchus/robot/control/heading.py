@@ -9,10 +9,13 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from suchus.core.checks import Checks
+from suchus.core.errors import OutsideLimits
 from suchus.robot.control.facing import HeadingEstimator
 from suchus.robot.control.sensed import Sensed
-from suchus.robot.design import Robot, layout
-from suchus.robot.motion import Gait, max_stroke_factor
+from suchus.robot.control.trunk_effect import no_trunk_steering
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.robot.gaits import MIN_TRUNK_STEERING, trunk_steering
+from suchus.robot.motion import Gait, max_stroke_factor, trunk_amplitude
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,7 +24,11 @@ class HeadingRule:
 
     The body's direction is that of the pelvis by the IMU plus half of the trunk's sensed bend. With psi its error,
     averaged over the last cycle, and T the period, the legs' strokes become A (1 - u) on the left and A (1 + u) on
-    the right, and u = -(gain psi + integral_gain sum(psi dt)/T).
+    the right, and u = -(gain psi + integral_gain sum(psi dt)/T). The trunk's bend is shifted by ``trunk`` u. Strokes
+    end at the limbs' reach and at the speed of their servos, the bend at the trunk's range, each by itself.
+
+    The direction counts from the heading with which the walk begins. If the loop is switched on during a walk, it
+    counts from the mean heading of the next cycle, in which nothing is steered.
     """
 
     direction: float = 0.0
@@ -32,8 +39,12 @@ class HeadingRule:
     """Answer to the error that stays, per cycle [1/rad]; a limp leg needs a constant u of almost 2."""
     most: float = 2.0
     """Most that u becomes [-]; beyond 1 the shorter side strides backward. A leg's reach may allow less."""
-    trunk: float = 0.4
-    """Lasting bend of the trunk per u, left positive [rad]; it helps where strokes have little effect."""
+    trunk: float | None = None
+    """Lasting bend of the trunk per u, left positive [rad]; it helps where strokes have little effect. None:
+    ``TRUNK_PER_STEERING`` toward the side to which a bend turns this robot in this gait, and 0 where that is not
+    known, see ``suchus.robot.gaits.trunk_steering``."""
+    rate: float = 4.0
+    """Greatest change of u in a cycle [-], so that no servo is commanded to jump when the asked direction does."""
 
     def __post_init__(self) -> None:
         with Checks("heading_rule", self) as checks:
@@ -41,7 +52,13 @@ class HeadingRule:
             checks.number("gain", 0.0, 100.0, "1/rad")
             checks.number("integral_gain", 0.0, 100.0, "1/rad")
             checks.number("most", 0.0, 10.0, "")
-            checks.number("trunk", -1.5, 1.5, "rad")
+            if self.trunk is not None:
+                checks.number("trunk", -1.5, 1.5, "rad")
+            checks.number("rate", 0.01, 1000.0, "")
+
+
+TRUNK_PER_STEERING = 0.4
+"""Lasting bend of the trunk per u, where a bend turns the robot [rad]."""
 
 
 class Steering(NamedTuple):
@@ -82,16 +99,28 @@ class Heading:
         """
         neutral_rule = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
         settings = [rule or neutral_rule for rule in rules]
-        self._direction, self._gain, self._integral_gain, self._trunk = (
-            np.array([getattr(rule, name) for rule in settings])
-            for name in ("direction", "gain", "integral_gain", "trunk")
+        self._direction, self._gain, self._integral_gain = (
+            np.array([getattr(rule, name) for rule in settings]) for name in ("direction", "gain", "integral_gain")
         )
         self._runs = np.arange(len(gaits))
         self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
-        self._max_steering = np.array([_steering_limit(*setup) for setup in zip(settings, robots, gaits, strict=True)])
+        setups = list(zip(settings, robots, gaits, strict=True))
+        self._trunk = np.array([_trunk_per_steering(*setup) for setup in setups])
+        self._max_stroke = np.array([_stroke_limit(*setup) for setup in setups])
+        self._max_bend = np.array([_bend_limit(robot, gait) for _, robot, gait in setups])
+        # beyond both limits more steering changes nothing, and would only wind up the integral
+        bend_steering = self._max_bend / np.where(self._trunk != 0.0, np.abs(self._trunk), np.inf)
+        self._max_steering = np.minimum(
+            np.array([rule.most for rule in settings]), np.maximum(self._max_stroke, bend_steering)
+        )
+        self._max_change = np.array([rule.rate for rule in settings]) / self._cycle
         self._facing = HeadingEstimator(robots, [int(cycle) for cycle in self._cycle])
         self._limb_sides = np.array([limb.side for limb in layout(robots[0]).limbs])
-        self._offset = np.zeros(len(gaits))
+        self._offset, self._steer = np.zeros(len(gaits)), np.zeros(len(gaits))
+
+    def begin_in_motion(self) -> None:
+        """Count the direction from the mean heading of the coming cycle, for robots that walk already."""
+        self._facing.begin_in_motion()
 
     def step(self, sensed: Sensed, *, walking: bool | Bool[np.ndarray, " run"]) -> Steering:
         """Return the steering that the present heading error demands.
@@ -104,25 +133,56 @@ class Heading:
         if walking is False:
             return Steering.straight(len(self._runs), len(self._limb_sides))
         error = self._facing.feel(sensed) - self._direction
-        offset = np.clip(
-            self._offset - self._integral_gain * error / self._cycle, -self._max_steering, self._max_steering
-        )
-        self._offset = np.where(walking, offset, 0.0)
-        steer = np.where(
-            walking, np.clip(self._offset - self._gain * error, -self._max_steering, self._max_steering), 0.0
-        )
-        return Steering(-self._limb_sides * steer[:, None], self._trunk * steer)
+        is_steered = walking & self._facing.has_reference
+        step = -self._integral_gain * error / self._cycle
+        demand = self._offset + step - self._gain * error
+        # anti-windup: integrate toward a limit only up to it
+        is_answerable = (np.abs(demand) <= self._max_steering) | (demand * step < 0.0)
+        self._offset = np.where(is_steered, self._offset + is_answerable * step, 0.0)
+        target = np.clip(self._offset - self._gain * error, -self._max_steering, self._max_steering)
+        change = np.clip(target - self._steer, -self._max_change, self._max_change)
+        self._steer = np.where(is_steered, self._steer + change, 0.0)
+        stroke = np.clip(self._steer, -self._max_stroke, self._max_stroke)
+        bend = np.clip(self._trunk * self._steer, -self._max_bend, self._max_bend)
+        return Steering(-self._limb_sides * stroke[:, None], bend)
 
     def take_over(self, predecessor: "Heading") -> None:
-        """Continue from the loops of the same runs; the mean over the last cycle starts again."""
+        """Continue from the loops of the same runs."""
         self._facing.take_over(predecessor._facing)
-        self._offset = np.clip(predecessor._offset, -self._max_steering, self._max_steering)
+        self._offset, self._steer = (
+            np.clip(state, -self._max_steering, self._max_steering)
+            for state in (predecessor._offset, predecessor._steer)
+        )
 
 
-def _steering_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
-    """Return the greatest steering command u that the limbs can follow [-]; 0 in a gait without strokes."""
+def _stroke_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
+    """Return the greatest steering command u that the limbs and their servos can follow [-]; 0 without strokes."""
     if not gait.has("strokes"):
         return 0.0
     if rule.gain == rule.integral_gain == 0.0:  # nothing steers; computing the limbs' reach would be slow
         return rule.most
-    return min(rule.most, max(max_stroke_factor(robot, gait) - 1.0, 0.0))
+    return min(rule.most, max(max_stroke_factor(robot, gait, limit_speed=True) - 1.0, 0.0))
+
+
+def _bend_limit(robot: Robot, gait: Gait) -> float:
+    """Return the curvature offset of the trunk that its servos allow beyond the swing of the gait [rad]."""
+    yaw = list(layout(robot).trunk_yaw)
+    max_bend = float(np.abs(servo_ranges(robot)[yaw]).min(axis=1, initial=np.inf).sum())
+    return max(max_bend - trunk_amplitude(robot, gait), 0.0)
+
+
+def _trunk_per_steering(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
+    """Return the curvature offset of the trunk per u, left positive [rad].
+
+    Raises:
+        OutsideLimits: nothing is known that would turn the robot: the gait has no strokes, and the effect of a bend is
+            unknown or too small.
+    """
+    if rule.trunk is not None:
+        return rule.trunk
+    turn_per_bend = trunk_steering(robot, gait)
+    if turn_per_bend is None or abs(turn_per_bend) < MIN_TRUNK_STEERING:
+        if not gait.has("strokes") and (rule.gain or rule.integral_gain):
+            raise OutsideLimits(no_trunk_steering(robot, gait, "the heading loop", "heading_rule.trunk"))
+        return 0.0
+    return float(np.copysign(TRUNK_PER_STEERING, turn_per_bend))

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.checks import Checks
-from suchus.robot.control.facing import HeadingEstimator
+from suchus.robot.control.facing import HeadingEstimator, left_side_sign
 from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.design import Robot
 from suchus.robot.design.pieces import chambers
@@ -20,7 +20,8 @@ class HeadingHold:
     """Keeps the direction of a swim by the mean bend of tail and trunk.
 
     With psi the error of the direction, averaged over the last cycle, tail and trunk bend by a share u of ``turn`` and
-    ``trunk_turn``, and u = -(gain psi + integral_gain sum(psi dt)), within -1 and 1.
+    ``trunk_turn``, and u = -(gain psi + integral_gain sum(psi dt)), within -1 and 1. A robot that has rolled onto its
+    back bends to its other side, and one that lies on its side does not bend.
     """
 
     direction: float = 0.0
@@ -109,9 +110,10 @@ class HeadingHolds:
 
     def bend(self, sensed: Sensed) -> tuple[Float[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return the mean bends of tail and trunk, left positive [rad]."""
-        error = self._facing.feel(sensed) - self._direction
-        self._offset = np.clip(self._offset - self._integral * error * self._period, -1.0, 1.0)
-        hinge_counts = np.clip(self._offset - self._gain * error, -1.0, 1.0)
+        error, side = self._facing.feel(sensed) - self._direction, left_side_sign(sensed)
+        # anti-windup: integrate only while a bend turns the robot
+        self._offset = np.clip(self._offset - np.abs(side) * self._integral * error * self._period, -1.0, 1.0)
+        hinge_counts = side * np.clip(self._offset - self._gain * error, -1.0, 1.0)
         return self._turn * hinge_counts, self._trunk * hinge_counts
 
 

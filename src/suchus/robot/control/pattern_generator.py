@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.checks import Checks, Schedule, require
-from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.core.progress import Progress, silent
 from suchus.robot.control.controller import Command, Runs, union_of_needs
 from suchus.robot.control.limbs import LAWS, LimbLaw, Loads
@@ -19,8 +19,10 @@ from suchus.robot.control.pattern_posture import PatternPosture, initial_phases,
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.control.spine import SpineController, SpineRule
 from suchus.robot.control.tail import TailController, TailRule
+from suchus.robot.control.trunk_effect import no_trunk_steering
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import control_period
+from suchus.robot.gaits import MIN_TRUNK_STEERING, trunk_steering
 from suchus.robot.motion import START, Gait, check_limits
 
 
@@ -119,6 +121,8 @@ def _sensed_of_runs(sensed: Sensed, runs: list[int]) -> Sensed:
     return replace(sensed, servo_position=sensed.servo_position[runs], servo_torque=sensed.servo_torque[runs])
 
 
+STEERING_BEND = radians(8)
+"""Steady bend of each steering joint at ``steering`` 1, where the control gives none [rad]."""
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
 _AMPLITUDE_TOLERANCE = 1e-9  # [-]; an amplitude below this is none
 
@@ -142,8 +146,10 @@ class PatternGenerator:
     """Drive of the right side minus that of the left one, -4 to 4 [-]; with the published numbers it hardly turns."""
     steering: Schedule = 0.0
     """Turning command, -1 to 1, to the left where positive [-]."""
-    steering_gain: float = radians(8)
-    """Steady bend of each joint ahead of the hindmost limbs at ``steering`` 1 [rad]; of all joints without limbs."""
+    steering_gain: float | None = None
+    """Steady bend to the left of each joint ahead of the hindmost limbs at ``steering`` 1 [rad]; of all joints without
+    limbs. None: ``STEERING_BEND`` toward the side to which a bend turns this robot in this gait, see
+    ``suchus.robot.gaits.trunk_steering``; to the left while the limbs are silent."""
     lag: float | None = None
     """Phase lag of each segment of the axis behind the one ahead of it [cycle]; None for one wave on the whole axis."""
     gradient: tuple[tuple[float, float], ...] = ((0.0, 1.0), (1.0, 1.0))
@@ -178,7 +184,8 @@ class PatternGenerator:
             check.course("asymmetry", -4.0, 4.0, "", start=0.0)
             check.course("steering", -1.0, 1.0, "", start=0.0)
             check.course("gradient", 0.0, 10.0, "", abscissa="place", start=0.0)
-            check.number("steering_gain", 0.0, 1.0, "rad")
+            if self.steering_gain is not None:
+                check.number("steering_gain", -1.0, 1.0, "rad")
             if self.lag is not None:
                 check.number("lag", -0.5, 0.5, "cycle")
             if self.pace is not None:
@@ -247,14 +254,25 @@ class Generator:
         )
         self._shift = np.array([posture.shift for posture in self._posture])[:, None]
         self._gradient = np.array([_graded(*pair) for pair in zip(controls, self._posture, strict=True)])
-        gains = zip(controls, self._posture, strict=True)
-        self._gain = np.array([[c.steering_gain * segment.steers for segment in p.segments] for c, p in gains])
+        self._gain = np.array(
+            [
+                [_steering_bend(control) * segment.steers for segment in posture.segments]
+                for control, posture in zip(controls, self._posture, strict=True)
+            ]
+        )
+        self._walk_side = np.array([_walk_side(*setup) for setup in zip(controls, robots, gaits, strict=True)])
         self._full = [
             max(float(c.oscillators.axis(np.array(c.oscillators.reference))[1]), _AMPLITUDE_TOLERANCE) for c in controls
         ]
         self._min_amplitude = np.array(
             [max(_min_limb_amplitude(c.oscillators), _AMPLITUDE_TOLERANCE) for c in controls]
         )[:, None]
+        self._max_fold_change, self._max_steering_change = (
+            period * np.array([rate(posture) for posture in self._posture])[:, None]
+            for rate in (PatternPosture.fold_rate, PatternPosture.bend_rate)
+        )
+        max_bend = np.abs(self._gain).max(axis=1, keepdims=True, initial=_AMPLITUDE_TOLERANCE)
+        self._max_steering_change = self._max_steering_change / max_bend
         self.couplings = []
         """Of each run; see ``oscillators.Couplings``."""
         phases = []
@@ -274,6 +292,8 @@ class Generator:
             self.couplings, [control.oscillators for control in controls], pace, np.array(phases), amplitude, period
         )
         self._loads = Loads([control.limbs for control in controls], robots, gaits, period)
+        self._fraction = self._limb_fraction()
+        self._steer = self._steering.values_at(0.0)[:, None]
         self._rules = Rules(
             [control.spine for control in controls], [control.tail for control in controls], robots, gaits, period
         )
@@ -302,7 +322,7 @@ class Generator:
 
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
-        return self._targets(0.0)
+        return self._targets()
 
     def advance(self, tick: int) -> None:
         """Advance the oscillators from the last control period to this one, once the walk has begun.
@@ -329,7 +349,10 @@ class Generator:
         if sensed is not None and self._sensed_drive.has_feedback:
             self._sensed_drive.feel(sensed)
         self.advance(tick)
-        targets = self._targets(tick * self._period)
+        self._fraction = _approach(self._fraction, self._limb_fraction(), self._max_fold_change)
+        steering = self._steering.values_at(tick * self._period)[:, None]
+        self._steer = _approach(self._steer, steering, self._max_steering_change)
+        targets = self._targets()
         if sensed is not None and tick * self._period >= START - _SLACK:
             targets = self._rules.correct(targets, sensed)
         return Command(targets, self.limb_phase)
@@ -349,11 +372,16 @@ class Generator:
                 frequency[runs, group], amplitude[runs, group] = law(drive[runs, group])
         return frequency, amplitude
 
-    def _targets(self, time: float) -> Float[np.ndarray, "run servo"]:
-        """Return the servo angles at a time [rad]."""
-        fraction = np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0)
-        wave, phase = self.wave, self.limb_phase
-        offset = self._steering.values_at(time)[:, None] * self._gain
+    def _limb_fraction(self) -> Float[np.ndarray, "run limb"]:
+        """Return how far the amplitude of each limb lets it follow its path, 0 to 1 [-]."""
+        return np.asarray(np.clip(self.amplitude[:, self._limbs] / self._min_amplitude, 0.0, 1.0))
+
+    def _targets(self) -> Float[np.ndarray, "run servo"]:
+        """Return the servo angles [rad]."""
+        fraction, wave, phase, steering = self._fraction, self.wave, self.limb_phase, self._steer
+        if fraction.shape[1]:  # with silent limbs a bend turns the body to its own side
+            steering = steering * (1.0 + fraction.mean(axis=1) * (self._walk_side - 1.0))[:, None]
+        offset = steering * self._gain
         group_targets = [
             (runs, posture.targets(phase[runs], fraction[runs], wave[runs], offset[runs]))
             for posture, runs in self._groups
@@ -379,6 +407,41 @@ def _grouped(
 def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
     places, factors = zip(*control.gradient, strict=True)
     return [float(np.interp(segment.axial_position, places, factors)) for segment in posture.segments]
+
+
+def _approach(current: np.ndarray, target: np.ndarray, max_change: np.ndarray) -> np.ndarray:
+    """Return values that move from ``current`` to ``target`` by ``max_change`` at most, exactly where they arrive."""
+    change = target - current
+    is_near = np.abs(change) <= max_change
+    return np.where(is_near, target, current + np.clip(change, -max_change, max_change))
+
+
+def _steering_bend(control: PatternGenerator) -> float:
+    """Return the steady bend to the left of each steering joint at ``steering`` 1, with silent limbs [rad]."""
+    return STEERING_BEND if control.steering_gain is None else control.steering_gain
+
+
+def _walk_side(control: PatternGenerator, robot: Robot, gait: Gait) -> float:
+    """Return the factor on the steering bend while the limbs walk: -1 where a bend turns the robot to the other side.
+
+    Raises:
+        OutsideLimits: the robot is steered, and the effect of a bend in its gait is unknown or too small.
+    """
+    if control.steering_gain is not None or not layout(robot).limbs or not _is_steered(control):
+        return 1.0
+    turn_per_bend = trunk_steering(robot, gait)
+    if turn_per_bend is None or abs(turn_per_bend) < MIN_TRUNK_STEERING:
+        raise OutsideLimits(
+            no_trunk_steering(robot, gait, "pattern_generator.steering", "pattern_generator.steering_gain")
+        )
+    return float(np.sign(turn_per_bend))
+
+
+def _is_steered(control: PatternGenerator) -> bool:
+    """Return whether the turning command is ever other than zero."""
+    if isinstance(control.steering, tuple):
+        return any(value for _, value in control.steering)
+    return control.steering != 0.0
 
 
 def _min_limb_amplitude(parameters: Oscillators) -> float:

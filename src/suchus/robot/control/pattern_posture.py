@@ -15,6 +15,10 @@ from suchus.robot.motion import FixedLimbs, Gait, Sweep, limb_movement, middle_s
 
 _FOLDED = radians(-85)  # yaw of a folded limb, backward along the body, as a swimming salamander holds them
 
+_PACE = 0.5
+"""Share of a servo's speed at which limbs fold and the axis is bent to steer [-]; the walk itself needs the rest."""
+_PATH_SAMPLES = 32  # phases of a path at which its distance from the folded limb is taken
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisSegment:
@@ -96,6 +100,20 @@ class PatternPosture:
         self._turns = np.array([_cranked(self._layout, gait, limb) for limb in owner], dtype=bool)
         self._lower_bound, self._upper_bound = servo_ranges(robot).T
         self._steady = center
+        self._speeds = np.array([robot.servo(servo).speed for servo in self._layout.servos])
+
+    def fold_rate(self) -> float:
+        """Return the rate at which limbs may leave their path, so that no servo turns at more than ``_PACE`` [1/s]."""
+        if not self._limb_servos:
+            return np.inf
+        phases = np.arange(_PATH_SAMPLES)[:, None] / _PATH_SAMPLES + np.zeros(len(self._layout.limbs))
+        path = self._limbs.targets(phases, np.zeros(len(phases), dtype=complex))[:, self._limb_servos]
+        folds = np.where(self._turns, 0.0, np.abs(path - self._silent_angles).max(axis=0))
+        return _PACE / max(float((folds / self._speeds[self._limb_servos]).max()), 1e-9)
+
+    def bend_rate(self) -> float:
+        """Return the rate at which a steady bend may change, so that no servo turns at more than ``_PACE`` [rad/s]."""
+        return _PACE * min(float(self._speeds[segment.servo]) for segment in self.segments)
 
     def targets(
         self,

@@ -42,7 +42,9 @@ class TurningCurve:
 
 
 def turn(curve: TurningCurve, radius: float, *, attitude: AttitudeRule | None = None) -> Walking:
-    """Return the control that walks a circle.
+    """Return the control that walks a circle on ground of the friction on which the curve was measured.
+
+    Nothing is fed back: on other friction the radius is another one.
 
     Args:
         curve: of the gait.
@@ -83,4 +85,6 @@ CURVES: Mapping[str, TurningCurve] = MappingProxyType(
         ),
     }
 )
-"""By gait, as the experiment ``turning`` measured them on the robot ``caiman``."""
+"""By gait, as the experiment ``turning`` measured them on the robot ``caiman``, to the left, on the friction of its
+design. On 0.8 to 1.25 times that friction a circle may be a fifth larger or smaller; the experiment measures by how
+much (``radius_off_friction_...``)."""

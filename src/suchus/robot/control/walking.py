@@ -46,7 +46,8 @@ class Walking:
     switching: SwitchRule | None = None
     """Rule that changes the gait by what the sensors read; None for none."""
     bend: float = 0.0
-    """Lasting bend of the trunk, left positive [rad]; it steers to the left."""
+    """Lasting bend of the trunk, left positive [rad]; to which side and how far it turns a robot in its gait is
+    ``suchus.robot.gaits.trunk_steering``, to the left for most."""
     asymmetry: float = 0.0
     """Share by which left strokes are shorter and right strokes longer [-]; it steers to the left."""
 

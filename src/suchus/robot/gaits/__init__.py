@@ -104,6 +104,31 @@ def in_size(gait: Gait, robot: Robot, maker: Robot) -> Gait:
     return replace(gait, period=round(max(1, round(period / step)) * step, 12))
 
 
+MIN_TRUNK_STEERING = 0.05
+"""Change of heading per cycle and curvature offset of the trunk below which a bend does not steer [rad/rad]."""
+
+
+def trunk_steering(robot: Robot, gait: Gait) -> float | None:
+    """Return how a curvature offset of the trunk turns a robot in a gait of the shelf, both left positive [rad/rad].
+
+    It is the change of heading in a cycle over the bend. The module of a gait declares it as ``trunk_steering``, for
+    each robot on which it was measured (``suchus.sim.land.measure_trunk_steering``). A robot that is not among them
+    gets the number of the first one whose limbs turn about the same axes.
+
+    Args:
+        robot: the robot.
+        gait: the gait, or a variant of it under the same name.
+
+    Returns:
+        The change of heading per cycle and bend; None where it was not measured.
+    """
+    measured = GAITS.beside(gait.name, "trunk_steering", {}) if gait.name in GAITS else {}
+    if robot.name in measured:
+        return float(measured[robot.name])
+    similar = (name for name in measured if _turns(ROBOTS[name]) == _turns(robot) and layout(robot).trunk_yaw)
+    return next((float(measured[name]) for name in similar), None)
+
+
 def _turns(robot: Robot) -> list[list[str]]:
     """Return about which axes the hinges of each pair of limbs turn."""
     return [[hinge.turn for hinge in girdle.limb.hinges] for girdle in robot.girdles]

@@ -34,6 +34,8 @@ gait = metres.gait(LIMBS)
 """Spine and tail take part."""
 made_for = ("caiman", "floating_caiman", "long_tail")
 """Robots of the catalog whose gait it is."""
+trunk_steering = {"caiman": 0.08, "floating_caiman": 0.08, "long_tail": 0.34}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _FIT_REASON = (
     "leg stroke and trunk bend are the two numbers chosen so that both displacements come out as printed, "

@@ -26,6 +26,8 @@ gait = GaitInMetres(
     tail_pitch=0.40,
 ).gait(LIMBS)
 """A walking trot, each hind foot a little after its diagonal front foot."""
+trunk_steering = {"caiman": 0.45}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _HIND_LAG_REASON = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls less"
 _ROWS: tuple[tuple[str, float, float, str], ...] = (

@@ -11,4 +11,6 @@ from suchus.robot.gaits import belly_crawl
 
 gait = belly_crawl.gait.without("axis", name="limbs_only")
 """Legs alone."""
+trunk_steering = {"caiman": 0.13}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 chosen = belly_crawl.chosen

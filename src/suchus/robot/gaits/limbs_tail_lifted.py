@@ -6,4 +6,6 @@ LIFTED = -0.25  # [rad]; clear of the ground, and the passive end does not touch
 
 gait = limbs_only.gait.lifted(LIFTED, name="limbs_tail_lifted")
 """Legs alone, the tail in the air: the robot is then so heavy behind that its hind feet never leave the ground."""
+trunk_steering = {"caiman": 0.13}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 chosen = belly_crawl.chosen

@@ -8,6 +8,8 @@ from suchus.robot.gaits.belly_crawl import FRONT, HIND, LIMBS
 
 gait = replace(belly_crawl.metres, name="low_crawl", period=2.0, stroke=0.050, lift=0.030, hip_height=0.055).gait(LIMBS)
 """Between belly and ground are 20 mm."""
+trunk_steering = {"caiman": 0.31}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _OWN_RANGES = {
     "period": (1.2, 3.0, "0.35 m/s at 1.2 s, 0.14 m/s at 3 s; the body rolls by 8 degrees throughout"),

@@ -26,6 +26,8 @@ gait = Gait(
 """The walk of the robot with four joints a limb."""
 made_for = ("pleurobot",)
 """Robots of the catalog whose gait it is."""
+trunk_steering = {"pleurobot": -0.36, "caiman": -0.77}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _REASONS = (
     Reason(r"^axis", 0.5, 1.5, "the standing wave of the walking animal, a dozen degrees a joint"),

@@ -22,6 +22,8 @@ gait = Gait(
 """Diagonal limbs and a standing wave, as the animal walks."""
 made_for = ("salamander",)
 """Robots of the catalog whose gait it is."""
+trunk_steering = {"salamander": 0.21, "caiman": -0.55}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _REASONS = (
     Reason(

@@ -24,6 +24,8 @@ gait = Gait(
 """The walk of the crank-legged robot."""
 made_for = ("salamandra",)
 """Robots of the catalog whose gait it is."""
+trunk_steering = {"salamandra": 0.37}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _REASONS = (
     Reason(

@@ -26,6 +26,8 @@ gait = GaitInMetres(
     tail_pitch=0.38,
 ).gait(LIMBS)
 """A walking trot between crawl and high walk."""
+trunk_steering = {"caiman": 0.44}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _HIND_LAG_REASON = (
     "after its diagonal front foot, a trot within an eighth of a cycle; 0.19 earlier costs a quarter of the speed"

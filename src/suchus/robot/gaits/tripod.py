@@ -18,6 +18,8 @@ gait = Gait(
 """The insects' gait."""
 made_for = ("strider",)
 """Robots of the catalog whose gait it is."""
+trunk_steering = {"strider": 0.02}
+"""Change of heading per cycle over a curvature offset of the trunk, by robot [rad/rad]."""
 
 _REASONS = (
     Reason(r"^axis", 0.5, 1.5, "a little bend with the legs, to show that the axis takes part"),

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import lru_cache
+from math import inf
 
 import numpy as np
 
@@ -118,20 +119,40 @@ def check_speeds(robot: Robot, gait: Gait) -> None:
 
 
 @lru_cache(maxsize=256)
-def max_stroke_factor(robot: Robot, gait: Gait) -> float:
-    """Return the greatest factor on a gait's strokes that a robot's limbs can follow, up to 8 [-]."""
+def max_stroke_factor(robot: Robot, gait: Gait, *, limit_speed: bool = False) -> float:
+    """Return the greatest factor on a gait's strokes that a robot's limbs can follow, up to 8 [-].
+
+    Args:
+        robot: the design.
+        gait: the gait.
+        limit_speed: whether no servo may be asked for more than its speed, or for more than the gait itself asks.
+    """
     if not gait.has("strokes"):
         return 1.0
+    max_period = max(gait.period, min_gait_period(robot, gait)[0]) if limit_speed else inf
     lower_bound, upper_bound = 1.0, _MAX_STROKE_FACTOR
     while upper_bound - lower_bound > _STROKE_TOLERANCE:
         trial = 0.5 * (lower_bound + upper_bound)
-        lower_bound, upper_bound = (trial, upper_bound) if _strides(robot, gait, trial) else (lower_bound, trial)
+        lower_bound, upper_bound = (
+            (trial, upper_bound) if _strides(robot, gait, trial, max_period) else (lower_bound, trial)
+        )
     return lower_bound
 
 
-def _strides(robot: Robot, gait: Gait, fraction: float) -> bool:
+def _strides(robot: Robot, gait: Gait, fraction: float, max_period: float) -> bool:
+    """Return whether a robot's limbs can follow a gait with scaled strokes.
+
+    Args:
+        robot: the design.
+        gait: the gait.
+        fraction: factor on the strokes [-].
+        max_period: period that the speeds of the servos may need at most [s].
+    """
     try:
-        return suits(robot, gait.strode(fraction))
+        scaled_gait = gait.strode(fraction)
+        if not suits(robot, scaled_gait):
+            return False
+        return max_period == inf or min_gait_period(robot, scaled_gait)[0] <= max_period
     except InvalidDesign:
         return False
 

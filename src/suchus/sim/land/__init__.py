@@ -11,6 +11,7 @@ from suchus.sim.land.push_search import smallest_pushes
 from suchus.sim.land.run import VACUUM, WATER, Afloat, Push, Run
 from suchus.sim.land.simulation import crawl, simulate
 from suchus.sim.land.tolerances import Tolerances
+from suchus.sim.land.trunk_steering import measure_trunk_steering
 
 __all__ = [
     "ARENAS",
@@ -41,6 +42,7 @@ __all__ = [
     "crawl",
     "failing_joints",
     "joint_failure",
+    "measure_trunk_steering",
     "simulate",
     "smallest_pushes",
 ]

@@ -97,8 +97,11 @@ class Live:
             replace(self.run, gait=gait or self.run.gait, control=control or self.run.control)
         )
         controller = start([run], self._ticks(run), self._period)
-        if isinstance(controller, Coordinator) and isinstance(self._loop.controller, Coordinator):
-            controller.take_over(self._loop.controller)
+        if isinstance(controller, Coordinator):
+            if isinstance(self._loop.controller, Coordinator):
+                controller.take_over(self._loop.controller)
+            elif self._beat > self._start:
+                controller.begin_in_motion()
         self.run, self._loop.controller, self._loop.feels = run, controller, run.control.feels
         if self._beat >= self._start:
             self._beat = self._start + round(cycle_fraction * self._cycle(run)) % self._cycle(run)

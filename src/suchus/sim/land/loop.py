@@ -13,6 +13,7 @@ from jaxtyping import Bool, Int
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
 from suchus.robot.control import Amphibious, Command, Control, Controller, Runs, Sensed, Swimming
+from suchus.robot.design import servo_ranges
 from suchus.robot.design.scale import control_period
 from suchus.robot.motion import hip_height
 from suchus.sim.fault import Fault
@@ -103,6 +104,8 @@ class Loop:
         self.clocks: Int[np.ndarray, " run"] = np.zeros(len(runs), dtype=int)
         """Number of the control period of each run since it began."""
         self._going = np.ones(len(runs), dtype=bool)
+        self._unbounded = np.isinf(servo_ranges(runs[0].robot)).any(axis=1)
+        self._intended_command = Command(initial_angles, np.zeros((len(runs), 0)))
 
     @property
     def time(self) -> float:
@@ -125,8 +128,21 @@ class Loop:
         """
         self.disturbances.happen(self.clocks, self._going)
         sensed = self.sensed() if self.feels else None
-        self._intended_command = self.controller.command(self.tick if beat is None else beat, sensed)
+        command = self.controller.command(self.tick if beat is None else beat, sensed)
+        self._intended_command = command if beat is None else self._continued(command)
         self.disturb()
+
+    def _continued(self, command: Command) -> Command:
+        """Return a command whose unbounded servos go on from the last command.
+
+        A beat that begins anew with each cycle would turn a crank back by a whole turn.
+        """
+        if not self._unbounded.any():
+            return command
+        previous, targets = self._intended_command.targets, command.targets.copy()
+        turns = np.round((previous - targets) / (2 * np.pi))
+        targets[:, self._unbounded] += 2 * np.pi * turns[:, self._unbounded]
+        return command._replace(targets=targets)
 
     def disturb(self) -> None:
         """Disturb the last command of the controller again: with noise and with the present faults."""

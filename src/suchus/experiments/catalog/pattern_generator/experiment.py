@@ -25,10 +25,11 @@ from suchus.experiments.experiment import (
     staged,
 )
 from suchus.robot.control import Oscillators, PatternGenerator, oscillate
+from suchus.robot.control.pattern_generator import STEERING_BEND
 from suchus.robot.control.pattern_posture import axis_segments
 from suchus.robot.design import Robot
 from suchus.robot.design.scale import rescale_fields
-from suchus.robot.gaits import GAITS, default_gait
+from suchus.robot.gaits import GAITS, MIN_TRUNK_STEERING, default_gait, trunk_steering
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
@@ -310,13 +311,16 @@ class PatternGeneratorExperiment(Experiment):
     def _arms(self) -> dict[str, PatternGenerator]:
         """Controls of the walks on land, by name."""
         min_drive, max_drive = _OSCILLATORS.limb_drives
+        turn_per_bend = trunk_steering(self.robot, self.gait) or 0.0
+        # where no side is known, the walk itself shows what a bend to the left does
+        steering_bend = None if abs(turn_per_bend) >= MIN_TRUNK_STEERING else STEERING_BEND
         return {
             "drive_low": PatternGenerator(drive=min_drive),
             "straight": PatternGenerator(drive=self.walk),
             "drive_high": PatternGenerator(drive=max_drive),
             "asymmetry": PatternGenerator(drive=self.walk, asymmetry=self.asymmetry),
-            "steering": PatternGenerator(drive=self.walk, steering=1.0),
-            "steering_right": PatternGenerator(drive=self.walk, steering=-1.0),
+            "steering": PatternGenerator(drive=self.walk, steering=1.0, steering_gain=steering_bend),
+            "steering_right": PatternGenerator(drive=self.walk, steering=-1.0, steering_gain=steering_bend),
         }
 
     def _walk_arms(self, arms: Mapping[str, PatternGenerator], progress: Progress) -> xr.Dataset:

@@ -27,7 +27,7 @@ from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START, Gait, trunk_amplitude
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Run, simulate
+from suchus.sim.land import Ground, Run, simulate
 from suchus.sim.metrics import heading_change
 from suchus.visual.figures.gait_diagram import gait_lines
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
@@ -38,6 +38,8 @@ _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Turning(Experiment):
     """Curvature of the path against curvature offset, unequal strokes, and both; then circles on command.
+
+    The circles are walked to the left where the curve was measured, and to either side on grounds of other friction.
 
     The curvature is the change of heading over the path length, over whole cycles from the second on. The path is
     measured from cycle to cycle, so that the swaying within one does not count. Bends stop where the trunk's joints do.
@@ -67,6 +69,9 @@ class Turning(Experiment):
     """Shares of the last bend together with, on sprawled legs, the last asymmetry [-]."""
     asked: tuple[float, ...] = (0.6, 0.8, 1.2, 2.0, 3.0)
     """Radii of the commanded circles [m]."""
+    friction_scales: tuple[float, ...] = (0.8, 1.0, 1.25)
+    """Frictions of the grounds on which the circles are walked to either side, over that on which the curve is measured
+    [-]."""
     cycles: int = 10
     """Number of cycles that are measured, after one more [-]."""
     timestep: float = 0.005
@@ -79,6 +84,7 @@ class Turning(Experiment):
             check.rising("asymmetries", 0.0, 1.0, "")
             check.rising("mixtures", 0.0, 1.0, "")
             check.rising("asked", 0.05, 1000.0, "m")
+            check.rising("friction_scales", 0.1, 10.0, "")
             check.whole("cycles", 1, 1000)
             check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.that(len(self.gaits) > 0, f"{self.name()}.gaits is empty; one gait at least is needed")
@@ -92,6 +98,7 @@ class Turning(Experiment):
             asymmetries=(0.0, 0.5),
             mixtures=(0.0, 0.5, 1.0),
             asked=(1.0,),
+            friction_scales=(0.8,),
             cycles=3,
         )
 
@@ -147,8 +154,10 @@ class Turning(Experiment):
             mixture_controls[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest))
             for radius in self.asked
         ]
-        circle_record = self._walk(gait, circles, staged(progress, "", 0.7, 1.0))
+        circle_record = self._walk(gait, circles, staged(progress, "", 0.7, 0.8))
         circle_curvatures = self._curvatures(gait, circle_record)
+        is_walked = np.array(self.asked) >= tightest
+        radius_ratio = self._radius_ratios(gait, circles, staged(progress, "", 0.8, 1.0))
         data = xr.Dataset(
             {
                 "curvature_bend": ("bend", curvatures[:a], {"units": "1/m"}),
@@ -156,20 +165,52 @@ class Turning(Experiment):
                 "curvature_mixture": ("mixture", curvatures[b:], {"units": "1/m"}),
                 "radius": (
                     "asked",
-                    np.where(np.array(self.asked) >= tightest, 1.0 / np.maximum(circle_curvatures, _STRAIGHT), np.nan),
+                    np.where(is_walked, 1.0 / np.maximum(circle_curvatures, _STRAIGHT), np.nan),
                     {"units": "m"},
+                ),
+                "radius_ratio": (
+                    ("friction", "side", "asked"),
+                    np.where(is_walked, radius_ratio, np.nan),
+                    {"units": "1", "long_name": "radius over the commanded one, on other grounds and to either side"},
                 ),
             },
             coords={
+                "friction": list(self.friction_scales),
+                "side": ["left", "right"],
                 "bend": list(self.bends),
                 "asymmetry": list(self.asymmetries),
                 "mixture": list(self.mixtures),
                 "asked": list(self.asked),
             },
         )
-        for name, unit in (("bend", "rad"), ("asymmetry", "1"), ("mixture", "1"), ("asked", "m")):
+        for name, unit in (
+            ("bend", "rad"),
+            ("asymmetry", "1"),
+            ("mixture", "1"),
+            ("asked", "m"),
+            ("friction", "1"),
+        ):
             data[name].attrs["units"] = unit
         return data, (record.isel(run=b + int(curvatures[b:].argmax())), circle_record.isel(run=0))
+
+    def _radius_ratios(self, gait: Gait, circles: Sequence[Walking], progress: Any) -> np.ndarray:
+        """Return radii of circles over the commanded ones, shape (friction, side, circle) [-].
+
+        Args:
+            gait: the gait.
+            circles: controls that walk them to the left.
+            progress: called with the fraction that is done.
+        """
+        controls = [
+            Walking(bend=side * control.bend, asymmetry=side * control.asymmetry)
+            for side in (1.0, -1.0)
+            for control in circles
+        ]
+        grounds = [Ground(friction_scale=scale) for scale in self.friction_scales]
+        record = self._walk(gait, controls, progress, grounds)
+        curvatures = self._curvatures(gait, record).reshape(len(grounds), 2, len(circles))
+        curvatures *= np.array([1.0, -1.0])[:, None]
+        return np.asarray(1.0 / np.maximum(curvatures, _STRAIGHT) / np.array(self.asked))
 
     def _bend_margin(self, gait: Gait) -> float:
         """Return the bend of the trunk that its joints allow beyond the amplitude of the gait [rad]."""
@@ -181,8 +222,15 @@ class Turning(Experiment):
     def _end(self, gait: Gait) -> float:
         return START + (self.cycles + 1) * gait.period
 
-    def _walk(self, gait: Gait, controls: Sequence[Walking], progress: Any) -> xr.Dataset:
-        runs = [Run(robot=self.robot, gait=gait, control=control) for control in controls]
+    def _walk(
+        self, gait: Gait, controls: Sequence[Walking], progress: Any, grounds: Sequence[Ground] = (Ground(),)
+    ) -> xr.Dataset:
+        """Return the record of walks under each control, on one ground after the other."""
+        runs = [
+            Run(robot=self.robot, gait=gait, control=control, ground=ground)
+            for ground in grounds
+            for control in controls
+        ]
         return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
 
     def _curvatures(self, gait: Gait, record: xr.Dataset) -> np.ndarray:
@@ -199,12 +247,14 @@ class Turning(Experiment):
         for name in record.gait.values:
             of_gait = record.sel(gait=name)
             radius_errors = abs(of_gait.radius / of_gait.asked - 1.0)
+            friction_errors = abs(of_gait.radius_ratio - 1.0)
             measures |= {
                 f"tightest_bend_{name}": Measure(_radius(of_gait.curvature_bend), "m"),
                 f"tightest_asymmetry_{name}": Measure(_radius(of_gait.curvature_asymmetry), "m"),
                 f"tightest_both_{name}": Measure(_radius(of_gait.curvature_mixture), "m"),
                 f"circles_walked_{name}": Measure(float(of_gait.radius.notnull().sum()), "-"),
                 f"radius_off_{name}": Measure(float(radius_errors.max()), "-"),
+                f"radius_off_friction_{name}": Measure(float(friction_errors.max()), "-"),
                 f"bend_times_radius_{name}": Measure(
                     float(of_gait.bend[-1] * _radius(of_gait.curvature_bend[-1:])), "m"
                 ),
@@ -219,6 +269,8 @@ class Turning(Experiment):
             circles=len(names) * len(self.asked),
             walked=sum(measures[f"circles_walked_{name}"] for name in names),
             off=max(measures[f"radius_off_{name}"] for name in names),
+            off_friction=max(measures[f"radius_off_friction_{name}"] for name in names),
+            frictions=self.friction_scales,
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
