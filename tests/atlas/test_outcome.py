@@ -66,7 +66,7 @@ def test_every_part_of_a_set_up_is_in_its_digest():
         digest_of(one, quick=False), digest_of(one, quick=True), digest_of(case(cells=5), quick=False),
         digest_of(case("two"), quick=False), digest_of(replace(one, code=("case.py",)), quick=False),
         digest_of(replace(one, grids=(replace(one.full, coarse=2),)), quick=False),
-        digest_of(replace(one, grids=(replace(one.full, before=2.0),)), quick=False),
+        digest_of(replace(one, grids=(replace(one.full, initial_duration=2.0),)), quick=False),
     }  # fmt: skip
     assert len(digests) == 7
     assert digest_of(one, quick=False) == digest_of(case(), quick=False)

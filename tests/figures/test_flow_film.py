@@ -44,7 +44,7 @@ def test_a_film_has_a_frame_for_each_interval_and_moves(what, tmp_path):
 
 
 def test_what_is_no_film_is_refused(tmp_path):
-    with pytest.raises(InvalidDesign, match="every of a film is 0"):
+    with pytest.raises(InvalidDesign, match="interval of a film is 0"):
         FieldFilm(interval=0.0)
     with pytest.raises(InvalidDesign, match="speed of a film is nan"):
         FieldFilm(interval=0.1, speed=float("nan"))

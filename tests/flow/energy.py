@@ -115,10 +115,10 @@ def of_component(budget, k, stages, ends, base, nu, body):
     inner = np.s_[PAD:-PAD, PAD + 1 : -PAD] if k == 0 else np.s_[PAD + 1 : -PAD, PAD:-PAD]
     mean = 0.5 * (ends[0][k] + ends[1][k])
     budget.change += 0.5 * float((ends[1][k][inner] ** 2 - ends[0][k][inner] ** 2).sum())
-    for stage, (u, v) in zip(stages, (base, stages[0].result), strict=True):
+    for stage, (u, v) in zip(stages, (base, stages[0].out), strict=True):
         advection, laplacian = rates(u, v) if k == 0 else (r.T for r in rates(v.T, u.T))
         rise = np.diff(stage.pressure, axis=1 - k, prepend=0)
-        moved = (stage.result[k] - stage.blend_fraction * stage.blend[k]) / (1 - stage.blend_fraction)
+        moved = (stage.out[k] - stage.keep * stage.blend[k]) / (1 - stage.keep)
         given = moved - base[k] - stage.dt * (advection + nu * laplacian - rise)
         half = 0.5 * stage.dt
         budget.numerical -= half * float((mean * advection)[inner].sum())
