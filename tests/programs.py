@@ -14,6 +14,7 @@ import os
 import runpy
 import subprocess
 import sys
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -93,7 +94,9 @@ def serve(requests: IO[str], answers: IO[str]) -> dict[str, Any] | None:
         importlib.import_module(library)
     gc.freeze()  # what is collected in a program is its own
     for line in iter(requests.readline, ""):
-        process = os.fork()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 warns of the idle threads of libraries
+            process = os.fork()
         if process == 0:
             request: dict[str, Any] = json.loads(line)
             return request
