@@ -20,7 +20,7 @@ record = sim.run(11.0)
 places = np.stack([record.column(name) for name in "xyz"], axis=1)
 turns = rotation.matrix(record.attitude())
 shown = np.searchsorted(record.time, np.arange(record.time[-1], 0.0, -0.7))
-disc = ellipsoid((0.0, 0.0, 0.0), shape.half, point_count=96, rings=64)
+disc = ellipsoid((0.0, 0.0, 0.0), shape.half_extents, point_count=96, rings=64)
 colour = np.where(disc.vertices[:, 2:] > 0, (0.85, 0.62, 0.30), (0.36, 0.42, 0.50))  # its two faces
 solid = join_meshes([Mesh(disc.vertices @ turns[k].T + places[k], disc.faces, colour) for k in shown])
 q = flow.second_invariant(np.stack(sim.velocity), grid.cell)

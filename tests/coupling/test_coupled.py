@@ -192,8 +192,8 @@ def test_energy_closes_and_little_is_left_over():
 
 def test_a_run_in_a_flow_keeps_to_its_rung():
     run = swim_run(water="slice")
-    assert run.solved == Slice()
-    assert swim_run(water="space").solved == Space()
+    assert run.solved_flow == Slice()
+    assert swim_run(water="space").solved_flow == Space()
     assert swim_run("floating_caiman", water="sections").lake == Lake(level=2 * suchus.ROBOTS["floating_caiman"].length)
     with pytest.raises(UnknownName, match="sections, slice, space"):
         swim_run(water="tank")
@@ -264,7 +264,7 @@ def killed(run, file):
     """A swim that is killed at 0.06 s of 0.1 s, each of whose steps was kept."""
 
     def look(swim):
-        swim.samples.add("seen", swim.time, x=swim.stepper.now.place[0])
+        swim.samples.add("seen", swim.time, x=swim.stepper.coordinates.position[0])
         if swim.time > 0.06:
             raise Killed
 

@@ -43,7 +43,7 @@ def lab(tmp_path, monkeypatch):
     (tmp_path / "protocols/cobs.py").write_text(COBS)
     suchus.project(tmp_path)
     (motor,) = PROTOCOLS["cobs"].motors
-    robot = with_servos(ROBOT, lambda servo: Servo.of(motor, template=servo))
+    robot = with_servos(ROBOT, lambda servo: Servo.from_motor(motor, template=servo))
     write(replace(robot, name="lab_caiman"), tmp_path / "robots/lab_caiman.toml")
     yield tmp_path
     os.environ.pop(sources.VARIABLE, None)

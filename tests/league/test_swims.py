@@ -44,7 +44,7 @@ def test_a_drawing_gets_its_length_mass_and_volume_at_any_size(length, mass, den
 
 
 @pytest.mark.parametrize(
-    "change", [{"places": (0.0, 1.0)}, {"half_width": (0.02,) * 3 + (0.6,)}, {"joints": (0.7, 0.5)}]
+    "change", [{"stations": (0.0, 1.0)}, {"half_width": (0.02,) * 3 + (0.6,)}, {"joints": (0.7, 0.5)}]
 )
 def test_a_drawing_that_cannot_be_is_refused(change):
     with pytest.raises(InvalidDesign):
