@@ -50,6 +50,8 @@ MIN_RATIO = 1.5
 """Ratio of two successive changes from which on a measure converges; halved steps of first order have 2 [-]."""
 MODULES = ("suchus.experiments.catalog", "suchus.experiments.study", "suchus.sim.land")
 """What the outcome depends on."""
+PAGE_WIDTH = 150
+"""Width of tables that are printed into a file [character]."""
 PARTS = store.ROOT / "out" / NAME
 """Folder of the finished parts."""
 Form = Literal["quick", "full"]
@@ -309,15 +311,23 @@ def compare_designs(count: int, parts: Store, say: Callable[[str], None] = lambd
 
 
 def table_of_measures(outcomes: Mapping[str, Mapping[str, Any]]) -> Table:
-    """Return a table of the measures that moved by more than their tolerance."""
+    """Return a table of the measures that moved by more than their tolerance.
+
+    Ends of an interval stand in it where their measure does not.
+
+    Args:
+        outcomes: of the experiments, by name, see ``experiment_outcome``.
+    """
     table = Table("experiment", "measure", "step", "step / 2", "step / 4", "change", "of tolerance", "order", "trend")
     for name, outcome in outcomes.items():
         for measure, row in outcome["moved"].items():
+            if measure.removesuffix("_low").removesuffix("_high") in set(outcome["moved"]) - {measure}:
+                continue
             size, value = row["tolerance"], row["values"][2]
             table.add_row(
                 name, measure, *(f"{number:.5g}" for number in row["values"]),
                 f"{100 * row['change'] / abs(value):+.1f} %" if value else "-",
-                f"{abs(row['change']) / size:.1f}" if size else "-",
+                f"{max(abs(number - row['values'][0]) for number in row['values']) / size:.1f}" if size else "-",
                 f"{row['order']:.1f}", row["trend"],
                 style="red" if row["trend"] == "does not converge" else None,
             )  # fmt: skip
@@ -373,8 +383,9 @@ def main(words: Sequence[str]) -> int:
         print(f"--designs is {arguments.designs}; give 2 to 100000, best a power of two.", file=sys.stderr)
         return 2
     console = Console(stderr=True)
-    parts, outcome = Store(PARTS, source.digest(source.reached(MODULES))), _stored()
+    parts = Store(PARTS, source.digest(source.reached(MODULES)))
     compared: dict[str, Any] = {}
+    designs: dict[str, Any] = {}
     status, start = 0, time.process_time()
     with console.status("") as line:
         for number, name in enumerate(names):
@@ -384,10 +395,9 @@ def main(words: Sequence[str]) -> int:
 
             try:
                 if name == DESIGNS:
-                    outcome[DESIGNS] = compare_designs(arguments.designs, parts, say)
+                    designs = compare_designs(arguments.designs, parts, say)
                 else:
                     compared[name] = compare_experiment(name, arguments.form, parts, say)
-                    outcome[arguments.form] |= {name: compared[name]}
                     console.print(_summary(name, compared[name]))
             except KeyboardInterrupt:
                 console.print(f"Stopped. Finished parts are in {PARTS}; the same command goes on from there.")
@@ -396,10 +406,15 @@ def main(words: Sequence[str]) -> int:
             except SuchusError as error:
                 console.print(f"{name}: {error}", markup=False)
                 status = 1
-    Console().print(table_of_measures(compared))
-    if DESIGNS in names and outcome[DESIGNS]:
-        Console().print(table_of_designs(outcome[DESIGNS]))
-    _keep(outcome, time.process_time() - start)
+    page = Console() if sys.stdout.isatty() else Console(width=PAGE_WIDTH)
+    if compared:
+        page.print(table_of_measures(compared))
+    if designs:
+        page.print(table_of_designs(designs))
+    if compared or designs:
+        before = _stored()  # as it is now: another process may have compared other experiments
+        form = {arguments.form: before[arguments.form] | compared}
+        _keep(before | form | ({DESIGNS: designs} if designs else {}), time.process_time() - start)
     return status
 
 
