@@ -6,6 +6,7 @@ import pytest
 from suchus import GAITS, ROBOTS
 from suchus.core.errors import InvalidDesign
 from suchus.hardware.emulator.body import EmulatedBody
+from suchus.robot.control import Coordinated
 from suchus.robot.gaits import default_gait
 from suchus.sim.land import Live, Run, divide_steps, simulate
 from suchus.sim.land.float_body import FloatTank
@@ -45,7 +46,7 @@ def test_a_step_that_is_given_is_divided_too_and_contexts_multiply():
 def test_live_walks_and_emulated_robots_take_the_divided_step():
     gait = GAITS["belly_crawl"]
     with divide_steps(2) as division:
-        live, body = Live(Run(robot=CAIMAN, gait=gait)), EmulatedBody(CAIMAN, gait)
+        live, body = Live(Run(robot=CAIMAN, gait=gait, control=Coordinated())), EmulatedBody(CAIMAN, gait)
     assert division.simulations == 2
     assert (live._loop.steps, body._loop.steps) == (10, 10)
 
