@@ -182,7 +182,8 @@ def experiment_outcome(parts: Sequence[Part]) -> dict[str, Any]:
             }
             for name, change in moved.items()
         },
-        "verdicts": verdict_changes(parts) if moved else {},
+        "judged": len(parts[0].verdicts),
+        "verdicts": verdict_changes(parts) if len(parts) == len(DIVISORS) else {},
     }  # fmt: skip
 
 
