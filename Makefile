@@ -7,7 +7,7 @@ EDITABLE := $(PIP) --no-deps --build-constraint pins.txt --editable . # a folder
 export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
 
-.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas league evidence stale renew bench docs
+.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas league evidence converge stale renew bench docs
 .PHONY: release reliability version tag pins licences matrix sizes clean
 
 reproduce: .venv/.runtime
@@ -87,6 +87,9 @@ stale: .venv/.dev # which results are old, and what it costs to compute them aga
 
 renew: .venv/.dev # make renew NAME="turning rehearsal": computes results again, and writes the pages that state them
 	@$(PY) -m evidence.renew $(NAME)
+
+converge: .venv/.dev # every measure at its time step, a half and a quarter of it; goes on where it stopped
+	@$(PY) -m evidence.converge $(NAME)
 
 bench: .venv/.dev
 	@for f in bench/bench_*.py; do echo; echo "== $$f"; $(PY) "$$f" || exit 1; done

@@ -6,7 +6,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from evidence import built, filmed_crawl, page_measures, policies, probes, servo_loads, tolerance, wall_model
+from evidence import built, converge, filmed_crawl, page_measures, policies, probes, servo_loads, tolerance, wall_model
 from evidence.tolerance import Bounded
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.robots import ROBOTS
@@ -146,6 +146,7 @@ _OTHERS = (
         name="filmed_crawl", modules=("suchus.animals.capture", "suchus.sim.land"), compute=filmed_crawl.measured,
         probe=partial(filmed_crawl.measured, 1), renew="make renew NAME=filmed_crawl",
     ),
+    Kept(name="converge", modules=converge.MODULES, probe=converge.probe, renew="make converge"),
     Kept(
         name="walls", modules=("suchus.flow",), compute=wall_model.compared, probe=wall_model.compared,
         renew="make renew NAME=walls",

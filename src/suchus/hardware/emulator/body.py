@@ -18,6 +18,7 @@ from suchus.sim.land import Lake, Run
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.loop import Loop
 from suchus.sim.land.readings import Recorder
+from suchus.sim.land.step_division import divided_step
 
 _BLOCK_SAMPLES = 1000  # samples of a block of the record
 _MAX_DURATION = 86400.0  # [s]
@@ -87,7 +88,7 @@ class EmulatedBody:
         timestep: float | None = None,
     ) -> None:
         """Set up the simulation of the robot at rest in the first posture of its gait."""
-        timestep = physics_step(robot) if timestep is None else timestep
+        timestep = divided_step(physics_step(robot) if timestep is None else timestep)
         check_step(robot, timestep)
         check_faults(faults, robot, _MAX_DURATION)
         check_limits(robot, gait)

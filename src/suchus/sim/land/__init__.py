@@ -10,6 +10,7 @@ from suchus.sim.land.loop import CONTROL_PERIOD
 from suchus.sim.land.push_search import smallest_pushes
 from suchus.sim.land.run import VACUUM, WATER, Afloat, Push, Run
 from suchus.sim.land.simulation import crawl, simulate
+from suchus.sim.land.step_division import divide_steps
 from suchus.sim.land.tolerances import Tolerances
 from suchus.sim.land.trunk_steering import measure_trunk_steering
 
@@ -40,6 +41,7 @@ __all__ = [
     "Weak",
     "angle_at",
     "crawl",
+    "divide_steps",
     "failing_joints",
     "joint_failure",
     "measure_trunk_steering",

@@ -16,6 +16,7 @@ from suchus.robot.design.water_table import BALL, COLUMNS, DISC, SLAB, WIDTH, co
 from suchus.sim.hydro.forces import hydrostatic
 from suchus.sim.land import wetting
 from suchus.sim.land.lake import Lake
+from suchus.sim.land.step_division import divided_step
 from suchus.sim.model.wet import with_pieces
 
 Point = tuple[float, float, float]
@@ -98,7 +99,7 @@ class FloatTank:
         """Build the model of the body with its pieces, and fill the tank."""
         self._body, self._lake = body, lake
         spec = mujoco.MjSpec()
-        spec.option.timestep = timestep
+        spec.option.timestep = divided_step(timestep)
         spec.option.gravity = [0.0, 0.0, -GRAVITY]
         spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
         spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)

@@ -15,6 +15,7 @@ from suchus.sim.fault import Fault, check_faults
 from suchus.sim.land.lake import Lake, check_lake
 from suchus.sim.land.loop import Loop, start
 from suchus.sim.land.run import Push, Run, check_pushes
+from suchus.sim.land.step_division import divided_step
 
 
 class Live:
@@ -45,7 +46,7 @@ class Live:
         if run.lake is not None:
             check_lake(run.robot, run.lake)
         self._period = control_period(run.robot)
-        timestep = physics_step(run.robot) if timestep is None else timestep
+        timestep = divided_step(physics_step(run.robot) if timestep is None else timestep)
         check_step(run.robot, timestep)
         self._start = round(START / self._period)  # [control period]
         check_faults(run.faults, run.robot, inf)

@@ -22,6 +22,7 @@ from suchus.sim.land.lake import Lake, check_lake
 from suchus.sim.land.loop import Loop, physics_steps
 from suchus.sim.land.readings import with_equal_variables
 from suchus.sim.land.run import Push, Run, check_pushes
+from suchus.sim.land.step_division import divided_step
 from suchus.sim.model import longest_step, topology
 
 
@@ -44,7 +45,8 @@ def simulate(
             and warm up.
         duration: [s].
         timestep: of the physics [s], a whole part of the control period; that of the robots' size if None, and where
-            one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints.
+            one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints. Within
+            ``divide_steps`` it is divided.
         sample_stride: keep one sample of at most so many control periods: of the greatest number for which the first
             second, in which robots settle, and the run end with a sample.
         effort: whether the record holds what the servos do (``record.EFFORT``), without which there is no work, cost
@@ -65,7 +67,7 @@ def simulate(
     runs = tuple(runs)
     if not runs:
         raise InvalidDesign("there are no runs to simulate; give at least one.")
-    timestep = _own_step(runs) if timestep is None else timestep
+    timestep = divided_step(_own_step(runs) if timestep is None else timestep)
     period = _check(runs, duration, timestep, sample_stride)
     ticks = round(duration / period)
     sample_stride = _even_stride(sample_stride, ticks, round(START / period))

@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float
 
 from suchus.core.errors import Diverged, InvalidDesign, UnknownName
 from suchus.robot.design import Robot, layout
+from suchus.sim.land.step_division import divided_step
 from suchus.sim.model import activations, build
 
 _HEIGHT = 2.0  # [m]; of the stand: nothing touches the ground
@@ -57,7 +58,8 @@ def on_stand(
     if not len(target) == len(load) == len(gripped):
         lengths = f"{len(target)}, {len(load)} and {len(gripped)}"
         raise InvalidDesign(f"target, load and gripped have {lengths} samples; give as many of each.")
-    model = _model(robot, joint, timestep)
+    step = divided_step(timestep)
+    model = _model(robot, joint, step)
     data = mujoco.MjData(model)
     data.act[:] = activations(model, np.zeros(model.nu))
     servo, hinge = model.actuator(joint).id, model.joint(joint)
@@ -66,7 +68,7 @@ def on_stand(
         data.ctrl[servo] = target[i]
         data.qfrc_applied[hinge.dofadr[0]] = load[i]
         data.eq_active[0] = gripped[i]
-        mujoco.mj_step(model, data)
+        mujoco.mj_step(model, data, round(timestep / step))
         angle[i], torque[i] = data.qpos[hinge.qposadr[0]], data.actuator_force[servo]
         if not np.isfinite(angle[i]):
             raise Diverged(f"{joint} on the stand diverged at {data.time:.3f} s.", time=float(data.time), record=None)

@@ -1,0 +1,134 @@
+"""Convergence in the time step: measures of known order are found with their order and limit, exact ones are not."""
+
+import json
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from evidence import converge
+from evidence.converge import Store, compare_experiment, design_outcome, experiment_outcome, main, run_divided
+from suchus.core.progress import silent
+from suchus.sim.land.step_division import divided_step
+
+STEP = 0.004
+"""Time step of the synthetic experiment [s]."""
+
+
+@dataclass
+class Synthetic:
+    """An experiment whose measures are known functions of the time step, with 1 at a vanishing step."""
+
+    divides: bool = True
+    interrupt_at: float = 0.0
+    steps: list = field(default_factory=list)
+
+    def quick(self):
+        """Return the same experiment."""
+        return self
+
+    def run(self, progress=silent):
+        """Return the outcome at the present step."""
+        step = divided_step(STEP) if self.divides else STEP
+        if step == self.interrupt_at:
+            raise KeyboardInterrupt
+        self.steps.append(step)
+        measures = {
+            "linear": 1.0 + 20.0 * step,
+            "quadratic": 1.0 + 5000.0 * step**2,
+            "exact": 1.0 + step**2,
+            "erratic": 1.0 + 0.5 * (-1.0) ** round(STEP / step / 2),
+            "repeated": 1.0 + 20.0 * step,
+            "repeated_low": 0.9,
+            "repeated_high": 1.2,
+            "cells": 12.0,
+            "absent": np.nan,
+        }
+        word = "holds" if step > 0.6 * STEP else "does not hold"
+        return SimpleNamespace(
+            measures={name: SimpleNamespace(value=value) for name, value in measures.items()},
+            verdicts=[SimpleNamespace(claim=SimpleNamespace(key="claim"), verdict=word)],
+        )
+
+
+def outcome_of(experiment):
+    """Return what is kept of an experiment at the three steps."""
+    return experiment_outcome([run_divided(experiment, divisor) for divisor in converge.DIVISORS])
+
+
+def test_each_run_has_the_divided_step():
+    experiment = Synthetic()
+    outcome_of(experiment)
+    assert experiment.steps == [STEP, STEP / 2, STEP / 4]
+
+
+def test_measures_that_move_are_found_with_order_and_limit_and_others_are_not():
+    outcome = outcome_of(Synthetic())
+    moved = outcome["moved"]
+    assert set(moved) == {"linear", "quadratic", "erratic"}  # "repeated" stays within its own interval
+    assert moved["linear"]["order"] == pytest.approx(1.0)
+    assert moved["quadratic"]["order"] == pytest.approx(2.0)
+    assert moved["linear"]["limit"] == pytest.approx(1.0)
+    assert moved["quadratic"]["limit"] == pytest.approx(1.0)
+    assert {name: row["trend"] for name, row in moved.items()} == {
+        "linear": "converges", "quadratic": "converges", "erratic": "does not converge",
+    }  # fmt: skip
+    assert outcome["verdicts"] == {"claim": ["holds", "does not hold", "does not hold"]}
+
+
+def test_a_measure_that_is_missing_at_a_smaller_step_is_found():
+    parts = [run_divided(Synthetic(), divisor) for divisor in converge.DIVISORS]
+    del parts[2].measures["exact"]
+    assert "exact" in experiment_outcome(parts)["moved"]
+
+
+def test_an_experiment_without_a_simulation_runs_once(tmp_path, monkeypatch):
+    experiment = Synthetic(divides=False)
+    monkeypatch.setattr(converge, "EXPERIMENTS", {"synthetic": experiment})
+    assert compare_experiment("synthetic", "quick", Store(tmp_path, "code"))["simulations"] == 0
+    assert experiment.steps == [STEP]
+
+
+def test_finished_parts_are_taken_if_the_same_code_made_them(tmp_path):
+    calls = []
+
+    def compute():
+        calls.append(1)
+        return {"value": len(calls)}
+
+    assert Store(tmp_path, "a").part("x/y", compute) == {"value": 1}
+    assert Store(tmp_path, "a").part("x/y", compute) == {"value": 1}
+    assert Store(tmp_path, "b").part("x/y", compute) == {"value": 2}
+    (tmp_path / "x" / "y.json").write_text("{")
+    assert Store(tmp_path, "b").part("x/y", compute) == {"value": 3}
+
+
+def test_a_stopped_program_goes_on_where_it_stopped(tmp_path, monkeypatch, capsys):
+    kept = []
+    monkeypatch.setattr(converge, "PARTS", tmp_path)
+    monkeypatch.setattr(converge, "_stored", lambda: {"quick": {}, "full": {}, "designs": {}})
+    monkeypatch.setattr(converge, "_keep", lambda outcome, seconds: kept.append(json.loads(json.dumps(outcome))))
+    stopped, resumed = Synthetic(interrupt_at=STEP / 4), Synthetic()
+    for experiment, status in ((stopped, 130), (resumed, 0)):
+        monkeypatch.setattr(converge, "EXPERIMENTS", {"synthetic": experiment})
+        assert main(["synthetic"]) == status
+    assert (stopped.steps, resumed.steps) == ([STEP, STEP / 2], [STEP / 4])
+    assert [list(outcome["quick"]) for outcome in kept] == [["synthetic"]]
+    assert "linear" in capsys.readouterr().out
+
+
+def test_designs_have_quantiles_of_those_that_walk():
+    reference = {"displacement_x": [1.0, -0.5, 0.01, np.nan], "cost_of_transport": [1.0, 2.0, 9.0, np.nan]}
+    coarse = {"displacement_x": [1.2, -0.5, 0.05, np.nan], "cost_of_transport": [0.9, 2.0, 1.0, np.nan]}
+    outcome = design_outcome({0.005: coarse, 0.001: reference})
+    assert (outcome["samples"], outcome["walked"], outcome["measured"]) == (4, 3, 2)
+    displacement, cost = outcome["rows"]
+    assert (displacement["q100"], displacement["bias"]) == (pytest.approx(0.2), pytest.approx(0.1))
+    assert (cost["q100"], cost["beyond"]) == (pytest.approx(0.1), 1)
+
+
+def test_an_unknown_name_and_a_bad_number_are_refused(capsys):
+    assert main(["nonesuch"]) == 2
+    assert "nonesuch" in capsys.readouterr().err
+    assert main(["designs", "--designs", "0"]) == 2
