@@ -52,7 +52,7 @@ class CommandSpeeds:
         ratio = float(ratios[run_index, servo])
         if ratio <= 1.0 + OVERSPEED_TOLERANCE:
             return
-        run, count = self._runs[run_index], int((ratios.max(axis=1) > 1.0 + OVERSPEED_TOLERANCE).sum())
+        run, count = self._runs[int(run_index)], int((ratios.max(axis=1) > 1.0 + OVERSPEED_TOLERANCE).sum())
         batch_text = f"; {count} of {len(self._runs)} runs of the batch do so" if len(self._runs) > 1 else ""
         message = (
             f"gait {run.gait.name!r} commands {layout(run.robot).servos[servo]} of robot {run.robot.name!r} to turn at "
