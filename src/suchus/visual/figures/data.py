@@ -18,7 +18,7 @@ from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import Collection, LineCollection, PathCollection, PolyCollection, QuadMesh
 from matplotlib.colors import to_hex
-from matplotlib.container import BarContainer
+from matplotlib.container import BarContainer, ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
@@ -145,10 +145,10 @@ def _series(ax: Axes, labels: Mapping[tuple[str, ...], str]) -> Iterator[tuple[s
 def _line_names(ax: Axes, labels: Mapping[tuple[str, ...], str], names: _Quantities) -> list[str]:
     """Return the names of the lines of a panel that have no label of their own.
 
-    A line takes the label of the one that looks alike. One across the panel is a guide. The only other line of a
-    panel shows the quantity of its vertical axis; of several, each has the number of the line.
+    A line takes the label of the one that looks alike, or of its error bars. One across the panel is a guide. The only
+    other line of a panel shows the quantity of its vertical axis; of several, each has the number of the line.
     """
-    guides = {
+    fixed_names = {
         id(line): name
         for line in ax.lines
         for transform, name in (
@@ -157,14 +157,19 @@ def _line_names(ax: Axes, labels: Mapping[tuple[str, ...], str], names: _Quantit
         )
         if line.get_transform() == transform
     }
+    for bars in (container for container in ax.containers if isinstance(container, ErrorbarContainer)):
+        name = "measured" if is_nameless(bars.get_label()) else _plain(str(bars.get_label())).removeprefix("_")
+        data_line, caps, _ = bars.lines
+        fixed_names |= {id(cap): f"{name}, end of the bar" for cap in caps}
+        fixed_names |= {} if data_line is None else {id(data_line): name}
     unnamed = [
         line
         for line in ax.lines
-        if is_nameless(line.get_label()) and id(line) not in guides and _line_style(line) not in labels
+        if is_nameless(line.get_label()) and id(line) not in fixed_names and _line_style(line) not in labels
     ]
     quantity = names[1].name.partition(" [")[0]
     return [
-        guides.get(id(line))
+        fixed_names.get(id(line))
         or labels.get(_line_style(line))
         or (quantity if len(unnamed) == 1 and ax.axison and quantity != "y" else f"line {i}")
         for i, line in enumerate(ax.lines, start=1)
