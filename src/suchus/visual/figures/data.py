@@ -161,7 +161,7 @@ def _line_names(ax: Axes, labels: Mapping[tuple[str, ...], str], names: _Quantit
         name = "measured" if is_nameless(bars.get_label()) else _plain(str(bars.get_label())).removeprefix("_")
         data_line, caps, _ = bars.lines
         fixed_names |= {id(cap): f"{name}, end of the bar" for cap in caps}
-        fixed_names |= {id(line): name for line in (data_line,) if isinstance(line, Line2D)}
+        fixed_names[id(data_line)] = name  # None where there are bars alone
     unnamed = [
         line
         for line in ax.lines
