@@ -41,7 +41,26 @@ def test_lines_are_told_under_the_label_of_their_axes(plain):
 def test_a_line_without_a_label_is_called_as_the_line_that_looks_alike(plain):
     assert {row["series"] for row in rows(plain)} == {"robot"}
     plain.axes[1].lines[0].set_linestyle("--")
-    assert {row["series"] for row in rows(plain)} == {"robot", "line 1"}
+    assert {row["series"] for row in rows(plain)} == {"robot", "force"}
+
+
+def test_of_several_lines_without_a_label_each_has_a_number(plain):
+    for color in ("C1", "C2"):
+        plain.axes[1].plot([0.0, 0.5], [1.0, 1.0], color=color)
+    assert {row["series"] for row in rows(plain)} == {"robot", "line 2", "line 3"}
+
+
+def test_a_line_across_the_panel_is_a_guide(plain):
+    plain.axes[1].axhline(2.0, color="C1")
+    plain.axes[1].axvline(0.25, color="C2")
+    assert {row["series"] for row in rows(plain)} == {"robot", "horizontal guide", "vertical guide"}
+
+
+def test_error_bars_are_named_as_what_they_are_of(plain):
+    plain.axes[1].errorbar([0.1], [1.0], yerr=[0.2], color="C1", capsize=4, label="filmed")
+    names = {row["series"] for row in rows(plain)}
+    assert {"filmed", "filmed, end of the bar"} <= names
+    assert not [name for name in names if name.startswith("line")]
 
 
 def test_a_label_that_is_kept_out_of_the_legend_still_names_its_series(plain):

@@ -19,7 +19,7 @@ from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.claims import known_claims
 from suchus.experiments.experiment import Measures
 from suchus.visual.figures import caption
-from suchus.visual.figures.data import field_of
+from suchus.visual.figures.data import field_of, table
 from suchus.visual.figures.uncover import covering
 
 GOLDEN = Path(__file__).parent.parent / "golden"
@@ -134,6 +134,28 @@ def test_every_variable_of_its_record_has_a_unit(quick):
     assert missing == []
 
 
+_VERTICAL_BENDS = ("commanded_spine_vertical", "commanded_tail_vertical")
+
+
+def test_its_signs_are_said_as_they_are(quick):
+    """A bend to the right and one down are positive in the article's signs."""
+    _, outcome = quick
+    for name in _VERTICAL_BENDS:
+        if name in outcome.record:
+            assert outcome.record[name].attrs["long_name"].endswith("down positive")
+
+
+_DIMENSIONLESS_UNIT = "1"
+_QUANTITIES_WITH_A_UNIT = re.compile(r"(^|_)(force|pressure|thrust|torque|speed|power|difference|load)$")
+
+
+def test_a_force_a_pressure_or_a_speed_has_no_unit_of_a_ratio(quick):
+    _, outcome = quick
+    units = {str(name): values.attrs.get("units") for name, values in outcome.record.data_vars.items()}
+    ratios = [name for name, unit in units.items() if unit == _DIMENSIONLESS_UNIT]
+    assert [name for name in ratios if _QUANTITIES_WITH_A_UNIT.search(name)] == []
+
+
 @pytest.fixture(scope="module")
 def drawn(quick):
     experiment, outcome = quick
@@ -145,6 +167,12 @@ def test_its_figures_have_captions(drawn):
     for name, figure in drawn.items():
         assert name.isidentifier()
         assert len(caption(figure)) > 20, name
+
+
+def test_the_tables_of_its_figures_name_each_line(drawn):
+    """A line is named by its label, by ``_label`` where no legend shows it, or by the only quantity of its panel."""
+    series = {(name, row.split(",")[1]) for name, figure in drawn.items() for row in table(figure).splitlines()}
+    assert [pair for pair in series if re.fullmatch(r"line \d+", pair[1])] == []
 
 
 def test_no_legend_covers_data_and_no_colour_bar_ends_below_the_greatest_value(drawn):

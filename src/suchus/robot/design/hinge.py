@@ -26,7 +26,10 @@ class Servo:
     torque: float
     """Torque limit [N m]: with a winding, the torque at standstill."""
     speed: float
-    """Slew limit of the commanded angle [rad/s]: the no-load speed, friction of the gear included."""
+    """Slew limit of the commanded angle [rad/s]: the no-load speed, friction of the gear included.
+
+    Without a winding it limits the commanded angle alone: a load, or the loop that catches up, can turn the joint
+    faster. ``with_speed_line`` gives a motor that limits the joint too."""
     armature: float
     """Rotor inertia seen at the output shaft [kg m2]."""
     friction: float

@@ -17,6 +17,7 @@ from suchus.robot.design.pieces import pieces
 from suchus.robot.motion import hip_height
 from suchus.sim.land import wetting
 from suchus.sim.land.afloat import surfaced
+from suchus.sim.land.clear import check_clear
 from suchus.sim.land.corrected import correct
 from suchus.sim.land.lake import Waters, gravity, up_direction
 from suchus.sim.land.meter import Meter, ServoLaws, servo_effort
@@ -246,6 +247,9 @@ class SimulationBatch:
         Args:
             runs: the runs.
             initial_angles: the servo angles at the start, shape (run, servo) [rad].
+
+        Raises:
+            InvalidDesign: a robot would begin inside a relief.
         """
         postures: dict[object, tuple[np.ndarray, np.ndarray]] = {}
         floating_postures: dict[object, np.ndarray] = {}
@@ -264,6 +268,8 @@ class SimulationBatch:
                         run.robot, run.lake, up_direction(run.ground), self.qpos[sim], self._timestep
                     )
                 self.qpos[sim] = floating_postures[float_key]
+            if run.afloat is None:
+                check_clear(run.robot, run.ground.relief, self.qpos[sim], self._timestep)
             self.ctrl[sim] = initial_angles[sim]
         self.physics.forward()
         self.read_sensors(slice(None))

@@ -8,7 +8,7 @@ from functools import partial
 from math import floor
 
 import numpy as np
-from jaxtyping import Bool, Int
+from jaxtyping import Bool, Float, Int
 
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
@@ -111,6 +111,11 @@ class Loop:
     def time(self) -> float:
         """Time since the beginning [s]."""
         return self.tick * self.period
+
+    @property
+    def intended_targets(self) -> Float[np.ndarray, "run servo"]:
+        """Servo angles that the controller commands, before noise and faults [rad]."""
+        return self._intended_command.targets
 
     def recorder(self, samples: int, *, has_effort: bool = True) -> Recorder:
         """Return what keeps samples of this batch, with room for so many; what servos do if ``has_effort``."""

@@ -17,6 +17,7 @@ from suchus.robot.gaits import gait_of
 from suchus.robot.motion import START, Gait, check_limits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault, check_faults
+from suchus.sim.land.command_speed import CommandSpeeds
 from suchus.sim.land.extent import check_extent
 from suchus.sim.land.lake import Lake, check_lake
 from suchus.sim.land.loop import Loop, physics_steps
@@ -60,9 +61,13 @@ def simulate(
 
     Raises:
         NoMemory: the memory does not suffice.
-        InvalidDesign: no runs, robots of different topology, a bad duration or time step, more than the machine bears.
+        InvalidDesign: no runs, robots of different topology, a bad duration or time step, more than the machine bears,
+            or a robot that would begin inside a step, a stone or bumps.
         OutsideLimits: a gait that a robot's joints cannot follow.
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
+
+    Warns:
+        Doubtful: a controller commands a servo to turn faster than its speed, before noise and faults.
     """
     runs = tuple(runs)
     if not runs:
@@ -182,8 +187,10 @@ def _simulate_group(
     """
     loop = Loop(runs, timestep, ticks=ticks + 1)
     recorder = loop.recorder(ticks // stride + 1, has_effort=has_effort)
+    speeds = CommandSpeeds(runs, loop.period)
     for tick in range(ticks + 1):
         loop.decide()
+        speeds.observe(loop.intended_targets)
         if tick % stride == 0:
             recorder.store(tick // stride, loop.command.phase, loop.command.targets)
         if tick < ticks:
@@ -195,6 +202,7 @@ def _simulate_group(
         if tick % 16 == 0:
             progress("simulating", tick / ticks)
     progress("simulating", 1.0)
+    speeds.warn()
     return recorder.record(np.arange(0, ticks + 1, stride) * loop.period)
 
 

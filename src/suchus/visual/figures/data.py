@@ -18,7 +18,7 @@ from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import Collection, LineCollection, PathCollection, PolyCollection, QuadMesh
 from matplotlib.colors import to_hex
-from matplotlib.container import BarContainer
+from matplotlib.container import BarContainer, ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
@@ -129,8 +129,8 @@ def _series(ax: Axes, labels: Mapping[tuple[str, ...], str]) -> Iterator[tuple[s
     names = _Quantity(_name(ax, "x"), *_ticks(ax.xaxis)), _Quantity(_name(ax, "y"), *_ticks(ax.yaxis))
     bars = [bar_container for bar_container in ax.containers if isinstance(bar_container, BarContainer)]
     in_bars = {id(patch) for bar_container in bars for patch in bar_container.patches}
-    for i, line in enumerate(ax.lines, start=1):
-        yield _series_name(line.get_label(), labels.get(_line_style(line), f"line {i}")), _of_line(ax, line, names)
+    for line, default in zip(ax.lines, _line_names(ax, labels, names), strict=True):
+        yield _series_name(line.get_label(), default), _of_line(ax, line, names)
     for i, container in enumerate(bars, start=1):
         yield _series_name(container.get_label(), f"bars {i}"), _of_bars(container, names)
     for i, collection in enumerate(ax.collections, start=1):
@@ -140,6 +140,40 @@ def _series(ax: Axes, labels: Mapping[tuple[str, ...], str]) -> Iterator[tuple[s
     for i, patch in enumerate(ax.patches, start=1):
         if id(patch) not in in_bars and patch.get_data_transform() == ax.transData:
             yield _series_name(patch.get_label(), f"outline {i}"), _of_patch(patch, names)
+
+
+def _line_names(ax: Axes, labels: Mapping[tuple[str, ...], str], names: _Quantities) -> list[str]:
+    """Return the names of the lines of a panel that have no label of their own.
+
+    A line takes the label of the one that looks alike, or of its error bars. One across the panel is a guide. The only
+    other line of a panel shows the quantity of its vertical axis; of several, each has the number of the line.
+    """
+    fixed_names = {
+        id(line): name
+        for line in ax.lines
+        for transform, name in (
+            (ax.get_xaxis_transform(which="grid"), "vertical guide"),
+            (ax.get_yaxis_transform(which="grid"), "horizontal guide"),
+        )
+        if line.get_transform() == transform
+    }
+    for bars in (container for container in ax.containers if isinstance(container, ErrorbarContainer)):
+        name = "measured" if is_nameless(bars.get_label()) else _plain(str(bars.get_label())).removeprefix("_")
+        data_line, caps, _ = bars.lines
+        fixed_names |= {id(cap): f"{name}, end of the bar" for cap in caps}
+        fixed_names[id(data_line)] = name  # None where there are bars alone
+    unnamed = [
+        line
+        for line in ax.lines
+        if is_nameless(line.get_label()) and id(line) not in fixed_names and _line_style(line) not in labels
+    ]
+    quantity = names[1].name.partition(" [")[0]
+    return [
+        fixed_names.get(id(line))
+        or labels.get(_line_style(line))
+        or (quantity if len(unnamed) == 1 and ax.axison and quantity != "y" else f"line {i}")
+        for i, line in enumerate(ax.lines, start=1)
+    ]
 
 
 def _of_line(ax: Axes, line: Line2D, names: _Quantities) -> Iterator[Cells]:
@@ -280,7 +314,12 @@ def _series_name(label: object, default: str) -> str:
     text = _plain(str(label))
     if not is_hidden(label):
         return text
-    return default if label is None or not text or text.startswith(("_child", "_nolegend")) else text[1:]
+    return default if is_nameless(label) else text[1:]
+
+
+def is_nameless(label: object) -> bool:
+    """Return whether a label names no series, not even outside of the legend."""
+    return label is None or not str(label) or str(label).startswith(("_child", "_nolegend"))
 
 
 def is_hidden(label: object) -> bool:

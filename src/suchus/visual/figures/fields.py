@@ -85,7 +85,7 @@ def draw_body(ax: Axes, record: xr.Dataset, name: str, index: int) -> tuple[Poly
     edge, line = outline(record, name, index)
     body = Polygon(edge, facecolor=SKIN, edgecolor=EDGE, linewidth=1.0, zorder=3)
     ax.add_patch(body)
-    (midline,) = ax.plot(*line.T, color=EDGE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
+    (midline,) = ax.plot(*line.T, color=EDGE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=4, label="_midline")
     return body, midline
 
 

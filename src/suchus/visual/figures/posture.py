@@ -135,6 +135,7 @@ def draw_posture(
         markeredgecolor=_paler(_EDGE, strength),
         markeredgewidth=0.9,
         zorder=3,
+        label="_joints",
     )
     if support:
         com = record.centre_of_mass.sel(time=time, method="nearest").values.astype(float)[rows]
@@ -169,8 +170,16 @@ def draw_strip(
             artist.set_zorder(artist.get_zorder() + 10 * i)
     track = shifted_record.centre_of_mass.sel(time=slice(times[0], times[-1]))
     x, y = (track.sel(xyz=axis).values for axis in "xy")
-    ax.plot(x, y, color=COLOURS[role], linewidth=2.4, zorder=10 * len(times) + 9)
-    ax.plot(x[[0, -1]], y[[0, -1]], "o", color=COLOURS[role], markersize=7, zorder=10 * len(times) + 9)
+    ax.plot(x, y, color=COLOURS[role], linewidth=2.4, zorder=10 * len(times) + 9, label="_path of the centre of mass")
+    ax.plot(
+        x[[0, -1]],
+        y[[0, -1]],
+        "o",
+        color=COLOURS[role],
+        markersize=7,
+        zorder=10 * len(times) + 9,
+        label="_ends of the path",
+    )
 
 
 def _lateral_shift(record: xr.Dataset, lateral_offset: float) -> xr.DataArray:
@@ -234,7 +243,7 @@ def _support(ax: Axes, record: xr.Dataset, time: float, load_threshold: float) -
 
 def _mark_mass(ax: Axes, com: np.ndarray, view: View) -> None:
     """Mark the projected centre of mass; from the side with a line down to the ground."""
-    style: dict[str, Any] = {"color": COLOURS["alarm"], "zorder": 5}
+    style: dict[str, Any] = {"color": COLOURS["alarm"], "zorder": 5, "label": "_centre of mass"}
     ax.plot(com[0], com[1], "o", markersize=7, markerfacecolor="white", markeredgewidth=1.8, **style)
     ax.plot(com[0], com[1], "+", markersize=7, markeredgewidth=1.4, **style)
     if view == "side":

@@ -42,8 +42,15 @@ def draw_shares(
                 intervals.append((i - spacing, shipped[row["claim"]], "printed", "D", "shipped table"))
             for y, interval, colour, mark, label in intervals:
                 percentage, lower_bound, upper_bound = (100 * x for x in interval)
-                style = {"color": COLOURS[colour], "label": label if i == len(rows) - 1 and shipped else None}
-                ax.plot([lower_bound, upper_bound], [y, y], color=COLOURS[colour], linewidth=2.2, alpha=0.5)
+                style = {"color": COLOURS[colour], "label": label if i == len(rows) - 1 and shipped else f"_{label}"}
+                ax.plot(
+                    [lower_bound, upper_bound],
+                    [y, y],
+                    color=COLOURS[colour],
+                    linewidth=2.2,
+                    alpha=0.5,
+                    label=f"_interval of {label}",
+                )
                 ax.plot(percentage, y, mark, markersize=6, **style)
             if row["claim"] in annotations:
                 ax.text(102, i, annotations[row["claim"]], va="center", fontsize=10)

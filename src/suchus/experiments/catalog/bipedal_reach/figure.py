@@ -311,7 +311,13 @@ def draw_side_views(robot: Robot, record: xr.Dataset) -> Figure:
 _LABEL_WIDTH = 0.34  # [m]; width of the label under a robot
 _HEIGHT_LINE_LENGTH = 0.2  # [m]; length of the height line ahead of the hind feet
 _POSITION_FIELDS = ("position", "centre_of_mass", "foot_position", "tail_tip")
-_REACH_LINE: dict[str, Any] = {"color": COLOURS["ours"], "linewidth": 1.6, "linestyle": (0, (5, 2)), "zorder": 6}
+_REACH_LINE: dict[str, Any] = {
+    "color": COLOURS["ours"],
+    "linewidth": 1.6,
+    "linestyle": (0, (5, 2)),
+    "zorder": 6,
+    "label": "_reach",
+}
 
 
 def _hind_feet_shift(record: xr.Dataset, x: float) -> xr.DataArray:
@@ -357,7 +363,7 @@ def _mark_support(ax: Axes, snapshot: xr.Dataset) -> None:
     if float(snapshot.tail_force.sel(xyz="z")) > _MIN_SUPPORT_FORCE:
         points.append(snapshot.tail_tip.sel(xyz="x"))
     x = [float(p) for p in points]
-    ax.plot(x, [-0.012] * len(x), "^", color="#B8860B", markersize=7, zorder=6, clip_on=False)
+    ax.plot(x, [-0.012] * len(x), "^", color="#B8860B", markersize=7, zorder=6, clip_on=False, label="_support")
 
 
 def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:

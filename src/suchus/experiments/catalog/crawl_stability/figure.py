@@ -57,7 +57,9 @@ def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
         ax = axes[0, 0]
         for i, name in enumerate(names):
             repeat_fluctuations, row = 1000 * record.repeated_com_height_pp.sel(condition=name), len(names) - i
-            labels = ("each robot as built", "their middle", "as designed") if i == 0 else (None,) * 3
+            labels = [
+                ("" if i == 0 else "_") + label for label in ("each robot as built", "their middle", "as designed")
+            ]
             ax.plot(
                 repeat_fluctuations,
                 [row] * repeat_fluctuations.size,

@@ -91,7 +91,9 @@ def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed_distances: Ma
         for i, arm in enumerate(arms):
             repeat_distances, row = record.repeated_forward.sel(condition=arm), len(arms) - i
             median = float(repeat_distances.median())
-            labels = ("each robot as built", "their middle", "as designed") if i == 0 else (None,) * 3
+            labels = [
+                ("" if i == 0 else "_") + label for label in ("each robot as built", "their middle", "as designed")
+            ]
             ax.plot(
                 repeat_distances,
                 [row] * repeat_distances.size,
@@ -107,7 +109,7 @@ def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed_distances: Ma
                         textcoords="offset points")  # fmt: skip
         for i, (arm, metres) in enumerate(printed_distances.items()):
             ax.plot(metres, len(arms) - arms.index(arm), "D", markersize=11, markerfacecolor="none",
-                    markeredgecolor="black", label=None if i else "article")  # fmt: skip
+                    markeredgecolor="black", label="_article" if i else "article")  # fmt: skip
         ax.set_yticks(range(len(arms), 0, -1), [str(LINES[arm]["label"]) for arm in arms])
         ax.set_ylim(0.4, len(arms) + 0.8)
         ax.set_xlim(left=min(0.0, float(record.repeated_forward.min())))

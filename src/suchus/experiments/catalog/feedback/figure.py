@@ -75,8 +75,8 @@ def draw_fans(error: xr.DataArray, tolerance: float) -> Figure:
         for ax, (law, (label, colour)) in zip(axes.flat, _LAWS.items(), strict=True):
             errors = error.sel(law=law).transpose("time", "start")
             ax.axhspan(0.0, tolerance, color=COLOURS["grid"], linewidth=0)
-            ax.plot(error.time, errors, color=colour, linewidth=0.8, alpha=0.5)
-            ax.plot(error.time, errors.median("start"), color="black", linewidth=2.0)
+            ax.plot(error.time, errors, color=colour, linewidth=0.8, alpha=0.5, label="_each start")
+            ax.plot(error.time, errors.median("start"), color="black", linewidth=2.0, label="_median of the starts")
             ax.set_title(label)
             ax.set_xlim(0.0, float(error.time[-1]))
             ax.set_ylim(0.0, 0.52)
@@ -195,8 +195,8 @@ def draw_tracks(record: xr.Dataset, disturbances: Sequence[str]) -> Figure:
                 track = record.sel(disturbance=name, arm=arm)
                 x, y = track.x - track.x.isel(time=0), track.y - track.y.isel(time=0)
                 ax.plot(-y, x, color=colour, linestyle=dashes, label=label)
-                ax.plot(-y[-1], x[-1], "o", color=colour)
-            ax.plot(0, 0, "s", color="black")
+                ax.plot(-y[-1], x[-1], "o", color=colour, label=f"_end, {label}")
+            ax.plot(0, 0, "s", color="black", label="_start")
             ax.set_aspect("equal", adjustable="datalim")
             if size > 0.5:  # [m]; a small robot gets no farther than a few hundredths
                 ax.xaxis.set_major_locator(MultipleLocator(0.5))

@@ -98,7 +98,8 @@ class GaitDiagram(Experiment):
         record = simulate([run], duration=end, progress=staged(progress, "crawl", 0.0, 1.0)).isel(run=0)
         commanded = _commanded_bends(self.robot, record.servo_target.transpose("time", "servo").values)
         for body_part, bend in commanded.items():
-            attrs = {"units": "rad", "long_name": f"commanded bend of the {body_part}, right positive"}
+            part, direction = body_part.removesuffix("_vertical"), _positive_direction(body_part)
+            attrs = {"units": "rad", "long_name": f"commanded bend of the {part}, {direction} positive"}
             record[f"commanded_{body_part}"] = ("time", bend, attrs)
         sensed = _sensed_bends(self.robot, record)
         for body_part in commanded:
@@ -288,6 +289,11 @@ def _commanded_bends(robot: Robot, commanded: np.ndarray) -> dict[str, np.ndarra
         for body_part, pitch in _pitch_servos(robot).items()
     }
     return bends | vertical
+
+
+def _positive_direction(body_part: str) -> str:
+    """Return the direction of a positive bend in the article's signs, by the names of ``_sensed_bends``."""
+    return "down" if body_part.endswith("_vertical") else "right"
 
 
 def _pitch_servos(robot: Robot) -> dict[str, tuple[int, ...]]:

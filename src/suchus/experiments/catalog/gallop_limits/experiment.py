@@ -236,8 +236,8 @@ class GallopLimits(Experiment):
                 "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
                 "torque_best": Measure(float(best.torque), "N m"),
                 "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
-                "servo_speed_own": Measure(design_servo["servo_speed"], "rad/s"),
-                "torque_own": Measure(design_servo["torque"], "N m"),
+                "servo_speed_own": Measure(float(own_bound.servo_speed), "rad/s"),
+                "torque_own": Measure(float(own_bound.torque), "N m"),
                 "servo_speed_needed": Measure(_min_paying_speed(pays.servo_speed.values, pays.values), "rad/s"),
                 "gallops_share": Measure(float(gallops.mean()), "-"),
             }
@@ -245,18 +245,29 @@ class GallopLimits(Experiment):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw speed and flight of the bound over the servos' speed, with the speed of the fastest walk."""
-        bound, walks = fastest_gaits(outcome.record, "bound"), fastest_gaits(outcome.record, "trot", "walk")
+        bound, walks = simulated_gaits(outcome.record, "bound"), simulated_gaits(outcome.record, "trot", "walk")
         figure = captioned(
             draw_gallop_limits(bound, walks, outcome.record.attrs["own_speed"]),
             "The fastest bounding gait with servos of growing no-load speed and torque (colours). Left: its speed; "
-            "dashed: the fastest trot or walk. Right: the share of the time in which nothing touches the ground. A "
-            "better servo does what a lesser one does. The grey line is the robot's own servo.",
+            "dashed: the fastest trot or walk. Right: the share of the time in which nothing touches the ground. "
+            "Each point is what was simulated with that servo. The grey line is the robot's own servo.",
         )
         return {"gallop_limits": figure}
 
 
 MIN_FLIGHT_FRACTION = 0.1
 """Flight fraction from which a bound counts as a gallop [-]; with less it is a walk that stumbles."""
+
+
+def simulated_gaits(record: xr.Dataset, *kinds: str) -> xr.Dataset:
+    """Return the fastest simulated gait of some kinds with every servo, dimensions ``torque`` and ``servo_speed``.
+
+    Args:
+        record: record of the experiment.
+        kinds: ``bound``, ``trot`` or ``walk``.
+    """
+    candidates = record.isel(gait=np.isin(record.kind.values, kinds))
+    return candidates.isel(gait=candidates.speed.argmax("gait")).transpose("torque", "servo_speed", ...)
 
 
 def fastest_gaits(record: xr.Dataset, *kinds: str) -> xr.Dataset:
@@ -272,8 +283,7 @@ def fastest_gaits(record: xr.Dataset, *kinds: str) -> xr.Dataset:
         record: record of the experiment.
         kinds: ``bound``, ``trot`` or ``walk``.
     """
-    candidates = record.isel(gait=np.isin(record.kind.values, kinds))
-    best = candidates.isel(gait=candidates.speed.argmax("gait")).transpose("torque", "servo_speed", ...)
+    best = simulated_gaits(record, *kinds)
     cells, (torque_count, speed_count) = np.arange(best.speed.size).reshape(best.speed.shape), best.speed.shape
     best_cells = [
         cells[: i + 1, : j + 1].ravel()[np.argmax(best.speed.values[: i + 1, : j + 1])]

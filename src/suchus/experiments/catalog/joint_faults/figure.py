@@ -233,7 +233,7 @@ def _arrow(ax: Axes, start: np.ndarray, facing: float, colour: str) -> None:
         colour: colour of the arrow.
     """
     tip = start + 0.07 * np.array([np.cos(facing), np.sin(facing)])
-    ax.plot(*tip, alpha=0.0)  # extends the axis limits to the tip
+    ax.plot(*tip, alpha=0.0, label="_tip of the heading arrow")  # extends the axis limits to the tip
     arrow_style = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", xy=tuple(tip), xytext=tuple(start), arrowprops=arrow_style, annotation_clip=False)
 

@@ -54,7 +54,13 @@ def _draw_waves(ax: Axes, record: xr.Dataset) -> None:
     scale = 0.48 / max(float(abs(record.ramp_wave).max()), 1e-9)
     for k in range(n):
         colour = COLOURS["spine"] if int(record.girdle[k]) <= 0 else COLOURS["tail"]
-        ax.plot(time, n - k + scale * record.ramp_wave.isel(segment=k), color=colour, linewidth=1.5)
+        ax.plot(
+            time,
+            n - k + scale * record.ramp_wave.isel(segment=k),
+            color=colour,
+            linewidth=1.5,
+            label=f"_segment {k + 1}",
+        )
     ax.set_yticks(range(n, 0, -1), [str(k + 1) for k in range(n)])
     ax.set_ylim(0.4, n + 0.7)
     ax.set_ylabel("axis, from the head")
@@ -91,7 +97,12 @@ def draw_sweep(record: xr.Dataset, oscillators: Oscillators) -> Any:
             for ax, line, quantity in zip(axes[0], law(fine), ("frequency", "amplitude"), strict=False):
                 curve = line * (scale if quantity == "frequency" else 1.0)
                 ax.plot(
-                    fine, np.where(curve > 0.0, curve, np.nan), color=colour, linewidth=1.2, linestyle=(0, (1, 1.2))
+                    fine,
+                    np.where(curve > 0.0, curve, np.nan),
+                    color=colour,
+                    linewidth=1.2,
+                    linestyle=(0, (1, 1.2)),
+                    label=f"_{name}, each alone",
                 )
                 ax.plot(drive, record[f"{quantity}_{name}"], "o", color=colour, label=name, markersize=size)
                 ax.set_xlabel("drive")
@@ -123,6 +134,7 @@ def draw_locks(record: xr.Dataset) -> Any:
                 color=COLOURS["ours"],
                 alpha=0.35,
                 linewidth=1.0,
+                label="_each start",
             )
             ax.axhline(record.attrs["within"], color=COLOURS["RF"], linestyle=(0, (4, 2)), linewidth=1.3)
             ax.set_ylim(1e-4, 4.0)

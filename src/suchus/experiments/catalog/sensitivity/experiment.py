@@ -126,7 +126,7 @@ class Sensitivity(Experiment):
             measures,
             designs=sum(measures[name] for name in _COUNTS.values()),
             alarm=_MIN_CHANCE,
-            **{name: [key.replace("_", " ") for key in keys] for name, keys in claim_groups.items()},
+            **{name: [_counted(key, measures) for key in keys] for name, keys in claim_groups.items()},
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -143,6 +143,13 @@ class Sensitivity(Experiment):
         }
         shipped = {key: (share.share, share.low, share.high) for key, share in SHARES.items()}
         return {"sensitivity_shares": draw_shares(rows, words, shipped)}
+
+
+def _counted(key: str, measures: Mapping[str, float]) -> str:
+    """Return the words of a claim with the number of designs in which it holds, of those that judge it."""
+    judged_count = measures[f"judged_{key}"]
+    hold_count = measures[f"share_{key}"] * judged_count
+    return f"{key.replace('_', ' ')}: {hold_count:.0f} of {judged_count:.0f}"
 
 
 def _rows(record: xr.Dataset) -> list[dict[str, Any]]:

@@ -152,12 +152,12 @@ def _shore(ax: Axes, slope_angle: float, view: tuple[float, float]) -> None:
     x = np.array(view)
     ground = x * np.tan(slope_angle)
     ax.fill_between(x, ground, -3.0, color="#E8DFCB", zorder=0.2)
-    ax.plot(x, ground, color=COLOURS["ground"], linewidth=1.4, zorder=0.5)
+    ax.plot(x, ground, color=COLOURS["ground"], linewidth=1.4, zorder=0.5, label="_ground")
     water_x = np.array([x[0], min(x[1], 0.0)])
     ax.fill_between(
         water_x, water_x * np.tan(slope_angle), 0.0, color=COLOURS["water"], alpha=0.25, zorder=6, linewidth=0
     )
-    ax.plot(water_x, [0.0, 0.0], color=COLOURS["water"], linewidth=1.4, zorder=6.1)
+    ax.plot(water_x, [0.0, 0.0], color=COLOURS["water"], linewidth=1.4, zorder=6.1, label="_water surface")
 
 
 def _smooth(values: np.ndarray, window_samples: int) -> np.ndarray:

@@ -208,6 +208,7 @@ class SpeedRange(Experiment):
             measures |= {
                 f"speed_{name}": Measure(float(usual_cycle.speed), "m/s"),
                 f"speed_{name}_other_servos": Measure(float(other_record.isel(slower=usual_index).speed), "m/s"),
+                f"servo_change_{name}": Measure(float(abs(other_record.speed / own_record.speed - 1.0).max()), "-"),
                 **ranged(f"speed_{name}_slowest", own_record.speed.min(), gait_record.speed.min("slower"), "m/s"),
                 **ranged(f"speed_{name}_fastest", own_record.speed.max(), gait_record.speed.max("slower"), "m/s"),
                 f"cost_{name}": Measure(float(usual_cycle.cost), "-"),
@@ -243,9 +244,7 @@ class SpeedRange(Experiment):
             fastest=max(names, key=lambda name: measures[f"speed_{name}_fastest"]),
             cheapest=min(names, key=lambda name: measures[f"cost_{name}_least"]),
             falls=_falling(self.robot)[0] > 0,
-            changed=max(
-                abs(measures[f"speed_{name}_other_servos"] / measures[f"speed_{name}"] - 1.0) for name in names
-            ),
+            changed=max(measures[f"servo_change_{name}"] for name in names),
             animals=ANIMAL["high_walk_speed"].who,
         )
 

@@ -32,8 +32,8 @@ def spine_workspace(record: xr.Dataset) -> Figure:
             mesh = ax.pcolormesh(_MM * record[x], _MM * record[y], share, cmap=SEQUENTIAL, norm=norm, rasterized=True)
             for posture in postures:
                 points = _MM * record.posture_points.sel(posture=posture, axis=["x", axis])
-                ax.plot(*points.values.T, "-o", color="#F25C54", **_LIMB)
-            ax.plot(0, 0, "s", color=_PRINTED_COLOUR, markersize=9)
+                ax.plot(*points.values.T, "-o", color="#F25C54", label=f"_posture {posture}", **_LIMB)
+            ax.plot(0, 0, "s", color=_PRINTED_COLOUR, markersize=9, label="_pelvis")
             ax.annotate("pelvis", (0, 0), (-4, 10), textcoords="offset points")
             ax.set_aspect("equal")
             ax.set_ylabel(label)
@@ -61,7 +61,12 @@ def spine_misprint(record: xr.Dataset) -> Figure:
         for bend in np.radians((-60, 0, 60)):
             ends = [_MM * record[f"track_{n}"].sel(bend=bend, method="nearest") for n in ("ours", "printed")]
             left_ax.plot(
-                *[[e.sel(axis=a) for e in ends] for a in "yx"], "o-", color=_ALARM_COLOUR, linewidth=1.3, markersize=4
+                *[[e.sel(axis=a) for e in ends] for a in "yx"],
+                "o-",
+                color=_ALARM_COLOUR,
+                linewidth=1.3,
+                markersize=4,
+                label=f"_ours and printed at {np.degrees(bend):.0f} degrees",
             )
         gap = _MM * float(record.track_ours.sel(bend=0)[0] - record.track_printed.sel(bend=0)[0])
         middle = _MM * float(record.track_ours.sel(bend=0)[0]) - gap / 2
@@ -71,7 +76,7 @@ def spine_misprint(record: xr.Dataset) -> Figure:
         left_ax.set_xlabel("left [mm]")
         left_ax.set_ylabel("ahead of the hips [mm]")
         left_ax.set_title("joint 5 while the trunk bends")
-        left_ax.plot(0, 0, "s", color=_PRINTED_COLOUR, markersize=8)
+        left_ax.plot(0, 0, "s", color=_PRINTED_COLOUR, markersize=8, label="_pelvis")
         left_ax.annotate("pelvis", (0, 0), (9, -2), textcoords="offset points")
         left_ax.set_ylim(-15, middle + gap)
         left_ax.legend(loc="center", bbox_to_anchor=(0.5, 0.3))
@@ -97,11 +102,16 @@ def spine_least_bending(record: xr.Dataset) -> Figure:
         left_ax, right_ax = axes[0]
         for member in record.family_points:
             left_ax.plot(
-                *(_MM * member.sel(axis=["y", "x"])).values.T, "-o", color=COLOURS["neutral"], alpha=0.45, lw=1.3
+                *(_MM * member.sel(axis=["y", "x"])).values.T,
+                "-o",
+                color=COLOURS["neutral"],
+                alpha=0.45,
+                lw=1.3,
+                label="_posture with the same end",
             )
         best = _MM * record.best_points.sel(axis=["y", "x"])
-        left_ax.plot(*best.values.T, "-o", color=_COMPUTED_COLOUR, linewidth=2.8)
-        left_ax.plot(*best.values[-2], "o", color=_ALARM_COLOUR, markersize=9, zorder=5)
+        left_ax.plot(*best.values.T, "-o", color=_COMPUTED_COLOUR, linewidth=2.8, label="_least bent posture")
+        left_ax.plot(*best.values[-2], "o", color=_ALARM_COLOUR, markersize=9, zorder=5, label="_joint 5")
         left_ax.annotate(
             "joint 5", best.values[-2], (-7, 8), textcoords="offset points", color=_ALARM_COLOUR, ha="right"
         )
@@ -119,7 +129,14 @@ def spine_least_bending(record: xr.Dataset) -> Figure:
                 yaw_degrees, record.bending.sel(branch=branch), linestyle=dashes, color=COLOURS["spine"], label=label
             )
         min_bending = float((record.best_angles**2).sum())
-        right_ax.plot(np.degrees(record.best_angles[0]), min_bending, "o", color=_COMPUTED_COLOUR, markersize=9)
+        right_ax.plot(
+            np.degrees(record.best_angles[0]),
+            min_bending,
+            "o",
+            color=_COMPUTED_COLOUR,
+            markersize=9,
+            label="_least bending",
+        )
         right_ax.annotate(
             "least bending",
             (float(np.degrees(record.best_angles[0])), min_bending),

@@ -52,7 +52,8 @@ _SWIMS_OF_MEASURE: Mapping[str, tuple[str, ...]] = {
 """Swims that a measure is read from, by the beginning of its name."""
 MIN_SETTLED_CYCLES = 6
 """Fewest cycles over which a number can be settled [-]: two halves of three."""
-_QUARTERS = ("difference", "thrust", "aside")
+_QUARTERS: Mapping[str, str] = {"difference": "Pa", "thrust": "N/m", "aside": "N/m"}
+"""What is read at the quarters of a cycle, and its unit; forces of rungs in three dimensions are in N."""
 GRIDS = "grids.json"
 """File beside this module: numbers on several grids in three dimensions, see ``tools/ladder_grids.py``."""
 _AVERAGED_CYCLES = 3  # last cycles of the swim on sections over which the joints' midline is averaged [-]
@@ -211,10 +212,10 @@ _SHAPES: Mapping[str, tuple[tuple[str, ...], str]] = {
     "ladder_speed": (("ladder_motion", "ladder_cycle"), "m/s"),
     "ladder_centre": (("ladder_tick",), "m"),
     "ladder_course": (("ladder_tick", "ladder_place"), "m"),
-    **{f"ladder_{name}": (("ladder_cycle", "ladder_quarter"), "1") for name in _QUARTERS},
+    **{f"ladder_{name}": (("ladder_cycle", "ladder_quarter"), unit) for name, unit in _QUARTERS.items()},
 }
-"""Dimensions after ``rung``, and unit, of the results of a rung. Quarters have the rung's own unit of pressure or
-force."""
+"""Dimensions after ``rung``, and unit, of the results of a rung. Forces at quarters are in N/m on rungs in a
+plane, in N on those in three dimensions."""
 
 
 def _stacked(key: str, results: Iterable[Mapping[str, Any]], cycles: int) -> Any:

@@ -24,12 +24,12 @@ def tail_positions(record: xr.Dataset) -> Figure:
             end, name = _MM * record.end[i].values, f"{np.degrees(bend):.0f}°"
             line = np.vstack([[0, 0], _MM * record.joints_ours[i].values, end])
             _plates(left_ax, line, record, shade)
-            left_ax.plot(*line.T, "-o", color=shade, markersize=4, linewidth=1.6)
+            left_ax.plot(*line.T, "-o", color=shade, markersize=4, linewidth=1.6, label=f"_bend {name}")
             direction = np.array([np.cos(bend), np.sin(bend)])
             tip, side = end + 36 * direction, ("right", "center", "left")[int(np.rint(direction[0])) + 1]
             left_ax.text(*tip, name, color=shade, ha=side, va="center", weight="bold")
             printed_points = np.vstack([[0, 0], _MM * record.joints_printed[i].values])
-            right_ax.plot(*printed_points.T, "-o", color=shade, markersize=4, linewidth=1.6)
+            right_ax.plot(*printed_points.T, "-o", color=shade, markersize=4, linewidth=1.6, label=f"_bend {name}")
             right_ax.annotate(
                 name, printed_points[-1], (10, -10), textcoords="offset points", color=shade, weight="bold"
             )
@@ -66,8 +66,10 @@ def tail_cord_error(record: xr.Dataset) -> Figure:
         upper_ax, lower_ax = axes[:, 0]
         bend = np.degrees(record.bend)
         upper_ax.axhline(0, color=COLOURS["neutral"], linewidth=1)
-        upper_ax.plot(bend, 100 * record.error_away, color=COLOURS["limbs_only"], linestyle=(0, (5, 2)))
-        upper_ax.plot(bend, 100 * record.error_toward, color=_COMPUTED_COLOUR)
+        upper_ax.plot(
+            bend, 100 * record.error_away, color=COLOURS["limbs_only"], linestyle=(0, (5, 2)), label="_cord let out"
+        )
+        upper_ax.plot(bend, 100 * record.error_toward, color=_COMPUTED_COLOUR, label="_cord pulled in")
         upper_ax.text(
             0.07, 0.82, "cord let out: (17) gives too much", color=COLOURS["limbs_only"], transform=upper_ax.transAxes
         )

@@ -181,6 +181,7 @@ class Terrain(Experiment):
         for arm in record.arm.values:
             of_arm = record.sel(arm=arm)
             flat = of_arm.isel(ground=0, seed=0)
+            even_forward = of_arm.forward.isel(ground=0).mean("seed")
             measures |= {
                 f"flat_forward_{arm}": Measure(float(flat.forward), "m"),
                 f"flat_cost_{arm}": Measure(float(flat.cost), "-"),
@@ -192,7 +193,7 @@ class Terrain(Experiment):
                 kind_record = of_arm.isel(
                     ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0))
                 )
-                measures[f"kept_{kind}_{arm}"] = Measure(float(kind_record.forward.mean() / flat.forward), "-")
+                measures[f"kept_{kind}_{arm}"] = Measure(float(kind_record.forward.mean() / even_forward), "-")
                 measures[f"met_{kind}_{arm}"] = Measure(float(kind_record.met.mean()), "-")
         low_grounds = record.isel(
             ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _HEIGHT_TOLERANCE)

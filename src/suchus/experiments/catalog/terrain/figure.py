@@ -94,7 +94,7 @@ def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> F
 def draw_ground(ax: Axes, x: np.ndarray, height: Sequence[float] | np.ndarray) -> None:
     """Draw the profile of the ground, filled."""
     ax.fill_between(x, height, -0.06, color="#D9CDB8", zorder=0.2, linewidth=0)
-    ax.plot(x, height, color=COLOURS["ground"], linewidth=1.4, zorder=0.3)
+    ax.plot(x, height, color=COLOURS["ground"], linewidth=1.4, zorder=0.3, label="_ground")
 
 
 def draw_on_bumps(robot: Robot, record: xr.Dataset, posture_text: str) -> Figure:

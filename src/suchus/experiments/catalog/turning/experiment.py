@@ -325,9 +325,9 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
         ax = axes[0, 2]
         radii = record.asked.values
         ax.fill_between(radii, 0.9 * radii, 1.1 * radii, color="#E3E3E3", zorder=0, label="within 10 %")
-        ax.plot(radii, radii, color=COLOURS["neutral"], linewidth=0.9)
+        ax.plot(radii, radii, color=COLOURS["neutral"], linewidth=0.9, label="_measured = commanded")
         for gait in record.gait.values:
-            style = dict(lines[str(gait)]) | {"linestyle": "none", "label": None}
+            style = dict(lines[str(gait)]) | {"linestyle": "none", "label": f"_{gait}"}
             ax.plot(radii, record.radius.sel(gait=gait), **style)
         ax.set_xlabel("commanded radius [m]")
         ax.set_ylabel("measured radius [m]")

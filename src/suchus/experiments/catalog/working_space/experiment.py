@@ -196,10 +196,18 @@ def _posture(ax: Any, record: xr.Dataset, state: str, axes: tuple[int, int], col
         colour: of the lines.
     """
     body, legs = record[f"body_{state}"].values[:, list(axes)], record[f"legs_{state}"].values[..., list(axes)]
-    ax.plot(*body.T, color=colour, linewidth=4.0, solid_capstyle="round", solid_joinstyle="round", zorder=3)
+    ax.plot(
+        *body.T,
+        color=colour,
+        linewidth=4.0,
+        solid_capstyle="round",
+        solid_joinstyle="round",
+        zorder=3,
+        label=f"_trunk, {state}",
+    )
     for leg in legs:
-        ax.plot(*leg.T, color=colour, linewidth=2.2, marker="o", markersize=4, zorder=3)
-    ax.plot(*body[-1], "o", color=colour, markersize=7, markeredgecolor="white", zorder=4)
+        ax.plot(*leg.T, color=colour, linewidth=2.2, marker="o", markersize=4, zorder=3, label=f"_leg, {state}")
+    ax.plot(*body[-1], "o", color=colour, markersize=7, markeredgecolor="white", zorder=4, label=f"_snout, {state}")
 
 
 experiment = WorkingSpace()
