@@ -29,7 +29,7 @@ def record(depth, pitch=0.1, speed=0.2):
     found = xr.Dataset(
         {name: (("dive", "dive_time"), values) for name, values in both.items()},
         coords={"dive": ["deep", "in_foam"], "dive_time": TIME},
-        attrs={"deep_from": 6.0, "depth": 0.6},
+        attrs={"deep_from": 6.0, "depth": 0.6, "frequency": 1.0, "measured_cycles": 4},
     )
     return found.assign(deep_trim=("dive", [0.0, -0.6]), deep_front=("dive", [0.3, 0.1]))
 

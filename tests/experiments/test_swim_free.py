@@ -11,7 +11,7 @@ from tests.swims import crocodile_swim
 from suchus.core.errors import InvalidDesign
 from suchus.core.rotation import from_axis_angle
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.catalog.swim_free.experiment import _ends, _radius, _speed, _uneven
+from suchus.experiments.catalog.swim_free.experiment import _ends, _radius, _settled_speed, _uneven
 from suchus.experiments.catalog.swim_free.figure import draw_below
 from suchus.experiments.catalog.swim_free.flow_figure import _fins
 from suchus.experiments.catalog.swim_free.in_flow import fins, passive_joints
@@ -37,8 +37,10 @@ def test_a_circle_has_its_radius_and_its_side(sign):
         coords={"time": time, "xyz": list("xyz")},
     )
     assert _radius(part, 1.0) == pytest.approx(sign * 0.8, rel=0.01)
-    record = part.assign_attrs(measured_from=2.0)
-    assert _speed(part.centre_of_mass, record) == pytest.approx((track[600, 0] - track[200, 0]) / 4)
+    record = part.assign_attrs(frequency=1.0, measured_cycles=4)
+    speed = _settled_speed(part.centre_of_mass, record)
+    assert not speed.is_settled
+    assert speed.mean == pytest.approx((track[600, 0] - track[200, 0]) / 4)
 
 
 @pytest.mark.parametrize(("amplitudes", "expected"), [((0.2, 0.2, 0.2), 1.0), ((0.4, 0.1, 0.1), 2.0)])
@@ -46,7 +48,7 @@ def test_joints_that_share_unevenly_are_told(amplitudes, expected):
     phase = 2 * np.pi * np.arange(100) / 100
     angles = np.sin(phase)[:, None] * np.array(amplitudes)
     part = xr.Dataset({"joint_angle": (("time", "joint"), angles)}, coords={"joint": ["a", "b", "c"]})
-    assert _uneven(part, part.assign_attrs(cable=["a", "b", "c"])) == pytest.approx(expected, rel=1e-6)
+    assert _uneven(part, ["a", "b", "c"]) == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -47,6 +47,14 @@ from suchus.sim.metrics.progress import (
 )
 from suchus.sim.metrics.reach import lead, longest_hold, reach, static_margin
 from suchus.sim.metrics.rolling import roll_angle, roll_rate
+from suchus.sim.metrics.settled import (
+    MIN_SETTLED_CYCLES,
+    SETTLED_TOLERANCE,
+    VISIBLE_TREND,
+    SettledMean,
+    cycle_speeds,
+    settled_mean,
+)
 from suchus.sim.metrics.similarity import SIMILARITY, SwimNumbers, swim_numbers
 from suchus.sim.metrics.stability import (
     height_peak_to_peak,
@@ -62,10 +70,15 @@ from suchus.sim.metrics.stability import (
 from suchus.sim.metrics.window import each_cycle, first_harmonic, mean_cycle, require_complete, time_window
 
 __all__ = [
+    "MIN_SETTLED_CYCLES",
+    "SETTLED_TOLERANCE",
     "SIMILARITY",
+    "VISIBLE_TREND",
+    "SettledMean",
     "SwimNumbers",
     "bend_swings",
     "cost_of_transport",
+    "cycle_speeds",
     "diagonal_phase_error",
     "displacement",
     "duty_factor",
@@ -99,6 +112,7 @@ __all__ = [
     "roll_peak_to_peak",
     "roll_rate",
     "sensed_phase",
+    "settled_mean",
     "slip",
     "speed",
     "spine_amplitude",

@@ -32,7 +32,7 @@ from suchus.robot.design import Robot
 from suchus.robot.design.water import Water
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
-from suchus.sim.metrics import SwimNumbers, swim_numbers
+from suchus.sim.metrics import SwimNumbers, cycle_speeds, settled_mean, swim_numbers
 from suchus.swimming.water import MODELS, Outline, cruise
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
@@ -61,9 +61,10 @@ class SalamanderSwim(Experiment):
     """The robot that swims; a table of angles made for it is played."""
     frequencies: tuple[float, ...] = animal.FREQUENCIES
     """Frequencies of the swims [Hz]."""
-    settle: int = 8
-    """Cycles that are swum before anything is measured [-]."""
-    cycles: int = 6
+    settle: int = 16
+    """Cycles that are swum before anything is measured; ``unsettled_swims`` counts the swims that are not settled by
+    then, by ``metrics.settled_mean`` [-]."""
+    cycles: int = 10
     """Cycles that are measured [-]."""
     factors: tuple[float, ...] = (0.5, 2.0)
     """Factors on cross drag, friction, added mass and shed momentum, one of which is changed at a time, at the
@@ -123,10 +124,14 @@ class SalamanderSwim(Experiment):
 
     def _swims(self, records: list[xr.Dataset]) -> xr.Dataset:
         """Return stride, swing and envelope of each swim, and the strides in other waters."""
-        strides, envelopes, angle_errors, submerged_fractions, heel = [], [], [], [], []
+        strides, envelopes, angle_errors, submerged_fractions, heel, unsettled = [], [], [], [], [], []
         for record, frequency in zip(records, self.frequencies, strict=True):
             start = self.settle / frequency
             strides.append([self._stride(record.isel(run=i), start, self.cycles) for i in range(record.sizes["run"])])
+            means = [
+                settled_mean(cycle_speeds(record.isel(run=i), 1.0 / frequency)) for i in range(record.sizes["run"])
+            ]
+            unsettled.append(sum(not (mean.is_settled and mean.start <= self.settle) for mean in means))
             envelopes.append(animal.envelope(self.robot, record.isel(run=0), start, 1.0 / frequency))
             names = [name for name in record.servo.values if name in record.joint.values]
             angle_error = record.joint_angle.sel(joint=names).values - record.servo_target.sel(servo=names).values
@@ -144,6 +149,7 @@ class SalamanderSwim(Experiment):
                 "missed": ("swim", angle_errors, {"units": "rad"}),
                 "under": ("swim", submerged_fractions, {"units": "1"}),
                 "heel": ("swim", heel, {"units": "rad"}),
+                "unsettled": ("swim", unsettled, {"units": "1"}),
             },
             coords={
                 "frequency": ("swim", list(self.frequencies), {"units": "Hz"}),
@@ -211,6 +217,7 @@ class SalamanderSwim(Experiment):
             "swing_tail": Measure(float(mean_swing[-1]), "body length"),
             "share_under": Measure(float(record.under.mean()), "-"),
             "heel": Measure(float(record.heel.max()), "rad"),
+            "unsettled_swims": Measure(float(record.unsettled.sum()), "-"),
             "angle_missed": Measure(float(record.missed.max()), "rad"),
             "trim_submerged": Measure(own_size.trim_submerged(self.robot), "rad"),
             **dict(_rung_measures(record)),

@@ -22,7 +22,7 @@ from suchus.robot.motion import Gait, cycle_targets
 from suchus.robot.robots import ROBOTS
 from suchus.robot.robots._animals import catshark, eel, pleurodeles
 from suchus.sim.land import Lake, Run, simulate
-from suchus.sim.metrics import swim_numbers
+from suchus.sim.metrics import cycle_speeds, settled_mean, swim_numbers
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swimming.water import FilmedWave, fit, swim_of
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
@@ -176,6 +176,7 @@ def swim_animals(names: Sequence[str], *, settle: int, cycles: int, progress: Pr
 _QUANTITY_UNITS = {
     "length": "m", "mass": "kg", "volume": "m3", "frequency": "Hz", "keel": "m", "trim": "rad", "vanishing": "rad",
     "speed": "m/s", "surplus": "kg", "heel": "rad", "pitch": "rad", "under": "1", "swing": "m", "missed": "rad",
+    "unsettled": "1",
 }  # fmt: skip
 
 
@@ -209,6 +210,7 @@ def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) 
         [-course[1], course[0]]
     )
     direction_sign = float(np.sign(displacement[:2] @ facing[:, :2].mean(axis=0)))
+    settled = settled_mean(cycle_speeds(record, gait.period))
     names = [name for name in excerpt.servo.values if name in excerpt.joint.values]
     angle_error = excerpt.joint_angle.sel(joint=names).values - excerpt.servo_target.sel(servo=names).values
     return {
@@ -220,6 +222,7 @@ def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) 
         "pitch": float(rotation.pitch(excerpt.orientation.values).mean()),
         "under": float(excerpt.share_under.mean()), "swing": float(np.ptp(lateral_offset)),
         "missed": float(np.sqrt((angle_error**2).mean())),
+        "unsettled": float(not (settled.is_settled and settled.start <= settle)),
     }  # fmt: skip
 
 
@@ -245,6 +248,7 @@ def measures(record: xr.Dataset) -> Measures:
             f"speed_{name}": Measure(row["speed"] / length, "body length/s"),
             f"stride_{name}": Measure(row["speed"] / frequency / length, "body length"),
             f"angle_missed_{name}": Measure(row["missed"], "rad"),
+            f"unsettled_{name}": Measure(row["unsettled"], "-"),
         }
         numbers = swim_numbers(
             speed=row["speed"], length=length, frequency=frequency, swing=row["swing"], viscosity=Water().viscosity

@@ -36,7 +36,7 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Lake, Run, Tolerances, simulate
 from suchus.sim.land.afloat import check_floats, hovers
 from suchus.sim.land.lake import up_direction
-from suchus.sim.metrics import mean_effort, swim_numbers
+from suchus.sim.metrics import cycle_speeds, mean_effort, settled_mean, swim_numbers
 from suchus.sim.metrics.energy import METRES
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swimming.water import swim_of
@@ -285,7 +285,9 @@ class Shore(Experiment):
         record = simulate(
             runs, duration=2 * duration, timestep=self.timestep, sample_stride=_SAMPLE_INTERVAL, progress=progress
         )
-        return metres(record, list(controls), duration)
+        means = [settled_mean(cycle_speeds(record.isel(run=i), self.gait.period)) for i in range(len(controls))]
+        unsettled = [float(not (mean.is_settled and mean.start <= self.cycles)) for mean in means]
+        return metres(record, list(controls), duration).assign(metre_unsettled=("where", unsettled, {"units": "1"}))
 
     def _shown_case_index(self, case_paths: xr.Dataset) -> int:
         """Return the index of the case that is drawn: on the second slope with the greatest friction scale."""
@@ -509,6 +511,8 @@ def _metre_costs(record: xr.Dataset) -> Measures:
             float(condition_record.metre_power / condition_record.metre_speed),
         )
         measures[f"speed_{condition}"] = Measure(speed, "m/s")
+        if condition != "land" and "metre_unsettled" in condition_record:
+            measures[f"unsettled_{condition}"] = Measure(float(condition_record.metre_unsettled), "-")
         measures[f"work_per_metre_{condition}"] = Measure(work, "J/m")
         measures[f"net_cost_of_transport_{condition}"] = Measure(work / float(condition_record.metre_weight), "-")
         if condition != "land":

@@ -33,7 +33,7 @@ from suchus.robot.design.water import Water
 from suchus.robot.kinematics.wave import READINGS
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.sim.metrics import swim_numbers
+from suchus.sim.metrics import settled_mean, swim_numbers
 from suchus.swimming.coupling import check_on_joints, swim_on_joints
 from suchus.swimming.water import (
     Motion,
@@ -438,6 +438,7 @@ def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[
     yield "speed", Measure(speed, "m/s")
     yield "speed_lengths", Measure(speed / robot.length, "1/s")
     yield "speed_gain", Measure(_gain(speeds), "-")
+    yield "unsettled", Measure(float(not settled_mean(speeds).is_settled), "-")
     yield "power", Measure(power, "W")
     yield "water_cost_of_transport", Measure(power / (weight * abs(speed)), "-")
     numbers = swim_numbers(

@@ -48,7 +48,7 @@ from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.waters import Form
-from suchus.sim.metrics import swim_numbers
+from suchus.sim.metrics import SettledMean, cycle_speeds, settled_mean, swim_numbers
 from suchus.sim.record import WATER
 from suchus.swimming.water import Outline, swim, swim_of
 from suchus.swimming.water.samples import check_checkpoint_folder, checkpoint_paths
@@ -117,18 +117,19 @@ class SwimFree(Experiment):
     """Mean bend of the tail in the run that steers [rad]."""
     trunk_turn: float = 0.3
     """Mean bend of the trunk in that run [rad]."""
-    settle: int = 6
-    """Cycles that are swum before anything is measured [-]."""
-    cycles: int = 6
-    """Cycles that are measured [-]."""
+    settle: int = 36
+    """Cycles that are swum before the last ``cycles`` [-]."""
+    cycles: int = 12
+    """Last cycles, which are measured where a swim is too short to be settled [-]; others are measured from their
+    first settled cycle on."""
     spread: tuple[str, ...] = tuple(_COEFFICIENT_FACTORS)
     """Coefficients of the water that are varied."""
     level: float = 2.0
     """Depth of the water [m]."""
     depth: float = 0.6
     """Depth of the root in the swims below the surface [m]."""
-    dive: int = 24
-    """Cycles that are swum in those before anything is measured; as many are measured as at the surface [-]."""
+    dive: int = 36
+    """Cycles that are swum in those before the last ``cycles``, over which pitch and depth are measured [-]."""
     water: Form = "sections"
     """Rung of the water: "sections" alone, or beside it a flow solved with the robot, a "slice" of it or in "space"."""
     in_flow: tuple[str, ...] = ("whole", "tail_only", "whole_stiff", "tail_only_stiff")
@@ -262,6 +263,7 @@ class SwimFree(Experiment):
         )
         record.attrs.update(
             measured_from=self.settle / self.frequency,
+            measured_cycles=self.cycles,
             deep_from=self.dive / self.frequency,
             depth=self.depth,
             frequency=self.frequency,
@@ -384,20 +386,26 @@ class SwimFree(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return speeds, what the swim costs, how it rolls and turns, and how the cable's joints share their bend."""
         labels = [str(label) for label in record.label.values]
-        speed = {label: _speed(record.centre_of_mass.isel(run=i), record) for i, label in enumerate(labels)}
-        excerpt = record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
-        whole_swim, measures = excerpt.isel(run=0), {}
+        means = {label: _settled_speed(record.centre_of_mass.isel(run=i), record) for i, label in enumerate(labels)}
+        speed = {label: mean.mean for label, mean in means.items()}
+        excerpts = {label: _settled_cycles(record.isel(run=i), means[label].start) for i, label in enumerate(labels)}
+        whole_swim, measures = excerpts["whole"], {}
         for name in [name for name in MOTIONS if name in labels]:
             measures[f"speed_{name}"] = Measure(speed[name], "m/s")
             if f"{name}_stiff" in speed:
                 measures[f"speed_{name}_stiff"] = Measure(speed[f"{name}_stiff"], "m/s")
+            for label in (name, f"{name}_stiff"):
+                if label in means:
+                    measures[f"half_width_{label}"] = Measure(0.5 * (means[label].high - means[label].low), "m/s")
             for model in _MODELS:
                 value = float(record.model_speed.sel(motion=name, model=model))
                 measures[f"speed_{name}_{model}"] = Measure(value, "m/s")
         waters = [value for label, value in speed.items() if " x " in label] + [speed["whole"]]
         absolute_speed, weight = abs(speed["whole"]), float(whole_swim.mass) * GRAVITY
         swing = float(np.ptp((whole_swim.tail_tip - whole_swim.centre_of_mass).sel(xyz="y").values))
-        fine = _speed(record.fine_centre_of_mass, record)
+        fine = _settled_speed(record.fine_centre_of_mass, record).mean
+        steered_start = _steered_start(record.isel(run=labels.index("steered")), record)
+        steered_swim = _settled_cycles(record.isel(run=labels.index("steered")), steered_start)
         yaw = np.unwrap(rotation.yaw(whole_swim.orientation.values))
         return (
             measures
@@ -421,8 +429,9 @@ class SwimFree(Experiment):
                 "water_cost_of_transport": Measure(
                     -float(whole_swim.water_power.mean()) / (weight * absolute_speed), "-"
                 ),
-                "turn_radius": Measure(
-                    _radius(excerpt.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"
+                "turn_radius": Measure(_radius(steered_swim, record.attrs["frequency"]), "m"),
+                "unsettled_swims": Measure(
+                    float(sum(not mean.is_settled for label, mean in means.items() if label != "steered")), "-"
                 ),
             }
             | similar(
@@ -434,7 +443,7 @@ class SwimFree(Experiment):
                     viscosity=Water().viscosity,
                 )
             )
-            | _shares(excerpt, labels)
+            | _shares(excerpts, record.attrs["cable"])
             | flow_measures(record)
         )
 
@@ -463,15 +472,15 @@ def _steered_gait(robot: Robot, motion: Gait, *, tail: float, trunk: float) -> G
     return candidate if suits(robot, candidate) else _steered_gait(robot, motion, tail=tail / 2, trunk=trunk / 2)
 
 
-def _shares(excerpt: xr.Dataset, labels: Sequence[str]) -> Measures:
-    """Return the largest amplitude of a cable joint over the mean; nothing of a robot without cables."""
-    ends = {"": "whole", "_stiff": "whole_stiff"} if excerpt.attrs["cable"] else {}
-    return Measures(
-        {
-            f"tail_spread{end}": Measure(_uneven(excerpt.isel(run=labels.index(name)), excerpt), "-")
-            for end, name in ends.items()
-        }
-    )
+def _shares(excerpts: Mapping[str, xr.Dataset], cable: Sequence[str]) -> Measures:
+    """Return the largest amplitude of a cable joint over the mean; nothing of a robot without cables.
+
+    Args:
+        excerpts: settled cycles of the swims by label.
+        cable: joints that cables bend.
+    """
+    ends = {"": "whole", "_stiff": "whole_stiff"} if cable else {}
+    return Measures({f"tail_spread{end}": Measure(_uneven(excerpts[name], cable), "-") for end, name in ends.items()})
 
 
 def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tuple[float, float]]:
@@ -489,10 +498,31 @@ def _lake_with_factor(lake: Lake, name: str, factor: float) -> Lake:
     return replace(lake, water=replace(Water(), **{name: factor * getattr(Water(), name)}))
 
 
-def _speed(centre: xr.DataArray, record: xr.Dataset) -> float:
-    """Return the mean speed of the centre of mass along its first heading, +x, over the measured cycles [m/s]."""
-    x = centre.sel(xyz="x").sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
-    return float((x[-1] - x[0]) / (x.time[-1] - x.time[0]))
+def _settled_speed(centre: xr.DataArray, record: xr.Dataset) -> SettledMean:
+    """Return the settled speed of the centre of mass along its first heading, +x [m/s].
+
+    Where the swim is too short to be settled, it is the mean of the last ``measured_cycles``.
+
+    Args:
+        centre: centre of mass of one run, over ``time`` and ``xyz`` [m].
+        record: with ``frequency`` and ``measured_cycles``.
+    """
+    period = 1.0 / record.attrs["frequency"]
+    time = centre.time.values.astype(float)
+    ends = period * np.arange(int(time[-1] / period + 1e-6) + 1)
+    speeds = np.diff(np.interp(ends, time, centre.sel(xyz="x").values)) / period
+    return settled_mean(speeds, fallback_cycles=record.attrs["measured_cycles"])
+
+
+def _settled_cycles(run_record: xr.Dataset, start: int) -> xr.Dataset:
+    """Return a run from the start of a cycle on, counted from 0."""
+    return run_record.sel(time=slice(start / run_record.attrs["frequency"] - 1e-9, None))
+
+
+def _steered_start(run_record: xr.Dataset, record: xr.Dataset) -> int:
+    """Return the first settled cycle of a swim in a circle, by its speed along the path [-]."""
+    speeds = cycle_speeds(run_record, 1.0 / record.attrs["frequency"])
+    return settled_mean(speeds, fallback_cycles=record.attrs["measured_cycles"]).start
 
 
 def _radius(excerpt: xr.Dataset, frequency: float) -> float:
@@ -503,9 +533,9 @@ def _radius(excerpt: xr.Dataset, frequency: float) -> float:
     return float(np.hypot(np.diff(x), np.diff(y)).sum() / (yaw[-1] - yaw[0]))
 
 
-def _uneven(excerpt: xr.Dataset, record: xr.Dataset) -> float:
+def _uneven(excerpt: xr.Dataset, cable: Sequence[str]) -> float:
     """Return the largest amplitude of a cable joint over their mean [-]."""
-    angles = excerpt.joint_angle.sel(joint=record.attrs["cable"]).transpose("time", "joint").values
+    angles = excerpt.joint_angle.sel(joint=cable).transpose("time", "joint").values
     half = np.ptp(angles, axis=0) / 2
     return float(half.max() / half.mean())
 

@@ -15,6 +15,7 @@ from suchus.robot.design.pieces import chambers
 from suchus.robot.motion import Gait, cycle_targets
 from suchus.sim.land import Lake, Run
 from suchus.sim.land.afloat import hovers
+from suchus.sim.metrics import settled_mean
 from suchus.sim.model.hydrostatics import hydrostatics
 
 DIVE_LABELS = {
@@ -95,14 +96,16 @@ def measures(record: xr.Dataset) -> Measures:
     if "dive" not in record:
         return Measures()
     excerpt, depth = record.sel(dive_time=slice(record.attrs["deep_from"] - 1e-9, None)), record.attrs["depth"]
-    dive_measures = Measures()
+    dive_measures, unsettled_dives = Measures(), 0
     for name in (str(label) for label in record.dive.values):
         swim, ending = excerpt.sel(dive=name), "_deep" if name == "deep" else f"_deep_{name}"
-        x, time = swim.deep_along.values, swim.dive_time.values
+        speed = settled_mean(_forward_speeds(record.sel(dive=name)), fallback_cycles=record.attrs["measured_cycles"])
+        if not speed.is_settled:
+            unsettled_dives += 1
         if name in ("deep", "in_foam"):  # rest is the same for what moves its air
             dive_measures[f"trim{ending}"] = Measure(round(float(swim.deep_trim), 9) + 0.0, "rad")
         dive_measures[f"pitch{ending}"] = Measure(float(swim.deep_pitch.mean()), "rad")
-        dive_measures[f"speed{ending}"] = Measure(float((x[-1] - x[0]) / (time[-1] - time[0])), "m/s")
+        dive_measures[f"speed{ending}"] = Measure(speed.mean, "m/s")
         dive_measures[f"depth_error{ending}"] = Measure(float(np.abs(swim.deep_depth.values - depth).max()), "m")
         far_samples = np.flatnonzero(np.abs(record.deep_depth.sel(dive=name).values - depth) > DEPTH_TOLERANCE)
         times = record.dive_time.values
@@ -114,4 +117,14 @@ def measures(record: xr.Dataset) -> Measures:
             else float("nan")
         )
         dive_measures[f"dive_time{ending}"] = Measure(arrived, "s")
-    return dive_measures | {"front_air": Measure(float(record.deep_front[0]), "-")}
+    return dive_measures | {
+        "front_air": Measure(float(record.deep_front[0]), "-"),
+        "unsettled_dives": Measure(float(unsettled_dives), "-"),
+    }
+
+
+def _forward_speeds(swim: xr.Dataset) -> np.ndarray:
+    """Return the mean speed of each cycle along the first heading, from rest [m/s]."""
+    time, period = swim.dive_time.values.astype(float), 1.0 / swim.attrs["frequency"]
+    ends = period * np.arange(int(time[-1] / period + 1e-6) + 1)
+    return np.asarray(np.diff(np.interp(ends, time, swim.deep_along.values)) / period)

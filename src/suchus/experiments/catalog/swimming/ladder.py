@@ -22,6 +22,7 @@ from suchus.experiments.catalog.swimming.rules import LADDER, MAX_SETTLED_SPREAD
 from suchus.experiments.experiment import Measure
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, check_limits, check_speeds
+from suchus.sim.metrics import settled_mean
 from suchus.swimming.water import (
     MODELS,
     Fit,
@@ -56,6 +57,8 @@ _QUARTERS: Mapping[str, str] = {"difference": "Pa", "thrust": "N/m", "aside": "N
 """What is read at the quarters of a cycle, and its unit; forces of rungs in three dimensions are in N."""
 GRIDS = "grids.json"
 """File beside this module: numbers on several grids in three dimensions, see ``tools/ladder_grids.py``."""
+SECTION_SETTLING_CYCLES = 24
+"""Cycles that are swum on sections before the stored ones, where these can be settled [-]: they are cheap."""
 _AVERAGED_CYCLES = 3  # last cycles of the swim on sections over which the joints' midline is averaged [-]
 
 
@@ -278,7 +281,13 @@ def _of_swims(climb: LadderSetting, swims: Swims) -> dict[str, Any]:
 
 def _in_sections(climb: LadderSetting, progress: Progress) -> xr.Dataset:
     """Return the run in six degrees of freedom, the motions along ``run``."""
-    return swum_in_sections(climb.robot, [*motions(climb.wave_fit.gait).values()], climb.cycles, progress)
+    cycles = climb.cycles + _section_settling_cycles(climb)
+    return swum_in_sections(climb.robot, [*motions(climb.wave_fit.gait).values()], cycles, progress)
+
+
+def _section_settling_cycles(climb: LadderSetting) -> int:
+    """Return the cycles on sections before the stored ones; none where these are too few to be settled [-]."""
+    return SECTION_SETTLING_CYCLES if climb.cycles > MIN_SETTLED_CYCLES else 0
 
 
 def _joint_midlines(climb: LadderSetting, record: xr.Dataset) -> dict[str, Motion]:
@@ -353,11 +362,12 @@ def _of_sections(climb: LadderSetting, record: xr.Dataset) -> dict[str, Any]:
         record: of ``_in_sections``.
     """
     period, time = 1.0 / climb.wave_fit.gait.frequency, record.time.values.astype(float)
-    ends = period * np.arange(climb.cycles + 1)
+    settling_time = period * _section_settling_cycles(climb)
+    ends = settling_time + period * np.arange(climb.cycles + 1)
     forward_positions = [
         np.interp(ends, time, record.centre_of_mass.isel(run=i).sel(xyz="x")) for i in range(len(MOTIONS))
     ]
-    whole_swim, sample_times = record.isel(run=0), period * np.arange(TICKS * climb.cycles + 1) / TICKS
+    whole_swim, sample_times = record.isel(run=0), settling_time + period * np.arange(TICKS * climb.cycles + 1) / TICKS
     outline = Outline(bare(climb.robot))
     angles = whole_swim.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values
     middle = 0.5 * (outline.s[1:] + outline.s[:-1])
@@ -430,7 +440,9 @@ class SettledNumber(NamedTuple):
         )
 
 
-def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 1.0) -> SettledNumber:
+def settle(
+    half: Callable[[int, int], list[float]], cycles: int, scale: float = 1.0, min_start: int = 1
+) -> SettledNumber:
     """Return a number over the most cycles whose two halves agree within ``MAX_SETTLED_SPREAD``.
 
     The first cycle is left out.
@@ -439,9 +451,11 @@ def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 
         half: returns the number between two cycles, once for each side to which the swim may start.
         cycles: of the swim [-].
         scale: of the number, in its unit.
+        min_start: first cycle that may count [-].
     """
     number = None
-    for count in range((cycles - 1) // 2 * 2, MIN_SETTLED_CYCLES - 1, -2):
+    longest = max(cycles - min_start, min(MIN_SETTLED_CYCLES, cycles - 1)) // 2 * 2
+    for count in range(longest, MIN_SETTLED_CYCLES - 1, -2):
         ends = cycles - count, cycles - count // 2, cycles
         number = SettledNumber.from_values([*half(*ends[:2]), *half(*ends[1:])], scale)
         if number.relative_spread <= MAX_SETTLED_SPREAD:
@@ -483,8 +497,9 @@ def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]
     for name in record.rung.values:
         rung = record.sel(rung=name)
         for motion in MOTIONS:
-            speed = float(rung.ladder_speed.sel(ladder_motion=motion)[-1])
-            yield f"speed_{motion.replace(' ', '_')}_{name}", Measure(speed, "m/s")
+            speed = settled_mean(rung.ladder_speed.sel(ladder_motion=motion).values)
+            yield f"speed_{motion.replace(' ', '_')}_{name}", Measure(speed.mean, "m/s")
+            yield f"unsettled_{motion.replace(' ', '_')}_{name}", Measure(float(not speed.is_settled), "-")
         for quantity, (value, lower_bound, upper_bound, spread) in _numbers(rung, length):
             ends = grids.get("measures", {}).get(quantity, ()) if name == "space" else ()
             number_by_ending = {
@@ -517,7 +532,9 @@ def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, SettledNumb
             whole_mean = float(whole_speed[a:b].mean())
             return [(whole_mean - float(partial_speed[a:b].mean())) / abs(whole_mean) if whole_mean else nan]
 
-        return settle(share, cycles)
+        means = [settled_mean(speeds) for speeds in (whole_speed, partial_speed)]
+        start = max(mean.start for mean in means) if all(mean.is_settled for mean in means) else 1
+        return settle(share, cycles, min_start=max(start, 1))
 
     yield "gain_tail_share", gain(trunk)
     yield "gain_spine_share", gain(tail)
