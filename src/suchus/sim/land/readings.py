@@ -250,6 +250,7 @@ class Recorder:
         def points(names: Sequence[str], suffix: str) -> np.ndarray:
             return block(names, suffix).reshape(*rows.shape[:2], len(names), 3)
 
+        feet = points(robot_layout.limb_names, "force")
         return {
             "position": self._qpos[..., :3],
             "orientation": self._qpos[..., 3:7],
@@ -260,7 +261,8 @@ class Recorder:
             "tail_tip": block(("tail_tip",), "position"),
             "foot_position": points([f"{limb}_foot" for limb in robot_layout.limb_names], "position"),
             # the sensors read the robot's force on the ground; the record holds the ground's on the robot
-            "foot_force": -points(robot_layout.limb_names, "force"),
+            "foot_force": -feet,
+            "limb_force": feet - points(robot_layout.limb_names, "limb_force"),
             "belly_force": -points(robot_layout.trunk, "force"),
             "tail_force": -self._sensors.tail(rows),
             "servo_angle": block(robot_layout.servos, "position"),

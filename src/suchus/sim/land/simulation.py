@@ -19,6 +19,7 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault, check_faults
 from suchus.sim.land.extent import check_extent
 from suchus.sim.land.lake import Lake, check_lake
+from suchus.sim.land.load_check import check_loads
 from suchus.sim.land.loop import Loop, physics_steps
 from suchus.sim.land.readings import with_equal_variables
 from suchus.sim.land.run import Push, Run, check_pushes
@@ -61,6 +62,9 @@ def simulate(
         InvalidDesign: no runs, robots of different topology, a bad duration or time step, more than the machine bears.
         OutsideLimits: a gait that a robot's joints cannot follow.
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
+
+    Warns:
+        Doubtful: the recorded contacts of a run do not carry its weight, see ``check_loads``.
     """
     runs = tuple(runs)
     if not runs:
@@ -87,6 +91,7 @@ def simulate(
         record = record.isel(run=np.argsort(order))
     record = record.assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=timestep, control_period=period)
+    check_loads(record, runs)
     return record
 
 

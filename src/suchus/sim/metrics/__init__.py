@@ -16,6 +16,7 @@ from suchus.sim.metrics.bends import (
     tail_swings,
     vertical_bend,
 )
+from suchus.sim.metrics.contact import ground_force, limb_load
 from suchus.sim.metrics.energy import (
     cost_of_transport,
     effort,
@@ -75,12 +76,14 @@ __all__ = [
     "first_harmonic",
     "flight_share",
     "foot_clearance",
+    "ground_force",
     "heading",
     "heading_change",
     "height_peak_to_peak",
     "height_std",
     "lateral_bend",
     "lead",
+    "limb_load",
     "line_distance",
     "line_distance_max",
     "loaded",

@@ -5,6 +5,7 @@ import xarray as xr
 
 from suchus.robot.design import GRAVITY
 from suchus.robot.motion import START
+from suchus.sim.metrics.contact import ground_force, limb_load
 from suchus.sim.metrics.window import time_window
 
 LOADED_SHARE = 0.0145
@@ -20,7 +21,7 @@ def loaded(record: xr.Dataset, threshold: float | None = None) -> xr.DataArray:
         record: of one run or several.
         threshold: least normal force of a standing foot [N]; ``LOADED_SHARE`` of the weight if None.
     """
-    return record.foot_force.sel(xyz="z") > threshold_of(record, threshold)
+    return limb_load(record).sel(xyz="z") > threshold_of(record, threshold)
 
 
 def threshold_of(record: xr.Dataset, threshold: float | None = None) -> xr.DataArray | float:
@@ -85,17 +86,12 @@ def _cycles(record: xr.Dataset, start: float, end: float | None) -> xr.Dataset:
 
 
 def flight_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return the share of the time in which neither feet nor belly nor tail carry any of the weight [-].
+    """Return the share of the time in which neither limbs nor belly nor tail carry any of the weight [-].
 
     Carrying is more than a thousandth of the weight, so that the rounding of a contact does not count.
     """
     window = time_window(record, start, end)
-    vertical_force = (
-        window.foot_force.sel(xyz="z").sum("leg", skipna=False)
-        + window.belly_force.sel(xyz="z").sum("segment", skipna=False)
-        + window.tail_force.sel(xyz="z")
-    )
-    return (vertical_force < 1e-3 * record.mass * GRAVITY).mean("time")
+    return (ground_force(window).sel(xyz="z") < 1e-3 * record.mass * GRAVITY).mean("time")
 
 
 measures = (diagonal_phase_error, duty_factor, flight_share, foot_clearance, sensed_phase, two_feet_share)

@@ -5,6 +5,7 @@ import xarray as xr
 
 from suchus.robot.design import GRAVITY
 from suchus.robot.motion import START
+from suchus.sim.metrics.contact import limb_load
 from suchus.sim.metrics.gait import loaded
 from suchus.sim.metrics.window import time_window
 
@@ -17,7 +18,7 @@ def swing_loads(record: xr.Dataset, leg: str, start: float = START, end: float |
     window = time_window(record, start, end)
     loads = xr.concat(
         [
-            window.foot_force.sel(xyz="z", drop=True).rename(leg="part"),
+            limb_load(window).sel(xyz="z", drop=True).rename(leg="part"),
             window.tail_force.sel(xyz="z", drop=True).expand_dims(part=["tail"]),
             window.belly_force.sel(xyz="z", drop=True).sum("segment").expand_dims(part=["belly"]),
         ],

@@ -32,6 +32,7 @@ from suchus.sim.metrics import (
     bend_swings,
     diagonal_phase_error,
     duty_factor,
+    limb_load,
     loaded,
     sensed_phase,
     time_window,
@@ -329,7 +330,7 @@ def _period(record: xr.Dataset) -> float:
 
     Shifts from a half to one and a half of the commanded period are searched.
     """
-    load = record.foot_force.sel(xyz="z").transpose("time", "leg").values
+    load = limb_load(record).sel(xyz="z").transpose("time", "leg").values
     step, period = float(record.time[1] - record.time[0]), float(record.period)
     shifts = np.arange(int(0.5 * period / step), min(int(1.5 * period / step), len(load) - 2))
     mismatches = [float(np.mean((load[n:] - load[:-n]) ** 2)) for n in shifts]
