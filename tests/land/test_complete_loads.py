@@ -78,7 +78,7 @@ def test_the_load_of_a_lost_foot_is_in_the_record():
     assert float(record.limb_force.sel(leg="LH", xyz="z").mean()) > 0.02 * CAIMAN.mass * 9.81
     assert abs(missing_load(record, [run])[0]) < LOAD_TOLERANCE
     assert abs(replay(record.isel(run=0), CAIMAN, faults=run.faults).load_error) < 1e-3
-    assert float(duty_factor(record).sel(leg="LH")) > 0.3
+    assert float(duty_factor(record).sel(leg="LH").item()) > 0.3
 
 
 def test_a_load_that_is_missing_is_warned_of():

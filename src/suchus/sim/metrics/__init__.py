@@ -34,6 +34,7 @@ from suchus.sim.metrics.gait import (
     foot_clearance,
     loaded,
     sensed_phase,
+    stance,
     two_feet_share,
 )
 from suchus.sim.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
@@ -108,6 +109,7 @@ __all__ = [
     "spine_amplitude",
     "spine_sine_share",
     "spine_swings",
+    "stance",
     "static_margin",
     "support_distance",
     "support_polygon",

@@ -6,7 +6,7 @@ import xarray as xr
 from suchus.robot.design import GRAVITY
 from suchus.robot.motion import START
 from suchus.sim.metrics.contact import limb_load
-from suchus.sim.metrics.gait import loaded
+from suchus.sim.metrics.gait import stance
 from suchus.sim.metrics.window import time_window
 
 
@@ -50,7 +50,7 @@ def swing_height(record: xr.Dataset, leg: str, start: float = START, end: float 
 def swing_unloaded(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the share of the time in which a foot is off the ground while it is meant to swing [-]."""
     window = time_window(record, start, end)
-    free = ~loaded(window).sel(leg=leg, drop=True)
+    free = ~stance(window).sel(leg=leg, drop=True)
     return free.where(_swings(window, leg)).mean("time").assign_attrs(units="1")
 
 

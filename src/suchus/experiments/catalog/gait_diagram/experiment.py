@@ -33,8 +33,8 @@ from suchus.sim.metrics import (
     diagonal_phase_error,
     duty_factor,
     limb_load,
-    loaded,
     sensed_phase,
+    stance,
     time_window,
 )
 from suchus.visual.figures import captioned
@@ -168,7 +168,7 @@ class GaitDiagram(Experiment):
             for source in ("sensed", "commanded")
         }
         commanded_stance = (np.mod(walk.limb_phase, 1.0) >= 1.0 - walk.duty_factor).transpose("leg", "time").values
-        sensed_stance = loaded(walk).transpose("leg", "time").values
+        sensed_stance = stance(walk).transpose("leg", "time").values
         time, legs = walk.time.values, tuple(str(leg) for leg in walk.leg.values)
         tracks = [
             GaitTrack(time=time, legs=legs, stance=sensed_stance, **bends["sensed"], label="simulated"),
@@ -246,7 +246,7 @@ def _draw_animal_comparison(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
     robot_track = GaitTrack(
         time=np.mod(roll_to_start(cycle_phase), 1.0),
         legs=legs,
-        stance=roll_to_start(loaded(cycle).transpose("leg", "time").values),
+        stance=roll_to_start(stance(cycle).transpose("leg", "time").values),
         spine=sides.get("spine"),
         tail=sides.get("tail"),
         label="robot",
