@@ -14,6 +14,15 @@ def limb_load(record: xr.Dataset) -> xr.DataArray:
     return (record.foot_force + record.limb_force.fillna(0.0)).assign_attrs(units="N")
 
 
+def contact_path(record: xr.Dataset) -> xr.DataArray:
+    """Return over time a point that moves as each foot does where it touches level ground [m].
+
+    It is the foot's centre less the way that its ball rolled: a ball that rolls without sliding has a point at rest. In
+    records that do not hold ``foot_roll`` it is the centre.
+    """
+    return record.foot_position - record.foot_roll if "foot_roll" in record else record.foot_position
+
+
 def ground_force(record: xr.Dataset) -> xr.DataArray:
     """Return the force of the ground on the whole robot: on limbs, trunk and tail [N].
 

@@ -23,7 +23,7 @@ MIN_STANCE = 0.04
 def stance(record: xr.Dataset) -> xr.DataArray:
     """Return over time whether each limb is in stance: whether it carries, with hysteresis in load and time.
 
-    A foot on stiff ground bounces: it is out of contact in up to a quarter of its physics steps, and in more with longer
+    A foot on stiff ground bounces: it is out of contact in up to a quarter of its physics steps, and in more of longer
     ones. The load is therefore averaged over ``MIN_STANCE``. A stance begins where the mean rises above
     ``STANCE_BEGINS`` and ends where it falls below ``STANCE_ENDS``; a swing, then a stance, shorter than
     ``MIN_STANCE`` does not count. Duty factors and phases so defined change by less than 0.01 between time steps of

@@ -142,6 +142,13 @@ def _add_sensors(spec: Any, robot_layout: Layout) -> None:
         spec.add_sensor(
             name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=object_types.mjOBJ_SITE, objname=site
         )
+    for limb in robot_layout.limb_names:
+        spec.add_sensor(
+            name=f"{limb}_foot_orientation",
+            type=kind.mjSENS_FRAMEQUAT,
+            objtype=object_types.mjOBJ_SITE,
+            objname=f"{limb}_foot",
+        )
 
 
 def _add_force(spec: Any, name: str, object_type: Any, touching: str) -> None:
@@ -189,7 +196,7 @@ def force_sensors(robot: Robot) -> tuple[str, ...]:
 
 def sensor_names(robot: Robot) -> tuple[str, ...]:
     """Return every sensor, in the order in which the model lists them."""
-    servos = layout(robot).servos
+    servos, limbs = layout(robot).servos, layout(robot).limb_names
     return (
         *(f"{s}_position" for s in servos),
         *(f"{s}_velocity" for s in servos),
@@ -201,6 +208,7 @@ def sensor_names(robot: Robot) -> tuple[str, ...]:
         "centre_of_mass",
         "angular_momentum",
         *(f"{site}_position" for site in sites(robot)),
+        *(f"{limb}_foot_orientation" for limb in limbs),
     )
 
 

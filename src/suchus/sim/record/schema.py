@@ -24,6 +24,11 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "snout": (("time", "xyz"), "m", "tip of the snout in the world"),
     "tail_tip": (("time", "xyz"), "m", "tip of the tail in the world"),
     "foot_position": (("time", "leg", "xyz"), "m", "centre of each foot in the world"),
+    "foot_roll": (
+        ("time", "leg", "xyz"),
+        "m",
+        "displacement of each foot's centre by the rolling of its ball since the first sample, in the world",
+    ),
     "foot_force": (("time", "leg", "xyz"), "N", "of the ground on the ball of each foot, in the world"),
     "limb_force": (("time", "leg", "xyz"), "N", "of the ground on the links of each limb, foot aside, in the world"),
     "belly_force": (("time", "segment", "xyz"), "N", "of the ground on each body of the trunk, in the world"),
