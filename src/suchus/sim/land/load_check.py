@@ -60,7 +60,7 @@ def check_loads(record: xr.Dataset, runs: Sequence[Run]) -> None:
         Doubtful: over the last cycle the recorded load misses the weight by more than ``LOAD_TOLERANCE``.
     """
     lacking = missing_load(record, runs)
-    for sim in np.flatnonzero(np.abs(lacking) > LOAD_TOLERANCE):
+    for sim in np.flatnonzero(np.abs(lacking) > LOAD_TOLERANCE).tolist():
         run = runs[sim]
         text = (
             f"the recorded contact forces of run {sim}, {run.label or run.gait.name!r}, carry {1.0 - lacking[sim]:.1%} "
