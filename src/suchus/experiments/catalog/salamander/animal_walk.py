@@ -78,7 +78,7 @@ def steps(record: xr.Dataset, cycle_window: Window, stance_threshold: float) -> 
 
 
 def _slip(record: xr.Dataset, cycle_window: Window, legs: list[str], stance_threshold: float) -> float:
-    """Return the mean sliding speed of feet that stand over the speed of the robot [-]; NaN if none does or it rests."""
+    """Return the mean sliding speed of standing feet over the robot's speed [-]; NaN if none stands or it rests."""
     excerpt = record.sel(time=slice(cycle_window.start - 1e-9, cycle_window.end + 1e-9), leg=legs)
     speed = (contact_path(excerpt).sel(xyz=["x", "y"]).differentiate("time") ** 2).sum("xyz") ** 0.5
     stands = excerpt.foot_force.sel(xyz="z") > stance_threshold * weight(record)
