@@ -28,6 +28,7 @@ from suchus.robot.motion import START
 from suchus.sim.fault import Fault
 from suchus.sim.land import Limp, Locked, Push, Run, Weak, simulate
 from suchus.sim.land.lake import gravity
+from suchus.sim.metrics import ground_force
 from suchus.sim.model import activations, compile_model, joint_addresses
 from suchus.sim.model.actuators import slew_column
 from suchus.sim.record import ground_of
@@ -279,11 +280,7 @@ def _compare(record: xr.Dataset, samples: Sequence[tuple[np.ndarray, np.ndarray]
     rms = np.sqrt(recorded.servo_mean_square_torque.mean("time").values)
     own_rms = np.sqrt(account.square / account.count)
     up = -account.model.opt.gravity / np.linalg.norm(account.model.opt.gravity)
-    forces = (
-        (recorded.foot_force.sum("leg") + recorded.belly_force.sum("segment") + recorded.tail_force)
-        .transpose("time", "xyz")
-        .values
-    )
+    forces = ground_force(recorded).transpose("time", "xyz").values
     weight = account.mass * GRAVITY
     duration = account.count * account.timestep
     assert account.start_momentum is not None

@@ -15,7 +15,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import speed, time_window
+from suchus.sim.metrics import ground_force, speed, time_window
 
 _SLOPE = radians(15.0)
 _CYCLES = 4
@@ -43,7 +43,7 @@ def _walk(gait: str, numbers: Numbers, progress: Progress) -> Found:
     end = start + _CYCLES * walk.period
     record = simulate(runs, duration=end + 0.1 * walk.period, progress=progress)
     speeds, part = speed(record, start, end).values, time_window(record, start, end)
-    along = part.foot_force.sum("leg") + part.belly_force.sum("segment") + part.tail_force
+    along = ground_force(part)
     pushes = along.sel(xyz="x").mean("time").values / (robot.mass * GRAVITY)
     if not (np.isfinite(speeds).all() and speeds[0] > 0.0):
         return {}

@@ -169,7 +169,7 @@ def _put_feet(
     attributes = {
         "lift_off": ("s", "time at which the foot leaves the ground"),
         "touch_down": ("s", "time at which the foot comes to rest"),
-        "duty": ("1", "share of the stride in which the foot stands"),
+        "duty": ("1", "share of the stride in which the foot rests on the ground"),
         "limb_phase": ("cycle", "how much earlier than LF the foot is in the middle of its stance"),
         "step_length": (unit, "distance over the ground from one place of the foot to the next"),
     }

@@ -8,7 +8,7 @@ from suchus.animals.capture.table import AngleCycle
 from suchus.animals.capture.walk import Walk
 
 _MEANINGS = {
-    "duty": "share of the cycle in which the foot stands",
+    "duty": "share of the cycle in which the foot rests on the ground",
     "phase": "how much earlier than LF the foot is in the middle of its stance",
     "retraction": "share of the cycle in which the foot goes back along the body",
     "stroke": "half of the distance by which it goes back",

@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from suchus.experiments.optimise.spec import Aim, Limit, Optimisation
 from suchus.experiments.study import Arm, Vary
+from suchus.experiments.study.plan import vary_assumption
 from suchus.robot.control import Standing, Walking
 from suchus.robot.design import value_at
 from suchus.robot.gaits import GAITS, conditions_of
@@ -147,7 +148,7 @@ def lifted() -> Optimisation:
     return Optimisation(
         name="lifted",
         run=Run(robot=robot, gait=control),
-        vary=tuple(Vary(field=path, low=choice.low, high=choice.high) for path, choice in rows),
+        vary=tuple(vary_assumption(path, choice) for path, choice in rows),
         aims=(Aim(name="foot_lift"),),
         limits=(
             Limit(name="duty_greatest", value=0.85),

@@ -180,6 +180,11 @@ class Optimisation(Search):
             InvalidDesign: the values cannot be together.
         """
         values: dict[str, Any] = {v.field: value_at_fraction(v, shares[v.field]) for v in self.vary}
+        for vary in self.vary:
+            if vary.above is not None:
+                path, factor = vary.above
+                other_value = values[path] if path in values else value_at(self.run, path)
+                values[vary.field] = max(values[vary.field], factor * other_value)
         return with_values(self.run, values)
 
     @property

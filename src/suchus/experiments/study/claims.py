@@ -19,8 +19,8 @@ from suchus.experiments.study.answers import agreement, answers
 from suchus.experiments.study.arm import Arm
 from suchus.experiments.study.claim_measures import FAULTY, METRICS, RUNS, judge_samples, measures_of, swept_rules
 from suchus.experiments.study.conduct import conduct, finished
-from suchus.experiments.study.plan import only_forbids
-from suchus.experiments.study.study import Study, Vary
+from suchus.experiments.study.plan import only_forbids, vary_assumption
+from suchus.experiments.study.study import Study
 from suchus.robot.design import Robot, unit_at, value_at
 from suchus.robot.gaits import GAITS, conditions_of
 from suchus.robot.motion import START, Gait
@@ -87,9 +87,7 @@ class Claims:
         return Study(
             name="claims",
             run=Run(robot=self.robot, gait=self.gait),
-            vary=tuple(
-                Vary(field=path, low=choice.low, high=choice.high) for path, choice in rows if not only_forbids(path)
-            ),
+            vary=tuple(vary_assumption(path, choice) for path, choice in rows if not only_forbids(path)),
             measure=METRICS,
             design="sobol",
             samples=samples,

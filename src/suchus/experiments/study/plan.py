@@ -1,8 +1,10 @@
 """The points of a study: which values each run takes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from math import prod
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +14,7 @@ from scipy.stats import qmc
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.study.arm import Arm
 from suchus.experiments.study.study import Study, Vary
-from suchus.robot.design import with_values
+from suchus.robot.design import Assumption, value_at, with_values
 from suchus.sim.land import Run
 
 _MAX_RUNS = 10_000_000
@@ -70,8 +72,7 @@ class Plan(Sequence[Point]):
         for vary, levels_ in zip(reversed(self._factorial_fields), reversed(self._levels), strict=True):
             combination, level = divmod(combination, len(levels_))
             values[vary.field] = levels_[level]
-        for vary, share in zip(self._sampled, self._fractions[sample], strict=True):
-            values[vary.field] = value_of(vary, float(share), is_whole=self._takes_whole[vary.field])
+        values |= joint_values(self.study.run, self._sampled, self._fractions[sample], self._takes_whole, values)
         return Point({v.field: values[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
 
     def _run_indices(self, index: int) -> tuple[int, int, int, int]:
@@ -154,6 +155,43 @@ def value_of(vary: Vary, share: float, *, is_whole: bool = False) -> Any:
     if vary.scale == "log":
         return float(np.clip(vary.low * (vary.high / vary.low) ** share, vary.low, vary.high))
     return float(vary.low + (vary.high - vary.low) * share)
+
+
+def joint_values(
+    base: Any, varies: Sequence[Vary], shares: Iterable[float], takes_whole: Mapping[str, bool],
+    given: Mapping[str, Any] = MappingProxyType({}),
+) -> dict[str, Any]:  # fmt: skip
+    """Return the quantiles of several fields; one that must be above another follows from that one's value.
+
+    Args:
+        base: what has the fields: other fields that a range depends on are looked up there.
+        varies: the fields.
+        shares: fraction of the values below the quantile of each, 0 to 1.
+        takes_whole: whether each field takes whole numbers only.
+        given: values of further fields.
+    """
+    values: dict[str, Any] = {}
+    for vary, share in sorted(zip(varies, shares, strict=True), key=lambda pair: pair[0].above is not None):
+        low = vary.low
+        if vary.above is not None and low is not None and vary.high is not None:
+            path, factor = vary.above
+            other_value = values[path] if path in values else given[path] if path in given else value_at(base, path)
+            low = min(max(low, factor * other_value), vary.high)
+        values[vary.field] = value_of(replace(vary, low=low), float(share), is_whole=takes_whole.get(vary.field, False))
+    return values
+
+
+def vary_assumption(path: str, choice: Assumption) -> Vary:
+    """Return the variation of a field over its plausible range.
+
+    Args:
+        path: of the field, from what varies: the path in ``choice`` with the way to its design before it.
+        choice: plausible range of the field.
+    """
+    above = None
+    if choice.above is not None:
+        above = path.removesuffix(choice.field) + choice.above[0], choice.above[1]
+    return Vary(field=path, low=choice.low, high=choice.high, above=above)
 
 
 def _whole_value(vary: Vary, share: float) -> int:

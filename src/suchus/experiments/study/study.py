@@ -41,6 +41,9 @@ class Vary:
     """Standard deviation of that distribution, in the field's unit."""
     each: bool = False
     """Run every sample with each of the values, rather than with one of them."""
+    above: tuple[str, float] | None = None
+    """Path of another field and a factor: a sampled range begins at that field's value times the factor, if above
+    ``low``."""
 
     def __post_init__(self) -> None:
         field: object = self.field  # of any kind until it was looked at

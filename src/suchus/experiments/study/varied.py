@@ -19,7 +19,7 @@ from suchus.core.progress import Progress, silent
 from suchus.experiments.claims import RULES, design_sweep_of
 from suchus.experiments.study.answers import answer_claims
 from suchus.experiments.study.claim_measures import judge_samples, words
-from suchus.experiments.study.plan import evenly, only_forbids, value_of
+from suchus.experiments.study.plan import evenly, joint_values, only_forbids, vary_assumption
 from suchus.experiments.study.study import Vary
 from suchus.robot.design import Robot, unit_at, value_at, with_values
 from suchus.robot.gaits import GAITS
@@ -70,9 +70,9 @@ class VariedStudy:
     def point(self, sample: int) -> dict[str, Any]:
         """Return the values of a point, by field; the first points stay the same, however many there are."""
         shares = evenly("sobol", self.samples, len(self.vary), self.seed)[sample]
-        whole_flags = [isinstance(value_at(self.experiment, vary.field), int) for vary in self.vary]
-        rows = zip(self.vary, shares, whole_flags, strict=True)
-        return {vary.field: value_of(vary, float(share), is_whole=is_whole) for vary, share, is_whole in rows}
+        takes_whole = {vary.field: isinstance(value_at(self.experiment, vary.field), int) for vary in self.vary}
+        values = joint_values(self.experiment, self.vary, shares, takes_whole)
+        return {vary.field: values[vary.field] for vary in self.vary}
 
     def question_at(self, sample: int) -> Question:
         """Return the question of a point.
@@ -94,20 +94,23 @@ def varied_study(question: Question, samples: int | None = None) -> VariedStudy 
     if sweep is None:
         return None
     experiment: Any = replace(question, **sweep.settings)  # type: ignore[type-var]
-    rows = [(path, lower_bound, upper_bound) for path, (lower_bound, upper_bound, _) in sweep.over.items()]
+    varies = [
+        Vary(field=path, low=lower_bound, high=upper_bound)
+        for path, (lower_bound, upper_bound, _) in sweep.over.items()
+    ]
     for design_field in sweep.designs:
         design = getattr(experiment, design_field)
         shelves: Any = ROBOTS if isinstance(design, Robot) else GAITS
         choices = shelves.beside(design.name, "chosen", ())
-        rows += [
-            (f"{design_field}.{choice.field}", choice.low, choice.high)
+        varies += [
+            vary_assumption(f"{design_field}.{choice.field}", choice)
             for choice in choices
             if not only_forbids(choice.field)
         ]
     return VariedStudy(
         name=question.name(),
         experiment=experiment,
-        vary=tuple(Vary(field=path, low=lower_bound, high=upper_bound) for path, lower_bound, upper_bound in rows),
+        vary=tuple(varies),
         claims=sweep.claims,
         samples=sweep.samples if samples is None else samples,
     )

@@ -11,14 +11,23 @@ from suchus.robot.design.hinge import Cable, Hinge, LinearActuator, Servo, Sprin
 from suchus.robot.design.limb import Foot, Girdle, Limb, Link
 from suchus.robot.design.measures import head_of, leg_of, pelvis_of, spine_of, tail_of, thorax_of
 from suchus.robot.design.segment import Rod, Segment, Shell
-from suchus.robot.design.tables import LEG_SHARES, Head, Leg, Pelvis, Spine, Tables, Tail, Thorax, tail_segments
+from suchus.robot.design.tables import (
+    LEG_SHARES,
+    TIBIA_RADIUS_RATIO,
+    Head,
+    Leg,
+    Pelvis,
+    Spine,
+    Tables,
+    Tail,
+    Thorax,
+    tail_segments,
+)
 
 T = TypeVar("T")
 
 PASSIVE_RANGE = 1.2
 """Stops of the passive joints of a tail to either side [rad]."""
-TIBIA_RADIUS_RATIO = 0.8
-"""Radius of a tibia over that of its femur [-]."""
 _PASSIVE_ARMATURE = 1e-4  # [kg m2]
 _SPARE = 1.5  # stop of a joint over its share of the greatest bend [-]
 

@@ -27,6 +27,8 @@ class Assumption:
     """Greatest plausible value, in the field's unit."""
     why: str
     """Not in the paper; chosen because of this."""
+    above: tuple[str, float] | None = None
+    """Path of another field and a factor: the value is at least that field's value times the factor."""
 
 
 @runtime_checkable

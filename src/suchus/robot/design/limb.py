@@ -52,6 +52,15 @@ class Foot:
             check.number("mass", 1e-8, 1e5, "kg")
 
 
+_RADIUS_ROUNDING = 1e-9
+"""Relative rounding error of radii that are equal in a design of another size [-]."""
+
+
+def is_thick_enough(foot_radius: float, link_radius: float) -> bool:
+    """Return whether a foot is no thinner than the link that it ends [m], so that the foot meets the ground first."""
+    return foot_radius >= (1.0 - _RADIUS_ROUNDING) * link_radius
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limb:
     """The left limb of a girdle; the right one is its mirror image."""
@@ -67,6 +76,14 @@ class Limb:
             check.that(bool(self.links), "a limb has no link; give it one")
             check.that(bool(names), "a limb has no hinge; give it one")
             check.that(len(set(names)) == len(names), f"a limb has hinges {', '.join(names)}; each needs its own name")
+            last_link = self.links[-1] if self.links else None
+            check.that(
+                last_link is None or is_thick_enough(self.foot.radius, last_link.radius),
+                f"foot.radius is {self.foot.radius:.4g} m, thinner than the {last_link.radius:.4g} m of its link "
+                f"{last_link.name}, which would carry the load in its place; make the foot thicker or the link thinner"
+                if last_link
+                else "",
+            )
 
     @property
     def hinges(self) -> tuple[Hinge, ...]:

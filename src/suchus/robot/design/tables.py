@@ -13,9 +13,12 @@ from suchus.core.kinds import show
 from suchus.robot.design.ground import Contact
 from suchus.robot.design.hinge import LinearActuator, Servo
 from suchus.robot.design.hull import Hull
+from suchus.robot.design.limb import is_thick_enough
 
 LEG_SHARES = (0.60, 0.35, 0.05)
 """How a leg's mass is spread over femur, tibia and foot [-]."""
+TIBIA_RADIUS_RATIO = 0.8
+"""Radius of a tibia over that of its femur [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +61,13 @@ class Leg:
             check.number("mass", 1e-7, 1e4, "kg")
             for field in ("yaw_range", "pitch_range", "knee_range"):
                 check.range(field, -3.1416, 3.1416, "rad")
+            shank_radius = TIBIA_RADIUS_RATIO * self.radius
+            check.that(
+                is_thick_enough(self.foot_radius, shank_radius),
+                f"leg.foot_radius is {self.foot_radius:.4g} m, thinner than the shank's {shank_radius:.4g} m "
+                f"({TIBIA_RADIUS_RATIO:g} of leg.radius), which would carry the load in its place; "
+                "make the foot thicker or the leg thinner",
+            )
 
     @property
     def reach(self) -> tuple[float, float]:

@@ -6,6 +6,7 @@ A number without a source beside it is chosen: ``chosen`` says why, and how far 
 from math import pi, radians
 
 from suchus.robot.design import Assumption, Contact, Head, Leg, Pelvis, Servo, Spine, Tables, Tail, Thorax, crocodile
+from suchus.robot.design.tables import TIBIA_RADIUS_RATIO
 from suchus.robot.motors import motor
 
 _servo = Servo.from_motor(
@@ -128,7 +129,12 @@ def _servo_rows(path: str, demand: str) -> tuple[_Row, ...]:
 def _leg_rows(path: str) -> tuple[_Row, ...]:
     """Return path, plausible range and reason of every chosen number of the leg at a path."""
     return (
-        (f"{path}.foot_radius", 0.008, 0.020, "a rubber ball that a pressure sensor fits into"),
+        (
+            f"{path}.foot_radius",
+            0.008,
+            0.020,
+            "a rubber ball that a pressure sensor fits into, no thinner than the shank",
+        ),
         (f"{path}.radius", 0.008, 0.015, "a tube that carries the servos"),
         (
             f"{path}.mass",
@@ -223,7 +229,15 @@ _ROWS: tuple[_Row, ...] = (
     ("contact.time_constant", 0.01, 0.03, "a rubber sole; displacement within 1 % over the range"),
 )
 chosen = tuple(
-    Assumption(field=field, low=lower_bound, high=upper_bound, why=reason)
+    Assumption(
+        field=field,
+        low=lower_bound,
+        high=upper_bound,
+        why=reason,
+        above=(f"{field.removesuffix('.foot_radius')}.radius", TIBIA_RADIUS_RATIO)
+        if field.endswith(".foot_radius")
+        else None,
+    )
     for field, lower_bound, upper_bound, reason in _ROWS
 )
 """Every number of the robot that the article does not give, with its plausible range and the reason."""

@@ -96,6 +96,9 @@ class Recorder:
         self._batch, self._sensors, self._runs = batch, sensors, runs
         self._layout = robot_layout = sensors.layout
         self._joints = joint_addresses(batch.model, robot_layout.hinges)
+        self._foot_radii = np.array(
+            [[limb.girdle.limb.foot.radius for limb in layout(run.robot).limbs] for run in runs]
+        )
         shape = len(runs), samples
         self._readings = np.full((*shape, batch.readings.shape[1]), np.nan)
         self._qpos = np.full((*shape, batch.qpos.shape[1]), np.nan)
@@ -250,6 +253,9 @@ class Recorder:
         def points(names: Sequence[str], suffix: str) -> np.ndarray:
             return block(names, suffix).reshape(*rows.shape[:2], len(names), 3)
 
+        feet = points(robot_layout.limb_names, "force")
+        turns = block([f"{limb}_foot" for limb in robot_layout.limb_names], "orientation")
+        turns = turns.reshape(*rows.shape[:2], len(robot_layout.limb_names), 4)
         return {
             "position": self._qpos[..., :3],
             "orientation": self._qpos[..., 3:7],
@@ -259,8 +265,10 @@ class Recorder:
             "snout": block(("snout",), "position"),
             "tail_tip": block(("tail_tip",), "position"),
             "foot_position": points([f"{limb}_foot" for limb in robot_layout.limb_names], "position"),
+            "foot_roll": _rolling(turns, self._foot_radii),
             # the sensors read the robot's force on the ground; the record holds the ground's on the robot
-            "foot_force": -points(robot_layout.limb_names, "force"),
+            "foot_force": -feet,
+            "limb_force": feet - points(robot_layout.limb_names, "limb_force"),
             "belly_force": -points(robot_layout.trunk, "force"),
             "tail_force": -self._sensors.tail(rows),
             "servo_angle": block(robot_layout.servos, "position"),
@@ -271,6 +279,33 @@ class Recorder:
             "angular_velocity": rows[..., self._sensors.columns("imu_gyroscope")],
             "acceleration": rows[..., self._sensors.columns("imu_accelerometer")],
         }
+
+
+def _rolling(
+    orientation: Float[np.ndarray, "run time limb 4"], radius: Float[np.ndarray, "run limb"]
+) -> Float[np.ndarray, "run time limb 3"]:
+    """Return how far each ball has rolled over level ground since the first sample [m].
+
+    Between two samples a ball turns by a vector, and its centre advances by that vector times the radius, upward.
+
+    Args:
+        orientation: of the balls in the world, unit quaternions.
+        radius: of the balls [m].
+    """
+    before, after = orientation[:, :-1], orientation[:, 1:]
+    vector = before[..., :1] * after[..., 1:] - after[..., :1] * before[..., 1:]
+    vector -= np.cross(after[..., 1:], before[..., 1:])
+    cosine = (before * after).sum(axis=-1)
+    sine = np.linalg.norm(vector, axis=-1)
+    angle_per_sine = np.divide(
+        2.0 * np.arctan2(sine, np.abs(cosine)), sine, out=np.full_like(sine, 2.0), where=sine > 1e-9
+    )
+    turn = (np.copysign(1.0, cosine) * angle_per_sine)[..., None] * vector
+    steps = np.stack([turn[..., 1], -turn[..., 0], np.zeros_like(sine)], axis=-1) * radius[:, None, :, None]
+    way = np.zeros((*orientation.shape[:-1], 3))
+    np.cumsum(steps, axis=1, out=way[:, 1:])
+    way[np.isnan(orientation[..., 0])] = np.nan
+    return way
 
 
 def thin(record: xr.Dataset, stride: int) -> xr.Dataset:

@@ -20,6 +20,7 @@ from suchus.sim.fault import Fault, check_faults
 from suchus.sim.land.command_speed import CommandSpeeds
 from suchus.sim.land.extent import check_extent
 from suchus.sim.land.lake import Lake, check_lake
+from suchus.sim.land.load_check import check_loads
 from suchus.sim.land.loop import Loop, physics_steps
 from suchus.sim.land.readings import with_equal_variables
 from suchus.sim.land.run import Push, Run, check_pushes
@@ -67,7 +68,8 @@ def simulate(
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
 
     Warns:
-        Doubtful: a controller commands a servo to turn faster than its speed, before noise and faults.
+        Doubtful: a controller commands a servo to turn faster than its speed, before noise and faults; or the recorded
+            contacts of a run do not carry its weight, see ``check_loads``.
     """
     runs = tuple(runs)
     if not runs:
@@ -94,6 +96,7 @@ def simulate(
         record = record.isel(run=np.argsort(order))
     record = record.assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=timestep, control_period=period)
+    check_loads(record, runs)
     return record
 
 

@@ -15,6 +15,7 @@ from suchus.sim.metrics.bends import (
     tail_swing_least,
     tail_swings,
 )
+from suchus.sim.metrics.contact import ground_force, limb_load
 from suchus.sim.metrics.energy import (
     cost_of_transport,
     effort,
@@ -32,6 +33,7 @@ from suchus.sim.metrics.gait import (
     foot_clearance,
     loaded,
     sensed_phase,
+    stance,
     two_feet_share,
 )
 from suchus.sim.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
@@ -87,12 +89,14 @@ __all__ = [
     "first_harmonic",
     "flight_share",
     "foot_clearance",
+    "ground_force",
     "heading",
     "heading_change",
     "height_peak_to_peak",
     "height_std",
     "lateral_bend",
     "lead",
+    "limb_load",
     "line_distance",
     "line_distance_max",
     "loaded",
@@ -118,6 +122,7 @@ __all__ = [
     "spine_amplitude",
     "spine_sine_share",
     "spine_swings",
+    "stance",
     "static_margin",
     "support_distance",
     "support_polygon",

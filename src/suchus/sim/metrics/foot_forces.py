@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.robot.design import GRAVITY
+from suchus.sim.metrics.contact import limb_load
 from suchus.sim.metrics.window import mean_cycle
 
 PARTS = ("vertical", "sideways", "foreaft")
@@ -46,11 +47,11 @@ def advance(record: xr.Dataset, window: Window) -> np.ndarray:
 
 
 def stance_forces(record: xr.Dataset, window: Window) -> xr.DataArray:
-    """Return the mean cycle of the force on each foot, ``phase leg part`` [body weight].
+    """Return the mean cycle of the force on each foot and its limb, ``phase leg part`` [body weight].
 
     ``vertical`` up, ``sideways`` toward the midline of the course, ``foreaft`` along the course.
     """
-    force = mean_cycle(record.foot_force, *window) / weight(record)
+    force = mean_cycle(limb_load(record), *window) / weight(record)
     return _in_course_frame(force, record, window)
 
 

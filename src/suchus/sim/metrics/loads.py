@@ -5,7 +5,8 @@ import xarray as xr
 
 from suchus.robot.design import GRAVITY
 from suchus.robot.motion import START
-from suchus.sim.metrics.gait import loaded
+from suchus.sim.metrics.contact import limb_load
+from suchus.sim.metrics.gait import stance
 from suchus.sim.metrics.window import time_window
 
 
@@ -17,7 +18,7 @@ def swing_loads(record: xr.Dataset, leg: str, start: float = START, end: float |
     window = time_window(record, start, end)
     loads = xr.concat(
         [
-            window.foot_force.sel(xyz="z", drop=True).rename(leg="part"),
+            limb_load(window).sel(xyz="z", drop=True).rename(leg="part"),
             window.tail_force.sel(xyz="z", drop=True).expand_dims(part=["tail"]),
             window.belly_force.sel(xyz="z", drop=True).sum("segment").expand_dims(part=["belly"]),
         ],
@@ -49,7 +50,7 @@ def swing_height(record: xr.Dataset, leg: str, start: float = START, end: float 
 def swing_unloaded(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the share of the time in which a foot is off the ground while it is meant to swing [-]."""
     window = time_window(record, start, end)
-    free = ~loaded(window).sel(leg=leg, drop=True)
+    free = ~stance(window).sel(leg=leg, drop=True)
     return free.where(_swings(window, leg)).mean("time").assign_attrs(units="1")
 
 

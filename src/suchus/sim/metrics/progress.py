@@ -7,6 +7,7 @@ from suchus.core import rotation
 from suchus.robot.design import GRAVITY
 from suchus.robot.design.body import bends_trunk
 from suchus.robot.motion import START
+from suchus.sim.metrics.contact import contact_path
 from suchus.sim.metrics.window import time_window
 
 
@@ -77,10 +78,11 @@ def path_speed(record: xr.Dataset, start: float = START, end: float | None = Non
 def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how far the feet slide under load, over the displacement of the centre of mass [-].
 
-    Each foot's sliding counts by the share of the weight that the foot carries meanwhile.
+    Sliding is that of the point at which a foot touches the ground: the rolling of its ball does not count. Each foot's
+    sliding counts by the share of the weight that the foot carries meanwhile.
     """
     window = time_window(record, start, end)
-    steps = window.foot_position.sel(xyz=["x", "y"]).diff("time")
+    steps = contact_path(window).sel(xyz=["x", "y"]).diff("time")
     load_fraction = window.foot_force.sel(xyz="z").isel(time=slice(1, None)) / (window.mass * GRAVITY)
     slid = ((steps**2).sum("xyz") ** 0.5 * load_fraction).sum(["time", "leg"])
     horizontal = displacement(window, start, end).sel(xyz=["x", "y"])

@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from suchus.core import rotation
 from suchus.robot.motion import START
-from suchus.sim.metrics.gait import loaded, threshold_of
+from suchus.sim.metrics.gait import loaded, stance, threshold_of
 from suchus.sim.metrics.window import time_window
 
 
@@ -86,7 +86,7 @@ def line_distance(record: xr.Dataset) -> xr.DataArray:
 
     Not a number at times at which fewer or more than two feet stand: there is no such line then.
     """
-    stands = loaded(record).transpose(..., "leg")
+    stands = stance(record).transpose(..., "leg")
     feet = record.foot_position.sel(xyz=["x", "y"]).transpose(*stands.dims, "xyz").values.astype(float)
     com = record.centre_of_mass.sel(xyz=["x", "y"]).transpose(*stands.dims[:-1], "xyz").values.astype(float)
     first_leg = stands.values.argmax(axis=-1)
@@ -116,7 +116,7 @@ def two_feet_alone_share(record: xr.Dataset, start: float = START, end: float | 
 def _on_two_feet(record: xr.Dataset) -> xr.DataArray:
     """Tell when two feet and nothing else carry."""
     other_load = record.tail_force.sel(xyz="z") + record.belly_force.sel(xyz="z").sum("segment")
-    return (loaded(record).sum("leg") == 2) & (other_load <= threshold_of(record))
+    return (stance(record).sum("leg") == 2) & (other_load <= threshold_of(record))
 
 
 def _to_segment(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:

@@ -114,10 +114,13 @@ def _add_sensors(spec: Any, robot_layout: Layout) -> None:
             spec.add_sensor(name=f"{servo}_{suffix}", type=sensor, objtype=object_types.mjOBJ_ACTUATOR, objname=servo)
     for limb in robot_layout.limb_names:
         _add_force(spec, f"{limb}_force", object_types.mjOBJ_GEOM, f"{limb}_foot")
+    for limb_place in robot_layout.limbs:
+        hip = robot_layout.bodies[limb_place.tip - len(limb_place.girdle.limb.links) + 1].name
+        _add_force(spec, f"{limb_place.name}_limb_force", object_types.mjOBJ_XBODY, hip)
     for body in robot_layout.trunk:
         _add_force(spec, f"{body}_force", object_types.mjOBJ_BODY, body)
     for body in robot_layout.tail[:1]:
-        _add_force(spec, "tail_force", object_types.mjOBJ_XBODY, body)  # an x-body stands for its whole subtree
+        _add_force(spec, "tail_force", object_types.mjOBJ_XBODY, body)
     spec.add_sensor(name="imu_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=object_types.mjOBJ_SITE, objname="imu")
     spec.add_sensor(name="imu_gyroscope", type=kind.mjSENS_GYRO, objtype=object_types.mjOBJ_SITE, objname="imu")
     spec.add_sensor(
@@ -139,10 +142,24 @@ def _add_sensors(spec: Any, robot_layout: Layout) -> None:
         spec.add_sensor(
             name=f"{site}_position", type=kind.mjSENS_FRAMEPOS, objtype=object_types.mjOBJ_SITE, objname=site
         )
+    for limb in robot_layout.limb_names:
+        spec.add_sensor(
+            name=f"{limb}_foot_orientation",
+            type=kind.mjSENS_FRAMEQUAT,
+            objtype=object_types.mjOBJ_SITE,
+            objname=f"{limb}_foot",
+        )
 
 
 def _add_force(spec: Any, name: str, object_type: Any, touching: str) -> None:
-    """Add a sensor of the net contact force of a part on the ground, in the world frame."""
+    """Add a sensor of the net contact force of a part on the ground, in the world frame.
+
+    Args:
+        spec: of the model.
+        name: of the sensor.
+        object_type: of the part: a geom, a body, or an x-body, which stands for its whole subtree.
+        touching: name of the part.
+    """
     force, net, count = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE), 3, 1
     spec.add_sensor(
         name=name,
@@ -163,13 +180,15 @@ def sites(robot: Robot) -> tuple[str, ...]:
 
 
 def force_sensors(robot: Robot) -> tuple[str, ...]:
-    """Return the sensors of contact forces: feet, bodies of the trunk from the root forward, the tail if there is one.
+    """Return the sensors of contact forces: feet, whole limbs, bodies of the trunk from the root forward, the tail.
 
-    They stand side by side in the model's readings.
+    They stand side by side in the model's readings. Whole limbs have their feet among them: limbs, trunk and tail are
+    all that can touch the ground.
     """
     robot_layout = layout(robot)
     return (
         *(f"{limb}_force" for limb in robot_layout.limb_names),
+        *(f"{limb}_limb_force" for limb in robot_layout.limb_names),
         *(f"{body}_force" for body in robot_layout.trunk),
         *(("tail_force",) if robot_layout.tail else ()),
     )
@@ -177,7 +196,7 @@ def force_sensors(robot: Robot) -> tuple[str, ...]:
 
 def sensor_names(robot: Robot) -> tuple[str, ...]:
     """Return every sensor, in the order in which the model lists them."""
-    servos = layout(robot).servos
+    servos, limbs = layout(robot).servos, layout(robot).limb_names
     return (
         *(f"{s}_position" for s in servos),
         *(f"{s}_velocity" for s in servos),
@@ -189,6 +208,7 @@ def sensor_names(robot: Robot) -> tuple[str, ...]:
         "centre_of_mass",
         "angular_momentum",
         *(f"{site}_position" for site in sites(robot)),
+        *(f"{limb}_foot_orientation" for limb in limbs),
     )
 
 

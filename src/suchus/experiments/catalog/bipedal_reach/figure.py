@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 from suchus.article.paper import CLAIMS
 from suchus.core import rotation
 from suchus.robot.design import Robot, layout
-from suchus.sim.metrics import loaded, tilt
+from suchus.sim.metrics import stance, tilt
 from suchus.visual.figures.gait_diagram import intervals
 from suchus.visual.figures.posture import draw_posture, skeleton
 from suchus.visual.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
@@ -434,7 +434,7 @@ def _draw_stances(ax: Axes, record: xr.Dataset, time_origin: float) -> None:
         time_origin: time that is drawn as zero [s].
     """
     legs = [str(leg) for leg in record.leg.values]
-    for row, stands in enumerate(loaded(record).transpose("leg", "time").values):
+    for row, stands in enumerate(stance(record).transpose("leg", "time").values):
         spans = [(begin, end - begin) for begin, end in intervals(record.time.values - time_origin, stands)]
         ax.broken_barh(spans, (row - 0.36, 0.72), facecolor=COLOURS["neutral"])
     ax.set_yticks(range(len(legs)), legs)

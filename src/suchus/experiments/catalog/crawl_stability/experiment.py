@@ -33,9 +33,9 @@ from suchus.sim.metrics import (
     height_std,
     line_distance,
     line_distance_max,
-    loaded,
     roll_peak_to_peak,
     spine_sine_share,
+    stance,
     support_distance,
     tail_load_share,
     tilt,
@@ -234,7 +234,7 @@ def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
         "two_feet_alone_share": two_feet_alone_share(record),
     }
     moments = xr.Dataset(
-        {"line_distance": line_distance(record), "standing_feet": loaded(record).sum("leg"), "lean": _lean(record)}
+        {"line_distance": line_distance(record), "standing_feet": stance(record).sum("leg"), "lean": _lean(record)}
     )
     moments["lean_on_two_feet"] = moments.lean.where(moments.standing_feet == 2)
     for time in SNAPSHOT_TIMES:

@@ -9,10 +9,11 @@ _STEADINESS_REASON = "steadier is a smaller fluctuation"
 _MAX_DUTY_CLAUSE = Clause(
     "hind_duty_limbs_tail_lifted", "<=", 0.85, "feet that hardly leave the ground walk in no gait, and rise with none"
 )
+_MIN_DUTY_CLAUSE = Clause("hind_duty_limbs_tail_lifted", ">=", 0.3, "feet that hardly touch the ground take no steps")
 _TAIL_LIFTED_GROUP = ControlGroup(
     group="limbs_tail_lifted",
     why="Section IV.A: only the limbs move, the tail is lifted off the ground, spine and tail are fixed.",
-    needs=(_MAX_DUTY_CLAUSE,),
+    needs=(_MAX_DUTY_CLAUSE, _MIN_DUTY_CLAUSE),
 )
 
 RULES = (

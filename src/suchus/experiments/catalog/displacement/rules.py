@@ -17,6 +17,7 @@ _LIMBS_ONLY_GROUP = ControlGroup(
     "with the tail in the air, as in section IV.A, is told beside.",
     needs=(
         Clause(_GAIT_MEASURES[0], "<=", 0.85, "feet that hardly leave the ground walk in no gait"),
+        Clause(_GAIT_MEASURES[0], ">=", 0.3, "feet that hardly touch the ground take no steps"),
         Clause(_GAIT_MEASURES[1], ">=", 0.3, "a diagonal gait stands on two feet for part of its cycle"),
     ),
 )

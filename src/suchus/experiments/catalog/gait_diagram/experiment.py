@@ -32,8 +32,9 @@ from suchus.sim.metrics import (
     bend_swings,
     diagonal_phase_error,
     duty_factor,
-    loaded,
+    limb_load,
     sensed_phase,
+    stance,
     time_window,
 )
 from suchus.visual.figures import captioned
@@ -170,7 +171,7 @@ class GaitDiagram(Experiment):
             for source in ("sensed", "commanded")
         }
         commanded_stance = (np.mod(walk.limb_phase, 1.0) >= 1.0 - walk.duty_factor).transpose("leg", "time").values
-        sensed_stance = loaded(walk).transpose("leg", "time").values
+        sensed_stance = stance(walk).transpose("leg", "time").values
         time, legs = walk.time.values, tuple(str(leg) for leg in walk.leg.values)
         tracks = [
             GaitTrack(time=time, legs=legs, stance=sensed_stance, **bends["sensed"], label="simulated"),
@@ -248,7 +249,7 @@ def _draw_animal_comparison(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
     robot_track = GaitTrack(
         time=np.mod(roll_to_start(cycle_phase), 1.0),
         legs=legs,
-        stance=roll_to_start(loaded(cycle).transpose("leg", "time").values),
+        stance=roll_to_start(stance(cycle).transpose("leg", "time").values),
         spine=sides.get("spine"),
         tail=sides.get("tail"),
         label="robot",
@@ -337,7 +338,7 @@ def _period(record: xr.Dataset) -> float:
 
     Shifts from a half to one and a half of the commanded period are searched.
     """
-    load = record.foot_force.sel(xyz="z").transpose("time", "leg").values
+    load = limb_load(record).sel(xyz="z").transpose("time", "leg").values
     step, period = float(record.time[1] - record.time[0]), float(record.period)
     shifts = np.arange(int(0.5 * period / step), min(int(1.5 * period / step), len(load) - 2))
     mismatches = [float(np.mean((load[n:] - load[:-n]) ** 2)) for n in shifts]

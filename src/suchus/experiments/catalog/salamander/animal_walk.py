@@ -12,6 +12,7 @@ from suchus.animals.capture import standing_index
 from suchus.article.paper.walking_salamanders import ANIMAL
 from suchus.experiments.experiment import Measure, Measures
 from suchus.sim.metrics import each_cycle, first_harmonic, mean_cycle
+from suchus.sim.metrics.contact import contact_path
 from suchus.sim.metrics.foot_forces import PARTS, Window, advance, stance_forces, step, weight
 
 PAIRS = ("fore", "hind")
@@ -77,9 +78,9 @@ def steps(record: xr.Dataset, cycle_window: Window, stance_threshold: float) -> 
 
 
 def _slip(record: xr.Dataset, cycle_window: Window, legs: list[str], stance_threshold: float) -> float:
-    """Return the mean speed of feet that stand, over the speed of the robot [-]; NaN if none stands or it rests."""
+    """Return the mean sliding speed of standing feet over the robot's speed [-]; NaN if none stands or it rests."""
     excerpt = record.sel(time=slice(cycle_window.start - 1e-9, cycle_window.end + 1e-9), leg=legs)
-    speed = np.sqrt((excerpt.foot_position.sel(xyz=["x", "y"]).differentiate("time") ** 2).sum("xyz"))
+    speed = (contact_path(excerpt).sel(xyz=["x", "y"]).differentiate("time") ** 2).sum("xyz") ** 0.5
     stands = excerpt.foot_force.sel(xyz="z") > stance_threshold * weight(record)
     forward = np.hypot(*advance(record, cycle_window)) / cycle_window.period
     return float(speed.where(stands).mean()) / forward if forward > 0 and bool(stands.any()) else nan

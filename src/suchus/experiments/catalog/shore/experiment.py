@@ -36,7 +36,7 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Lake, Run, Tolerances, simulate
 from suchus.sim.land.afloat import check_floats, hovers
 from suchus.sim.land.lake import up_direction
-from suchus.sim.metrics import cycle_speeds, mean_effort, settled_mean, swim_numbers
+from suchus.sim.metrics import cycle_speeds, ground_force, mean_effort, settled_mean, swim_numbers
 from suchus.sim.metrics.energy import METRES
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swimming.water import swim_of
@@ -413,7 +413,7 @@ def walking(phase: Float[np.ndarray, "run time"]) -> Bool[np.ndarray, "run time"
 
 
 def _ground_share(record: xr.Dataset, ups: np.ndarray) -> np.ndarray:
-    force = record.foot_force.sum("leg").values + record.belly_force.sum("segment").values + record.tail_force.values
+    force = ground_force(record).transpose("run", "time", "xyz").values
     return np.asarray(np.einsum("rti,ri->rt", force, ups) / (GRAVITY * record.mass.values[:, None]))
 
 

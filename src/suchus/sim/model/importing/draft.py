@@ -459,6 +459,13 @@ def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], lab
     if making.words.foot_radius is not None:
         radius = making.words.foot_radius
         making.notes[f"{note_path}.foot.radius"] = "as asked (--foot-radius)"
+    if links[-1].radius > radius:
+        making.remarks.append(
+            f"{links[-1].name} is {links[-1].radius:.3g} m thick and its foot {radius:.3g} m; the draft has the link "
+            "no thicker than the foot, so that the foot carries. See --foot-radius."
+        )
+        making.notes[f"{note_path}.links[{len(links) - 1}].radius"] = "guess: as thick as the foot"
+        links[-1] = replace(links[-1], radius=radius)
     return Limb(links=tuple(links), foot=Foot(radius=radius, mass=feet))
 
 
