@@ -41,7 +41,7 @@ def made(robot, torque, speed, target=0.0):
         return (("time", "servo"), np.repeat(np.broadcast_to(values, count)[:, None], len(names), axis=1))
 
     torque, speed = np.broadcast_to(torque, count), np.broadcast_to(speed, count)
-    use = np.abs(torque) / robot.servo("LF_yaw").given(np.sign(torque) * speed)
+    use = np.abs(torque) / robot.servo("LF_yaw").available_torque(np.sign(torque) * speed)
     data = {
         "servo_velocity": each(speed), "servo_mean_torque": each(torque), "servo_mean_square_torque": each(torque**2),
         "servo_power": each(torque * speed), "servo_absolute_power": each(np.abs(torque * speed)),

@@ -178,9 +178,9 @@ def test_one_whose_control_cannot_steer_does_not_spoil_the_rest(small):
 
 def test_torque_is_that_of_the_servo_that_works_hardest_over_its_own_limit(robot, crawl_gait):
     record = simulate([Run(robot=robot, gait=crawl_gait)], duration=1.3, timestep=0.01)
-    record["servo_torque"] = xr.zeros_like(record.servo_torque)
-    record.servo_torque.loc[{"servo": "LF_yaw"}] = 0.5 * robot.servo("LF_yaw").torque
-    record.servo_torque.loc[{"servo": "spine_yaw_2"}] = -0.6 * robot.servo("spine_yaw_2").torque
+    record["servo_mean_square_torque"] = xr.zeros_like(record.servo_torque)
+    record.servo_mean_square_torque.loc[{"servo": "LF_yaw"}] = (0.5 * robot.servo("LF_yaw").torque) ** 2
+    record.servo_mean_square_torque.loc[{"servo": "spine_yaw_2"}] = (0.6 * robot.servo("spine_yaw_2").torque) ** 2
     assert LIMITS["torque"].measure([Run(robot=robot, gait=crawl_gait)], record)[0] == pytest.approx(0.6)
 
 
