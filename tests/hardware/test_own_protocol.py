@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -57,6 +58,7 @@ def rewritten(lab, *changes):
         assert old in text
         text = text.replace(old, new)
     (lab / "protocols/cobs.py").write_text(text)
+    shutil.rmtree(lab / "protocols/__pycache__", ignore_errors=True)  # else a change of the same second is not seen
     sys.modules.pop(MODULE, None)
 
 

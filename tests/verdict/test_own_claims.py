@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import sys
 from dataclasses import replace
 
@@ -108,6 +109,7 @@ def changed(lab, old, new):
     text = QUESTION.replace(old, new)
     assert text != QUESTION
     (lab / "experiments/length.py").write_text(text)
+    shutil.rmtree(lab / "experiments/__pycache__", ignore_errors=True)  # else a change of the same second is not seen
     sys.modules.pop("suchus.experiments.catalog.length", None)
 
 
