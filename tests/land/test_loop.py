@@ -53,7 +53,9 @@ def test_samples_that_are_not_kept_change_none_of_those_that_are(run, robots):
 
 
 def test_contact_forces_that_nobody_reads_are_not_averaged_and_nothing_else_differs(run):
-    felt, unread = (passed(Loop([run], COARSE, ticks=30), 20, need_forces=felt, need_effort=False) for felt in (True, False))
+    felt, unread = (
+        passed(Loop([run], COARSE, ticks=30), 20, need_forces=felt, need_effort=False) for felt in (True, False)
+    )
     for name in ("servo", "imu_orientation", "centre_of_mass", "angular_momentum"):
         columns = felt.sensors.span(felt.sensors.layout.servos, "torque") if name == "servo" else None
         sides = (loop.sensors[name] if columns is None else loop.batch.readings[:, columns] for loop in (felt, unread))

@@ -27,6 +27,7 @@ def crawl(height=0.08, load=5.0) -> xr.Dataset:
             "foot_force": (("time", "leg", "xyz"), force),
             "limb_phase": (("time", "leg"), phase),
             "mass": ((), 3.5),
+            "period": ((), 4.0),
             "duty_factor": ((), 0.5),
         },
         coords={"time": TIME, "xyz": list("xyz"), "leg": LEGS},

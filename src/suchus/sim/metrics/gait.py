@@ -24,8 +24,10 @@ def stance(record: xr.Dataset) -> xr.DataArray:
     A foot on stiff ground bounces: it is out of contact in up to a quarter of its physics steps, and in more of longer
     ones. The load is therefore averaged over ``MIN_STANCE``. A stance begins where the mean rises above
     ``STANCE_BEGINS`` and ends where it falls below ``STANCE_ENDS``; a swing, then a stance, shorter than
-    ``MIN_STANCE`` does not count. Duty factors and phases so defined change by less than 0.01 between time steps of
-    0.5 and 5 ms. ``loaded`` says what carries at an instant.
+    ``MIN_STANCE`` does not count. The mean says which stances there are. It rises before a step of the load and falls
+    after it, so each stance lasts from its first sample above ``STANCE_BEGINS`` to its last above ``STANCE_ENDS``.
+    Duty factors and phases so defined change by less than 0.01 between time steps of 0.5 and 5 ms. ``loaded`` says what
+    carries at an instant.
 
     Args:
         record: of one run or several, over a cycle and more.
@@ -59,7 +61,27 @@ def _stance_of_limb(load: np.ndarray, period: float, step: float) -> np.ndarray:
     mean = np.convolve(padded, np.full(2 * half + 1, 1.0 / (2 * half + 1)), mode="valid")
     is_decided = (mean > STANCE_BEGINS) | (mean < STANCE_ENDS)
     last_decision = np.maximum.accumulate(np.where(is_decided, np.arange(len(load)), 0))
-    return _without_short(mean[last_decision] > STANCE_BEGINS, round(samples))
+    stands = _without_short(mean[last_decision] > STANCE_BEGINS, round(samples))
+    return stands & _between_loads(stands, np.nan_to_num(load))
+
+
+def _between_loads(stands: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Return whether each sample lies from the first load of its stance to the last one, shape (time,).
+
+    The record's first and last samples may lie within a stance, which then reaches to the record's end.
+
+    Args:
+        stands: whether the limb is in stance, shape (time,).
+        load: shape (time,) [weight of the robot].
+    """
+    number = np.cumsum(np.diff(stands, prepend=stands[:1]))  # of the interval of equal state
+    index, count = np.arange(len(stands)), int(number[-1]) + 1
+    first, last = np.full(count, len(stands)), np.full(count, -1)
+    begins, lasts = load > STANCE_BEGINS, load > STANCE_ENDS
+    np.minimum.at(first, number[begins], index[begins])
+    np.maximum.at(last, number[lasts], index[lasts])
+    first[0], last[-1] = 0, len(stands)
+    return np.asarray((index >= first[number]) & (index <= last[number]))
 
 
 def _without_short(state: np.ndarray, samples: int) -> np.ndarray:
