@@ -96,7 +96,24 @@ class _DynamixelFrames(Decoder):
         return len(frame), packet
 
 
-class Dynamixel(BusProtocol):
+class NumberedErrors(BusProtocol):
+    """A protocol whose replies hold a number that says why a request is refused, and a bit for an alert."""
+
+    def alert(self, code: int) -> bool:
+        """Return whether the alert bit is set."""
+        return bool(code & ALERT)
+
+    def refusal(self, code: int) -> str:
+        """Return what the number in the error says."""
+        number = code & ~ALERT
+        return REFUSALS.get(number, f"error {number}") if number else ""
+
+    def reply_code(self, refusal: Refusal, alerts: int) -> int:
+        """Return the number of the refusal, with the alert bit where there is an alert."""
+        return refusal | (ALERT if alerts else 0)
+
+
+class Dynamixel(NumberedErrors):
     """The protocol of ROBOTIS's X series."""
 
     name = "dynamixel"
@@ -113,15 +130,6 @@ class Dynamixel(BusProtocol):
         """Return the bytes of a reply."""
         return _framed(packet.id, bytes([_STATUS, packet.code]) + packet.data)
 
-    def alert(self, code: int) -> bool:
-        """Return whether the alert bit is set."""
-        return bool(code & ALERT)
-
-    def refusal(self, code: int) -> str:
-        """Return what the number in the error says."""
-        number = code & ~ALERT
-        return REFUSALS.get(number, f"error {number}") if number else ""
-
     def requests(self) -> Decoder:
         """Return a decoder of what the host says."""
         return _DynamixelFrames(replies=False)
@@ -129,10 +137,6 @@ class Dynamixel(BusProtocol):
     def replies(self) -> Decoder:
         """Return a decoder of what the servos say; the host's own echo is passed over."""
         return _DynamixelFrames(replies=True)
-
-    def reply_code(self, refusal: Refusal, alerts: int) -> int:
-        """Return the number of the refusal, with the alert bit where there is an alert."""
-        return refusal | (ALERT if alerts else 0)
 
     def ping_data(self, model_number: int, firmware: int) -> bytes:
         """Return model number and firmware, as the reply to a ping holds them."""

@@ -17,10 +17,9 @@ a line whose CRC is wrong is dropped by either side, and the next one counts.
 from collections.abc import Iterator, Sequence
 from types import MappingProxyType
 
-from suchus.hardware.bus.packets import BROADCAST, Decoder, Instruction, Packet, Refusal
-from suchus.hardware.bus.protocol import BusProtocol
+from suchus.hardware.bus.packets import BROADCAST, Decoder, Instruction, Packet
 from suchus.hardware.bus.tables import STEP, STEPS, Register, Sign, Table
-from suchus.hardware.protocols.dynamixel import ALERT, REFUSALS, crc
+from suchus.hardware.protocols.dynamixel import NumberedErrors, crc
 from suchus.robot.design import Motor
 
 _MAX_LINE_LENGTH = 4096  # bytes of a line; what is longer is noise
@@ -134,7 +133,7 @@ class _Lines(Decoder):
             return length, None
 
 
-class PlainLine(BusProtocol):
+class PlainLine(NumberedErrors):
     """Lines of text, for boards of one's own."""
 
     name = "line"
@@ -153,15 +152,6 @@ class PlainLine(BusProtocol):
         """Return the bytes of a reply."""
         return _line(" ".join(str(number) for number in (packet.id, packet.code, *_numbers(packet.data))))
 
-    def alert(self, code: int) -> bool:
-        """Return whether the error says that there is an alert."""
-        return bool(code & ALERT)
-
-    def refusal(self, code: int) -> str:
-        """Return what the error says."""
-        number = code & ~ALERT
-        return REFUSALS.get(number, f"error {number}") if number else ""
-
     def requests(self) -> Decoder:
         """Return a decoder of what the host says."""
         return _Lines(replies=False)
@@ -169,10 +159,6 @@ class PlainLine(BusProtocol):
     def replies(self) -> Decoder:
         """Return a decoder of what boards say; the host's own echo is passed over."""
         return _Lines(replies=True)
-
-    def reply_code(self, refusal: Refusal, alerts: int) -> int:
-        """Return the number of the refusal, and 128 more while there is an alert."""
-        return refusal | (ALERT if alerts else 0)
 
     def table(self, motor: Motor) -> Table:
         """Return the table of a hobby servo behind a board of one's own; register n is at 2 n."""
