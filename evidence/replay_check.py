@@ -139,7 +139,7 @@ def _push(model: Any, data: Any, pushes: Sequence[Push], start: float, end: floa
     """Apply the mean forces of the pushes in a control period [s]."""
     data.xfrc_applied[:] = 0.0
     for push in pushes:
-        data.xfrc_applied[model.body(push.body).id, :3] += push.share(start, end) * np.array(push.force)
+        data.xfrc_applied[model.body(push.body).id, :3] += push.overlap_fraction(start, end) * np.array(push.force)
 
 
 @dataclass(slots=True)
@@ -190,6 +190,7 @@ class _Account:
         """Take the model and its state."""
         self.model, self.data, self.timestep = model, data, timestep
         self._mass, self._moment = np.zeros((model.nv, model.nv)), np.zeros((model.nu, model.nv))
+        self._pushing = np.zeros(model.nv)
         self.mass = float(model.body_mass[1:].sum())
         self.begin()
 
@@ -215,6 +216,10 @@ class _Account:
             self._moment, data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind
         )
         self._note()
+        self._pushing[:] = 0.0
+        for body in np.flatnonzero(data.xfrc_applied.any(axis=1)):
+            force, torque = data.xfrc_applied[body, :3], data.xfrc_applied[body, 3:]
+            mujoco.mj_applyFT(model, data, force, torque, data.xipos[body], body, self._pushing)
         mujoco.mj_step2(model, data)
         self.torque = data.actuator_force.copy()
         gained = data.qvel - start_rate
@@ -229,7 +234,8 @@ class _Account:
         self.work += float(applied @ shaft_way)
         self.absolute_work += float(np.abs(applied * shaft_way).sum())
         passive = data.qfrc_passive - data.qfrc_spring  # the energy of springs is among the potential energy
-        other_work = float((passive + damping + data.qfrc_constraint + data.qfrc_applied) @ mean_rate)
+        outer = data.qfrc_constraint + data.qfrc_applied + self._pushing
+        other_work = float((passive + damping + outer) @ mean_rate)
         self.other_work += other_work
         self.turnover += float(np.abs(applied * shaft_way).sum()) + abs(other_work)
         self.square += applied**2

@@ -158,13 +158,13 @@ def test_mates_of_a_batch_do_not_touch_each_other(body, name):
 def lowered(robot, rule, period, time, rate_of):
     """Return how far the feet go down after a time of rolling and pitching at a rate [m]."""
     attitude = Attitude([rule], [robot], period)
-    attitude.lower(felt(robot))
+    attitude.foot_lowering(felt(robot))
     for tick in range(1, round(time / period) + 1):
         angle, rate = rate_of(tick * period)
         sensed = felt(
             robot, orientation=rotation.from_angles(0.0, 0.0, angle), angular_velocity=[rate, 0.5 * rate, 0.0]
         )
-        found = attitude.lower(sensed)
+        found = attitude.foot_lowering(sensed)
     return found[0]
 
 
@@ -270,8 +270,8 @@ def test_a_live_walk_keeps_the_heading_of_the_cycle_in_which_the_loop_is_switche
         if tick == first:
             walk.walk(control=control)
         walk.step()
-        bend = walk.now["servo_angle"][yaws].sum()
-        facing.append(rotation.yaw(np.asarray(walk.now["orientation"])) + bend / 2)
+        bend = walk.current_sample["servo_angle"][yaws].sum()
+        facing.append(rotation.yaw(np.asarray(walk.current_sample["orientation"])) + bend / 2)
     kept = np.mean(facing[-cycle:])
     assert kept == pytest.approx(np.mean(facing[first : first + cycle]), abs=0.03)
     assert np.ptp(facing[first : first + cycle]) > 0.1  # a moment says less
@@ -415,5 +415,5 @@ def test_a_live_walk_with_a_heading_goes_as_a_simulated_one(body, name):
     while walk.time < duration - 1e-9:
         walk.step()
     record = simulate([run], duration=duration, timestep=coarse_step(robot)).isel(run=0, time=-1)
-    np.testing.assert_allclose(walk.now["position"], record.position.values, atol=1e-9)
-    np.testing.assert_allclose(walk.now["servo_target"], record.servo_target.values, atol=1e-9)
+    np.testing.assert_allclose(walk.current_sample["position"], record.position.values, atol=1e-9)
+    np.testing.assert_allclose(walk.current_sample["servo_target"], record.servo_target.values, atol=1e-9)

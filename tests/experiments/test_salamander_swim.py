@@ -92,6 +92,7 @@ def record():
             "missed": ("swim", [0.01, 0.02]),
             "under": ("swim", [0.6, 0.7]),
             "heel": ("swim", [0.5, 0.2]),
+            "unsettled": ("swim", [True, False]),
         },
         coords={"frequency": ("swim", [2.6, 3.0]), "rung": list(LADDER), "place": ("point", [0.0, 0.4, 1.0])},
     )
@@ -128,7 +129,7 @@ def test_measures_are_read_from_strides_and_swings(record):
     assert (m["strouhal_2_6"], m["strouhal_3"]) == pytest.approx((2.0, 2.0))
     assert (m["swing_snout"], m["swing_tail"]) == pytest.approx((0.2, 0.5))
     assert (m["swing_least"], m["swing_least_at"]) == pytest.approx((0.1, 0.4))
-    assert (m["heel"], m["angle_missed"]) == (0.5, 0.02)
+    assert (m["heel"], m["angle_missed"], m["unsettled_swims"]) == (0.5, 0.02, 1.0)
 
 
 def test_it_says_on_which_side_of_the_animal_it_is(record):

@@ -48,6 +48,8 @@ def test_samples_that_are_not_kept_change_none_of_those_that_are(run, robots):
     for name in kept.data_vars:
         if name in EFFORT:
             np.testing.assert_allclose(kept[name].values, few[name].values, rtol=1e-12, atol=1e-12, err_msg=str(name))
+        elif name == "foot_roll":  # a ball rolls by its turn from one kept sample to the next
+            np.testing.assert_allclose(kept[name].values, few[name].values, rtol=0.0, atol=1e-6, err_msg=str(name))
         else:
             np.testing.assert_array_equal(kept[name].values, few[name].values, err_msg=str(name))
 

@@ -46,7 +46,8 @@ def test_height_counts_in_the_swing_only():
 
 def test_a_foot_is_free_where_it_bears_no_load_in_its_swing():
     assert float(swing_unloaded(crawl(load=5.0), "RH")) == 0.0
-    assert float(swing_unloaded(crawl(load=np.where(swinging(), 0.0, 5.0)), "RH")) == 1.0
+    freed = float(swing_unloaded(crawl(load=np.where(swinging(), 0.0, 5.0)), "RH"))
+    assert freed == pytest.approx(1.0, abs=0.003)  # the last sample alone is no swing
     assert float(swing_unloaded(crawl(load=np.where(swinging(), 5.0, 0.0)), "RH")) == 0.0  # free in stance alone
     late = swinging() & (np.mod(TIME / 4.0 - 0.25, 1.0) >= 0.25)
     assert float(swing_unloaded(crawl(load=np.where(late, 0.0, 5.0)), "RH")) == pytest.approx(0.5, abs=0.01)

@@ -29,9 +29,10 @@ def test_there_is_one_file_for_each_set_of_dimensions_with_units_in_its_header(w
     sets = {"_".join(map(str, v.dims)) for name, v in walk.variables.items() if name not in walk.dims}
     assert {file.stem for file in folder.glob("*.csv")} == sets | {"columns"}
     header = (folder / "run_time_leg_xyz.csv").read_text().splitlines()[0]
-    assert header == "run,time [s],leg,xyz,foot_position [m],foot_force [N]"
+    assert header == "run,time [s],leg,xyz,foot_position [m],foot_roll [m],foot_force [N],limb_force [N]"
     about = {(row["file"], row["column"]): row for row in read(folder / COLUMNS)}
-    assert about["run_time_leg_xyz.csv", "foot_force [N]"]["meaning"] == "of the ground on each foot, in the world"
+    meaning = about["run_time_leg_xyz.csv", "foot_force [N]"]["meaning"]
+    assert meaning == "of the ground on the ball of each foot, in the world"
     assert about["run.csv", "label"]["unit"] == ""
 
 

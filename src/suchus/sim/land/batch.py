@@ -417,7 +417,7 @@ class SimulationBatch:
         """Return the meter of a control period, which is kept from one to the next."""
         if steps not in self._meters:
             self._meters[steps] = Meter(self.waters.rows, self.sensors, self.velocities, self.torques, self.laws, steps)
-        self._meters[steps].begin()
+        self._meters[steps].begin(self.readings)
         return self._meters[steps]
 
     def _living(self, selection: np.ndarray | None) -> np.ndarray:

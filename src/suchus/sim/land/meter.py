@@ -98,15 +98,21 @@ class Meter:
     ) -> None:
         """Reserve arrays for the readings of one control period."""
         first_sensor, last_sensor = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
+        self._columns = slice(first_sensor, last_sensor)
         self._is_wet, self._laws = bool(water.shape[1]), laws
-        self._acts, self._sensors = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, first_sensor:last_sensor]
+        self._acts, self._sensors = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, self._columns]
         self._did, self._history = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._sensors.shape))
         self._speeds = self._history[..., velocities.start - first_sensor : velocities.stop - first_sensor]
         self._torque = self._history[1:, :, torques.start - first_sensor : torques.stop - first_sensor]
 
-    def begin(self) -> None:
-        """Store the sensor readings before the first step."""
-        self._history[0] = self._sensors
+    def begin(self, readings: Float[np.ndarray, "run sensor"]) -> None:
+        """Store the sensor readings before the first step.
+
+        Args:
+            readings: of all sensors after the last period. A run that parts from its leader has the leader's
+                readings, but old sensors.
+        """
+        self._history[0] = readings[:, self._columns]
 
     def record_step(self, step: int) -> None:
         """Store water forces and sensor readings after a physics step."""
@@ -144,13 +150,13 @@ def servo_effort(
         end_speed: after it [rad/s].
         laws: of the servos.
     """
-    count = len(torque)
     effort = np.empty((*torque.shape[1:], len(EFFORT)))
-    weights = np.full(count, 1.0 / count)
+    step_weight = 1.0 / len(torque)
 
     def mean(values: np.ndarray) -> np.ndarray:
-        """Return the mean over the steps; a product is quicker than ``np.mean`` on arrays as small as these."""
-        means: np.ndarray = (weights @ values.reshape(count, -1)).reshape(values.shape[1:])
+        """Return the mean over the steps, added in their order: the same bytes whatever runs a batch holds."""
+        means: np.ndarray = np.add.reduce(values, axis=0)
+        means *= step_weight
         return means
 
     applied = (end_speed - start_speed) * laws.damping
@@ -181,6 +187,7 @@ def joint_effort(efforts: Sequence[Float[np.ndarray, "... 6"]], weights: Sequenc
         weights: fraction of the time of each interval; they sum up to 1 [-].
     """
     stacked = np.stack(efforts)
-    joint: np.ndarray = np.tensordot(np.asarray(weights), stacked, axes=1)
+    factors = np.asarray(weights).reshape(-1, *(1,) * (stacked.ndim - 1))
+    joint: np.ndarray = np.add.reduce(factors * stacked, axis=0)
     joint[..., PEAK:] = stacked[..., PEAK:].max(axis=0)
     return joint

@@ -56,6 +56,7 @@ from suchus.sim.metrics.settled import (
     SettledMean,
     cycle_speeds,
     settled_mean,
+    whole_cycles,
 )
 from suchus.sim.metrics.similarity import SIMILARITY, SwimNumbers, swim_numbers
 from suchus.sim.metrics.stability import (
@@ -141,5 +142,6 @@ __all__ = [
     "time_window",
     "two_feet_alone_share",
     "two_feet_share",
+    "whole_cycles",
     "work",
 ]

@@ -114,6 +114,20 @@ def _half_width(tail: np.ndarray) -> float:
     return float(max(half_widths))
 
 
+def whole_cycles(time: Float[np.ndarray, " time"], period: float, start: float = 0.0) -> int:
+    """Return how many whole cycles a record has; the last may end half a sample after it.
+
+    A run ends at the control period nearest to its duration.
+
+    Args:
+        time: of the samples, equally spaced [s].
+        period: of the cycle [s].
+        start: time at which the first cycle begins [s].
+    """
+    half_sample = 0.5 * (time[-1] - time[-2]) if len(time) > 1 else 0.0
+    return max(int((time[-1] - start + half_sample) / period + 1e-6), 0)
+
+
 def cycle_speeds(record: xr.Dataset, period: float, start: float = 0.0) -> Float[np.ndarray, " cycle"]:
     """Return the mean speed of the centre of mass in each whole cycle [m/s].
 
@@ -125,8 +139,7 @@ def cycle_speeds(record: xr.Dataset, period: float, start: float = 0.0) -> Float
         start: time at which the first cycle begins [s].
     """
     time = record.time.values.astype(float)
-    count = int((time[-1] - start) / period + 1e-6)
-    ends = start + period * np.arange(count + 1)
+    ends = start + period * np.arange(whole_cycles(time, period, start) + 1)
     centre = record.centre_of_mass.transpose("time", "xyz").values[:, :2]
     facing = rotation.rotate(record.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))[:, :2]
     positions = np.stack([np.interp(ends, time, column) for column in centre.T], axis=1)

@@ -125,7 +125,8 @@ def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> Non
     ax.yaxis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(False, axis="x")
     ax.set_title(f"the sentence is true in {100 * holds.mean():.0f} %" if holds.size else "no predictor")
-    ax.legend(loc="best", fontsize=10)
+    if number.size or article_value is not None:
+        ax.legend(loc="best", fontsize=10)
 
 
 def _axis_label(claim: str) -> str:

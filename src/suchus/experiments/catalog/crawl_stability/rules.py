@@ -139,12 +139,16 @@ _HEIGHT = {
 }
 _DUTY_ABOVE_LIMIT = measure_with_interval("hind_duty_limbs_tail_lifted", 0.851, 1.0)
 _DUTY_ACROSS_LIMIT = measure_with_interval("hind_duty_limbs_tail_lifted", 0.8, 0.851)
+_DUTY_ABOVE_LEAST = measure_with_interval("hind_duty_limbs_tail_lifted", 0.301, 0.8)
+_DUTY_ACROSS_LEAST = measure_with_interval("hind_duty_limbs_tail_lifted", 0.299, 0.8)
+_DUTY_BELOW_LEAST = measure_with_interval("hind_duty_limbs_tail_lifted", 0.1, 0.299)
 _LINE = {
     **measure_with_interval("hind_duty_limbs_tail_lifted", 0.7, 0.845),
     "two_feet_alone_share_limbs_only": 0.0,
     "two_feet_alone_share_limbs_tail_lifted": 0.0,
     "tail_load_share_limbs_only": 0.05,
 }
+_ON_LINE = _LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0239)
 _TILT = {
     **measure_with_interval("hind_duty_limbs_tail_lifted", 0.7, 0.845),
     **measure_with_interval("lean_on_two_feet_limbs_tail_lifted_1200_ms", radians(1.01), radians(1.1)),
@@ -167,6 +171,9 @@ _WAG = {"wagging_pp_change": -0.1, "wagging_pp_change_low": -0.2, "wagging_pp_ch
 EXAMPLES: Examples = {
     "com_fluctuation": [
         (_HEIGHT, "reproduced"),
+        (_HEIGHT | _DUTY_ABOVE_LEAST, "reproduced"),
+        (_HEIGHT | _DUTY_ACROSS_LEAST, "undecided"),
+        (_HEIGHT | _DUTY_BELOW_LEAST, "not testable"),
         (_HEIGHT | {"com_height_pp_change_tail_lifted_high": 0.001}, "undecided"),
         (_HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", 0.001, 0.1), "contradicted"),
         (_HEIGHT | _DUTY_ACROSS_LIMIT, "undecided"),
@@ -181,24 +188,24 @@ EXAMPLES: Examples = {
         ),
     ],
     "com_on_support_line": [
-        (_LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0239), "reproduced"),
+        (_ON_LINE, "reproduced"),
+        (_ON_LINE | _DUTY_ABOVE_LEAST, "reproduced"),
+        (_ON_LINE | _DUTY_ACROSS_LEAST, "undecided"),
+        (_ON_LINE | _DUTY_BELOW_LEAST, "not testable"),
         (_LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0241), "undecided"),
         (_LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.0241, 0.03), "contradicted"),
         (
             _LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", nan, nan),
             "not testable",
         ),  # never on two feet alone
-        (
-            _LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0239) | _DUTY_ACROSS_LIMIT,
-            "undecided",
-        ),
-        (
-            _LINE | measure_with_interval("line_distance_max_limbs_tail_lifted", 0.01, 0.0239) | _DUTY_ABOVE_LIMIT,
-            "not testable",
-        ),
+        (_ON_LINE | _DUTY_ACROSS_LIMIT, "undecided"),
+        (_ON_LINE | _DUTY_ABOVE_LIMIT, "not testable"),
     ],
     "tilt_limbs_only": [
         (_TILT, "reproduced"),
+        (_TILT | _DUTY_ABOVE_LEAST, "reproduced"),
+        (_TILT | _DUTY_ACROSS_LEAST, "undecided"),
+        (_TILT | _DUTY_BELOW_LEAST, "not testable"),
         (_TILT | {"lean_on_two_feet_limbs_tail_lifted_1200_ms": nan}, "not testable"),
         (
             _TILT

@@ -48,7 +48,7 @@ from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.waters import Form
-from suchus.sim.metrics import SettledMean, cycle_speeds, settled_mean, swim_numbers
+from suchus.sim.metrics import SettledMean, cycle_speeds, settled_mean, swim_numbers, whole_cycles
 from suchus.sim.record import WATER
 from suchus.swimming.water import Outline, swim, swim_of
 from suchus.swimming.water.samples import check_checkpoint_folder, checkpoint_paths
@@ -509,7 +509,7 @@ def _settled_speed(centre: xr.DataArray, record: xr.Dataset) -> SettledMean:
     """
     period = 1.0 / record.attrs["frequency"]
     time = centre.time.values.astype(float)
-    ends = period * np.arange(int(time[-1] / period + 1e-6) + 1)
+    ends = period * np.arange(whole_cycles(time, period) + 1)
     speeds = np.diff(np.interp(ends, time, centre.sel(xyz="x").values)) / period
     return settled_mean(speeds, fallback_cycles=record.attrs["measured_cycles"])
 

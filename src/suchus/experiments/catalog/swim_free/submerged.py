@@ -15,7 +15,7 @@ from suchus.robot.design.pieces import chambers
 from suchus.robot.motion import Gait, cycle_targets
 from suchus.sim.land import Lake, Run
 from suchus.sim.land.afloat import hovers
-from suchus.sim.metrics import settled_mean
+from suchus.sim.metrics import settled_mean, whole_cycles
 from suchus.sim.model.hydrostatics import hydrostatics
 
 DIVE_LABELS = {
@@ -126,5 +126,5 @@ def measures(record: xr.Dataset) -> Measures:
 def _forward_speeds(swim: xr.Dataset) -> np.ndarray:
     """Return the mean speed of each cycle along the first heading, from rest [m/s]."""
     time, period = swim.dive_time.values.astype(float), 1.0 / swim.attrs["frequency"]
-    ends = period * np.arange(int(time[-1] / period + 1e-6) + 1)
+    ends = period * np.arange(whole_cycles(time, period) + 1)
     return np.asarray(np.diff(np.interp(ends, time, swim.deep_along.values)) / period)
