@@ -5,9 +5,12 @@ from collections.abc import Sequence
 from suchus.core import large
 from suchus.robot.design import layout, servo_names
 from suchus.sim.land.run import Run
+from suchus.sim.record import EFFORT
 
 _SECONDS = 5e-6  # of a processor for each hinge and physics step; 4 to 12 us were measured, of one run and of many
 _PER_SAMPLE = 33  # numbers that every record has at each sample, whatever the body
+_PER_SERVO = 4 + len(EFFORT)  # angle, speed, torque, target and effort
+_PER_LIMB = 13  # four vectors and the phase
 _COPIES = 2  # a record and the arrays that it is made of
 
 
@@ -19,7 +22,9 @@ def record_bytes(run: Run, samples: float) -> float:
         samples: how many samples it keeps [-].
     """
     robot_layout = layout(run.robot)
-    numbers = len(robot_layout.hinges) + 4 * len(servo_names(run.robot)) + 7 * len(robot_layout.limb_names)
+    numbers = (
+        len(robot_layout.hinges) + _PER_SERVO * len(servo_names(run.robot)) + _PER_LIMB * len(robot_layout.limb_names)
+    )
     return 8.0 * samples * (_PER_SAMPLE + numbers + 3 * len(run.robot.axis))
 
 
