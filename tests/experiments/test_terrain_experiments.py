@@ -41,7 +41,7 @@ def test_froude_number_and_duty_factor_fit_the_gaits(speeds):
         assert one.froude.values == pytest.approx(
             one.speed.values**2 / 9.81 / hip_height(ROBOTS["caiman"], GAITS[name])
         )
-        assert one.duty.values == pytest.approx(GAITS[name].duty_factor, abs=0.06)
+        assert one.duty.values == pytest.approx(GAITS[name].duty_factor, abs=0.08)  # it carries before and after
 
 
 def test_a_speed_line_costs_no_speed_and_does_not_change_the_work_out_of_reason(speeds):
