@@ -179,7 +179,7 @@ def _plane(ax: Axes, claimed: xr.Dataset, is_finite: np.ndarray, holds: np.ndarr
         first_index = order[0]
     second_index = next(i for i in order if i != first_index)
     x, y = (claimed.value.values[is_finite][:, i] for i in (first_index, second_index))
-    size = float(np.clip(1600 / len(x), 16, 60))
+    size = float(np.clip(1600 / max(len(x), 1), 16, 60))
     for members, colour, mark, label in ((holds, _TRUE, "o", "true"), (~holds, _FALSE, "X", "false")):
         ax.scatter(x[members], y[members], s=size, color=colour, marker=mark, alpha=0.65, linewidth=0, label=label)
     if int(claimed.border_of) >= 0:
