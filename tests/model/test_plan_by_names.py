@@ -44,8 +44,8 @@ def front_limb(draft):
         ("RightBackKnee", -1, -1), ("hindleft_knee", -1, 1), ("LFThigh", 1, 1), ("fl1", 1, 1), ("f_r_hip", 1, -1),
         ("right_back_leg", -1, -1), ("RL_shoulder", -1, 1), ("rear_shoulder", -1, 0), ("hip_l", 0, 1),
         ("R3_tibia", 0, -1), ("hl.hx", -1, 1), ("head", 1, 0), ("tail_yaw_1", -1, 0), ("fin_left", 0, 1),
-        ("forearm_l", 1, 1), ("backbone", 0, 0), ("surface", 0, 0), ("upright", 0, 0), ("rotor_1", 0, 0), ("link_b", 0, 0),
-        ("j_thigh", 0, 0),
+        ("forearm_l", 1, 1), ("backbone", 0, 0), ("surface", 0, 0), ("upright", 0, 0), ("rotor_1", 0, 0),
+        ("link_b", 0, 0), ("j_thigh", 0, 0),
     ],
 )  # fmt: skip
 def test_names_say_end_and_side(name, end, side):
@@ -111,7 +111,7 @@ def test_a_front_by_names_that_no_plane_mirrors_is_said_with_both(tmp_path):
     assert front_limb(across) == "FL_yaw"
     narrow_behind = WALKER.replace('"-0.14 0.07 0"', '"-0.14 0.03 0"').replace('"-0.14 -0.07 0"', '"-0.14 -0.03 0"')
     along = read(renamed(names, narrow_behind), tmp_path)
-    assert "by names the front is the file's x axis turned left by 90 degrees, where no plane mirrors" in told(along)
+    assert "by names the front is at 90 degrees to the left, where no plane mirrors" in told(along)
     assert "the shape says 0" in told(along)
     assert "Names disagree" not in told(along)
 

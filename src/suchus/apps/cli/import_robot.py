@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
@@ -32,6 +32,8 @@ class ImportOptions:
     """A body at the front end. By default guessed from names, else along the file's x axis."""
     heading: Annotated[float | None, tyro.conf.arg(metavar="DEGREES")] = None
     """Direction of the front, from the file's x axis to the left; needed if a body is as long as it is wide."""
+    up: Literal["z", "y", "x", "-z", "-y", "-x"] | None = None
+    """Axis of the file that points up. By default found by its gravity or its feet."""
     neck: str | None = None
     """Body in which the axis ends in front, where it forks, as into a jaw or an arm on the back."""
     tail: str | None = None
@@ -66,6 +68,7 @@ def import_file(words: Sequence[str]) -> int:
     settings = Words(
         front=options.front,
         heading=options.heading,
+        up=options.up,
         neck=options.neck,
         tail=options.tail,
         leave=options.leave,

@@ -22,7 +22,9 @@ class Words:
     front: str | None = None
     """A body at the front end."""
     heading: float | None = None
-    """Direction of the front, from the file's x axis to the left [degree]."""
+    """Direction of the front, from the file's x axis to the left [degree]; from its y axis where x points up."""
+    up: str | None = None
+    """Axis of the file that points up: ``z``, ``y``, ``x``, ``-z``, ``-y`` or ``-x``."""
     neck: str | None = None
     """The body in which the axis ends in front, where it forks."""
     tail: str | None = None
@@ -111,7 +113,8 @@ def find_plane(tree: Tree, *, front: str | None, heading: float | None) -> tuple
         best_fraction = max((fraction for fraction, _ in scored_planes), default=0.0)
         raise UnreadableFile(
             f"no vertical plane mirrors its hinges onto each other (the best one {best_fraction:.0%} of them, "
-            f"{_SHARE:.0%} are needed): draw it upright and straight at zero posture, or say --heading."
+            f"{_SHARE:.0%} are needed): draw it upright and straight at zero posture, or say --heading, or --up "
+            "where another axis than z points up."
         )
     named_frame = frame_by_names(tree)
     named_heading = named_frame.heading if front is None and heading is None else None
@@ -157,8 +160,8 @@ def _disagreements(plane: Plane, by_shape: Plane, named_frame: NamedFrame, *, ha
     heading = named_frame.heading
     if heading is not None and not _is_along(plane, heading):
         sentences.append(
-            f"Names and shape disagree: by names the front is the file's x axis turned left by {heading % 360:.3g} "
-            f"degrees, where no plane mirrors the hinges; the shape says {plane.heading % 360:g}. If that is wrong, "
+            f"Names and shape disagree: by names the front is at {heading % 360:.3g} degrees to the left, "
+            f"where no plane mirrors the hinges; the shape says {plane.heading % 360:g}. If that is wrong, "
             "say --front BODY or --heading DEGREES."
         )
     elif heading is not None and not _is_along(by_shape, plane.heading):
@@ -359,7 +362,7 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
     tree, remarks = _pruned(tree, words.leave)
     plane, split = find_plane(tree, front=words.front, heading=words.heading)
     axis = _chain(tree, plane, split.axis, words)
-    remarks += _remarks_on_front(plane)
+    remarks += _remarks_on_front(plane, tree.reference_axis)
     pairs, dropped_branches = [], [(i, "no mirror image") for i in split.single]
     for left_root, right_root in split.pairs:
         carrier = tree.parts[left_root].parent
@@ -378,7 +381,7 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
         image = f"; {single_names} have no mirror image" if single_names else ""
         raise UnreadableFile(
             f"no mirrored limbs and no hinges along an axis were found{image}: draw it upright and straight at zero "
-            "posture, or say --heading."
+            "posture, or say --heading, or --up where another axis than z points up."
         )
     plan_parts = {*axis, *(i for pair in pairs for chain in pair for i in chain.parts)}
     omitted_roots = [
@@ -427,9 +430,14 @@ def links_between(plan: BodyPlan, inner: int, outer: int) -> Iterator[tuple[Join
             yield joint, False
 
 
-def _remarks_on_front(plane: Plane) -> list[str]:
-    """Return sentences on which end is the front and on other planes of symmetry."""
-    heading_text = f"the file's x axis turned left by {plane.heading % 360:g} degrees"
+def _remarks_on_front(plane: Plane, reference_axis: str) -> list[str]:
+    """Return sentences on which end is the front and on other planes of symmetry.
+
+    Args:
+        plane: the mirror plane.
+        reference_axis: of the file, from which headings count.
+    """
+    heading_text = f"the file's {reference_axis} axis turned left by {plane.heading % 360:g} degrees"
     opposite_heading = (plane.heading + 180) % 360
     if plane.certain:
         remarks = [f"Front: {heading_text}, as names or options say (--front, --heading)."]
@@ -467,7 +475,7 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
     )
     names_text = ", ".join(tree.parts[i].name for i in sorted(removed_parts))
     remark = f"Left out as asked, their masses lent to what carries them: {names_text}."
-    return Tree(parts=parts, remarks=tree.remarks), [remark]
+    return replace(tree, parts=parts), [remark]
 
 
 def _chain(tree: Tree, plane: Plane, plane_parts: Sequence[int], words: Words) -> tuple[int, ...]:

@@ -179,6 +179,8 @@ class Tree:
     """The first one is the root."""
     remarks: tuple[str, ...]
     """Notes on what was not taken over, a sentence each."""
+    reference_axis: str = "x"
+    """The axis of the file from which headings count: x unless x points up."""
 
     @property
     def size(self) -> float:
