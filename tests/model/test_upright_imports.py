@@ -82,7 +82,7 @@ def test_a_file_with_z_up_is_not_turned(tmp_path):
 
 
 def test_gravity_says_which_axis_is_up(tmp_path):
-    lying = re.sub(r'(?<=<mujoco>)', '<option gravity="0 -9.81 0"/>', pendulum_mjcf("0 1 0"))
+    lying = re.sub(r"(?<=<mujoco>)", '<option gravity="0 -9.81 0"/>', pendulum_mjcf("0 1 0"))
     draft = read(lying, tmp_path)
     assert "against its gravity" in told(draft)
     assert [hinge.turn for hinge in draft.robot.axis_hinges] == ["yaw", "yaw"]

@@ -12,7 +12,15 @@ import mujoco
 import numpy as np
 
 from suchus.core.errors import SuchusError, UnreadableFile
-from suchus.sim.model.importing.cleaning import Drive, clean_mjcf, clean_urdf, parse, with_includes
+from suchus.sim.model.importing.cleaning import (
+    Drive,
+    clean_mjcf,
+    clean_urdf,
+    parse,
+    with_includes,
+    with_passive,
+)
+from suchus.sim.model.importing.drives import actuated_drives
 from suchus.sim.model.importing.meshes import Meshes
 
 Format = Literal["URDF", "MJCF"]
@@ -55,7 +63,8 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
             clean, drives, remarks = clean_urdf(root, meshes)
         elif root.tag == "mujoco":
             kind = "MJCF"
-            clean, drives, remarks = clean_mjcf(with_includes(root, path), meshes)
+            clean, remarks = clean_mjcf(with_includes(root, path), meshes)
+            drives = {}
         else:
             raise UnreadableFile(
                 f"it begins with <{root.tag[:40]}>; a URDF begins with <robot>, an MJCF with <mujoco>."
@@ -63,6 +72,9 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
         if not without_meshes:
             meshes.check()
         model, inertia_remarks = _compiled(clean, meshes)
+        if kind == "MJCF":
+            drives, drive_remarks = actuated_drives(model)
+            drives, remarks = with_passive(root, drives), (*remarks, *drive_remarks)
     except SuchusError as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
     if meshes.read_errors:

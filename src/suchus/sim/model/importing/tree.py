@@ -129,7 +129,11 @@ class Joint:
     stiffness: float
     """[N m/rad]."""
     damping: float
-    """[N m s/rad]."""
+    """[N m s/rad]; 0 where the file has none."""
+    friction: float
+    """Dry friction [N m]; 0 where the file has none."""
+    armature: float
+    """Rotor inertia at the hinge [kg m2]; 0 where the file has none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -298,6 +302,8 @@ def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
         drive=loaded.drives.get(name),
         stiffness=float(np.ravel(model.jnt_stiffness[joint])[0]),
         damping=float(np.ravel(model.dof_damping[dof])[0]),
+        friction=float(model.dof_frictionloss[dof]),
+        armature=float(model.dof_armature[dof]),
     )
 
 
