@@ -104,7 +104,8 @@ def clean_urdf(
         _add_link(clean_root, link, meshes)
     for joint in joints:
         copy = ElementTree.SubElement(clean_root, "joint", {k: joint.get(k, "") for k in ("name", "type")})
-        bounded = ("limit",) if joint.get("type") == "revolute" else ()  # MuJoCo before 4.0 bounds continuous ones too
+        is_bounded = joint.get("type") == "revolute" and _has_range(joint)
+        bounded = ("limit",) if is_bounded else ()  # MuJoCo before 4.0 bounds continuous ones too
         copy.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", "dynamics", *bounded))
     turning = [joint for joint in joints if joint.get("type") in _TURNING]
     remarks = [
@@ -114,6 +115,7 @@ def clean_urdf(
     ]
     remarks += floating_remarks
     remarks.append("A URDF holds no cables, springs, rotor inertia or gains: what the draft has of them is a guess.")
+    remarks += _remarks_on_zeros(turning)
     drives = {str(joint.get("name")): _drive(joint) for joint in turning}
     if drives and all(drive.torque == 0.0 for drive in drives.values()):
         drives = {name: Drive(torque=None, speed=drive.speed, passive=False) for name, drive in drives.items()}
@@ -214,6 +216,51 @@ def _drive(joint: ElementTree.Element) -> Drive:
     limit = joint.find("limit")
     torque, speed = (_number(limit, key) for key in ("effort", "velocity"))
     return Drive(torque=torque, speed=speed, passive=torque == 0.0)
+
+
+def _remarks_on_zeros(joints: list[ElementTree.Element]) -> list[str]:
+    """Return a sentence on limits that are zero, as an exporter writes them when nothing was filled in.
+
+    A single effort of zero beside others says that nothing drives that joint, and is not such a limit.
+    """
+    names_of: dict[str, list[str]] = {"lower and upper": [], "effort": [], "velocity": []}
+    for joint in joints:
+        limit = joint.find("limit")
+        name = joint.get("name", "")
+        if joint.get("type") == "revolute" and not _has_range(joint):
+            names_of["lower and upper"].append(name)
+        for key in ("effort", "velocity"):
+            if not _number(limit, key):
+                names_of[key].append(name)
+    if len(names_of["effort"]) < len(joints):
+        names_of["effort"] = []
+    guesses = {"lower and upper": "range", "effort": "torque", "velocity": "speed"}
+    keys = [key for key, names in names_of.items() if names]
+    if not keys:
+        return []
+    names = list(dict.fromkeys(name for key in keys for name in names_of[key]))
+    joints_text = f"all {len(joints)} joints" if len(names) == len(joints) else ", ".join(names[:4])
+    joints_text += f" and {len(names) - 4} more" if 4 < len(names) < len(joints) else ""
+    verb = "is" if keys in (["effort"], ["velocity"]) else "are"
+    guesses_text = ", ".join(guesses[key] for key in keys)
+    return [
+        f"{', '.join(keys)} of {joints_text} {verb} zero, equal or missing in the file, which was taken as not filled "
+        f"in: {guesses_text} {'is a guess' if len(keys) == 1 else 'are guesses'}. A joint that does not turn is fixed."
+    ]
+
+
+def _has_range(joint: ElementTree.Element) -> bool:
+    limit = joint.find("limit")
+    return _angle_limit(limit, "lower") != _angle_limit(limit, "upper")
+
+
+def _angle_limit(limit: ElementTree.Element | None, key: str) -> float:
+    """Return a limit of angle [rad]; 0 where the file has none."""
+    text = "" if limit is None else limit.get(key, "0")
+    try:
+        return float(text or 0.0)
+    except ValueError:
+        raise UnreadableFile(f"<limit {key}={text[:40]!r}> is no number.") from None
 
 
 def _number(element: ElementTree.Element | None, key: str) -> float | None:

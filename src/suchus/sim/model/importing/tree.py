@@ -14,6 +14,7 @@ import numpy as np
 from suchus.core.checks import require
 from suchus.core.errors import UnreadableFile
 from suchus.robot.design.segment import combine_inertias
+from suchus.sim.model.export.urdf import MUJOCO
 from suchus.sim.model.importing.cleaning import Drive
 from suchus.sim.model.importing.loading import Loaded
 
@@ -106,6 +107,7 @@ def _is_cap(ball: ShapePiece, rods: list[ShapePiece]) -> bool:
 
 MIN_MASS = 1e-9
 """Masses up to this are none: MuJoCo was asked to fill missing ones with a tenth of it [kg]."""
+_MIN_INERTIA = 1.001 * float(MUJOCO["boundinertia"])  # moments up to this are none
 JOINED = 1e-6
 """Hinges nearer than this share of a robot's size sit in one point [-]."""
 
@@ -237,6 +239,13 @@ def tree_of(loaded: Loaded) -> Tree:
         else:
             part_index[body] = part_index[parent_body]
             parts[part_index[parent_body]] = _fused(parts[part_index[parent_body]], body_part)
+    zeros = [model.body(i).name or f"body {i}" for i in part_index if _has_no_inertia(model, i)]
+    if zeros:
+        names_text = f"{', '.join(zeros[:4])}{f' and {len(zeros) - 4} more' if len(zeros) > 4 else ''}"
+        remarks += (
+            f"The inertia of {names_text} is zero in the file, which was taken as not filled in: the draft has that of "
+            "the shapes.",
+        )
     tree = Tree(parts=tuple(_joined(parts)), remarks=(*loaded.remarks, *remarks))
     return _weighed(tree)
 
@@ -273,18 +282,24 @@ def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> Tr
     sites = [data.site_xpos[s] for s in range(model.nsite) if model.site_bodyid[s] == body]
     name = model.body(body).name or f"body_{body}"
     turn, weighs = data.ximat[body].reshape(3, 3), bool(model.body_mass[body] > MIN_MASS)
+    turns = weighs and not _has_no_inertia(model, body)
     return TreePart(
         name=name,
         parent=-1,
         joints=joints,
         mass=float(model.body_mass[body]) if weighs else 0.0,
         com=data.xipos[body].copy(),
-        tensor=turn @ np.diag(model.body_inertia[body]) @ turn.T * weighs,
+        tensor=turn @ np.diag(model.body_inertia[body]) @ turn.T * turns,
         origin=data.xpos[body].copy(),
         pieces=of_body(model, data, body),
         points=np.array([data.xpos[body], *sites]),
         names=(name,),
     )
+
+
+def _has_no_inertia(model: Any, body: int) -> bool:
+    """Return whether the moments of a body are those that MuJoCo was asked to fill in for zeros."""
+    return bool(model.body_mass[body] > MIN_MASS and model.body_inertia[body].max() <= _MIN_INERTIA)
 
 
 def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
