@@ -43,7 +43,7 @@ class ImportOptions:
     foot_radius: _METRES = None
     """Radius of every foot, if the shapes in the file do not give it."""
     packages: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="FOLDER")] = ()
-    """Folders in which the packages lie that meshes name by package://NAME/..., as those of ROS_PACKAGE_PATH."""
+    """Folders in which the packages lie that meshes name by package://NAME/..., or these packages themselves."""
     without_meshes: bool = False
     """Take a body whose mesh is not read all the same, with a rod for its shape."""
 
