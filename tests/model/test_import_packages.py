@@ -112,7 +112,7 @@ def test_gazebo_names_and_relative_names_are_found(package):
     above = package / "urdf" / "above.urdf"
     above.write_text(TEXT.replace("package://walker_description/", "../"))
     with pytest.raises(
-        UnreadableFile, match="lies outside the folder .* Say --packages FOLDER for a folder that holds"
+        UnreadableFile, match=r"lies outside the folder .* Say --packages FOLDER for a folder that holds"
     ):
         trunk(above)
     assert trunk(above, package) == pytest.approx((0.17, 0.06, 0.025), abs=1e-6)

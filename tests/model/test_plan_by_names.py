@@ -121,3 +121,26 @@ def test_an_option_decides_over_names_and_shape(tmp_path):
     assert "disagree" not in told(read(WALKER, tmp_path, front="hind_left_coxa"))
     with pytest.raises(UnreadableFile, match="no vertical plane"):
         read(WALKER, tmp_path, heading=30.0)
+
+
+def test_fins_are_left_out_by_name_and_by_what_they_cannot_carry(tmp_path):
+    minnow = (FILES / "minnow.xml").read_text()
+    draft = read(minnow, tmp_path)
+    assert draft.robot.girdles == ()
+    assert [hinge.turn for hinge in draft.robot.axis_hinges] == ["yaw"]
+    assert "fin_left and fin_right are fins, wings or the like by name, and were left out" in told(draft)
+    unnamed = read(minnow.replace("fin_", "part_"), tmp_path)
+    assert unnamed.robot.girdles == ()
+    assert unnamed.robot.mass == pytest.approx(draft.robot.mass)
+    assert "the belly hangs 0.04 m below it, so they cannot carry it: they are arms or fins" in told(unnamed)
+    long_fins = minnow.replace('name="fin_', 'name="leg_').replace('joint="fin_', 'joint="leg_')
+    long_fins = long_fins.replace('pos="0 .012 -.01" size=".01 .014 .004"', 'pos="0 .03 -.06" size=".01 .01 .06"')
+    legs = read(long_fins.replace('pos="0 -.012 -.01" size=".01 .014 .004"', 'pos="0 -.03 -.06" size=".01 .01 .06"'),
+                tmp_path)  # fmt: skip
+    assert len(legs.robot.girdles) == 1
+
+
+def test_a_trunk_whose_legs_are_all_too_short_is_refused_by_the_legs(tmp_path):
+    text = WALKER.replace('<box size="0.34 0.12 0.05"/>', '<box size="0.34 0.12 0.9"/>')
+    with pytest.raises(UnreadableFile, match=r"nothing is left that could move: .* cannot carry it"):
+        read(text, tmp_path)

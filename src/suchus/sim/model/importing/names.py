@@ -18,6 +18,23 @@ _JOINED_CODE = re.compile(r"^(?:F[LR]|R[FLR]|L[FHMR]|H[LR]|B[LR]|[RL]B|RH|RM|M[L
 _FRONT_START, _HIND_START = ("front", "fore", "anterior", "cranial", "rostral"), ("hind", "rear", "posterior", "caudal")
 _FRONT_WORDS = frozenset({"head", "snout", "neck", "nose", "jaw", "face", "chest", "thorax", "shoulder", "skull"})
 _HIND_WORDS = frozenset({"tail", "pelvis", "abdomen", "sacrum"})
+_FIN_WORDS = frozenset(
+    {
+        "fin",
+        "fins",
+        "pectoral",
+        "pelvic",
+        "wing",
+        "wings",
+        "antenna",
+        "antennae",
+        "ear",
+        "ears",
+        "eye",
+        "eyes",
+        "whisker",
+    }
+)
 _SIDE_WORDS = {"left": 1, "lft": 1, "right": -1, "rgt": -1, "rt": -1, "l": 1, "r": -1}
 _OTHER_WORDS = ("upright", "cleft")  # end as a side does
 _LETTERS = frozenset("fhbmlr")
@@ -68,6 +85,11 @@ def direction_of(name: str) -> NameDirection:
     if not weak_end and not side and "fin" in words:  # a fin in the middle belongs to the tail
         weak_end = -1
     return NameDirection(end or weak_end, side, is_weak=not end)
+
+
+def is_fin_name(name: str) -> bool:
+    """Return whether a name is that of a fin, a wing or a sense organ, which carries no body."""
+    return any(word in _FIN_WORDS for word in name_words(name))
 
 
 def _end_of(word: str) -> int:
