@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import tyro
 
 from suchus.apps.cli.options import parse
-from suchus.apps.cli.run import run_command_lines
+from suchus.apps.cli.run import floating_command_lines, run_command_lines
 from suchus.apps.cli.word_checks import check_toml
 from suchus.core.errors import OutsideLimits
 from suchus.core.files import check_replaceable, check_writable
@@ -85,6 +85,8 @@ def import_file(words: Sequence[str]) -> int:
     if gait is not None:
         file = blueprint.write(gait, gait_file, head=("A first gait, not the best.",))
         print(f"gait: {file}", *run_command_lines(draft.robot, str(output), file), sep="\n")
+    else:
+        print(*floating_command_lines(str(output)), sep="\n")
     return 0
 
 
