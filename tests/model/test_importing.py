@@ -359,8 +359,8 @@ def test_meshes_of_packages_are_read_from_the_folders_that_are_named(tmp_path):
     for folder in (tmp_path / "ros", tmp_path / "ros" / "dog"):
         trunk = read(text, tmp_path / "urdf", packages=(folder,)).robot.axis[0].shapes[0]
         assert trunk.half == pytest.approx((0.2, 0.05, 0.04), abs=1e-6)
-    for folders in ((), (tmp_path,)):
-        with pytest.raises(UnreadableFile, match=r"is in none of the folders of packages. Say --packages FOLDER"):
+    for folders in ((), (tmp_path / "urdf",)):
+        with pytest.raises(UnreadableFile, match=r"none of them is dog. Say --packages FOLDER"):
             read(text, tmp_path / "urdf", packages=folders)
     with pytest.raises(UnreadableFile, match="is in none"):  # a name that leads out of the package's folder
         read(text.replace("dog/meshes", "../ros/dog/meshes"), tmp_path / "urdf", packages=(mesh.parent,))

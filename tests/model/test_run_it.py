@@ -4,7 +4,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from hinge_trees import quadruped
+from hinge_trees import quadruped, skewed
 
 import suchus
 from suchus.animals.capture import Camera, SyntheticAnimal, film_animal, write_table
@@ -20,12 +20,26 @@ LIZARD = SyntheticAnimal(
     lift=0.02, spine_bend=0.5, spine_rightmost=0.2, tail_bend=0.7, tail_lag=1 / 3, tail_wave=0.0,
 )  # fmt: skip
 CAMERA = Camera(rate=100.0, noise=0.0, lost=0.0, heading=0.0, scale=None, heights=True, seed=0)
+IMPORTS = Path(__file__).parent.parent / "data" / "imports"
 ANGLES = Path(__file__).parent.parent / "data" / "animals" / "salamander_walking.csv"
 
 
 def imported_quadruped():
     Path("dog.urdf").write_text(quadruped())
     return ["import", "dog.urdf", "--out", "my dog.toml"]
+
+
+def imported_two_hinges():
+    return ["import", str(IMPORTS / "fourleg.xml"), "--out", "fourleg.toml"]
+
+
+def imported_fish():
+    return ["import", str(IMPORTS / "minnow.xml"), "--out", "minnow.toml"]
+
+
+def imported_without_walk():
+    Path("it.xml").write_text(skewed().replace('range="-1.2 1.2"', 'range="-0.01 0.01"'))
+    return ["import", "it.xml"]
 
 
 def imported_strider():
@@ -49,6 +63,9 @@ def played():
 
 PRINTED = {
     "import of a quadruped": (imported_quadruped, "speed_range"),
+    "import of limbs of two hinges": (imported_two_hinges, "speed_range"),
+    "import of a body without limbs": (imported_fish, "floating"),
+    "import of a body without a walk": (imported_without_walk, "floating"),
     "import of a body that bends": (imported_strider, "displacement"),
     "capture": (captured, "displacement"),
     "capture on a file": (captured_on_a_file, "displacement"),
@@ -74,6 +91,9 @@ def test_the_line_is_understood_and_its_robot_and_gait_are_taken(name, tmp_path,
     monkeypatch.setattr(run, "perform", lambda experiment, *_: asked.append(experiment))
     monkeypatch.setattr(run, "show_outcome", lambda *_: None)
     assert main([*command, "--quick"]) == 0
+    if question == "floating":
+        assert asked[0].robot.name == Path(command[-1]).stem
+        return
     gaits = getattr(asked[0], "gaits", None) or (asked[0].gait,)
     assert [gait.name for gait in gaits] == [Path(command[-1]).stem]
 

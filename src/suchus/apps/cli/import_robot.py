@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
 from suchus.apps.cli.options import parse
-from suchus.apps.cli.run import run_command_lines
+from suchus.apps.cli.run import floating_command_lines, run_command_lines
 from suchus.apps.cli.word_checks import check_toml
 from suchus.core.errors import OutsideLimits
 from suchus.core.files import check_replaceable, check_writable
@@ -32,6 +32,8 @@ class ImportOptions:
     """A body at the front end. By default guessed from names, else along the file's x axis."""
     heading: Annotated[float | None, tyro.conf.arg(metavar="DEGREES")] = None
     """Direction of the front, from the file's x axis to the left; needed if a body is as long as it is wide."""
+    up: Literal["z", "y", "x", "-z", "-y", "-x"] | None = None
+    """Axis of the file that points up. By default found by its gravity or its feet."""
     neck: str | None = None
     """Body in which the axis ends in front, where it forks, as into a jaw or an arm on the back."""
     tail: str | None = None
@@ -41,7 +43,7 @@ class ImportOptions:
     foot_radius: _METRES = None
     """Radius of every foot, if the shapes in the file do not give it."""
     packages: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="FOLDER")] = ()
-    """Folders in which the packages lie that meshes name by package://NAME/..., as those of ROS_PACKAGE_PATH."""
+    """Folders in which the packages lie that meshes name by package://NAME/..., or these packages themselves."""
     without_meshes: bool = False
     """Take a body whose mesh is not read all the same, with a rod for its shape."""
 
@@ -66,6 +68,7 @@ def import_file(words: Sequence[str]) -> int:
     settings = Words(
         front=options.front,
         heading=options.heading,
+        up=options.up,
         neck=options.neck,
         tail=options.tail,
         leave=options.leave,
@@ -82,6 +85,8 @@ def import_file(words: Sequence[str]) -> int:
     if gait is not None:
         file = blueprint.write(gait, gait_file, head=("A first gait, not the best.",))
         print(f"gait: {file}", *run_command_lines(draft.robot, str(output), file), sep="\n")
+    else:
+        print(*floating_command_lines(str(output)), sep="\n")
     return 0
 
 

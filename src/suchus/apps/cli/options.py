@@ -13,6 +13,7 @@ import tyro
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
 from suchus.apps.cli.entry import BadCommand
+from suchus.apps.cli.foreign_robot import print_notes, resolve_robot
 from suchus.apps.cli.word_checks import option_values
 from suchus.core.errors import SuchusError, UnknownName
 from suchus.experiments.experiment import Experiment
@@ -107,10 +108,9 @@ def _robot(words: Sequence[str]) -> Robot | None:
     if not robot_words or robot_words[-1].startswith("-"):
         return None
     try:
-        robot: Robot = ROBOTS.resolve(robot_words[-1])
+        return resolve_robot(robot_words[-1])
     except SuchusError:
         return None
-    return robot
 
 
 Options = TypeVar("Options")
@@ -166,6 +166,7 @@ def parse(
         if unknown[0].startswith("-"):
             raise UnknownName("option", unknown[0].partition("=")[0], [f"--{n.replace('_', '-')}" for n in names])
         raise BadCommand(f"{unknown[0]!r} is one word too many; see {prog} --help.")
+    print_notes()
     return settings
 
 
@@ -178,7 +179,7 @@ def _registry(default_robot: Callable[[], Robot]) -> ConstructorRegistry:
     registry = ConstructorRegistry()
     robots: tuple[Any, ...] = (Robot, Robot | None)
     for kind in robots:
-        registry.primitive_rule(_shelf_rule(kind, "ROBOT", "the record's", ROBOTS.resolve))
+        registry.primitive_rule(_shelf_rule(kind, "ROBOT", "the record's", resolve_robot))
     for kind in (Gait, Gait | None):
         registry.primitive_rule(_shelf_rule(kind, "GAIT", "own", lambda word: gait_of(default_robot(), word)))
     return registry

@@ -178,7 +178,7 @@ def run(words: Sequence[str]) -> int:
 
 
 def run_command_lines(robot: Robot, robot_word: str, gait: Path, experiment_name: str = "displacement") -> list[str]:
-    """Return the command that runs a gait on a robot; empty where no experiment suits the robot.
+    """Return the command that runs a gait on a robot; of a body without limbs the command that floats it.
 
     Args:
         robot: the robot.
@@ -190,7 +190,17 @@ def run_command_lines(robot: Robot, robot_word: str, gait: Path, experiment_name
         if not lacking(robot, EXPERIMENTS[name].needs):
             robot_option = ("--robot", robot_word) if robot_word else ()
             return [f"run it: {shlex.join(['suchus', 'run', name, *robot_option, option, str(gait)])}"]
-    return []
+    return floating_command_lines(robot_word)
+
+
+def floating_command_lines(robot_word: str) -> list[str]:
+    """Return the command that any body answers: whether and how it floats.
+
+    Args:
+        robot_word: the robot or its file; empty for the default robot.
+    """
+    robot_option = ("--robot", robot_word) if robot_word else ()
+    return [f"run it: {shlex.join(['suchus', 'run', 'floating', *robot_option])}"]
 
 
 def _repeat_command(words: Sequence[str]) -> str:

@@ -3,7 +3,8 @@
 An episode begins lying in a gait's mid-stance, standing on hind legs and tail, or floating.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import ceil
@@ -158,6 +159,54 @@ class Chance:
         return f"{self.broken.part} {self.broken.kind()} from {self.broken.at:.2f} s"
 
 
+class History:
+    """How the present episodes of a pack came to be: the random numbers of their beginnings, and all actions since.
+
+    Args:
+        count: number of robots.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.randoms: dict[int, np.random.Generator] = {}
+        """Random generator of each robot's episode as it was before the beginning."""
+        self._starts = np.zeros(count, dtype=int)
+        self._steps: list[tuple[np.ndarray, np.ndarray]] = []
+        self._first_step = 0  # number of the first one of the steps that are stored
+
+    def begin(self, robot: int, random: np.random.Generator) -> None:
+        """Note the beginning of an episode; actions that no episode needs any more are forgotten."""
+        self.randoms[robot] = deepcopy(random)
+        self._starts[robot] = self._first_step + len(self._steps)
+        needless = int(self._starts.min()) - self._first_step
+        if needless > 0:
+            del self._steps[:needless]
+            self._first_step += needless
+
+    def append(self, actions: np.ndarray, active_mask: np.ndarray) -> None:
+        """Note a step.
+
+        Args:
+            actions: of all robots, shape (run, servo) [-].
+            active_mask: which of them act, shape (run,).
+        """
+        self._steps.append((actions.copy(), active_mask.copy()))
+
+    def episode_actions(self, servos: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield actions and masks of steps that repeat all present episodes, each from its own beginning.
+
+        Args:
+            servos: number of servos of a robot.
+        """
+        rows = [
+            [actions[robot] for actions, active in self._steps[start - self._first_step :] if active[robot]]
+            for robot, start in enumerate(self._starts.tolist())
+        ]
+        lengths = np.array([len(row) for row in rows])
+        for step in range(int(lengths.max(initial=0))):
+            actions = np.array([row[step] if step < len(row) else np.zeros(servos) for row in rows])
+            yield actions, step < lengths
+
+
 class Pack:
     """Robots at one task. The result of one robot does not depend on the number of the others.
 
@@ -198,6 +247,23 @@ class Pack:
         """Sentence on the fault of each episode, see ``Chance.fault``."""
         self.causes = np.full(count, "", dtype=object)
         """Why each episode ended; empty until it does."""
+        self._history = History(count)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy is made of: the task, and how each episode came to be as it is."""
+        return {"task": self.task, "count": self.count, "history": self._history}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Become a copy: begin each episode with the same random numbers, and repeat its actions to the last bit.
+
+        The simulation itself lies in the memory of MuJoCo, which cannot be copied as it is.
+        """
+        history: History = state["history"]
+        self.__init__(state["task"], state["count"])  # type: ignore[misc]
+        for robot, random in history.randoms.items():
+            self.restart([robot], [deepcopy(random)])
+        for actions, active_mask in history.episode_actions(len(layout(self.task.robot).servos)):
+            self.act(actions, active_mask)
 
     @property
     def centre(self) -> Float[np.ndarray, " servo"]:
@@ -222,6 +288,7 @@ class Pack:
             chances: for each of them the random generator of its episode.
         """
         for i, random in zip(robots, chances, strict=True):
+            self._history.begin(i, random)
             jitter = self.task.jitter * np.asarray(random.uniform(-1.0, 1.0, self._commanded.shape[1]))
             chance = draw(self.task, random)
             faults = () if chance.broken is None else (chance.broken,)
@@ -253,6 +320,7 @@ class Pack:
             active_mask: whether each robot acts [-].
         """
         clipped = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
+        self._history.append(clipped, active_mask)
         angles = np.clip(self.centre + self.task.span * clipped, self._lower_limits, self._upper_limits)
         target = np.where(self._cranks, self._commanded + self._max_crank_turn * clipped, angles)
         target = np.where(

@@ -9,7 +9,7 @@ import os
 import re
 from collections.abc import Callable
 from functools import cache
-from math import degrees
+from math import degrees, isnan
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -19,6 +19,8 @@ from jinja2.runtime import Context
 from markupsafe import Markup
 from PIL import Image
 
+UNKNOWN = "unknown"
+"""What stands in the place of a number that is none."""
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -33,15 +35,19 @@ def quantity(value: float | None, unit: str, digits: int = 4) -> str:
     if value is None:
         return ""
     text = number(value, digits)
+    if text == UNKNOWN:
+        return text
     if unit == "rad":
         return f"{text} rad ({number(degrees(value), 3)}°)"
     return text if unit in ("-", "1", "") else f"{text} {'°C' if unit == 'degC' else unit}"
 
 
 def number(value: float, digits: int = 4) -> str:
-    """Return a number to a few digits, with a true minus and powers of ten written out."""
+    """Return a number to a few digits, with a true minus and powers of ten written out; *unknown* for NaN."""
     if isinstance(value, int):
         return str(value).replace("-", "−")
+    if isnan(value):
+        return UNKNOWN
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
     exponent = f" × 10{str(int(power)).translate(_SUPERSCRIPTS)}" if power else ""
     return mantissa.replace("-", "−") + exponent

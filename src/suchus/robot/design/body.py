@@ -280,6 +280,10 @@ def _check_drives(robot: Robot, check: Checks) -> None:
     check_scale(check, robot.name, servos, robot.mass, robot.length)
 
 
+MAX_INERTIA_RATIO = 0.1
+"""Rotor inertia of a servo over mass times length squared of its robot, at most [-]."""
+
+
 def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float, length: float) -> None:
     """Refuse servos whose numbers belong to a body of another size.
 
@@ -295,10 +299,10 @@ def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float
     for name, servo in servos.items():
         inertia_ratio = servo.armature / (mass * length**2)
         check.that(
-            inertia_ratio <= 0.1,
+            inertia_ratio <= MAX_INERTIA_RATIO,
             f"servo {name} of {robot} has an armature of {servo.armature:.3g} kg m2, {inertia_ratio:.3g} of mass "
-            f"times length squared ({mass:.3g} kg, {length:.3g} m), where up to 0.1 makes sense: it belongs to a "
-            "larger robot; see suchus.robot.design.scale.rescale",
+            f"times length squared ({mass:.3g} kg, {length:.3g} m), where up to {MAX_INERTIA_RATIO:g} makes sense: "
+            "it belongs to a larger robot; see suchus.robot.design.scale.rescale",
         )
-        if inertia_ratio > 0.1:
+        if inertia_ratio > MAX_INERTIA_RATIO:
             break

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from suchus.core.catalog import Catalog
+from suchus.core.errors import UnreadableFile
 from suchus.robot.design import Robot
 
 
@@ -17,7 +18,21 @@ class RelativeSize(NamedTuple):
     """Of the body [-]."""
 
 
+FOREIGN_ENDINGS = (".urdf", ".xml", ".mjcf")
+"""Endings of files of other tools, which ``suchus import`` reads."""
+
+
 def _read_robot(path: Path) -> Robot:
+    """Return the robot of a TOML file.
+
+    Raises:
+        UnreadableFile: the file is one of another tool, or no robot.
+    """
+    if path.suffix.lower() in FOREIGN_ENDINGS:
+        raise UnreadableFile(
+            f"{path} is a robot of another tool: import it first with: suchus import {path}; then give "
+            f"{path.stem}.toml."
+        )
     from suchus.robot import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
     robot: Robot = blueprint.read_design(path, Robot, ROBOTS)
@@ -36,4 +51,4 @@ def size_relative_to_article(robot: Robot) -> RelativeSize:
     return RelativeSize(robot.length / article.length, robot.mass / article.mass)
 
 
-__all__ = ["ROBOTS", "RelativeSize", "size_relative_to_article"]
+__all__ = ["FOREIGN_ENDINGS", "ROBOTS", "RelativeSize", "size_relative_to_article"]

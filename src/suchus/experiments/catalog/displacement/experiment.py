@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,7 @@ _GROUPS = CONDITIONS[:2]
 _CRAWL = belly_crawl.metres
 """The crawl from which strokes and bends of the map are derived."""
 _MIN_DISPLACEMENT_FRACTION = 0.00198  # [body length]; a ratio over less displacement is meaningless
+_MIN_MOTION_FRACTION = 0.01  # in each cycle [body length]; less is no crawl, and has no cost of transport
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,7 +190,7 @@ class Displacement(TwoGroups):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the quantities of each condition, the gain by each part of the axis, and the ends of the map."""
-        measures = of_repeats(record, _UNITS)
+        measures = self._without_costs_at_rest(of_repeats(record, _UNITS))
         forward = {str(arm): record.repeated_forward.sel(condition=arm, drop=True) for arm in record.condition.values}
         for name, arm, reference in _GAINS:
             if {arm, reference} <= set(forward):
@@ -201,6 +203,24 @@ class Displacement(TwoGroups):
         if record.sizes["pitch"]:
             measures |= ends("forward_over_tail_pitch", record.pitched.sel(group="coordinated"), "m")
         return measures
+
+    @property
+    def _min_motion(self) -> float:
+        """Displacement below which the robot does not move [m]."""
+        return _MIN_MOTION_FRACTION * self.robot.length * self.cycles
+
+    def _without_costs_at_rest(self, measures: Measures) -> Measures:
+        """Return measures in which conditions that do not move have no cost of transport."""
+        resting = tuple(
+            f"cost_of_transport_{name.removeprefix('forward_')}"
+            for name, measure in measures.items()
+            if name.startswith("forward_") and abs(measure.value) < self._min_motion
+        )
+        return Measures({name: Measure(nan, "-") if name in resting else measure for name, measure in measures.items()})
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how far it gets and what decides, or that it does not move."""
+        return self.render_explanation(measures, least=self._min_motion)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the crawls, what each part adds, the displacement over time and what decides it."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import isfinite
 from typing import Any, ClassVar
 
 import numpy as np
@@ -40,6 +41,7 @@ from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _TOUCH_HEIGHT = 0.00495  # height below which the tail lies on the ground [body length]
 _TOUCH_LOAD = 0.0029  # load above which the tail touches the ground [body weight]
+_MIN_DISPLACEMENT_FRACTION = 0.01  # in each cycle [body length]; less is no walk, and has no cost of transport
 _OWN_LINE_WIDTH, _OTHER_LINE_WIDTH = 2.0, 0.9
 _FULL, _LINE = "servos of equal torque at any speed", "servos whose torque falls with speed"
 _WALKING = ANIMAL["high_walk_speed"]
@@ -53,8 +55,8 @@ class SpeedRange(Experiment):
     other model; where that of none does, all fall.
 
     Measured over whole cycles from the second on; the speed is that of the centre of mass along the initial heading,
-    the Froude number speed squared over gravity times hip height, without a number for a table of angles, which says no
-    height.
+    the Froude number speed squared over gravity times hip height, unknown for a table of angles, which says no height.
+    A gait that moves the robot by less than 1 % of its length in a cycle has no cost of transport.
     """
 
     title = "How fast is each gait, and what does speed cost?"
@@ -167,11 +169,13 @@ class SpeedRange(Experiment):
         legs = [i for limb in layout(run.robot).limbs for i in range(limb.servos.start, limb.servos.stop)]
         fastest = float(abs(excerpt.servo_velocity.isel(servo=legs)).quantile(0.99, "time").max())
         height = hip_height(run.robot, run.gait)
+        horizontal = displacement(record, start, end).sel(xyz=["x", "y"]).values
+        is_moving = np.linalg.norm(horizontal) >= _MIN_DISPLACEMENT_FRACTION * run.robot.length * self.cycles
         return [
             run.gait.period,
             speed,
             float(duty_factor(record, start, end).mean()),
-            float(cost_of_transport(record, start, end)),
+            float(cost_of_transport(record, start, end)) if is_moving else float("nan"),
             speed**2 / (GRAVITY * height) if height > 0.0 else float("nan"),
             float(roll_peak_to_peak(record, start, end)),
             fastest,
@@ -239,8 +243,11 @@ class SpeedRange(Experiment):
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how fast and how dear each gait is, and what the other model of the servos changes."""
         names = [gait.name for gait in self.gaits]
+        moving = [name for name in names if isfinite(measures[f"cost_{name}"])]
+        names = moving or names
         return self.render_explanation(
             measures,
+            moving=moving,
             fastest=max(names, key=lambda name: measures[f"speed_{name}_fastest"]),
             cheapest=min(names, key=lambda name: measures[f"cost_{name}_least"]),
             falls=_falling(self.robot)[0] > 0,
@@ -374,7 +381,10 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]],
         band = axes[0, 0].axhspan(_WALKING.low, _WALKING.high, color="#EFE3C8", zorder=0)
         axes[0, 0].set_ylim(0.0, max(0.75, 1.1 * float(record.speed.max())))
         axes[0, 1].set_ylim(0.0, None)
-        axes[1, 1].set_yscale("log")
+        if bool((record.froude > 0.0).any()):
+            axes[1, 1].set_yscale("log")
+        else:
+            axes[1, 1].text(0.5, 0.5, "unknown: no hip height", transform=axes[1, 1].transAxes, ha="center")
         for ax in axes[1]:
             ax.set_xlabel("cycle time [s]")
         handles, labels = axes[0, 0].get_legend_handles_labels()

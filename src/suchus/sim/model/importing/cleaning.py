@@ -4,7 +4,7 @@ XML from outside is parsed without entities, within a size and a depth, or refus
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -73,6 +73,10 @@ class Drive:
     """Greatest speed [rad/s]; None if not said."""
     passive: bool
     """Whether nothing drives it."""
+    kp: float | None = None
+    """Proportional gain at the hinge [N m/rad]; None if not said."""
+    kd: float | None = None
+    """Derivative gain at the hinge [N m s/rad]; None if not said."""
 
 
 _TURNING = ("revolute", "continuous")
@@ -100,8 +104,9 @@ def clean_urdf(
         _add_link(clean_root, link, meshes)
     for joint in joints:
         copy = ElementTree.SubElement(clean_root, "joint", {k: joint.get(k, "") for k in ("name", "type")})
-        bounded = ("limit",) if joint.get("type") == "revolute" else ()  # MuJoCo before 4.0 bounds continuous ones too
-        copy.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", *bounded))
+        is_bounded = joint.get("type") == "revolute" and _has_range(joint)
+        bounded = ("limit",) if is_bounded else ()  # MuJoCo before 4.0 bounds continuous ones too
+        copy.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", "dynamics", *bounded))
     turning = [joint for joint in joints if joint.get("type") in _TURNING]
     remarks = [
         f"Joint {joint.get('name')} follows {mimic.get('joint')} (mimic): it is a hinge of its own in the draft."
@@ -110,6 +115,7 @@ def clean_urdf(
     ]
     remarks += floating_remarks
     remarks.append("A URDF holds no cables, springs, rotor inertia or gains: what the draft has of them is a guess.")
+    remarks += _remarks_on_zeros(turning)
     drives = {str(joint.get("name")): _drive(joint) for joint in turning}
     if drives and all(drive.torque == 0.0 for drive in drives.values()):
         drives = {name: Drive(torque=None, speed=drive.speed, passive=False) for name, drive in drives.items()}
@@ -212,6 +218,51 @@ def _drive(joint: ElementTree.Element) -> Drive:
     return Drive(torque=torque, speed=speed, passive=torque == 0.0)
 
 
+def _remarks_on_zeros(joints: list[ElementTree.Element]) -> list[str]:
+    """Return a sentence on limits that are zero, as an exporter writes them when nothing was filled in.
+
+    A single effort of zero beside others says that nothing drives that joint, and is not such a limit.
+    """
+    names_of: dict[str, list[str]] = {"lower and upper": [], "effort": [], "velocity": []}
+    for joint in joints:
+        limit = joint.find("limit")
+        name = joint.get("name", "")
+        if joint.get("type") == "revolute" and not _has_range(joint):
+            names_of["lower and upper"].append(name)
+        for key in ("effort", "velocity"):
+            if not _number(limit, key):
+                names_of[key].append(name)
+    if len(names_of["effort"]) < len(joints):
+        names_of["effort"] = []
+    guesses = {"lower and upper": "range", "effort": "torque", "velocity": "speed"}
+    keys = [key for key, names in names_of.items() if names]
+    if not keys:
+        return []
+    names = list(dict.fromkeys(name for key in keys for name in names_of[key]))
+    joints_text = f"all {len(joints)} joints" if len(names) == len(joints) else ", ".join(names[:4])
+    joints_text += f" and {len(names) - 4} more" if 4 < len(names) < len(joints) else ""
+    verb = "is" if keys in (["effort"], ["velocity"]) else "are"
+    guesses_text = ", ".join(guesses[key] for key in keys)
+    return [
+        f"{', '.join(keys)} of {joints_text} {verb} zero, equal or missing in the file, which was taken as not filled "
+        f"in: {guesses_text} {'is a guess' if len(keys) == 1 else 'are guesses'}. A joint that does not turn is fixed."
+    ]
+
+
+def _has_range(joint: ElementTree.Element) -> bool:
+    limit = joint.find("limit")
+    return _angle_limit(limit, "lower") != _angle_limit(limit, "upper")
+
+
+def _angle_limit(limit: ElementTree.Element | None, key: str) -> float:
+    """Return a limit of angle [rad]; 0 where the file has none."""
+    text = "" if limit is None else limit.get(key, "0")
+    try:
+        return float(text or 0.0)
+    except ValueError:
+        raise UnreadableFile(f"<limit {key}={text[:40]!r}> is no number.") from None
+
+
 def _number(element: ElementTree.Element | None, key: str) -> float | None:
     """Return a number of a limit, None where the file has none; refuse negative and infinite ones."""
     if element is None or element.get(key) is None:
@@ -226,6 +277,10 @@ def _number(element: ElementTree.Element | None, key: str) -> float | None:
 
 
 _BODIES = ("replicate", "composite", "flexcomp", "attach")
+_ACTUATOR_TAGS = (
+    "general", "motor", "position", "velocity", "intvelocity", "damper", "dcmotor", "cylinder", "muscle", "adhesion"
+)  # fmt: skip
+_UNTAKEN_ACTUATORS = ("damper", "cylinder", "muscle", "adhesion")
 _BODY_TAGS = ("body", "joint", "freejoint", "geom", "inertial", "site", "frame")
 _COMPILER = ("angle", "eulerseq", "autolimits", "coordinate", "inertiafromgeom", "inertiagrouprange", "settotalmass")
 _UNTOLD = ("compiler", "option", "size", "visual", "statistic", "default", "asset", "worldbody", "actuator", "equality")
@@ -266,23 +321,21 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
     return root
 
 
-def clean_mjcf(
-    root: ElementTree.Element, meshes: Meshes
-) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
-    """Return an MJCF of bodies, joints and shapes alone, the drive of each hinge, and remarks on omitted elements.
+def clean_mjcf(root: ElementTree.Element, meshes: Meshes) -> tuple[ElementTree.Element, tuple[str, ...]]:
+    """Return an MJCF of bodies, joints, shapes and actuators of joints alone, and remarks on omitted elements.
 
     Raises:
         UnreadableFile: it has loops, makes bodies by rule, or has no bodies.
     """
     remarks = _equalities(root)
-    drives, of_tendons = _actuators(root)
-    remarks += of_tendons
+    actuators, actuator_remarks = _actuators(root)
+    remarks += actuator_remarks
     clean_root = ElementTree.Element("mujoco", model="imported")
     compiler = {k: v for e in root.findall("compiler") for k, v in e.attrib.items() if k in _COMPILER}
     bounds = {key: MUJOCO[key] for key in ("boundmass", "boundinertia")}
     ElementTree.SubElement(clean_root, "compiler", {**compiler, **bounds})
     for element in root.findall("default"):
-        clean_root.append(_cleaned(element, (*_BODY_TAGS, "mesh", "default"), None))
+        clean_root.append(_cleaned(element, (*_BODY_TAGS, *_ACTUATOR_TAGS, "mesh", "default"), None))
     unread_meshes = _meshes(root, clean_root, meshes)
     worlds = root.findall("worldbody")
     if not any(world.find(".//body") is not None for world in worlds):
@@ -295,10 +348,11 @@ def clean_mjcf(
                 )
         clean_root.append(_cleaned(world, _BODY_TAGS, unread_meshes))
         meshes.shapeless_bodies |= _shapeless_bodies(world, unread_meshes)
+    clean_root.append(actuators)
     unread_tags = sorted({element.tag for element in root if element.tag not in _UNTOLD})
     if unread_tags:
         remarks += (f"Of the MJCF these are not part of a body and were not read: {', '.join(unread_tags)}.",)
-    return clean_root, drives, remarks
+    return clean_root, remarks
 
 
 def _cleaned(
@@ -369,55 +423,40 @@ def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
     return tuple(remarks)
 
 
-def _actuators(root: ElementTree.Element) -> tuple[dict[str, Drive], tuple[str, ...]]:
-    """Return the drive of each hinge; where a file drives some hinges, the others are passive."""
-    defaults = dict(_defaults(root))
-    drives: dict[str, Drive] = {}
-    remarks = []
+def _actuators(root: ElementTree.Element) -> tuple[ElementTree.Element, tuple[str, ...]]:
+    """Return the actuators that turn a joint, and remarks on those that are not taken.
+
+    A hinge whose actuator is a muscle keeps a motor without limits in its place, so that it counts as driven.
+    """
     tendons = {e.get("name"): e for section in root.findall("tendon") for e in section}
+    joints = {e.get("name") for e in root.iter("joint")}
+    actuators = ElementTree.Element("actuator")
+    remarks = []
     for element in (e for section in root.findall("actuator") for e in section):
-        joint = element.get("joint") or element.get("jointinparent")
-        attributes = {**defaults.get((element.get("class", "main"), element.tag), {}), **element.attrib}
-        if joint:
-            drives[joint] = Drive(torque=_torque(attributes), speed=None, passive=False)
+        joint, name = element.get("joint") or element.get("jointinparent"), element.get("name", element.tag)
+        is_muscle = element.tag == "muscle" or "muscle" in (element.get("gaintype"), element.get("dyntype"))
+        if joint and joint not in joints:
+            raise UnreadableFile(f"actuator {name} names joint {joint[:60]!r}, which is not there.")
+        if joint and is_muscle:
+            ElementTree.SubElement(actuators, "motor", joint=joint, ctrllimited="false", forcelimited="false")
+            remarks.append(f"Actuator {name} is a muscle, which is not taken; the draft has a servo of its size.")
+        elif joint and element.tag in _ACTUATOR_TAGS and element.tag not in _UNTAKEN_ACTUATORS:
+            actuators.append(ElementTree.Element(element.tag, element.attrib))
         elif element.get("tendon") in tendons:
             tendon_joints = [e.get("joint", "") for e in tendons[element.get("tendon")].iter("joint")]
             remarks.append(
-                f"Actuator {element.get('name', element.tag)} pulls a tendon over "
-                f"{', '.join(tendon_joints) or 'sites'}; "
+                f"Actuator {name} pulls a tendon over {', '.join(tendon_joints) or 'sites'}; "
                 "this drive was not taken: these hinges are springs in the draft. Say it as [[cables]], with cord "
                 "spacing and pulley, or give them servos."
             )
         else:
-            remarks.append(f"Actuator {element.get('name', element.tag)} drives no joint and was not taken.")
+            remarks.append(f"Actuator {name} drives no joint and was not taken.")
+    return actuators, tuple(remarks)
+
+
+def with_passive(root: ElementTree.Element, drives: dict[str, Drive]) -> dict[str, Drive]:
+    """Return the drives of all joints of an MJCF: where it drives some hinges, the others are passive."""
     if not drives:
-        return {}, tuple(remarks)
+        return {}
     passive_drives = {e.get("name", ""): Drive(torque=None, speed=None, passive=True) for e in root.iter("joint")}
-    return {**passive_drives, **drives}, tuple(remarks)
-
-
-def _defaults(root: ElementTree.Element) -> Iterator[tuple[tuple[str, str], Mapping[str, str]]]:
-    """Yield the default attributes of each class and tag, those of the classes above it included."""
-
-    def walk(
-        element: ElementTree.Element, inherited: Mapping[str, Mapping[str, str]], name: str
-    ) -> Iterator[tuple[tuple[str, str], Mapping[str, str]]]:
-        """Yield the default attributes of a class and of the classes inside it."""
-        class_attributes = {e.tag: {**inherited.get(e.tag, {}), **e.attrib} for e in element if e.tag != "default"}
-        merged = {**inherited, **class_attributes}
-        for tag, attributes in merged.items():
-            yield (name, tag), attributes
-        for child in element.findall("default"):
-            yield from walk(child, merged, child.get("class", ""))
-
-    for element in root.findall("default"):
-        yield from walk(element, {}, element.get("class", "main"))
-
-
-def _torque(attributes: Mapping[str, str]) -> float | None:
-    """Return the greatest torque that an actuator may give; None if the file does not say."""
-    try:
-        ends = [abs(float(word)) for word in attributes.get("forcerange", "").split()]
-    except ValueError:
-        raise UnreadableFile(f'forcerange="{attributes["forcerange"][:60]}" is not two numbers.') from None
-    return max(ends) if len(ends) == 2 and 0 < max(ends) < float("inf") else None
+    return {**passive_drives, **drives}

@@ -30,6 +30,7 @@ from suchus.sim.model.importing.making import (
     point,
     turn_of,
 )
+from suchus.sim.model.importing.names import is_fin_name
 from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, links_between, without_limbs
 from suchus.sim.model.importing.tree import JOINED, Joint, ShapePiece, TreePart
 
@@ -142,20 +143,48 @@ def _weighed(model: Any, body: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _legs(plan: BodyPlan, words: Words) -> tuple[BodyPlan, list[str]]:
-    """Return a plan without limbs that do not reach below the axis, and remarks on them."""
+    """Return a plan without limbs that are fins by name, or cannot carry the body, and remarks on them."""
     remarks = []
     for number in reversed(range(len(plan.pairs))):
-        making = making_of(plan, words)
-        depth = -lowest_foot_height(draft_girdle(making, number))
-        if depth < _LEG * making.size.length:
-            pair = plan.pairs[number]
+        pair = plan.pairs[number]
+        reason = _reason_against_leg(plan, words, number)
+        if reason:
             parts = " and ".join(plan.tree_part(chain.parts[0]).name for chain in pair)
-            remarks.append(
-                f"{parts} reach {max(depth, 0.0):.3g} m below the axis, so they are arms or fins and were left out; "
-                "their masses went to the part that carries them."
-            )
+            remarks.append(f"{parts} {reason} and were left out; their masses went to the part that carries them.")
             plan = without_limbs(plan, pair)
     return plan, remarks
+
+
+def _reason_against_leg(plan: BodyPlan, words: Words, number: int) -> str:
+    """Return why a pair of limbs is no pair of legs, a predicate; empty where it is one.
+
+    Args:
+        plan: axis and limbs.
+        words: what the user said.
+        number: of the pair.
+    """
+    chains = plan.pairs[number]
+    names = [name for chain in chains for i in chain.parts for name in plan.tree_part(i).names]
+    if all(
+        any(is_fin_name(name) for name in names if name in plan.tree_part(chain.parts[0]).names) for chain in chains
+    ):
+        return "are fins, wings or the like by name,"
+    making = making_of(plan, words)
+    girdle = draft_girdle(making, number)
+    depth = -lowest_foot_height(girdle)
+    if depth < _LEG * making.size.length:
+        return f"reach {max(depth, 0.0):.3g} m below the axis, so they are arms or fins"
+    belly = max(
+        making.level - float(making.plan.plane.to_robot_frame(piece.corners)[:, 2].min())
+        for i in plan.axis
+        for piece in plan.tree_part(i).pieces
+    ) if any(plan.tree_part(i).pieces for i in plan.axis) else 0.0  # fmt: skip
+    if depth + girdle.limb.foot.radius <= belly:
+        return (
+            f"reach {depth + girdle.limb.foot.radius:.3g} m below the axis and the belly hangs {belly:.3g} m below it, "
+            "so they cannot carry it: they are arms or fins"
+        )
+    return ""
 
 
 def _seated(girdle: Girdle, segment: str, front: float) -> Girdle:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 from xml.etree import ElementTree
@@ -11,7 +12,15 @@ import mujoco
 import numpy as np
 
 from suchus.core.errors import SuchusError, UnreadableFile
-from suchus.sim.model.importing.cleaning import Drive, clean_mjcf, clean_urdf, parse, with_includes
+from suchus.sim.model.importing.cleaning import (
+    Drive,
+    clean_mjcf,
+    clean_urdf,
+    parse,
+    with_includes,
+    with_passive,
+)
+from suchus.sim.model.importing.drives import actuated_drives
 from suchus.sim.model.importing.meshes import Meshes
 
 Format = Literal["URDF", "MJCF"]
@@ -31,6 +40,8 @@ class Loaded:
     """What drives each hinge; empty where the file says nothing of drives."""
     remarks: tuple[str, ...]
     """Notes on what was not taken over, a sentence each."""
+    gravity: tuple[float, float, float] | None
+    """What the file says of gravity, in its own frame [m/s2]; None where it says nothing."""
 
 
 def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: bool = False) -> Loaded:
@@ -52,7 +63,8 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
             clean, drives, remarks = clean_urdf(root, meshes)
         elif root.tag == "mujoco":
             kind = "MJCF"
-            clean, drives, remarks = clean_mjcf(with_includes(root, path), meshes)
+            clean, remarks = clean_mjcf(with_includes(root, path), meshes)
+            drives = {}
         else:
             raise UnreadableFile(
                 f"it begins with <{root.tag[:40]}>; a URDF begins with <robot>, an MJCF with <mujoco>."
@@ -60,13 +72,35 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
         if not without_meshes:
             meshes.check()
         model, inertia_remarks = _compiled(clean, meshes)
+        if kind == "MJCF":
+            drives, drive_remarks = actuated_drives(model)
+            drives, remarks = with_passive(root, drives), (*remarks, *drive_remarks)
     except SuchusError as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
     if meshes.read_errors:
         remarks += (
             f"{len(meshes.read_errors)} meshes were not read: {'; '.join(list(meshes.read_errors.values())[:3])}.",
         )
-    return Loaded(kind=kind, model=model, drives=drives, remarks=(*remarks, *inertia_remarks))
+    gravity = _gravity(root) if kind == "MJCF" else None
+    return Loaded(kind=kind, model=model, drives=drives, remarks=(*remarks, *inertia_remarks), gravity=gravity)
+
+
+def _gravity(root: ElementTree.Element) -> tuple[float, float, float] | None:
+    """Return the gravity that an MJCF states [m/s2]; None where it states none.
+
+    Raises:
+        UnreadableFile: it is no three finite numbers.
+    """
+    texts = [text for option in root.findall("option") if (text := option.get("gravity")) is not None]
+    if not texts:
+        return None
+    try:
+        x, y, z = (float(word) for word in texts[-1].split())
+    except ValueError:
+        x = y = z = float("nan")
+    if not isfinite(x + y + z):
+        raise UnreadableFile(f"<option gravity={texts[-1][:60]!r}> is not allowed; three finite numbers are needed.")
+    return x, y, z
 
 
 def _check_numbers(clean: ElementTree.Element) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from suchus.core.errors import UnreadableFile
 from suchus.robot.design import Crank, Hinge, Inertia, Servo, Spring
+from suchus.robot.design.body import MAX_INERTIA_RATIO
 from suchus.robot.design.hinge import Turn
 from suchus.robot.design.layout import LIMB_AXES
 from suchus.robot.design.scale import servo_for, spring_for
@@ -43,6 +44,8 @@ class Size:
     """Mass of the robot [kg]."""
     length: float
     """Length of the robot [m]."""
+    max_armature: float
+    """Rotor inertia of a servo, at most [kg m2]; see ``design.body.MAX_INERTIA_RATIO``."""
 
 
 def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, float]:
@@ -159,25 +162,47 @@ def numbered_names(turns: Sequence[str]) -> list[str]:
     return names
 
 
+_SERVO_LIMITS = {
+    "kp": (1e-9, 1e7), "kd": (0.0, 1e6), "torque": (1e-9, 1e6), "speed": (0.01, 1e4),
+    "armature": (1e-15, 100.0), "friction": (0.0, 1e4), "damping": (0.0, 1e4),
+}  # fmt: skip
+"""Fields of a servo that a file can state, with what a design allows."""
+
+
+def stated_values(joint: Joint) -> dict[str, float]:
+    """Return the fields of a servo that the file states for a hinge; a zero states nothing, but for a gain of rate.
+
+    A file whose position servo has no gain of rate has its damping at the joint; then ``kd`` is zero.
+    """
+    drive = joint.drive
+    values = {"armature": joint.armature, "friction": joint.friction, "damping": joint.damping}
+    if drive is not None:
+        values |= {"kp": drive.kp or 0.0, "torque": drive.torque or 0.0, "speed": drive.speed or 0.0}
+    values = {name: value for name, value in values.items() if value > 0.0}
+    if drive is not None and drive.kp and (drive.kd or joint.damping):
+        values["kd"] = drive.kd or 0.0
+    return {name: min(max(value, _SERVO_LIMITS[name][0]), _SERVO_LIMITS[name][1]) for name, value in values.items()}
+
+
 def _servo(joint: Joint, size: Size) -> Servo | None:
-    """Return a servo for the robot's size with torque and speed of the file; None for a passive hinge."""
+    """Return a servo for the robot's size with what the file states of it; None for a passive hinge."""
     if joint.drive is not None and joint.drive.passive:
         return None
     servo = servo_for(size.mass, size.length)
-    if joint.drive is None:
-        return servo
-    return replace(
-        servo,
-        torque=min(max(joint.drive.torque or servo.torque, 1e-9), 1e6),
-        speed=min(max(joint.drive.speed or servo.speed, 0.01), 1e4),
-    )
+    stated = stated_values(joint)
+    if "kp" in stated and "kd" not in stated:  # the same ratio of gains, so that the servo is damped as before
+        stated["kd"] = servo.kd / servo.kp * stated["kp"]
+    servo = replace(servo, **stated)  # type: ignore[arg-type]
+    return replace(servo, armature=min(servo.armature, size.max_armature))
 
 
 def _spring(joint: Joint, size: Size, mass_fraction: float) -> Spring:
+    """Return the spring of a passive hinge, with what the file states of it."""
     spring = spring_for(size.mass, size.length, mass_fraction)
+    armature = min(joint.armature, 100.0) or spring.armature
     if joint.stiffness > 0:
-        return replace(spring, stiffness=joint.stiffness, damping=joint.damping)
-    return spring
+        return replace(spring, stiffness=joint.stiffness, damping=joint.damping, armature=armature)
+    return replace(spring, damping=joint.damping or spring.damping, armature=armature)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -194,6 +219,8 @@ class Making:
     """Mass and length, from which servos and springs follow."""
     heaviest: float
     """Mass of the heaviest part [kg]."""
+    max_file_armature: float = 0.0
+    """Greatest rotor inertia of a hinge in the file [kg m2]."""
     matches: list[Match] = field(default_factory=list)
     """Hinges so far."""
     remarks: list[str] = field(default_factory=list)
@@ -247,22 +274,35 @@ class Making:
             self.notes[f"{note_path}.drive.stiffness"] = spring_note
             return
         drive = f"{note_path}.drive" if hinge.range is not None else f"{note_path}.drive.servo"
-        self.notes[f"{drive}.kp"] = "guess: from the size, as all of this servo that has no note (design.servo_for)"
-        for name in ("torque", "speed"):
-            if joint.drive is not None and getattr(joint.drive, name):
-                self.notes[f"{drive}.{name}"] = "of the file"
+        stated = stated_values(joint)
+        guessed = next((name for name in _SERVO_LIMITS if name not in stated), None)
+        if guessed is not None:
+            self.notes[f"{drive}.{guessed}"] = (
+                "guess: from the size, as all of this servo that has no note (design.servo_for)"
+            )
+        for name in stated:
+            self.notes[f"{drive}.{name}"] = "of the file"
+        if joint.armature > self.size.max_armature:
+            self.notes[f"{drive}.armature"] = f"of the file, {joint.armature:g}, but no more than suits the body"
+            self.remarks.append(
+                f"The file's armature of up to {self.max_file_armature:.3g} kg m2 is more than a tenth of the robot's "
+                f"mass times its length squared; the draft has {self.size.max_armature:.3g} kg m2."
+            )
 
 
 def making_of(plan: BodyPlan, words: Words) -> Making:
     """Return a draft that has not begun."""
     corners = plan.plane.to_robot_frame(np.concatenate([plan.tree_part(i).corners for i in plan.axis]))
-    length = max(float(np.ptp(corners[:, 0])), 0.2 * plan.tree.size)
+    axis_length = float(np.ptp(corners[:, 0]))
+    length = max(axis_length, 0.2 * plan.tree.size)
+    max_armature = max((1.0 - 1e-6) * MAX_INERTIA_RATIO * plan.tree.mass * axis_length**2, 1e-15)
     return Making(
         plan=plan,
         words=words,
         level=_level(plan),
-        size=Size(mass=plan.tree.mass, length=length),
+        size=Size(mass=plan.tree.mass, length=length, max_armature=max_armature),
         heaviest=max(tree_part.mass for tree_part in plan.tree.parts),
+        max_file_armature=max(joint.armature for tree_part in plan.tree.parts for joint in tree_part.joints),
     )
 
 

@@ -3,14 +3,18 @@
 MuJoCo gets each as STL. A body of which nothing but a mesh says its shape, and whose mesh is not read, is refused.
 """
 
+import re
 from collections.abc import Sequence
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from suchus.core.errors import UnreadableFile
-from suchus.core.reading import NoMeshes, check_file, read_mesh
+from suchus.core.reading import NoMeshes, check_file, read_mesh, read_text
 
+_MANIFEST, _MAX_MANIFEST_SIZE = "package.xml", 2**20  # bytes
+_NAME_ELEMENT = re.compile(r"<name>([^<]*)</name>")
+_MAX_PACKAGE_DEPTH, _MAX_FOLDERS = 4, 5000  # levels and folders that are searched for packages
 _MAX_TOTAL_SIZE = 64 * 2**20  # bytes of all meshes
-_SCHEME = "package://"
+_SCHEMES = ("package://", "model://")
 
 
 class Meshes:
@@ -22,8 +26,15 @@ class Meshes:
     """
 
     def __init__(self, home: Path, packages: Sequence[str | Path] = ()) -> None:
-        """Resolve the folders; no file is opened yet."""
+        """Resolve the folders; no file is opened yet.
+
+        Raises:
+            UnreadableFile: one of ``packages`` is no folder.
+        """
+        for folder in packages:
+            _check_folder(Path(folder))
         self._home, self._packages = home.resolve(), [Path(folder).resolve() for folder in packages]
+        self._folders: list[tuple[Path, str | None]] | None = None  # searched ones, with the name of their package.xml
         self.assets: dict[str, bytes] = {}
         """STL files by the names under which MuJoCo finds them."""
         self.open: list[str] = []
@@ -63,33 +74,61 @@ class Meshes:
         others_text = f" and of {len(self.shapeless_bodies) - 1} more" if len(self.shapeless_bodies) > 1 else ""
         raise UnreadableFile(
             f"the shape of {body}{others_text} is a mesh that was not read: {self.read_errors[name]}. "
-            "Say --packages FOLDER for the folder in which the package lies, "
-            "or --without-meshes to have rods in the place of such shapes."
+            f"{self._advice(name)}, or --without-meshes to have rods in the place of such shapes."
         )
 
-    def _locate(self, name: str) -> Path:
-        """Return the file of a mesh, inside the folder of the robot's file or of a package."""
-        for root, relative_path in self._places(name):
-            mesh_file = path_inside(root, relative_path)
-            if mesh_file is not None and mesh_file.is_file():
-                return mesh_file
-        if name.startswith(_SCHEME):
-            raise UnreadableFile(f"{name[:100]} is in none of the folders of packages")
+    def _advice(self, name: str) -> str:
+        """Return what to say so that a mesh is found: the folder of its package where that is known."""
+        if name.startswith(_SCHEMES):
+            package = _package_of(name)[0]
+            home_package = next((folder for folder in self._home.parents if _package_name(folder) == package), None)
+            if home_package is not None and home_package not in self._packages:
+                return f"Say --packages {home_package}, which is {package} by its package.xml"
+            if self._package_folders(package):
+                return "Put the mesh where the file says it is"
+            return f"Say --packages FOLDER for the folder of {package}, whose package.xml names it, or one above it"
         if path_inside(self._home, name) is None:
-            raise UnreadableFile(f"{name[:100]} lies outside the folder of the file")
-        raise UnreadableFile(f"there is no file {name[:100]}")
+            return "Say --packages FOLDER for a folder that holds both, or put the mesh beside the file"
+        return "Put the mesh beside the file"
 
-    def _places(self, name: str) -> list[tuple[Path, str]]:
-        """Return folders and relative paths at which a mesh may lie, in the order in which they are tried."""
-        if not name.startswith(_SCHEME):
-            return [(self._home, name.removeprefix("file://"))]
-        path = name.removeprefix(_SCHEME)
-        package, _, relative_path = path.partition("/")
-        return [
-            location
-            for root in self._packages
-            for location in ((root, path), *([(root, relative_path)] * (root.name == package)))
-        ]
+    def _locate(self, name: str) -> Path:
+        """Return the file of a mesh, inside the folder of the robot's file or of a package.
+
+        Links are followed inside the folders that ``--packages`` names, since workspaces are built of them; a path may
+        not lead out of the package by itself.
+        """
+        if not name.startswith(_SCHEMES):
+            relative_path = name.removeprefix("file://")
+            roots = (self._home, *self._packages)
+            mesh_files = (path_inside(root, str(self._home / relative_path)) for root in roots)
+            mesh_file = next((file for file in mesh_files if file is not None), None) if relative_path else None
+            if mesh_file is None:
+                raise UnreadableFile(f"{name[:100]} lies outside the folder of the file and those of --packages")
+            if not mesh_file.is_file():
+                raise UnreadableFile(f"there is no file {name[:100]}")
+            return mesh_file
+        package, relative_path = _package_of(name)
+        folders = self._package_folders(package)
+        if _leads_out(relative_path):
+            raise UnreadableFile(f"{name[:100]} is in none of the folders of packages, since .. leads out of them")
+        for folder in folders:
+            if relative_path and (folder / relative_path).is_file():
+                return folder / relative_path
+        if folders:
+            raise UnreadableFile(f"{name[:100]} is not there: the package {package} in {folders[0]} has no such file")
+        raise UnreadableFile(f"{name[:100]} is in none of the folders of packages: none of them is {package[:60]}")
+
+    def _package_folders(self, package: str) -> list[Path]:
+        """Return the folders of a package: those of its name, and those whose ``package.xml`` names it."""
+        if self._folders is None:
+            folders = dict.fromkeys(folder for root in self._packages for folder in _folders_below(root))
+            self._folders = [(folder, _package_name(folder)) for folder in folders]
+        named = [folder for folder, name in self._folders if name == package]
+        exact = [folder for folder, _ in self._folders if folder.name == package]
+        unpacked = [
+            folder for folder, name in self._folders if name is None and folder.name.startswith(f"{package}-")
+        ]  # archives unpack as NAME-main or NAME-1.2
+        return list(dict.fromkeys([*named, *exact, *unpacked]))
 
     def _bytes(self, mesh_file: Path) -> bytes:
         """Return the content of a mesh file; refuse it where all meshes together would be too large."""
@@ -101,6 +140,67 @@ class Meshes:
             return mesh_file.read_bytes()
         except OSError as error:
             raise UnreadableFile(f"{mesh_file.name} cannot be read: {error.strerror}") from error
+
+
+def _check_folder(folder: Path) -> None:
+    """Refuse what is no folder of packages, an archive with what to do.
+
+    Raises:
+        UnreadableFile: it is not there, or no folder.
+    """
+    if folder.suffix.lower() in (".zip", ".tar", ".gz", ".tgz"):
+        raise UnreadableFile(f"--packages {folder} is an archive; unpack it and name the folder.")
+    if not folder.is_dir():
+        reason = "no folder" if folder.exists() else "not there"
+        raise UnreadableFile(f"--packages {folder} is {reason}; a folder of packages, or a package, is needed.")
+
+
+def _package_of(name: str) -> tuple[str, str]:
+    """Return the package and the path in it of a name as ``package://NAME/meshes/a.stl``."""
+    package, _, relative_path = name.partition("://")[2].partition("/")
+    return package, relative_path
+
+
+def _leads_out(relative_path: str) -> bool:
+    return ".." in PurePosixPath(relative_path.replace("\\", "/")).parts or PurePosixPath(relative_path).is_absolute()
+
+
+def _folders_below(root: Path) -> tuple[Path, ...]:
+    """Return a folder and those below it, nearest first, down to a depth and up to a number.
+
+    Links to folders are followed, each folder once.
+    """
+    folders, visited, level = [root], {root.resolve()}, [root]
+    for _ in range(_MAX_PACKAGE_DEPTH):
+        below: list[Path] = []
+        for folder in level:
+            if folder != root and (folder / _MANIFEST).is_file():
+                continue  # packages do not lie in packages
+            try:
+                children = sorted(child for child in folder.iterdir() if not child.name.startswith("."))
+            except OSError:
+                continue
+            for child in children:
+                if len(folders) >= _MAX_FOLDERS:
+                    return tuple(folders)
+                if child.is_dir() and child.resolve() not in visited:
+                    visited.add(child.resolve())
+                    below.append(child)
+                    folders.append(child)
+        level = below
+    return tuple(folders)
+
+
+def _package_name(folder: Path) -> str | None:
+    """Return the name that a folder's ``package.xml`` gives it; None where it has none that can be read."""
+    manifest = folder / _MANIFEST
+    if not manifest.is_file():
+        return None
+    try:
+        match = _NAME_ELEMENT.search(read_text(manifest, _MAX_MANIFEST_SIZE))
+    except UnreadableFile:
+        return None
+    return match[1].strip() if match else None
 
 
 def path_inside(home: Path, name: str) -> Path | None:

@@ -3,7 +3,6 @@
 It begins with the mirror plane, the pairs of limbs that it maps onto each other, and which end is the front.
 """
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 
 from suchus.core.errors import UnknownName, UnreadableFile
 from suchus.robot.design.segment import combine_inertias
+from suchus.sim.model.importing.names import NamedFrame, frame_by_names
 from suchus.sim.model.importing.tree import Joint, Tree, TreePart
 
 
@@ -22,7 +22,9 @@ class Words:
     front: str | None = None
     """A body at the front end."""
     heading: float | None = None
-    """Direction of the front, from the file's x axis to the left [degree]."""
+    """Direction of the front, from the file's x axis to the left [degree]; from its y axis where x points up."""
+    up: str | None = None
+    """Axis of the file that points up: ``z``, ``y``, ``x``, ``-z``, ``-y`` or ``-x``."""
     neck: str | None = None
     """The body in which the axis ends in front, where it forks."""
     tail: str | None = None
@@ -46,8 +48,9 @@ _MIN_ASPECT_RATIO = (
 _STEP = 15  # degrees between the planes that are tried
 _LEVEL = 0.999  # cosine of two axes that are one
 _FLIP = np.array([1.0, -1.0, 1.0])
-_FRONT_NAMES = re.compile(r"head|snout|front|fore|neck|nose|jaw|face|shoulder|chest|thorax|^[LR]?F[LR]?(_|$)", re.I)
-_REAR_NAMES = re.compile(r"tail|rear|hind|back|pelvis|fin_|^[LR]?[HR][LR]?(_|$)", re.I)
+_RIVAL_LENGTH = {False: 0.5, True: 0.9}
+"""Trunk length of another plane over that of the chosen one, above which it is named; True where names agree [-]."""
+_MAX_NAME_ANGLE = 45.0  # degrees between the front by names and the one of a plane that agrees with them
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -61,7 +64,9 @@ class Plane:
     certain: bool
     """Whether the file's names, or an option, say which end is the front."""
     rivals: tuple[float, ...] = ()
-    """Headings of planes that mirror as many hinges, of a body about as long [degree]."""
+    """Headings of other planes that mirror as many hinges, of a trunk of similar length [degree]."""
+    disagreements: tuple[str, ...] = ()
+    """Sentences on what names and shape say differently, with the option that decides."""
 
     @property
     def turn(self) -> np.ndarray:
@@ -87,7 +92,10 @@ class Split:
 
 
 def find_plane(tree: Tree, *, front: str | None, heading: float | None) -> tuple[Plane, Split]:
-    """Return the mirror plane with most hinges in mirrored branches, then the longest, and what it splits.
+    """Return the mirror plane and what it splits.
+
+    The front that the file's names give comes first; among the planes that agree with it, and where names say nothing,
+    it is the plane with most hinges in mirrored branches, then with the longest trunk.
 
     Args:
         tree: the parts.
@@ -105,20 +113,70 @@ def find_plane(tree: Tree, *, front: str | None, heading: float | None) -> tuple
         best_fraction = max((fraction for fraction, _ in scored_planes), default=0.0)
         raise UnreadableFile(
             f"no vertical plane mirrors its hinges onto each other (the best one {best_fraction:.0%} of them, "
-            f"{_SHARE:.0%} are needed): draw it upright and straight at zero posture, or say --heading."
+            f"{_SHARE:.0%} are needed): draw it upright and straight at zero posture, or say --heading, or --up "
+            "where another axis than z points up."
         )
+    named_frame = frame_by_names(tree)
+    named_heading = named_frame.heading if front is None and heading is None else None
     ranks = [_rank(tree, *candidate) for candidate in fit]
-    best = ranks.index(max(ranks))
+    agrees = [named_heading is not None and _is_along(plane, named_heading) for plane, _ in fit]
+    best = max(range(len(fit)), key=lambda i: (agrees[i], ranks[i]))
     plane, split = fit[best]
-    rivals = {candidate.heading for (candidate, _), rank in zip(fit, ranks, strict=True) if _close(rank, ranks[best])}
+    rivals = {
+        candidate.heading
+        for (candidate, _), rank, agreement in zip(fit, ranks, agrees, strict=True)
+        if agreement == agrees[best] and _close(rank, ranks[best], _RIVAL_LENGTH[agrees[best]])
+    }
     plane = replace(plane, rivals=tuple(sorted(rivals - {plane.heading})))
     if heading is not None:
         return plane, split
-    sign, certain = _forward(tree, plane, front_com)
-    if sign > 0:
-        return replace(plane, certain=certain), split
-    flipped = tuple((b, a) for a, b in split.pairs)
-    return replace(plane, heading=plane.heading - 180.0, certain=certain), replace(split, pairs=flipped)
+    sign, certain = _forward(plane, front_com, tree, named_frame)
+    if sign < 0:
+        plane = replace(plane, heading=plane.heading - 180.0)
+        split = replace(split, pairs=tuple((right, left) for left, right in split.pairs))
+    if front is None:
+        by_shape = fit[ranks.index(max(ranks))][0]
+        disagreements = _disagreements(plane, by_shape, named_frame, has_limbs=bool(split.pairs))
+        plane = replace(plane, disagreements=disagreements)
+    return replace(plane, certain=certain), split
+
+
+def _is_along(plane: Plane, heading: float) -> bool:
+    """Return whether a plane lies along a heading [degree], in either sense."""
+    angle = abs((plane.heading - heading + 90.0) % 180.0 - 90.0)
+    return angle < _MAX_NAME_ANGLE
+
+
+def _disagreements(plane: Plane, by_shape: Plane, named_frame: NamedFrame, *, has_limbs: bool) -> tuple[str, ...]:
+    """Return sentences on what names and shape say differently, and on names that contradict each other.
+
+    Args:
+        plane: the one that was taken, its heading that of the front.
+        by_shape: the one that shape alone would choose.
+        named_frame: directions that names give.
+        has_limbs: whether limbs have sides that could be exchanged.
+    """
+    sentences = []
+    heading = named_frame.heading
+    if heading is not None and not _is_along(plane, heading):
+        sentences.append(
+            f"Names and shape disagree: by names the front is at {heading % 360:.3g} degrees to the left, "
+            f"where no plane mirrors the hinges; the shape says {plane.heading % 360:g}. If that is wrong, "
+            "say --front BODY or --heading DEGREES."
+        )
+    elif heading is not None and not _is_along(by_shape, plane.heading):
+        either = " or ".join(f"{(by_shape.heading + turn) % 360:g}" for turn in (0, 180))
+        sentences.append(
+            f"Names and shape disagree: by shape alone the front would be at {either} degrees; the names were "
+            f"followed. If the shape is right, say --heading {by_shape.heading % 360:g}."
+        )
+    if named_frame.is_mirrored and has_limbs:
+        sentences.append(
+            "Names disagree with each other: what they call left lies to the right of what they call front. The front "
+            f"was followed and the sides are by place. If the front is wrong, say --heading "
+            f"{(plane.heading + 180) % 360:g}."
+        )
+    return tuple(sentences)
 
 
 def _candidates(tree: Tree, front_com: np.ndarray | None, heading: float | None) -> Iterator[Plane]:
@@ -134,18 +192,24 @@ def _candidates(tree: Tree, front_com: np.ndarray | None, heading: float | None)
 
 
 def _rank(tree: Tree, plane: Plane, split: Split) -> tuple[bool, int, float]:
-    """Return the rank of a plane: not across a slender body, hinges in mirrored branches, length of the body."""
-    paired = [i for pair in split.pairs for branch in pair for i in tree.subtree(branch)]
+    """Return the rank of a plane: not across a slender body, hinges in mirrored branches, length of the trunk.
+
+    The trunk is what lies in the plane with the hips beside it. Limbs that are spread to the sides say nothing of it.
+    """
+    roots = [branch for pair in split.pairs for branch in pair]
+    paired = [i for branch in roots for i in tree.subtree(branch)]
     extent = np.ptp(np.concatenate([plane.to_robot_frame(tree_part.corners) for tree_part in tree.parts]), axis=0)
+    hips = np.array([tree.parts[branch].joints[0].anchor for branch in roots]).reshape(-1, 3)
+    trunk = np.concatenate([*(tree.parts[i].corners for i in split.axis), hips])
+    length = float(np.ptp(plane.to_robot_frame(trunk)[:, 0]))
     hinges = sum(len(tree.parts[i].joints) for i in paired)
-    return bool(extent[0] >= _MIN_ASPECT_RATIO * extent[1]), hinges, round(float(extent[0]) / tree.size, 3)
+    return bool(extent[0] >= _MIN_ASPECT_RATIO * extent[1]), hinges, round(length / tree.size, 3)
 
 
-def _close(first_rank: tuple[bool, int, float], second_rank: tuple[bool, int, float]) -> bool:
-    """Return whether two ranks of planes differ by at most a tenth of the length."""
-    return first_rank[:2] == second_rank[:2] and abs(first_rank[2] - second_rank[2]) <= 0.1 * max(
-        first_rank[2], second_rank[2]
-    )
+def _close(first_rank: tuple[bool, int, float], second_rank: tuple[bool, int, float], length_ratio: float) -> bool:
+    """Return whether two planes mirror as many hinges, of trunks whose lengths have at least a ratio [-]."""
+    shorter, longer = sorted((first_rank[2], second_rank[2]))
+    return first_rank[:2] == second_rank[:2] and shorter >= length_ratio * longer
 
 
 def mapped_fraction(tree: Tree, plane: Plane) -> float:
@@ -225,21 +289,22 @@ def _meet(
     return np.asarray((np.abs(lines @ other_lines.T) > _LEVEL) & (np.linalg.norm(distances, axis=-1) < tolerance))
 
 
-def _forward(tree: Tree, plane: Plane, front_com: np.ndarray | None) -> tuple[float, bool]:
-    """Return 1 if the plane's x points forward, else -1, and whether an option or names decide it."""
+def _forward(plane: Plane, front_com: np.ndarray | None, tree: Tree, named_frame: NamedFrame) -> tuple[float, bool]:
+    """Return 1 if the plane's x points forward, else -1, and whether an option or names decide it.
+
+    Args:
+        plane: the mirror plane.
+        front_com: centre of the body that an option puts in front [m].
+        tree: the parts.
+        named_frame: directions that names give.
+    """
     if front_com is not None:
         return float(np.sign((plane.turn @ (front_com - tree.com))[0]) or 1.0), True
-    votes, centre = 0.0, plane.to_robot_frame(tree.com)[0]
-    for tree_part in tree.parts:
-        for name, position in [
-            *((n, tree_part.com) for n in tree_part.names),
-            *((j.name, j.anchor) for j in tree_part.joints),
-        ]:
-            says = bool(_FRONT_NAMES.search(name)) - bool(_REAR_NAMES.search(name))
-            votes += says * np.sign(plane.to_robot_frame(position)[0] - centre)
-    if votes:
-        return float(np.sign(votes)), True
     c, s = _level(plane.heading)
+    heading = named_frame.heading
+    if heading is not None and _is_along(plane, heading):
+        named = np.radians(heading)
+        return float(np.sign(c * np.cos(named) + s * np.sin(named))), True
     return (1.0 if c > 1e-9 or (abs(c) <= 1e-9 and s > 0) else -1.0), False
 
 
@@ -297,7 +362,7 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
     tree, remarks = _pruned(tree, words.leave)
     plane, split = find_plane(tree, front=words.front, heading=words.heading)
     axis = _chain(tree, plane, split.axis, words)
-    remarks += _remarks_on_front(plane)
+    remarks += _remarks_on_front(plane, tree.reference_axis)
     pairs, dropped_branches = [], [(i, "no mirror image") for i in split.single]
     for left_root, right_root in split.pairs:
         carrier = tree.parts[left_root].parent
@@ -316,7 +381,7 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
         image = f"; {single_names} have no mirror image" if single_names else ""
         raise UnreadableFile(
             f"no mirrored limbs and no hinges along an axis were found{image}: draw it upright and straight at zero "
-            "posture, or say --heading."
+            "posture, or say --heading, or --up where another axis than z points up."
         )
     plan_parts = {*axis, *(i for pair in pairs for chain in pair for i in chain.parts)}
     omitted_roots = [
@@ -365,9 +430,14 @@ def links_between(plan: BodyPlan, inner: int, outer: int) -> Iterator[tuple[Join
             yield joint, False
 
 
-def _remarks_on_front(plane: Plane) -> list[str]:
-    """Return sentences on which end is the front and on other planes of symmetry."""
-    heading_text = f"the file's x axis turned left by {plane.heading % 360:g} degrees"
+def _remarks_on_front(plane: Plane, reference_axis: str) -> list[str]:
+    """Return sentences on which end is the front and on other planes of symmetry.
+
+    Args:
+        plane: the mirror plane.
+        reference_axis: of the file, from which headings count.
+    """
+    heading_text = f"the file's {reference_axis} axis turned left by {plane.heading % 360:g} degrees"
     opposite_heading = (plane.heading + 180) % 360
     if plane.certain:
         remarks = [f"Front: {heading_text}, as names or options say (--front, --heading)."]
@@ -381,6 +451,7 @@ def _remarks_on_front(plane: Plane) -> list[str]:
         remarks.append(
             f"Guess: its sides mirror as well about another plane; if that is the right one, --heading {rival_text}."
         )
+    remarks += plane.disagreements
     return remarks
 
 
@@ -404,7 +475,7 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
     )
     names_text = ", ".join(tree.parts[i].name for i in sorted(removed_parts))
     remark = f"Left out as asked, their masses lent to what carries them: {names_text}."
-    return Tree(parts=parts, remarks=tree.remarks), [remark]
+    return replace(tree, parts=parts), [remark]
 
 
 def _chain(tree: Tree, plane: Plane, plane_parts: Sequence[int], words: Words) -> tuple[int, ...]:

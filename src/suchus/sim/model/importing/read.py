@@ -14,6 +14,7 @@ from suchus.sim.model.importing.loading import load
 from suchus.sim.model.importing.making import SKEW
 from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, plan_of
 from suchus.sim.model.importing.tree import Joint, ShapePiece, TreePart, tree_of
+from suchus.sim.model.importing.upright import upright
 
 _ANGLE_TOLERANCE = np.radians(
     10.0
@@ -149,6 +150,7 @@ def import_robot(path: str | Path, *, name: str, words: Words | None = None) -> 
         require("import", "heading", words.heading, -360.0, 360.0, "degree")
     loaded = load(path, packages=words.packages, without_meshes=words.without_meshes)
     try:
-        return draft_of(straightened(plan_of(tree_of(loaded), words)), name, words)
+        tree = upright(tree_of(loaded), words.up, loaded.gravity)
+        return draft_of(straightened(plan_of(tree, words)), name, words)
     except UnreadableFile as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error

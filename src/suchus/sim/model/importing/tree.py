@@ -14,6 +14,7 @@ import numpy as np
 from suchus.core.checks import require
 from suchus.core.errors import UnreadableFile
 from suchus.robot.design.segment import combine_inertias
+from suchus.sim.model.export.urdf import MUJOCO
 from suchus.sim.model.importing.cleaning import Drive
 from suchus.sim.model.importing.loading import Loaded
 
@@ -106,6 +107,7 @@ def _is_cap(ball: ShapePiece, rods: list[ShapePiece]) -> bool:
 
 MIN_MASS = 1e-9
 """Masses up to this are none: MuJoCo was asked to fill missing ones with a tenth of it [kg]."""
+_MIN_INERTIA = 1.001 * float(MUJOCO["boundinertia"])  # moments up to this are none
 JOINED = 1e-6
 """Hinges nearer than this share of a robot's size sit in one point [-]."""
 
@@ -129,7 +131,11 @@ class Joint:
     stiffness: float
     """[N m/rad]."""
     damping: float
-    """[N m s/rad]."""
+    """[N m s/rad]; 0 where the file has none."""
+    friction: float
+    """Dry friction [N m]; 0 where the file has none."""
+    armature: float
+    """Rotor inertia at the hinge [kg m2]; 0 where the file has none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -179,6 +185,8 @@ class Tree:
     """The first one is the root."""
     remarks: tuple[str, ...]
     """Notes on what was not taken over, a sentence each."""
+    reference_axis: str = "x"
+    """The axis of the file from which headings count: x unless x points up."""
 
     @property
     def size(self) -> float:
@@ -231,6 +239,13 @@ def tree_of(loaded: Loaded) -> Tree:
         else:
             part_index[body] = part_index[parent_body]
             parts[part_index[parent_body]] = _fused(parts[part_index[parent_body]], body_part)
+    zeros = [model.body(i).name or f"body {i}" for i in part_index if _has_no_inertia(model, i)]
+    if zeros:
+        names_text = f"{', '.join(zeros[:4])}{f' and {len(zeros) - 4} more' if len(zeros) > 4 else ''}"
+        remarks += (
+            f"The inertia of {names_text} is zero in the file, which was taken as not filled in: the draft has that of "
+            "the shapes.",
+        )
     tree = Tree(parts=tuple(_joined(parts)), remarks=(*loaded.remarks, *remarks))
     return _weighed(tree)
 
@@ -267,18 +282,24 @@ def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> Tr
     sites = [data.site_xpos[s] for s in range(model.nsite) if model.site_bodyid[s] == body]
     name = model.body(body).name or f"body_{body}"
     turn, weighs = data.ximat[body].reshape(3, 3), bool(model.body_mass[body] > MIN_MASS)
+    turns = weighs and not _has_no_inertia(model, body)
     return TreePart(
         name=name,
         parent=-1,
         joints=joints,
         mass=float(model.body_mass[body]) if weighs else 0.0,
         com=data.xipos[body].copy(),
-        tensor=turn @ np.diag(model.body_inertia[body]) @ turn.T * weighs,
+        tensor=turn @ np.diag(model.body_inertia[body]) @ turn.T * turns,
         origin=data.xpos[body].copy(),
         pieces=of_body(model, data, body),
         points=np.array([data.xpos[body], *sites]),
         names=(name,),
     )
+
+
+def _has_no_inertia(model: Any, body: int) -> bool:
+    """Return whether the moments of a body are those that MuJoCo was asked to fill in for zeros."""
+    return bool(model.body_mass[body] > MIN_MASS and model.body_inertia[body].max() <= _MIN_INERTIA)
 
 
 def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
@@ -296,6 +317,8 @@ def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
         drive=loaded.drives.get(name),
         stiffness=float(np.ravel(model.jnt_stiffness[joint])[0]),
         damping=float(np.ravel(model.dof_damping[dof])[0]),
+        friction=float(model.dof_frictionloss[dof]),
+        armature=float(model.dof_armature[dof]),
     )
 
 
