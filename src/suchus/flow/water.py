@@ -544,6 +544,7 @@ class Fluid:
             stage.blend_fraction,
         )
         if self.window[1] > self.window[0]:
+            self._clear_raw_on_sides()
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
             for c in range(self.ndim):
@@ -552,6 +553,16 @@ class Fluid:
                     stage.dt, stage.blend_fraction,
                 )  # fmt: skip
         self.border.fill(stage.result)
+
+    def _clear_raw_on_sides(self) -> None:
+        """Set the bare update on the low sides of the domain to 0, as far as the window reaches them.
+
+        The kernel computes no flux through these faces and leaves undefined numbers there.
+        """
+        for c, repeats in enumerate(self.repeats):
+            axis = self.ndim - 1 - c
+            if not repeats and self.window[2 * axis] <= PAD:
+                np.moveaxis(self._raw[c], axis, 0)[PAD - self.window[2 * axis]] = 0
 
     def _mirror_raw(self) -> None:
         """Fill the bare update beyond the mirrors that cut bodies with its mirror image."""
