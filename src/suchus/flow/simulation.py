@@ -435,6 +435,7 @@ class Simulation(Fields):
         self._log.rows.append(row)
         if len(self._log.rows) % SIDE_CHECK_INTERVAL == 0:
             self._watch.sides(water, self.time)
+            self._watch.wakes(water, self.time)
 
     def last_loads(self, name: str) -> FlowLoads:
         """Return the force of the water on a body and on each of its parts in the last step.
@@ -632,6 +633,7 @@ class Simulation(Fields):
             finally:
                 saver.save(self, is_forced=True)
         self._watch.sides(self.water, self.time)
+        self._watch.wakes(self.water, self.time)
         return self.record
 
     def _refuse_past(self, end_time: float, subject: str, remedy: str) -> None:
