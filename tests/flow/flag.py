@@ -108,7 +108,7 @@ class FlagOutline:
         return tuple(f"joint_{k}" for k in range(self.count))
 
     @cached_property
-    def places(self):
+    def joint_positions(self):
         return 2 * RADIUS + (np.arange(self.count) + 0.5) * self.spacing
 
     @cached_property
@@ -123,7 +123,7 @@ class FlagOutline:
 
     def joints_at(self, s):
         """The share of each joint's bend that lies ahead of points; it takes two stations' way, links are rigid."""
-        return 0.5 + 0.5 * np.clip((s[:, None] - self.places) / self.s[1], -1.0, 1.0)
+        return 0.5 + 0.5 * np.clip((s[:, None] - self.joint_positions) / self.s[1], -1.0, 1.0)
 
 
 class FlagChain(MidlineChain):

@@ -30,10 +30,12 @@ NOTHING = 1e-12  # density of water that does nothing [kg/m^3]
 def alone(body, dt, count, *, added=None):
     """Rotation matrices and rates of a body in water that answers with an added mass at most, step by step."""
     swimmer, matrices, rates = Swimmer.from_body(body), [], []
+    if added is not None:
+        swimmer.added_mass = added
     for k in range(count):
         swimmer.advance(k * dt, dt, NOTHING)
         if added is not None:
-            swimmer.added_mass, swimmer.load = added, -added @ swimmer.acceleration
+            swimmer.load = -added @ swimmer.acceleration
         matrices.append(rotation.turn(swimmer.coordinates[3:]))
         rates.append(swimmer.rate)
     return np.array(matrices), np.array(rates)
@@ -96,7 +98,7 @@ def test_springs_about_unequal_axes_neither_gain_nor_lose():
         m = rotation.turn(swimmer.coordinates[3:])
         rate = m.T @ swimmer.rate[3:]
         energy.append(rate @ moments @ rate + stiffness @ turn.as_rotvec() ** 2)
-    assert np.ptp(energy[20:]) < 5e-3 * energy[-1]  # by then the first step's impulse is repaid
+    assert np.ptp(energy) < 5e-3 * energy[-1]
     height = swimmer.coordinates[2]
     assert abs(height) > 0
     assert swimmer.coordinates[:2] == pytest.approx(0.0)
@@ -334,7 +336,7 @@ def test_a_sphere_that_is_dropped_falls_straight():
     ball = flow.FreeBody(shape=flow.Sphere(diameter=1.0), density=2.0, gravity=tuple(pull.tolist()))
     sim = water(ball, steps=6, viscosity=1e-6, step=0.01)
     speed = np.stack([sim.record.column(name) for name in COLUMNS[2]], axis=1)
-    gained = (speed[-1] - speed[2]) / (3 * 0.01)
+    gained = speed[1] / (2 * 0.01)  # the wall's friction grows from step to step
     mass = np.diag(sim.swimmers["body"].added_mass)[:3] / (np.pi / 6)
     assert mass == pytest.approx(0.5, abs=0.06)
     assert gained == pytest.approx(pull / (2.0 + mass), rel=0.02)

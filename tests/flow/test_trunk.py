@@ -278,7 +278,7 @@ def test_a_heavy_sphere_begins_to_sink_with_its_mass_and_added_mass():
     for _ in range(6):
         sim.advance()
     speed = sim.record.column("velocity_x")
-    push = (speed[-1] - speed[2]) / (3 * 0.01)
+    push = speed[1] / (2 * 0.01)  # the friction of the wall grows from step to step
     added = float(sim.swimmers["body"].added_mass[0, 0]) / (np.pi / 6)
     assert added == pytest.approx(0.5, abs=0.06)
     assert push == pytest.approx(-3.0 / (2.0 + added), rel=0.02)

@@ -19,6 +19,13 @@ from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
 BALANCE_TOLERANCE = 1e-6
 """Largest net inflow, over the flow through all sides: the rounding error of single precision [-]."""
 
+NEAR_SIDE_RATIO = 0.2
+"""Distance of an unbounded side from the window around the bodies, over the window's size along the side, below which
+corrections of the side are relaxed [-]."""
+
+MIN_SIDE_RELAXATION = 0.5
+"""Fraction of each correction that a side beside the window takes at once [-]; at ``NEAR_SIDE_RATIO`` it is 1."""
+
 _CHANGING = {"prescribed": "prescribed", "induced": "induced", "seen": "previous_induced"}
 """Arrays of an edge that change, by their key in a checkpoint."""
 
@@ -442,18 +449,38 @@ class Border:
             velocity: on the faces before the cells, padded, shape (axis, ...) [m/s].
             window: padded cell indices around the bodies.
         """
-        change = 0.0
+        change, relaxation = 0.0, self._relaxation(window)
         if self.water is None:
             return change
         for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
-            rise = induced - edge.induced
+            rise = relaxation * (induced - edge.induced)
             edge.prescribed += rise.astype(edge.prescribed.dtype)
-            edge.induced[:] = induced
+            edge.induced += rise
             if self.steps == 1:
-                edge.previous_induced[:] = induced
+                edge.previous_induced[:] = edge.induced
             change = max(change, float(np.abs(rise).max()))
         self._balance()
         return change
+
+    def _relaxation(self, window: Window) -> float:
+        """Return the fraction of a correction of the induced velocities that is made at once [-].
+
+        What the sides do acts back on a body beside them, and through it on the sides. Nearer to a blunt body than half
+        of its size the error grows from step to step, unless part of each correction is left out.
+
+        Args:
+            window: padded cell indices around the bodies.
+        """
+        if window[1] <= window[0]:
+            return 1.0
+        ndim, ratio = len(window) // 2, NEAR_SIDE_RATIO
+        spans = [(window[2 * d] - PAD, window[2 * d + 1] - PAD) for d in reversed(range(ndim))]
+        for edge in self.edges:
+            if edge.unbounded:
+                start, stop = spans[edge.axis]
+                lateral = max(b - a for d, (a, b) in enumerate(spans) if d != edge.axis)
+                ratio = min(ratio, max(start if edge.is_lower_side else edge.cells - stop, 0) / lateral)
+        return MIN_SIDE_RELAXATION + (1 - MIN_SIDE_RELAXATION) * ratio / NEAR_SIDE_RATIO
 
     def _induced(self, velocity: np.ndarray, window: Window) -> list[np.ndarray]:
         if self.water is None:

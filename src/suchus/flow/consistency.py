@@ -36,7 +36,7 @@ MAX_POSITION_ERROR = 1.0
 """Largest distance of a body from the position that its rates lead to [cells]. A kink within a step, where the rates
 change at once, may add half of the distance that the greatest rate so far covers in a step."""
 
-_HALVINGS = 40  # of the first step, until no point moves farther than a cell
+_HALVINGS = 40  # of a step, until no point moves farther than a cell
 _COMPARISON_FRACTION = 0.01  # fraction of a step over which positions are compared
 
 
@@ -223,10 +223,10 @@ class Consistency:
     path: np.ndarray = field(default_factory=lambda: np.zeros(1))
     """Length of the path of each coordinate [m]."""
 
-    def max_first_step(self, time: float, dt: float) -> float:
-        """Return the longest first step in which no point moves farther than a cell [s]; ``dt`` for a body that leaps.
+    def max_step(self, time: float, dt: float) -> float:
+        """Return the longest step in which no point moves farther than a cell [s]; ``dt`` for a body that leaps.
 
-        The speed at the start does not bound the step of a body that starts from rest.
+        The speed at the start does not bound the step of a body that accelerates, such as one that starts from rest.
 
         Args:
             time: start of the step [s].

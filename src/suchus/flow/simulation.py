@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
-from math import inf, isfinite, prod
+from math import isfinite, prod
 from pathlib import Path
 from typing import NamedTuple
 
@@ -133,7 +133,11 @@ class Simulation(Fields):
         self._speed = max([length(stream), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
-        self._max_first_step = inf  # of a first step, by how far it carries bodies that begin at rest
+        self._reaches = {
+            body.name: float(speeds(outline.points - np.array(self._torque_point(body.name, Pose()))[:, None]).max())
+            for body, outline in zip(self._bodies, outlines, strict=True)
+            if body.name in self.swimmers
+        }
         self.water.place(self._bodies, [self._in_frame(self.pose(b.name)) for b in self._bodies], 0.0)
         shared = self._watch.overlap_message(self.water, 0.0)
         if shared is not None:
@@ -178,9 +182,7 @@ class Simulation(Fields):
             changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
         for consistency in consistencies:
-            first_step = consistency.max_first_step(0.0, step)
-            self._max_first_step = min(self._max_first_step, first_step)
-            consistency.start(0.0, first_step)
+            consistency.start(0.0, consistency.max_step(0.0, step))
         return [consistency for consistency, is_changing in zip(consistencies, changing, strict=True) if is_changing]
 
     # --- state -------------------------------------------------------------------------------------------------
@@ -224,21 +226,86 @@ class Simulation(Fields):
     # --- one step ----------------------------------------------------------------------------------------------
 
     def next_step(self) -> float:
-        """Return the time step that the fields allow [s].
+        """Return the time step that the fields and the accelerations of the bodies allow [s].
 
         Raises:
-            OutsideLimits: a fixed step is asked for and carries water over more than a cell.
+            OutsideLimits: a fixed step is asked for in which water or a body moves by more than a cell.
         """
+        if not self._log.rows and not any(swimmer.added_mass.any() for swimmer in self.swimmers.values()):
+            self._prepare_free_bodies(self.water.offset)
         limit = self._limit(max(self._fastest if self._log.rows else self.water.fastest(), self._speed))
         if self.setup.step is None:
-            return self.setup.courant * (limit if self._log.rows else min(limit, self._max_first_step))
+            for consistency in self._consistency_checks:
+                limit = consistency.max_step(self.time, limit)
+            return self._accelerating_step(self.setup.courant * limit, self.setup.courant)
         if self.setup.step > 1.2 * limit:
             raise OutsideLimits(
                 f"at t = {self.time:.4g} s a step of {self.setup.step:.3g} s has Courant number "
                 f"{self.setup.step / limit:.3g}; above 1 it explodes. Take a step of at most {0.8 * limit:.3g} s, "
                 f"or None."
             )
+        longest = self._accelerating_step(self.setup.step, 1.2)
+        if longest < self.setup.step:
+            raise OutsideLimits(
+                f"at t = {self.time:.4g} s a body accelerates so fast that it moves by more than a cell in a step of "
+                f"{self.setup.step:.3g} s. Take a step of at most {0.8 * longest:.3g} s, or None."
+            )
         return self.setup.step
+
+    def _accelerating_step(self, dt: float, courant: float) -> float:
+        """Return the longest step in which no body that accelerates moves by more than a part of a cell [s].
+
+        Args:
+            dt: length of the step that the speeds allow [s].
+            courant: that part [-].
+        """
+        max_distance = courant * self.setup.grid.cell
+        for name, swimmer in self.swimmers.items():
+            relative_to = self.frame[1].copy()
+            if name == self.setup.follow:  # the water passes it, and it does not move in the grid
+                travels = (*self.setup.follow_axes, False)[: self.ndim]
+                relative_to = np.where(travels, self.setup.far_velocity(self.time), relative_to)
+            dt = swimmer.max_step(
+                self.time, dt, self.setup.density, self._contacts(dt).get(name), relative_to, self._reaches[name],
+                max_distance,
+            )  # fmt: skip
+        return dt
+
+    def _prepare_free_bodies(self, offset: float) -> None:
+        """Compute the added mass of bodies that are pushed and have not moved yet; their first step needs it.
+
+        Args:
+            offset: of the wall in the first step [cells].
+        """
+        if self._log.rows:
+            return
+        numbers = [
+            k
+            for k, body in enumerate(self._bodies)
+            if body.name in self.swimmers
+            and (self.swimmers[body.name].is_pushed(self.setup.density) or self.setup.contact is not None)
+        ]
+        if not numbers:
+            return
+        if offset != self.water.offset:
+            self.water.offset = offset
+            self.water.place(self._bodies, [self._in_frame(self.pose(b.name)) for b in self._bodies], self.time)
+        for number in numbers:
+            point = self._torque_point(self._bodies[number].name, Pose())
+            self._set_added_mass(number, point)
+
+    def _set_added_mass(self, number: int, point: tuple[float, ...]) -> None:
+        """Compute the added mass of a free body in the placed water.
+
+        Args:
+            number: index of the body.
+            point: its centre of mass, in the frame of the grid [m].
+        """
+        swimmer = self.swimmers[self._bodies[number].name]
+        if swimmer.is_free.any():
+            free_degrees = swimmer.is_free if self.ndim == 3 else None
+            mass = added_mass(self.water, self._outlines[number], point, self.setup.density, number, free_degrees)
+            swimmer.set_added_mass(mass, self.time)
 
     def _limit(self, fastest: float) -> float:
         """Return the time step at which the fastest water crosses one cell, with a margin for friction [s]."""
@@ -264,6 +331,8 @@ class Simulation(Fields):
             raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
         for consistency in self._consistency_checks:
             consistency.check_step(self.time, dt)
+        offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
+        self._prepare_free_bodies(offset)
         contacts = self._contacts(dt)
         for name, swimmer in self.swimmers.items():
             swimmer.advance(self.time, dt, self.setup.density, contacts.get(name))
@@ -273,7 +342,6 @@ class Simulation(Fields):
         time = self.time + dt
         poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
         moving = self.setup.follow is not None or not all(b.is_static for b in self._bodies)
-        offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
         if moving or not self._is_placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE:
             self.water.offset = offset
             self.water.place(self._bodies, poses, time)
@@ -348,9 +416,8 @@ class Simulation(Fields):
             if swimmer is not None:
                 body_pose = swimmer.place_and_rate
                 swimmer.load = np.array([*act.force, *act.moment])
-                if swimmer.steps % ADDED_MASS_INTERVAL == 1 and swimmer.is_free.any():
-                    free_degrees = swimmer.is_free if self.ndim == 3 else None
-                    swimmer.set_added_mass(added_mass(water, markers, point, setup.density, k, free_degrees), self.time)
+                if swimmer.steps % ADDED_MASS_INTERVAL == 1:
+                    self._set_added_mass(k, point)
             values += columns(load, act, step.drift, body_pose, self._watch.errors[k])
             part_values += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
@@ -368,6 +435,7 @@ class Simulation(Fields):
         self._log.rows.append(row)
         if len(self._log.rows) % SIDE_CHECK_INTERVAL == 0:
             self._watch.sides(water, self.time)
+            self._watch.wakes(water, self.time)
 
     def last_loads(self, name: str) -> FlowLoads:
         """Return the force of the water on a body and on each of its parts in the last step.
@@ -565,6 +633,7 @@ class Simulation(Fields):
             finally:
                 saver.save(self, is_forced=True)
         self._watch.sides(self.water, self.time)
+        self._watch.wakes(self.water, self.time)
         return self.record
 
     def _refuse_past(self, end_time: float, subject: str, remedy: str) -> None:

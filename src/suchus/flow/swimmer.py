@@ -14,6 +14,7 @@ not drift, and the error of its attitude is of second order.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -90,6 +91,30 @@ about the angle that the body turns in a step."""
 
 _RATE_TOLERANCE = 1e-14
 """Relative change of the rates at which the iteration stops [-]."""
+
+
+_FORCE_MOMENTS = 0.5, 1.0
+"""Fractions of a step at which a body's own force is evaluated to bound the step; the first counts for its motion."""
+
+MAX_STEP_REDUCTIONS = 40
+"""Most attempts to find a step in which a body does not move too far [-]. Each shortens the step."""
+
+
+class _Motion(NamedTuple):
+    """Motion of a free body in one step, per degree of freedom."""
+
+    coordinates: np.ndarray
+    """Centre of mass and attitude at the end [m, rad]."""
+    rate: np.ndarray
+    """Rates at the end [m/s, rad/s]."""
+    acceleration: np.ndarray
+    """Mean acceleration [m/s^2, rad/s^2]."""
+    applied: np.ndarray
+    """Mean force and torque except those of the water [N/m, N]."""
+    momentum: np.ndarray
+    """Momentum and angular momentum at the start [kg/s, kg m/s]."""
+    residual_impulse: np.ndarray
+    """Momentum still owed at the start [kg/s, kg m/s]."""
 
 
 @dataclass(slots=True)
@@ -254,16 +279,92 @@ class Swimmer:
         Raises:
             InvalidDesign: the body's own force is not three or six finite numbers.
         """
+        motion = self._motion(time, dt, water_density, contact)
+        self.momentum, self.span, self.residual_impulse = motion.momentum, dt, motion.residual_impulse
+        self.coordinates, self.rate, self.acceleration = motion.coordinates, motion.rate, motion.acceleration
+        self.applied = motion.applied
+        self.steps += 1
+
+    def is_pushed(self, water_density: float) -> bool:
+        """Return whether weight, springs, dampers or a force act on the body besides the water.
+
+        Args:
+            water_density: of the water [kg/m^3].
+        """
+        body = self.body
+        is_heavy = body.density not in (None, water_density) and any(body.gravity)
+        return is_heavy or any(body.springs) or any(body.dampers) or body.force is not None
+
+    def max_step(
+        self, time: float, dt: float, water_density: float, contact: np.ndarray | None, grid_velocity: np.ndarray,
+        reach: float, max_distance: float,
+    ) -> float:  # fmt: skip
+        """Return the longest step in which the body, at its speed at the end, moves by a distance [s]; ``dt`` at most.
+
+        The speed at the start does not bound the step of a body that is released or pushed.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step that the fields allow [s].
+            water_density: of the water [kg/m^3].
+            contact: see ``advance``.
+            grid_velocity: velocity relative to which the distance counts, shape (axis,) [m/s].
+            reach: distance of the surface from the centre of mass [m].
+            max_distance: largest distance of a point of the surface [m].
+
+        Raises:
+            InvalidDesign: see ``advance``.
+        """
+        ndim, start_speed = self._ndim, self._surface_speed(self.rate, grid_velocity, reach)
+        pushed = self.body.force is not None
+        for _ in range(MAX_STEP_REDUCTIONS):
+            motions = [
+                self._motion(time, dt, water_density, contact, moment) for moment in _FORCE_MOMENTS[: 1 + pushed]
+            ]
+            motion = max(motions, key=lambda motion: self._surface_speed(motion.rate, grid_velocity, reach))
+            end_speed = self._surface_speed(motion.rate, grid_velocity, reach)
+            if end_speed <= start_speed or end_speed * dt <= max_distance:
+                break
+            acceleration = self._surface_speed(motion.acceleration, np.zeros(ndim), reach)
+            dt = min(
+                0.99 * dt,
+                2 * max_distance / (start_speed + np.sqrt(start_speed**2 + 4 * acceleration * max_distance)),
+            )
+        return float(dt)
+
+    def _surface_speed(self, rate: np.ndarray, grid_velocity: np.ndarray, reach: float) -> float:
+        """Return the greatest speed of a point of the surface [m/s].
+
+        Args:
+            rate: of each degree of freedom [m/s, rad/s].
+            grid_velocity: velocity relative to which it counts [m/s].
+            reach: distance of the surface from the centre of mass [m].
+        """
+        ndim = self._ndim
+        return float(np.linalg.norm(rate[:ndim] - grid_velocity) + reach * np.linalg.norm(rate[ndim:]))
+
+    def _motion(
+        self, time: float, dt: float, water_density: float, contact: np.ndarray | None, force_moment: float = 0.5
+    ) -> "_Motion":
+        """Return the motion in a step; see ``advance``. The state does not change.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step [s].
+            water_density: of the water [kg/m^3].
+            contact: force and torque of other bodies that nearly touch, or None.
+            force_moment: fraction of the step at which the body's own force is evaluated [-].
+        """
         shape = self.body.shape
         density = water_density if self.body.density is None else self.body.density
         start_mass, end_mass = shape.mass(time), shape.mass(time + dt)
         matrix = self._matrix(self.coordinates)
         start_inertia, slip = start_mass.inertia(matrix), self._slip(start_mass, matrix)
         momentum = (density * start_inertia) @ self.rate
-        guess = self._foreseen(momentum, dt)
-        self.momentum, self.span = momentum, dt
+        residual_impulse = self._residual_impulse_before(momentum)
+        expected_force = self._expected_force(residual_impulse, dt)
         recoil = slip + self._slip(end_mass, matrix)
-        outer, yielding = self._outer(time, dt, (density - water_density) * start_mass.size, recoil)
+        outer, yielding = self._outer(time, dt, (density - water_density) * start_mass.size, recoil, force_moment)
         if contact is not None:
             outer = outer + contact
         rate = self.rate
@@ -271,9 +372,9 @@ class Swimmer:
             end_inertia = end_mass.inertia(matrix)
             inertia_change = end_inertia - start_inertia
             inertia_change[: self._ndim] = 0
-            force = guess - (density * inertia_change / dt) @ self.rate + outer
+            force = expected_force - (density * inertia_change / dt) @ self.rate + outer
             total_inertia = density * end_inertia + self.added_mass + np.diag(yielding)
-            push = self._accelerated(total_inertia, force if self.steps else force - guess - outer)
+            push = self._accelerated(total_inertia, force)
             previous_rate, rate = rate, self.rate + dt * push
             place = self._displaced(dt * 0.5 * (self.rate + rate) - dt * 0.5 * recoil)
             rate_change = np.abs(rate - previous_rate).max()
@@ -281,40 +382,42 @@ class Swimmer:
                 break
             matrix = self._matrix(place)
             recoil = slip + self._slip(end_mass, matrix)
-        self.applied = outer - yielding * push
-        self.coordinates, self.rate, self.acceleration = place, rate, push
-        self.steps += 1
+        return _Motion(place, rate, push, outer - yielding * push, momentum, residual_impulse)
 
-    def _foreseen(self, momentum: np.ndarray, dt: float) -> np.ndarray:
-        """Return the water's force expected in a step without acceleration, and update the momentum still owed.
+    def _residual_impulse_before(self, momentum: np.ndarray) -> np.ndarray:
+        """Return the momentum still owed at the start of a step [kg/s, kg m/s; in space kg m/s, kg m^2/s].
 
         Args:
-            momentum: of the body now [kg/s, kg m/s; in space kg m/s, kg m^2/s].
+            momentum: of the body at the start of the step, in the same units.
+        """
+        if not self.steps:
+            return self.residual_impulse
+        return self.residual_impulse + self.span * (self.load + self.applied) - (momentum - self.momentum)
+
+    def _expected_force(self, residual_impulse: np.ndarray, dt: float) -> np.ndarray:
+        """Return the water's force expected in a step without acceleration [N/m, N; in space N, N m].
+
+        Args:
+            residual_impulse: momentum still owed at the start of the step [kg/s, kg m/s].
             dt: length of the step [s].
         """
-        guess: np.ndarray = self.load + self.added_mass @ self.acceleration
-        if self.steps:
-            self.residual_impulse = (
-                self.residual_impulse + self.span * (self.load + self.applied) - (momentum - self.momentum)
-            )
+        force: np.ndarray = self.load + self.added_mass @ self.acceleration
         if self.steps > 1:  # the second step compensates the sudden start by itself
             # The force of the last step is one step late. The missing momentum is repaid gradually. Otherwise an eel,
             # whose lateral added mass is ten times its own mass, sways several times too much. An extrapolation of the
             # force would instead amplify its fluctuations.
-            guess = guess + RESIDUAL_RELAXATION * self.residual_impulse / dt
-        return guess
+            force = force + RESIDUAL_RELAXATION * residual_impulse / dt
+        return force
 
     def _accelerated(self, total_inertia: np.ndarray, force: np.ndarray) -> np.ndarray:
         """Return the acceleration in the free degrees of freedom, and 0 in the others.
 
         Args:
             total_inertia: mass of the body and added mass, with the terms of springs and dampers, a square matrix.
-            force: on a body that does not accelerate. In the first step, water force and added mass are not known: the
-                force is then that of the change of inertia.
+            force: on a body that does not accelerate.
         """
         push = np.zeros(self.coordinates.size)
-        if self.steps or self._ndim == 3:
-            push[self.is_free] = np.linalg.solve(total_inertia[np.ix_(self.is_free, self.is_free)], force[self.is_free])
+        push[self.is_free] = np.linalg.solve(total_inertia[np.ix_(self.is_free, self.is_free)], force[self.is_free])
         return push
 
     def _slip(self, mass: Mass | SpaceMass, matrix: np.ndarray) -> np.ndarray:
@@ -334,7 +437,9 @@ class Swimmer:
             place[3:] = rotation.to_vector(turn, self.coordinates[3:] + step[3:])
         return place
 
-    def _outer(self, time: float, dt: float, weight: float, recoil: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _outer(
+        self, time: float, dt: float, weight: float, recoil: np.ndarray, force_moment: float
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Return the mean of all external forces except the water's over a step, and their decrease per acceleration.
 
         The force is that on a body that does not accelerate [N/m, N]; the decrease is the diagonal of a matrix [kg/m,
@@ -345,6 +450,7 @@ class Swimmer:
             dt: length of the step [s].
             weight: mass of the body minus that of the displaced water [kg/m].
             recoil: velocity of the frame due to the deformation, sum of start and end [m/s, rad/s].
+            force_moment: fraction of the step at which the body's own force is evaluated [-].
 
         Raises:
             InvalidDesign: the body's own force is not three or six finite numbers.
@@ -356,7 +462,7 @@ class Swimmer:
         outer = weight * np.array([*pull, *np.zeros(mid_place.size - ndim)]) - self._spring_force(mid_place, stiff)
         outer = outer - viscous * self.rate
         if body.force is not None:
-            force = body.force(time + 0.5 * dt, self._state(mid_place))
+            force = body.force(time + force_moment * dt, self._state(mid_place))
             sizes = [(3,)] if ndim == 2 else [(3,), (6,)]
             if np.shape(force) not in sizes or not np.isfinite(np.asarray(force, float)).all():
                 raise InvalidDesign(

@@ -1,4 +1,4 @@
-"""Warnings of a simulation, once each: thin boundary layers, overlapping bodies, and vortices at fixed sides."""
+"""Warnings of a simulation, once each: thin layers, overlapping bodies, vortices at fixed sides, and near wakes."""
 
 from dataclasses import dataclass, field
 from warnings import warn
@@ -7,6 +7,8 @@ import numpy as np
 
 from suchus.core.errors import Doubtful
 from suchus.flow.compiled import PAD
+from suchus.flow.immerse import REACH
+from suchus.flow.pose import length
 from suchus.flow.setup import Setup
 from suchus.flow.sides import Stream
 from suchus.flow.water import Fluid
@@ -22,6 +24,22 @@ MAX_OVERLAP = 0.5
 
 MIN_INDUCED_SPEED = 0.02
 """Speed that the vortex induces in a cell at the side, over the fastest water, below which no warning is issued [-]."""
+
+MIN_WAKE_DISTANCE = 3.0
+"""Distance behind the bodies, over their width, from which on a side that carries the wake out changes the drag by less
+than 2 % [-]. On a sphere at Re 100 it is 10 % at 1.2 diameters and 4 % at 2."""
+
+MIN_STREET_DISTANCE = 11.0
+"""The same for the lift of a vortex street in the plane: 9 % off at 8 diameters, 4 % at 10, 1 % at 12 [-]."""
+
+MIN_STREET_RE = 47.0
+"""Reynolds number from which on a blunt body in the plane sheds vortices [-]."""
+
+MAX_BLUNT_LENGTH = 2.0
+"""Length along the stream, over the width across it, up to which a body is blunt [-]."""
+
+MIN_WAKE_VORTICITY = 0.01
+"""Vorticity at a side, over the largest in the domain, from which on the wake has come there [-]."""
 
 
 def vorticity_size(velocity: np.ndarray) -> np.ndarray:
@@ -124,6 +142,47 @@ class Watch:
                     f"Enlarge the domain there, or leave all four sides Stream(), which then move as in an unbounded "
                     f"domain.",
                 )
+
+    def wakes(self, water: Fluid, time: float) -> None:
+        """Warn of a wake that leaves through a side so near behind a body that the forces depend on the side.
+
+        Args:
+            water: the water after a step, with the bodies.
+            time: time, for the message [s].
+        """
+        window, ndim = water.window, water.ndim
+        if len(water.layers) > 1 or window[1] <= window[0]:
+            return
+        margin, spin = REACH + 2, None
+        spans = [(window[2 * d] - PAD + margin, window[2 * d + 1] - PAD - margin) for d in reversed(range(ndim))]
+        for edge in water.border.edges:
+            if edge.convective_weight < 0.5:
+                continue
+            start, stop = spans[edge.axis]
+            width = max(b - a for d, (a, b) in enumerate(spans) if d != edge.axis)
+            distance = start if edge.is_lower_side else edge.cells - stop
+            sheds = (
+                ndim == 2 and stop - start <= width * MAX_BLUNT_LENGTH and self._reynolds(water, width) > MIN_STREET_RE
+            )
+            needed = MIN_STREET_DISTANCE if sheds else MIN_WAKE_DISTANCE
+            if distance >= needed * width:
+                continue
+            spin = vorticity_size(water.velocity) if spin is None else spin
+            lines = edge.with_normal_first(spin)
+            outer = lines[0] if edge.is_lower_side else lines[-1]
+            if float(outer.max()) > MIN_WAKE_VORTICITY * float(spin.max()):
+                h = water.grid.cell
+                effect = "the lift and the frequency of a vortex street depend" if sheds else "the drag depends"
+                self._say(
+                    f"wake {edge.name}",
+                    f"at t = {time:.4g} s the wake leaves through the {edge.name} side of the domain, "
+                    f"{distance * h:.3g} m behind the bodies or {distance / width:.2g} times their width: {effect} on "
+                    f"that side. Put it at least {needed * width * h:.3g} m behind them.",
+                )
+
+    def _reynolds(self, water: Fluid, width: int) -> float:
+        """Return the Reynolds number of the far stream past bodies of a width in cells [-]."""
+        return length(water.border.stream) * width * water.grid.cell / self.setup.viscosity
 
     def _say(self, key: str, message: str | Doubtful) -> None:
         """Issue a warning once for each key."""

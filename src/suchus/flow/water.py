@@ -544,6 +544,7 @@ class Fluid:
             stage.blend_fraction,
         )
         if self.window[1] > self.window[0]:
+            self._clear_raw_on_sides()
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
             for c in range(self.ndim):
@@ -552,6 +553,16 @@ class Fluid:
                     stage.dt, stage.blend_fraction,
                 )  # fmt: skip
         self.border.fill(stage.result)
+
+    def _clear_raw_on_sides(self) -> None:
+        """Set the bare update on the low sides of the domain to 0, as far as the window reaches them.
+
+        The kernel computes no flux through these faces and leaves undefined numbers there.
+        """
+        for c, repeats in enumerate(self.repeats):
+            axis = self.ndim - 1 - c
+            if not repeats and self.window[2 * axis] <= PAD:
+                np.moveaxis(self._raw[c], axis, 0)[PAD - self.window[2 * axis]] = 0
 
     def _mirror_raw(self) -> None:
         """Fill the bare update beyond the mirrors that cut bodies with its mirror image."""
@@ -645,14 +656,43 @@ class Fluid:
     def contents(self) -> np.ndarray:
         """Return momentum, volume and first moments inside the region of each part of each placed body.
 
-        The shape is (row, ``momentum.contents_of``).
+        The shape is (row, ``momentum.contents_of``). Half of the volume of a face on a mirror lies in the domain.
         """
         sums = np.zeros((len(self.immersion_sums), contents_of(self.ndim)))
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
             for c, owner in enumerate(self.owners):
                 add_contents(sums, b[c], mu0[c], self._flat(owner), c, self._layout[0], self._near_layout, self.inner)
+            for k, is_cut in enumerate(cuts(self.window, self.grid)):
+                if is_cut:
+                    self._add_half_faces(sums, k // 2, is_low=k % 2 == 0)
         return sums
+
+    def _add_half_faces(self, sums: np.ndarray, axis: int, *, is_low: bool) -> None:
+        """Count half of the volume of the faces on a mirror: ``add_contents`` counts all of it, at a high end none.
+
+        Nothing moves through a mirror, so that these faces have no momentum.
+
+        Args:
+            sums: see ``contents``, to change.
+            axis: axis of the mirror's normal.
+            is_low: whether the mirror is at the low end of the axis.
+        """
+        ndim, starts = self.ndim, self.window[::2][::-1]  # x first
+        plane = PAD if is_low else PAD + self.grid.cells[axis]
+        spans = [
+            (plane, plane + 1) if d == axis else (max(start, PAD), min(stop, PAD + n))
+            for d, (start, stop, n) in enumerate(zip(starts, self.window[1::2][::-1], self.grid.cells, strict=True))
+        ]
+        index = tuple(slice(*span) for span in reversed(spans))
+        near_index = tuple(slice(a - start, b - start) for (a, b), start in zip(spans, starts, strict=True))[::-1]
+        volume = (0.5 - is_low) * (1 - self.mu0[axis][index].astype(float)) / ndim
+        rows = self.owners[axis][near_index].ravel()
+        places = np.meshgrid(
+            *(np.arange(*span) - PAD + 0.5 * (d != axis) for d, span in reversed(list(enumerate(spans)))), indexing="ij"
+        )[::-1]
+        for column, weight in enumerate((1.0, *places), start=contents_of(ndim) - 1 - ndim):
+            sums[:, column] += np.bincount(rows, (volume * weight).ravel(), len(sums))
 
     def _project(self, velocity: np.ndarray, dt: float, limits: tuple[float, float]) -> None:
         """Make the divergence of a velocity that of the bodies, and add the pressure that this takes to ``p``.
