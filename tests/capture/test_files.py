@@ -2,6 +2,7 @@ import sys
 from dataclasses import replace
 from types import ModuleType
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -91,8 +92,11 @@ def test_no_file_a_folder_and_no_text(tmp_path):
 
 @pytest.fixture
 def deeplabcut(tmp_path):
-    file = tmp_path / "dlc.csv"
-    file.write_text("scorer,a,a,a\nbodyparts,hip,hip,hip\ncoords,x,y,likelihood\n0,1,2,0.9\n")
+    """A file that only the library reads."""
+    file = tmp_path / "dlc.h5"
+    with h5py.File(file, "w") as store:
+        table = np.array([(4,), (5,), (8,)], dtype=[("index", int)])
+        store.create_dataset("df_with_missing/table", data=table)
     return file
 
 
@@ -144,6 +148,7 @@ def test_poses_of_one_individual_with_y_down(deeplabcut, movement):
     tracks = read_tracks(deeplabcut, ReadingOptions(rate=10.0, individual="one"))
     assert movement == {"software": "DeepLabCut", "fps": 10.0}
     assert (tracks.points, tracks.unit) == (("hip", "LF"), "px")
+    np.testing.assert_allclose(tracks.time, [0.4, 0.5, 0.8])  # the file's frames, not the library's count
     np.testing.assert_allclose(tracks.at("hip"), [[0, -4], [8, -12], [16, -20]])
     assert np.isnan(tracks.at("LF")[2]).all()  # the tracker was not sure
     np.testing.assert_allclose(tracks.at("LF")[:2], [[2, -6], [10, -14]])

@@ -30,6 +30,9 @@ _MIN_END_Z = 5.0  # the same for a point with one link
 _BENDS = 5  # greatest power of time in the fit of a path
 _HARMONICS = 4  # greatest number of harmonics in the fit of a path
 _SKIN = 0.01  # [link]; least standard deviation of a distance
+_MAX_LINK = 0.5  # [trunk]; a longer link may bend between its keypoints, which nothing shows
+_CHORD = 0.1  # [link]; standard deviation of the distance of keypoints with such a bend
+_WHITE = 0.3  # mean square of residuals' steps over twice their variance, above which they count as independent
 _UNKNOWN = 1e9  # [s]; standard error of a lag with too few frames
 _EXACT = 1e-4  # [link]; least error of a keypoint's position
 _SMOOTHING_WINDOW = 0.3  # [cycle]; for the velocity of a keypoint
@@ -61,15 +64,13 @@ def find_late_keypoints(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " 
             inner_points = [
                 name for name in chain if len(point_lags[name]) == 2 and point_lags[name][0] * point_lags[name][1] > 0
             ]
-            end_points = [name for name in (chain[0], chain[-1]) if point_lags[name][0]]
             smallest_pair = min(lagging_pairs, key=lambda pair: abs(link_lags[pair]))
             lagging_points = (
                 inner_points[:1]
-                or end_points[:1]
                 or [name for name in lags.inner(chain, links) if name in smallest_pair]
-                or smallest_pair
+                or [lags.likelier(chain, links, smallest_pair)]
             )
-            lag_by_point = {name: max(point_lags[name], key=abs) for name in lagging_points}
+            lag_by_point = {name: max(point_lags[name], key=abs) for name in lagging_points[:1]}
         else:
             lag_by_point = lags.inner(chain, links) or lags.at_an_end(chain)
         if not lag_by_point:
@@ -83,6 +84,25 @@ def find_late_keypoints(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " 
     return reasons
 
 
+def _trunk_length(tracks: Tracks) -> float:
+    """Return the length of the trunk along its points, or of all links of the midline where it is not known."""
+    length = tracks.trunk_length()
+    if np.isfinite(length):
+        return length
+    chain = tracks.midline
+    links = [float(np.nanmedian(np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1))) for a, b in pairwise(chain)]
+    return float(np.nansum(links))
+
+
+def _independent_fraction(residual: Float[np.ndarray, " frame"]) -> float:
+    """Return the fraction of frames whose residual is independent of the last one: 1 for white noise [-]."""
+    steps = np.diff(residual)
+    steps, values = steps[np.isfinite(steps)], residual[np.isfinite(residual)]
+    if len(steps) < _FRAMES or np.var(values) == 0.0:
+        return 1.0
+    return float(np.clip(np.mean(steps**2) / (2 * _WHITE * np.var(values)), 1.0 / len(values), 1.0))
+
+
 class _LaggedLink(NamedTuple):
     """Variation of the distance of two neighbours with the lag between them."""
 
@@ -92,6 +112,8 @@ class _LaggedLink(NamedTuple):
     """What of that a body that bends between the two may add [-]: there the line between them is shorter."""
     lag: float
     """By how much the second one runs behind the first, 0 where that is not sure [s]."""
+    frames: float
+    """Number of frames with independent residuals: a path that turns or stops leaves residuals that go on [-]."""
 
 
 class _Paced(NamedTuple):
@@ -127,6 +149,7 @@ class _Lags:
             count = harmonics_for(frame_count, tracks.rate * period, max_harmonics=_HARMONICS)
             rows = tracks.at(name)[:, :2].T
             self._courses[name] = [fit(tracks.time, row, period, harmonics=count, drift=turns) for row in rows]
+        self._max_link = _MAX_LINK * _trunk_length(tracks)
         step = max(1.0 / tracks.rate, 0.01 * period)
         self.lags = step * np.arange(-int(_MAX_LAG * period / step), int(_MAX_LAG * period / step) + 1)
         self._zero_index = len(self.lags) // 2
@@ -176,18 +199,27 @@ class _Lags:
         sways = float(mean[self._zero_index]) * np.hypot(_SKIN, mean_square_bend / 8)
         noise = sum(float(np.nanvar(series)) for series in residual) / 2 + sways**2
         chord = float((mean[self._zero_index] * mean_square_bend / 16) ** 2 / noise)
-        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord)[0])
+        if mean[self._zero_index] > self._max_link:
+            noise += (_CHORD * float(mean[self._zero_index])) ** 2
+        frames = len(self._tracks.time) * min(1.0, *(_independent_fraction(series) for series in residual))
+        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, frames), frames)
 
-    def _surely(self, varies: np.ndarray, chord: float) -> tuple[float, float]:
-        """Return the lag at which a distance varies least [s], 0 if it is not significant, and the gain."""
+    def _surely(self, varies: np.ndarray, chord: float, frames: float) -> float:
+        """Return the lag at which a distance varies least [s], 0 if it is not significant.
+
+        Args:
+            varies: variance of the distance over that of noise, by the lag.
+            chord: what of that a bend between the points may add.
+            frames: number of frames with independent residuals.
+        """
         best = int(np.argmin(varies))
         variance_drop = float(varies[self._zero_index] - varies[best])
-        gained = len(self._tracks.time) * variance_drop
+        gained = frames * variance_drop
         is_significant = (
             gained > _GAIN and variance_drop > chord and varies[best] < _EXPLAINS * varies[self._zero_index]
         )
         lag = float(self.lags[best])
-        return (lag if is_significant and abs(lag) > _MIN_LAG * self._clock.period else 0.0), gained
+        return lag if is_significant and abs(lag) > _MIN_LAG * self._clock.period else 0.0
 
     def inner(self, chain: Sequence[str], links: Mapping[tuple[str, str], _LaggedLink]) -> dict[str, float]:
         """Return the inner point of a chain whose lag is significant in both links together, if there is one [s].
@@ -199,7 +231,7 @@ class _Lags:
         for front, name, rear in zip(chain, chain[1:], chain[2:], strict=False) if links else ():
             front_link, rear_link, paced = links[front, name], links[name, rear], self._paced(chain, name)
             variances = front_link.varies, rear_link.varies[::-1]
-            turn_gain = len(self._tracks.time) * (
+            turn_gain = min(front_link.frames, rear_link.frames) * (
                 sum(row[self._zero_index] - row for row in variances) - front_link.chord - rear_link.chord
             )
             turn_gain[self._zero_index] = 0.0
@@ -222,6 +254,22 @@ class _Lags:
             return {}
         name = max(candidates, key=lambda point_name: candidates[point_name][1])
         return {name: candidates[name][0]}
+
+    def likelier(
+        self, chain: Sequence[str], links: Mapping[tuple[str, str], _LaggedLink], pair: tuple[str, str]
+    ) -> str:
+        """Return the point of a pair whose links all together vary less if it is the late one."""
+        index = int(np.argmin(np.abs(self.lags - links[pair].lag)))
+        decrease = {}
+        for name, other in (pair, pair[::-1]):
+            decrease[name] = 0.0
+            for neighbour in midline_neighbours(chain, name):
+                if neighbour != other:
+                    outer_pair = (neighbour, name) if (neighbour, name) in links else (name, neighbour)
+                    is_same_sense = (outer_pair[1] == name) == (pair[1] == name)
+                    row = links[outer_pair].varies[:: 1 if is_same_sense else -1]
+                    decrease[name] += float(row[self._zero_index] - row[index])
+        return max(pair, key=lambda name: decrease[name])
 
     def at_an_end(self, chain: Sequence[str]) -> dict[str, float]:
         """Return the first or last point of a chain if its lag by the pace is significant [s]."""

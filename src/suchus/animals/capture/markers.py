@@ -19,6 +19,7 @@ from suchus.robot.design import LEGS
 SUFFIXES = (".trc", ".c3d")
 """How the names of marker files end."""
 _HEADER = 5  # lines of a TRC file before its frames
+_RATE_TOLERANCE = 0.02  # relative difference of the rate in the header from that of the frames' times
 _INSTALL = 'pip install "suchus[capture]"'
 _TRUNK = ("shoulder", "hip", "neck", "tail_base")
 
@@ -34,7 +35,7 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
         UnreadableFile: the file is broken, its unit is not known, or the library that reads it is not installed.
         UnusableTracks: it holds no frames, or it cannot be seen which axis is up.
     """
-    points, place, rate, unit = _trc(path) if path.suffix.lower() == ".trc" else _c3d(path)
+    points, place, rate, unit, frame = _trc(path) if path.suffix.lower() == ".trc" else _c3d(path)
     if unit not in UNITS or unit == "px":
         raise UnreadableFile(f"{path.name} has lengths in {unit!r}; m, cm and mm are known.")
     if not len(place):
@@ -43,7 +44,7 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
         raise UnreadableFile(f"{path.name} says that it has {rate:g} frames a second; more than 0 are needed.")
     point_names = map_keypoint_names(points, names, path.name)
     return Tracks(
-        time=np.arange(len(place)) / rate,
+        time=frame / rate,
         points=point_names,
         position=UNITS[unit] * upright(place, point_names, path.name),
         unit="m",
@@ -70,8 +71,8 @@ def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray
     return place if up_axis == 2 else place[..., [2, 0, 1]]
 
 
-def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
-    """Return keypoints, positions, frame rate and unit of length of a TRC file.
+def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str, np.ndarray]:
+    """Return keypoints, positions, frame rate, unit of length and numbers of the frames of a TRC file.
 
     Positions have the shape (frame, point, 3) and are NaN where a marker is missing.
     """
@@ -94,11 +95,40 @@ def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
     if not points:
         raise UnreadableFile(f"{path} names no marker in its fourth line.")
     place[~np.isfinite(place).all(axis=-1)] = np.nan
-    return points, place, rate, unit
+    return points, place, rate, unit, _trc_frames([row[:2] for row in rows], rate, path.name)
 
 
-def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
-    """Return keypoints, positions, frame rate and unit of length of a C3D file.
+def _trc_frames(cells: list[list[str]], rate: float, name: str) -> np.ndarray:
+    """Return the numbers of a TRC file's frames by its first column, or by its times where that does not count.
+
+    Raises:
+        UnreadableFile: the times are those of another rate than the header's.
+    """
+    frame, time = (np.array([_value(row[i]) if len(row) > i else np.nan for row in cells]) for i in (0, 1))
+    steps, counts = np.diff(time), np.diff(frame)
+    has_frames, has_times = np.all(counts > 0), np.all(steps > 0)
+    if has_frames and has_times and len(steps) > 1:
+        implied_rate = float((frame[-1] - frame[0]) / (time[-1] - time[0]))
+        if abs(implied_rate / rate - 1) > _RATE_TOLERANCE:
+            raise UnreadableFile(
+                f"the frames and times of {name} go on at {implied_rate:.4g} frames a second, and its DataRate is "
+                f"{rate:g}; both must agree: mend the wrong one."
+            )
+    if has_frames:
+        return frame
+    return rate * time if has_times and len(time) > 1 else np.arange(float(len(cells)))
+
+
+def _value(cell: str) -> float:
+    """Return the number in a cell, NaN without one."""
+    try:
+        return float(cell)
+    except ValueError:
+        return float("nan")
+
+
+def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str, np.ndarray]:
+    """Return keypoints, positions, frame rate, unit of length and numbers of the frames of a C3D file.
 
     Positions have the shape (frame, point, 3) and are NaN where a marker is missing.
     """
@@ -113,11 +143,12 @@ def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
             warnings.simplefilter("ignore")  # such as that there are no analog channels
             reader: Any = c3d.Reader(file)
             points = tuple(str(label).strip() for label in reader.point_labels)
-            frames = [points_of for _, points_of, _ in reader.read_frames(copy=True)]
+            numbered_frames = [(number, points_of) for number, points_of, _ in reader.read_frames(copy=True)]
             rate, unit = float(reader.point_rate), str(reader.get("POINT:UNITS").string_value).strip().lower()
     except Exception as error:
         raise UnreadableFile(f"{path} cannot be read as a C3D file: {' '.join(str(error).split())}.") from error
+    frames = [points_of for _, points_of in numbered_frames]
     samples = np.array(frames, dtype=float).reshape(len(frames), -1, 5)[:, : len(points)]
     place = samples[..., :3].copy()
     place[samples[..., 3] < 0.0] = np.nan
-    return points, place, rate, unit
+    return points, place, rate, unit, np.array([number for number, _ in numbered_frames], dtype=float)

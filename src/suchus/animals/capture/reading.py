@@ -1,6 +1,7 @@
 """A file of tracks in, whatever wrote it; a gait as a file out.
 
-Files of DeepLabCut, SLEAP and LightningPose are read by the ``movement`` library, an optional extra.
+CSV tables of DeepLabCut, LightningPose, SLEAP and Anipose need no further library. Other files of DeepLabCut and SLEAP,
+and NWB, are read by the ``movement`` library, an optional extra.
 """
 
 from collections.abc import Mapping
@@ -13,6 +14,7 @@ import h5py
 import numpy as np
 
 from suchus.animals.capture.markers import SUFFIXES, read_markers, upright
+from suchus.animals.capture.poses import Poses, read_pose_table, software_of
 from suchus.animals.capture.retarget import Captured
 from suchus.animals.capture.table import is_table, read_table
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, View, map_keypoint_names
@@ -25,6 +27,9 @@ from suchus.robot.design import LEGS
 SOFTWARE = ("DeepLabCut", "SLEAP", "LightningPose", "Anipose", "NWB")
 """Software whose files can be read."""
 
+_TABLE_SOFTWARE = ("DeepLabCut", "LightningPose", "SLEAP", "Anipose")  # whose CSV tables need no library
+_TEXT = (".csv", ".txt")
+_NO_RATE = "{} does not give its frame rate; give it, as in --fps 50."
 _INSTALL = 'pip install "suchus[capture]"'
 
 
@@ -58,26 +63,60 @@ def read_poses(
         UnreadableFile: the file is broken or of another kind.
         UnusableTracks: no frame rate, or several individuals to choose from.
     """
-    data = _load(path, software or _guess(path), rate)
-    if "time_unit" not in data.attrs or data.attrs["time_unit"] != "seconds":
-        raise UnusableTracks(f"{path.name} does not give its frame rate; give it, as in --fps 50.")
-    data = _select_individual(data, individual, path.name)
-    dims = [d for d in data.position.dims if d not in ("time", "space")]
-    position = data.position.transpose("time", *dims, "space").values.astype(float)
-    if "confidence" in data:
-        point_confidence = data.confidence.transpose("time", *dims).values
-        position[~(np.isnan(point_confidence) | (point_confidence >= confidence))] = np.nan
+    software = software or _guess(path)
+    if path.suffix.lower() in _TEXT and software in _TABLE_SOFTWARE:
+        poses = read_pose_table(path, software, individual)
+        if rate is None:
+            raise UnusableTracks(_NO_RATE.format(path.name))
+        time = poses.frame / rate
+    else:
+        time, poses = _movement_poses(_load(path, software, rate), path, individual, rate)
+    position = poses.position.copy()
+    position[poses.confidence < confidence] = np.nan
     position[np.isnan(position).any(axis=-1)] = np.nan
     if position.shape[-1] == 2 if y_down is None else y_down:
         position[..., 1] *= -1
-    points = map_keypoint_names(tuple(str(name) for name in data[dims[0]].values), names, path.name)
+    points = map_keypoint_names(poses.points, names, path.name)
     return Tracks(
-        time=data.time.values.astype(float),
+        time=time,
         points=points,
         position=upright(position, points, path.name) if position.shape[-1] == 3 else position,
         unit="px",
         source=path.name,
     )
+
+
+def _movement_poses(data: Any, path: Path, individual: str | None, rate: float | None) -> tuple[np.ndarray, Poses]:
+    """Return times [s] and keypoints of one individual in a data set of the ``movement`` library.
+
+    The library counts the rows of DeepLabCut's files from 0; their index has the numbers of the frames.
+    """
+    if "time_unit" not in data.attrs or data.attrs["time_unit"] != "seconds":
+        raise UnusableTracks(_NO_RATE.format(path.name))
+    data = _select_individual(data, individual, path.name)
+    dims = [d for d in data.position.dims if d not in ("time", "space")]
+    position = data.position.transpose("time", *dims, "space").values.astype(float)
+    confidence = np.full(position.shape[:2], np.nan)
+    if "confidence" in data:
+        confidence = data.confidence.transpose("time", *dims).values.astype(float)
+    time, frame = data.time.values.astype(float), _frame_index(path)
+    if frame is not None and rate is not None and len(frame) == len(time):
+        time = frame / rate
+    return time, Poses(frame, tuple(str(name) for name in data[dims[0]].values), position, confidence)
+
+
+def _frame_index(path: Path) -> np.ndarray | None:
+    """Return the numbers of the frames in an HDF5 file of DeepLabCut, which pandas wrote; None in other files."""
+    if path.suffix.lower() not in (".h5", ".hdf5") or not h5py.is_hdf5(path):
+        return None
+    with h5py.File(path) as file:
+        for group in file.values():
+            if not isinstance(group, h5py.Group):
+                continue
+            index = group["table"]["index"] if "table" in group else group["axis1"][()] if "axis1" in group else None
+            if index is not None and np.issubdtype(index.dtype, np.number) and np.all(np.diff(index) > 0):
+                return np.asarray(index, dtype=float)
+    return None
 
 
 def _load(path: Path, software: str, rate: float | None) -> Any:
@@ -99,6 +138,11 @@ def _load(path: Path, software: str, rate: float | None) -> Any:
         AttributeError,
     ) as error:  # what it raises on bad files
         text = " ".join(str(error).split()).rstrip(".")
+        if software == "DeepLabCut" and "reshape" in text:
+            raise UnreadableFile(
+                f"{path} holds body parts that belong to no individual, as 'single' ones do, which the movement library "
+                "does not read; give the CSV table instead, which deeplabcut.analyze_videos_converth5_to_csv writes."
+            ) from error
         raise UnreadableFile(f"{path} cannot be read as a file of {software}: {text}.") from error
 
 
@@ -112,19 +156,12 @@ def _guess(path: Path) -> str:
     if suffix in (".h5", ".hdf5") and h5py.is_hdf5(path):
         with h5py.File(path) as file:
             return "SLEAP" if "tracks" in file else "DeepLabCut"
-    if suffix == ".csv":
-        return "Anipose" if _is_anipose(path) else "DeepLabCut"
+    if suffix in _TEXT:
+        return software_of(path) or "DeepLabCut"
     raise UnreadableFile(
         f"{path} is neither a CSV table nor a file that a pose estimator is known by; say whose it is with --software "
         f"({', '.join(SOFTWARE)})."
     )
-
-
-def _is_anipose(path: Path) -> bool:
-    """Return whether a CSV table is one of Anipose: a column for each axis, error and score, and the frame's number."""
-    with path.open("rb") as file:
-        cells = file.readline(2**16).decode(errors="replace").strip().split(",")
-    return "fnum" in cells and any(cell.endswith("_ncams") for cell in cells)
 
 
 def _select_individual(data: Any, individual: str | None, name: str) -> Any:

@@ -8,29 +8,35 @@ refused.
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations, pairwise, permutations
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
 
+from suchus.animals.capture.exchange import find_exchange, names_option
 from suchus.animals.capture.tracks import MAX_LOST_FRACTION, Tracks, UnusableTracks
+from suchus.robot.design import LEGS
 
 _SWAY = 0.1  # fraction of its length by which a link between neighbours may vary: skin slides over bones
 _NOISES = 4.0  # standard deviations of noise by which it may vary in addition
 _ASTRAY = 0.25  # the same fraction in a single frame
 _FOLDED = 0.5  # the same fraction for points that are not neighbours: a body that bends by two radians between them
 _ROUNDS = 4  # greatest number of stray keypoints in one frame that can be identified
+_STRAY_WINDOW = 25  # frames whose stray keypoints decide between two that may be the stray one in a frame
 _MIN_REPORT_FRACTION = 0.02  # fraction of frames with jumps or strays from which on a keypoint is reported
 _SHAKES = 3.0  # noise over the usual noise from which on a keypoint is reported
 _QUIET = 0.003  # [trunk]; noise that is never reported
 _HIDES = 0.15  # [trunk]; noise that hides all motion
 _MAX_LINK_NOISE = 0.5  # [link]; noise that hides the direction of a link
-_SHORTER = 0.03  # fraction by which the midline must shorten if the names of two points are exchanged
-_MAX_LENGTH_RATIO = 1.3  # length of the midline over that without two points, if both belong to it
-_MIN_GIRDLE_GAIN = 0.25  # [trunk]; decrease of the distance of feet from girdles if their names are exchanged
+_MIN_STUCK_FRACTION = 0.9  # fraction of frames in which a stuck coordinate repeats the last one
+_MAX_REPEATED_FRACTION = 0.5  # greatest such fraction of most other keypoints
+_MIN_FILM_NOISE = 5e-4  # [trunk]; least noise of what a camera has seen
+_MIN_WALKING_FRAMES = 20  # frames of a moving animal; with fewer, all frames count
+_MIN_ACTIVITY = 0.3  # displacement of keypoints from frame to frame over its 80th percentile, if the animal moves
 _REACH = 2.0  # [trunk]; greatest median distance of a foot from its girdle
 _STRETCHED = 2.0  # greatest distance of a foot from its girdle over the median distance
+_MAX_LIMB = 1.2  # [trunk]; distance of a foot from its girdle that a long limb at the end of its stance has
 _STANDS = 0.15  # [trunk]; least displacement of a body that walks
 
 
@@ -55,17 +61,18 @@ def screen_tracks(tracks: Tracks) -> Screened:
     source, faults, notes = tracks, _lost_keypoints(tracks), []
     tracks = _trusted_tracks(source, faults)
     noise = {name: _noise(tracks.at(name)) for name in tracks.points}
+    faults |= _stuck_keypoints(tracks, noise)
+    tracks = _trusted_tracks(source, faults)
     scale = _scale(tracks)
     faults |= _shaky_keypoints(tracks, noise, scale)
     tracks = _trusted_tracks(source, faults)
-    unsteady = _unsteady(tracks, noise, scale)
-    _check_exchanged(tracks, unsteady, noise, scale)
-    faults |= unsteady
-    tracks = _trusted_tracks(source, faults)
+    walking = _walking_frames(tracks)
+    tracks, leaps = _without_jumps(tracks, scale, walking)
+    _check_exchanged(tracks, noise, scale, walking)
+    faults |= _unsteady(tracks, noise, scale)
+    tracks = _trusted_tracks(source, faults, tracks)
     faults |= _unreachable_feet(tracks, scale)
-    tracks = _trusted_tracks(source, faults)
-    _check_order(tracks, scale)
-    tracks, leaps = _without_jumps(tracks, scale)
+    tracks = _trusted_tracks(source, faults, tracks)
     tracks, strays = _without_strays(tracks, noise, scale)
     faults |= _lost_keypoints(tracks, "is elsewhere than its neighbours allow, or lost,")
     tracks = _trusted_tracks(source, faults, tracks)
@@ -106,6 +113,36 @@ def _lost_keypoints(tracks: Tracks, phrase: str = "is lost") -> dict[str, str]:
     }
 
 
+def _stuck_keypoints(tracks: Tracks, noise: Mapping[str, float]) -> dict[str, str]:
+    """Return the keypoints with a coordinate that stays exactly the same, while noise moves those of the others.
+
+    In a film without noise, such as a simulation, a keypoint may go exactly along an axis.
+    """
+    typical_noise = float(np.median([level for level in noise.values() if np.isfinite(level)] or [0.0]))
+    if typical_noise <= _MIN_FILM_NOISE * _scale(tracks):
+        return {}
+    repeated = np.full(tracks.position.shape[1:], np.nan)  # fraction of frames, by keypoint and axis
+    values = np.full(tracks.position.shape[1:], np.nan)
+    for index in np.ndindex(*repeated.shape):
+        series = tracks.position[:, *index]
+        series = series[np.isfinite(series)]
+        if len(series) >= _MIN_WALKING_FRAMES:
+            repeated[index] = np.mean(np.diff(series) == 0.0)
+            values[index] = series[-1]
+    faults = {}
+    for i, name in enumerate(tracks.points):
+        for j, axis in enumerate("xyz"[: repeated.shape[1]]):
+            others = np.delete(repeated[:, j], i)
+            others = others[np.isfinite(others)]
+            is_alone = len(others) > 1 and np.mean(others < _MAX_REPEATED_FRACTION) > _MAX_REPEATED_FRACTION
+            if repeated[i, j] > _MIN_STUCK_FRACTION and is_alone:
+                faults[name] = (
+                    f"is stuck: its {axis} is {values[i, j] + 0.0:g} {tracks.unit} in {100 * repeated[i, j]:.0f} % of "
+                    "the frames; track it again"
+                )
+    return faults
+
+
 def _noise(place: np.ndarray) -> float:
     """Return the standard deviation of a coordinate from frame to frame [m or px]; NaN if too little is seen.
 
@@ -119,11 +156,37 @@ def _noise(place: np.ndarray) -> float:
 
 
 def _scale(tracks: Tracks) -> float:
-    """Return an estimate of the trunk's length that does not depend on any single keypoint [m or px]."""
+    """Return an estimate of the trunk's length that does not depend on any single keypoint [m or px].
+
+    It is the median of the trunk's chord, of the number of its links times the median of all links, and of the distance
+    between the middles of front feet and hind feet, as far as they were tracked.
+    """
     chain = tracks.midline
     links = [float(np.nanmedian(_distance(tracks, a, b))) for a, b in pairwise(chain)]
     front, rear = tracks.line
-    return float(np.median(links)) * max(1, chain.index(rear) - chain.index(front))
+    estimates = [float(np.median(links)) * max(1, chain.index(rear) - chain.index(front))]
+    estimates.append(float(np.nanmedian(_distance(tracks, front, rear))))
+    front_feet = [tracks.at(leg) for leg in tracks.legs if leg.endswith("F")]
+    hind_feet = [tracks.at(leg) for leg in tracks.legs if leg.endswith("H")]
+    if front_feet and hind_feet:
+        feet_vector = np.mean(front_feet, axis=0) - np.mean(hind_feet, axis=0)
+        feet_distance = float(np.nanmedian(np.linalg.norm(feet_vector, axis=-1)))
+        estimates = [*estimates, feet_distance] if tracks.has("shoulder", "hip") else [feet_distance]
+    return float(np.nanmedian(estimates))
+
+
+def _walking_frames(tracks: Tracks) -> Bool[np.ndarray, " frame"]:
+    """Return the frames in which most keypoints move, or all frames where noise hides that."""
+    step = max(1, round(len(tracks.time) / 200))
+    displacement = np.full(len(tracks.time), np.nan)
+    distances = np.linalg.norm(tracks.position[step:] - tracks.position[:-step], axis=-1)
+    has_points = np.isfinite(distances).any(axis=1)
+    displacement[step:][has_points] = np.nanmedian(distances[has_points], axis=1)
+    if not np.isfinite(displacement).any():
+        return np.ones(len(tracks.time), dtype=bool)
+    with np.errstate(invalid="ignore"):
+        is_walking = np.asarray(displacement >= _MIN_ACTIVITY * np.nanpercentile(displacement, 80))
+    return is_walking if is_walking.sum() >= _MIN_WALKING_FRAMES else np.ones(len(tracks.time), dtype=bool)
 
 
 def _distance(tracks: Tracks, first_point: str, second_point: str) -> Float[np.ndarray, " frame"]:
@@ -235,92 +298,18 @@ def midline_neighbours(chain: Sequence[str], name: str) -> list[str]:
     return [chain[i] for i in (index - 1, index + 1) if 0 <= i < len(chain)]
 
 
-def _check_exchanged(source: Tracks, faults: Mapping[str, str], noise: Mapping[str, float], scale: float) -> None:
-    """Refuse tracks in which a midline point that is wrong would be right under the name of another one.
+def _check_exchanged(tracks: Tracks, noise: Mapping[str, float], scale: float, walking: np.ndarray) -> None:
+    """Refuse tracks in which names of keypoints are exchanged.
 
     Raises:
-        UnusableTracks: it names both.
+        UnusableTracks: it names them, and the option that gives them their right names.
     """
-    for name, substitute in (
-        (faulty_name, substitute_name)
-        for faulty_name in faults
-        for substitute_name in (*faults, *source.legs)
-        if faulty_name != substitute_name
-    ):
-        position = source.position.copy()
-        i, j = source.points.index(name), source.points.index(substitute)
-        position[:, [i, j]] = position[:, [j, i]]
-        swapped_tracks = replace(source, position=position).without(
-            [point for point in faults if point not in (name, substitute)]
-        )
-        swapped_noise = {**noise, name: noise[substitute], substitute: noise[name]}
-        links, chain = _Links(swapped_tracks, swapped_noise, scale), swapped_tracks.midline
-        affected_pairs = [pair for pair in links.pairs(chain) if {name, substitute} & set(pair)]
-        if (
-            substitute not in chain
-            and np.nanmedian(_distance(swapped_tracks, substitute, _girdle(swapped_tracks, substitute)))
-            > _REACH * scale
-        ):
-            continue
-        straight = _chain_length(swapped_tracks) < _MAX_LENGTH_RATIO * _chain_length(
-            swapped_tracks.without((name, substitute))
-        )
-        if straight and not any(links.excess(pair) for pair in affected_pairs):
-            raise UnusableTracks(
-                f"in {source.source} the keypoints {name} and {substitute} are exchanged: each keeps its distance "
-                f"from the neighbours of the other; give --names {name}={substitute} {substitute}={name}."
-            )
-
-
-def _chain_length(tracks: Tracks) -> float:
-    return sum(float(np.nanmedian(_distance(tracks, a, b))) for a, b in pairwise(tracks.midline))
-
-
-def _check_order(tracks: Tracks, scale: float) -> None:
-    """Refuse tracks in which two keypoints are exchanged: the midline would be shorter, or feet nearer to girdles.
-
-    Raises:
-        UnusableTracks: it names both.
-    """
-    chain = tracks.midline
-    distances = {
-        frozenset(pair): float(np.nanmedian(_distance(tracks, *pair))) for pair in combinations(tracks.points, 2)
-    }
-
-    def chain_length(names: Sequence[str]) -> float:
-        return sum(distances[frozenset(pair)] for pair in pairwise(names))
-
-    length, best_length, names = chain_length(chain), np.inf, ("", "")
-    for a, b in combinations((*chain, *tracks.legs), 2):
-        if a in chain:
-            swapped_length = chain_length([{a: b, b: a}.get(name, name) for name in chain])
-            if swapped_length < best_length:
-                best_length, names = swapped_length, (a, b)
-    if best_length < (1 - _SHORTER) * length:
+    exchange = find_exchange(tracks, noise, scale, walking)
+    if exchange:
+        names = list(exchange.names)
         raise UnusableTracks(
-            f"in {tracks.source} the keypoints {names[0]} and {names[1]} are exchanged: with their names changed the "
-            f"midline is {100 * (1 - best_length / length):.0f} % shorter; give --names {names[0]}={names[1]} "
-            f"{names[1]}={names[0]}."
-        )
-    girdles = {leg: "shoulder" if leg.endswith("F") else "hip" for leg in tracks.legs}
-    if len(tracks.legs) < 2 or not tracks.has("shoulder", "hip"):
-        return
-    cost = {(leg, girdle): distances[frozenset((leg, girdle))] for leg in tracks.legs for girdle in ("shoulder", "hip")}
-    total_cost = sum(cost[leg, girdles[leg]] for leg in tracks.legs)
-    orders = [dict(zip(tracks.legs, order, strict=True)) for order in permutations(tracks.legs)]
-    best_order = min(
-        orders,
-        key=lambda assignment: (
-            sum(cost[leg, girdles[assignment[leg]]] for leg in assignment),
-            sum(a != b for a, b in assignment.items()),
-        ),
-    )
-    if sum(cost[leg, girdles[best_order[leg]]] for leg in best_order) < total_cost - _MIN_GIRDLE_GAIN * scale:
-        swapped_legs = [leg for leg in tracks.legs if best_order[leg] != leg]
-        renamed = " ".join(f"{leg}={best_order[leg]}" for leg in swapped_legs)
-        raise UnusableTracks(
-            f"in {tracks.source} the feet {' and '.join(swapped_legs)} are exchanged: each is nearer to the other's "
-            f"girdle; give --names {renamed}."
+            f"in {tracks.source} the {'feet' if set(names) <= set(LEGS) else 'keypoints'} {' and '.join(names)} are "
+            f"exchanged: {exchange.reason}; give {names_option(exchange.names)}."
         )
 
 
@@ -329,12 +318,12 @@ _MIN_JUMP = 0.2  # [trunk]; smaller deviations are noise
 _JUMP_FACTOR, _JUMP_PERCENTILE = 3.0, 90.0  # jump over this percentile of the deviations
 
 
-def _without_jumps(tracks: Tracks, scale: float) -> tuple[Tracks, dict[str, np.ndarray]]:
+def _without_jumps(tracks: Tracks, scale: float, walking: np.ndarray) -> tuple[Tracks, dict[str, np.ndarray]]:
     """Return the tracks without points that jumped, and the frames of the jumps by keypoint.
 
     A jump is a distance of more than a fifth of the trunk from the median of the seven frames around it. It must also
-    exceed three times the distance that 90 % of the frames stay below, so that a fast foot in a slow film is no jump.
-    This is Hampel's identifier with a quantile that is valid for a foot that rests most of the time. Longer faults,
+    exceed three times the distance that 90 % of the frames with movement stay below, so that a fast foot in a slow film
+    is no jump. This is Hampel's identifier with a quantile that is valid for a foot that rests most of the time. Longer faults,
     such as two exchanged feet, are no jumps.
     """
     position = tracks.position.copy()
@@ -349,10 +338,9 @@ def _without_jumps(tracks: Tracks, scale: float) -> tuple[Tracks, dict[str, np.n
     for i, name in enumerate(tracks.points):
         point_deviation = deviation[:, i]
         jumps[name] = np.zeros(len(point_deviation), dtype=bool)
-        if np.isfinite(point_deviation).any():
-            jumps[name] = point_deviation > max(
-                _MIN_JUMP * scale, _JUMP_FACTOR * float(np.nanpercentile(point_deviation, _JUMP_PERCENTILE))
-            )
+        if np.isfinite(point_deviation[walking]).any():
+            usual_deviation = float(np.nanpercentile(point_deviation[walking], _JUMP_PERCENTILE))
+            jumps[name] = point_deviation > max(_MIN_JUMP * scale, _JUMP_FACTOR * usual_deviation)
             position[jumps[name], i] = np.nan
     return replace(tracks, position=position), jumps
 
@@ -370,14 +358,16 @@ def _without_strays(tracks: Tracks, noise: Mapping[str, float], scale: float) ->
     adjacent = np.array([pair in set(pairwise(chain)) for pair in pairs])
     surely = np.array([bad[i] if adjacent[i] else links.strays(pair, _FOLDED) for i, pair in enumerate(pairs)])
     is_stray = np.zeros((len(chain), len(tracks.time)), dtype=bool)
+    window = np.ones(min(_STRAY_WINDOW, len(tracks.time)))
+    window /= len(window)
     for _ in range(_ROUNDS):
         frames = np.flatnonzero(surely.any(axis=0))
         if not len(frames):
             break
-        votes = member.T @ bad[:, frames]
-        worst_points = np.argmax(
-            votes + 0.5 * votes / member.sum(axis=0)[:, None], axis=0
-        )  # of equals who is at fewer pairs
+        votes = member.T @ bad
+        votes += 0.5 * votes / member.sum(axis=0)[:, None]  # of equals who is at fewer pairs
+        votes += np.apply_along_axis(np.convolve, 1, votes, window, mode="same")  # and who is in frames around it
+        worst_points = np.argmax(votes[:, frames], axis=0)
         is_stray[worst_points, frames] = True
         bad[:, frames] &= member[:, worst_points] == 0
         surely[:, frames] &= member[:, worst_points] == 0
@@ -386,7 +376,8 @@ def _without_strays(tracks: Tracks, noise: Mapping[str, float], scale: float) ->
         girdle = _girdle(tracks, leg)
         foot_distance = np.where(strays[girdle], np.nan, _distance(tracks, leg, girdle))
         with np.errstate(invalid="ignore"):
-            strays[leg] = foot_distance > _STRETCHED * np.nanmedian(foot_distance) + _NOISES * np.nan_to_num(noise[leg])
+            max_distance = max(_STRETCHED * np.nanmedian(foot_distance), _MAX_LIMB * scale)
+            strays[leg] = foot_distance > max_distance + _NOISES * np.nan_to_num(noise[leg])
     for name, frames in strays.items():
         position[frames, tracks.points.index(name)] = np.nan
     return replace(tracks, position=position), strays
@@ -447,6 +438,7 @@ _ALWAYS = 0.9  # fraction of frames that counts as always
 _IN_A_ROW = 0.5  # fraction of successive frames among these; noise has less
 _OFTEN = 0.1  # greatest fraction of frames with feet exchanged by noise
 _SOMETIMES = 0.02  # fraction of frames that noise does not explain
+_CLEARLY = 0.3  # distance by which feet are across the body where they are exchanged, over their usual distance
 
 
 def _check_sides(tracks: Tracks) -> None:
@@ -457,10 +449,9 @@ def _check_sides(tracks: Tracks) -> None:
     """
     girdles = {("LF", "RF"): tracks.thorax, ("LH", "RH"): tracks.pelvis}
     pairs = {pair: girdle or tracks.line for pair, girdle in girdles.items() if tracks.has(*pair)}
-    crossed = {pair: _crossed(tracks, *pair, *segment) for pair, segment in pairs.items()}
-    shares = {
-        pair: float(np.nanmean(is_crossed)) for pair, is_crossed in crossed.items() if np.isfinite(is_crossed).any()
-    }
+    offsets = {pair: _left_offset(tracks, *pair, *segment) for pair, segment in pairs.items()}
+    offsets = {pair: offset for pair, offset in offsets.items() if np.isfinite(offset).any()}
+    shares = {pair: float(np.mean(offset[np.isfinite(offset)] < 0)) for pair, offset in offsets.items()}
     if len(shares) == 2 and min(shares.values()) > _ALWAYS:
         raise UnusableTracks(
             f"in {tracks.source} LF and LH lie on the right of the body, RF and RH on the left: left and right are "
@@ -475,8 +466,10 @@ def _check_sides(tracks: Tracks) -> None:
                 f"{left_leg}={right_leg} {right_leg}={left_leg}."
             )
         if share > _SOMETIMES:
-            frames = np.flatnonzero(crossed[left_leg, right_leg] == 1)
-            if np.mean(np.diff(frames) == 1) < _IN_A_ROW:
+            offset = offsets[left_leg, right_leg]
+            with np.errstate(invalid="ignore"):
+                frames = np.flatnonzero(offset < -_CLEARLY * np.nanmedian(np.abs(offset)))
+            if len(frames) < _SOMETIMES * len(offset) or np.mean(np.diff(frames) == 1) < _IN_A_ROW:
                 _check_noise(tracks, left_leg, right_leg, share)
                 continue
             raise UnusableTracks(
@@ -517,9 +510,9 @@ def _check_noise(tracks: Tracks, left_leg: str, right_leg: str, fraction: float)
         )
 
 
-def _crossed(tracks: Tracks, left_leg: str, right_leg: str, front: str, rear: str) -> np.ndarray:
-    """Return 1 in frames in which the left foot lies right of the right one, 0 where it does not, NaN where lost."""
+def _left_offset(tracks: Tracks, left_leg: str, right_leg: str, front: str, rear: str) -> np.ndarray:
+    """Return how far the left foot lies left of the right one in each frame, NaN where lost [m or px]."""
     trunk_vector = tracks.at(front) - tracks.at(rear)
     lateral_vector = tracks.at(left_leg) - tracks.at(right_leg)
     side = trunk_vector[:, 0] * lateral_vector[:, 1] - trunk_vector[:, 1] * lateral_vector[:, 0]
-    return np.where(np.isnan(side), np.nan, side < 0)
+    return np.asarray(side / np.linalg.norm(trunk_vector[:, :2], axis=-1))

@@ -1,6 +1,6 @@
 """Tracks as a plain CSV table: one row per frame, a header that names every column and its unit.
 
-``time [s], hip_x [mm], hip_y [mm], ...``: the first column is the time; the others are a keypoint, an axis (x and y,
+``time [s], hip_x [mm], hip_y [mm], ...``: the first column is the time, which a column ``frame`` may stand beside; the others are a keypoint, an axis (x and y,
 or x, y and z) and a unit (m, cm, mm or px, the same for all). An empty cell is a lost point. A column
 ``hip_confidence [-]`` may follow. Where the first column is ``frame``, its numbers are divided by the frame rate.
 Metres have y to the left of x, seen from above; pixels, as in images, to the right.
@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Complex, Float
 
+from suchus.animals.capture.poses import check_width, software_of
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, map_keypoint_names
 from suchus.core.checks import require
 from suchus.core.errors import UnreadableFile
@@ -35,12 +36,8 @@ class _Column(NamedTuple):
 
 
 def is_table(path: Path) -> bool:
-    """Return whether a file is a CSV table that is not one of DeepLabCut's, LightningPose's or Anipose's."""
-    if path.suffix.lower() not in (".csv", ".txt"):
-        return False
-    with path.open("rb") as file:
-        head = file.readline(2**16).lstrip(b"\xef\xbb\xbf").lower()
-    return not head.startswith(b"scorer") and b"_ncams" not in head
+    """Return whether a file is a CSV table that no pose estimator wrote."""
+    return path.suffix.lower() in (".csv", ".txt") and software_of(path) is None
 
 
 def read_table(
@@ -59,7 +56,7 @@ def read_table(
         UnreadableFile: it is missing or empty, or a heading or a cell makes no sense.
         UnusableTracks: it counts frames, and no frame rate was given.
     """
-    rows = _rows(path)
+    rows = _with_time_first(_rows(path))
     columns, unit = _columns(rows[0], path.name)
     values = _numbers(rows, path.name)
     if _FRAME.fullmatch(rows[0][0].strip().lower()):
@@ -113,6 +110,8 @@ def _rows(path: Path) -> list[list[str]]:
     """Return the non-empty rows of a CSV table, header included."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
+            check_width(file.readline().count(",") + 1, path.name)
+            file.seek(0)
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
     except UnicodeDecodeError as error:
         raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
@@ -124,6 +123,15 @@ def _rows(path: Path) -> list[list[str]]:
         raise UnreadableFile(f"{path} is empty; a header ({_EXAMPLE}) and one row per frame are needed.")
     if len(rows) == 1:
         raise UnusableTracks(f"{path.name} holds a header and no frame; at least one cycle is needed.")
+    return rows
+
+
+def _with_time_first(rows: list[list[str]]) -> list[list[str]]:
+    """Return rows with the time first, and without a column of frame numbers beside it."""
+    labels = [cell.strip().lower() for cell in rows[0][:2]]
+    if "time [s]" in labels and any(_FRAME.fullmatch(label) for label in labels):
+        frame = 1 - labels.index("time [s]")
+        return [row[:frame] + row[frame + 1 :] for row in rows]
     return rows
 
 

@@ -11,6 +11,7 @@ from suchus.animals.capture.angles import azimuth, bend_angles, joint_bends, sta
 from suchus.animals.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
 from suchus.animals.capture.feet import GRID, FootContact, FootSweep, contact, continuous, forward_path, steps, sweep
 from suchus.animals.capture.late import find_late_keypoints
+from suchus.animals.capture.names import check_feet, check_trunk, unused_text
 from suchus.animals.capture.screen import screen_tracks
 from suchus.animals.capture.strides import half_width, over_phase, per_stride, times
 from suchus.animals.capture.swings import Clock, walk_clock
@@ -111,7 +112,10 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             stands, nothing repeats, less than one cycle was seen, noise hides the steps, or the camera goes along.
     """
     require("observe", "tail_share", tail_share, 0.05, 1.0, "")
+    check_trunk(tracks)
     check_tracks(tracks)
+    check_feet(tracks)
+    unused = unused_text(tracks.points)
     screening = screen_tracks(tracks)
     faults = dict(screening.wrong)
     tail_end = tracks.tail_chain[-2:]
@@ -177,6 +181,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         lacks=lacking(tracks.points),
         notes=(
             *(f"{name} {reason}" for name, reason in faults.items()),
+            *([unused] if unused else ()),
             *_missing_point_notes(tracks),
             *screening.notes,
             *unlike,

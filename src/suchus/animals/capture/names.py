@@ -1,0 +1,110 @@
+"""Names of keypoints: which ones are ours, and which of ours those of other people come nearest to."""
+
+import re
+from collections.abc import Sequence
+from difflib import get_close_matches
+
+from suchus.animals.capture.tracks import GAIT_KEYPOINTS, Tracks, UnusableTracks
+from suchus.robot.design import LEGS
+
+_SERIES = re.compile(r"(spine|tail)_\d+")
+_SINGLE = ("snout", "neck", *GAIT_KEYPOINTS)
+_SIDES = {"left": "L", "l": "L", "right": "R", "r": "R"}
+_ENDS = {
+    **dict.fromkeys(("front", "fore", "forelimb", "forepaw", "forefoot", "foreleg", "hand", "anterior"), "F"),
+    **dict.fromkeys(("hind", "rear", "back", "hindlimb", "hindpaw", "hindfoot", "hindleg", "foot", "posterior"), "H"),
+}
+_LETTERS = {"f": "F", "h": "H", "b": "H"}
+_CODES = {
+    **{f"{end}{side}": f"{side.upper()}{leg}" for end, leg in _LETTERS.items() for side in "lr"},
+    **{f"{side}{end}": f"{side.upper()}{leg}" for end, leg in _LETTERS.items() for side in "lr"},
+    "rl": "LH",
+    "rr": "RH",
+}
+_WORDS = {
+    "snout": ("nose", "nosetip", "rostrum", "muzzle"),
+    "neck": ("nape", "head", "occiput"),
+    "shoulder": ("shoulders", "withers", "pectoral", "thorax", "chest", "scapula"),
+    "hip": ("hips", "pelvis", "pelvic", "sacrum", "rump"),
+    "tail_base": ("tailbase", "tailroot", "tailstart", "cloaca", "vent"),
+    "tail_tip": ("tailtip", "tailend"),
+}
+_TAIL_ENDS = {"tail_base": {"base", "root", "start", "proximal"}, "tail_tip": {"tip", "end", "distal"}}
+_CUTOFF = 0.75  # likeness of two names from which on one is suggested for the other
+
+
+def is_keypoint(name: str) -> bool:
+    """Return whether a name is one that a walk is read from."""
+    return name in _SINGLE or _SERIES.fullmatch(name) is not None
+
+
+def nearest_name(name: str) -> str | None:
+    """Return the keypoint of ours that a name probably means, as LF for ``left_fore_paw``; None if nothing is near."""
+    words = [word for word in re.split(r"[^a-z]+", name.lower()) if word]
+    for keypoint, ends in _TAIL_ENDS.items():
+        if "tail" in words and ends & set(words):
+            return keypoint
+    for keypoint, synonyms in _WORDS.items():
+        if set(words) & {*synonyms, keypoint} or "".join(words) in synonyms:
+            return keypoint
+    codes = [_CODES[word] for word in words if word in _CODES]
+    sides = [_SIDES[word] for word in words if word in _SIDES]
+    ends = [_ENDS[word] for word in words if word in _ENDS]
+    if codes:
+        return codes[0]
+    if sides and ends:
+        return sides[0] + ends[0]
+    close = get_close_matches(name.lower(), _SINGLE[: -len(LEGS)], n=1, cutoff=_CUTOFF)
+    return close[0] if close else None
+
+
+def unused_points(points: Sequence[str]) -> dict[str, str | None]:
+    """Return the names that no walk is read from, and of each the nearest keypoint that is not there already."""
+    suggestions: dict[str, str | None] = {}
+    for name in points:
+        if not is_keypoint(name):
+            nearest = nearest_name(name)
+            is_free = nearest is not None and nearest not in points and nearest not in suggestions.values()
+            suggestions[name] = nearest if is_free else None
+    return suggestions
+
+
+def unused_text(points: Sequence[str]) -> str:
+    """Return the unused names and the ``--names`` to give, as the rest of a sentence; empty without unused names."""
+    suggestions = unused_points(points)
+    if not suggestions:
+        return ""
+    renamed = " ".join(f"{name}={nearest}" for name, nearest in suggestions.items() if nearest)
+    remedy = f"give --names {renamed}, if that is what they are" if renamed else "name with --names THEIRS=OURS any of use"
+    return f"{', '.join(suggestions)} {'is' if len(suggestions) == 1 else 'are'} not used: {remedy}"
+
+
+def check_feet(tracks: Tracks) -> None:
+    """Refuse an animal that seems to have no feet because its feet have other names.
+
+    Raises:
+        UnusableTracks: it names them, and the option that gives them our names.
+    """
+    suggestions = unused_points(tracks.points)
+    feet = {name: nearest for name, nearest in suggestions.items() if nearest in LEGS}
+    if feet and not tracks.legs:
+        renamed = " ".join(f"{name}={nearest}" for name, nearest in feet.items())
+        other = " ".join(f"{name}=other_{i}" for i, name in enumerate(feet, 1))
+        raise UnusableTracks(
+            f"in {tracks.source} no keypoint is called LF, RF, LH or RH, but {' and '.join(feet)} "
+            f"seem{'s' * (len(feet) == 1)} to be feet; give --names {renamed}, or, to measure without feet, --names {other}."
+        )
+
+
+def check_trunk(tracks: Tracks) -> None:
+    """Refuse tracks whose trunk has other names.
+
+    Raises:
+        UnusableTracks: it names the option that gives them our names.
+    """
+    text = unused_text(tracks.points)
+    if len(tracks.trunk_chain) < 2 and text:
+        raise UnusableTracks(
+            f"{tracks.source} has fewer than two keypoints of the trunk (neck or snout, shoulder, spine_1, ..., hip, "
+            f"tail_base), so that nobody knows where the body heads; it holds {', '.join(tracks.points)}; {text}."
+        )
