@@ -11,7 +11,7 @@ import tyro
 from evidence.league import every, find
 from evidence.league.cases import CONTESTANTS, measured_file
 from evidence.league.page import FIGURE, OUTCOMES, PAGE, LeagueEntry, all_standings, shown, standing, write_page
-from evidence.league.sealing import sealed_prediction
+from evidence.league.sealing import check_measured, sealed_prediction
 from suchus.apps.cli.entry import BadCommand, Subcommand
 from suchus.apps.cli.entry import main as run_command
 from suchus.apps.cli.options import parse
@@ -56,6 +56,8 @@ def league(words: Sequence[str]) -> int:
         raise BadCommand(f"--measured is of one contestant, and {len(names)} are asked for: name one.")
     if options.measured is not None and not path_exists(options.measured):
         raise UnreadableFile(f"{options.measured} is not there; --measured names what was measured.")
+    if options.measured is not None:
+        check_measured(contestants[0].predicts, options.measured)
     check_writable(options.out)
     for name in (PAGE, FIGURE, OUTCOMES):
         check_replaceable(options.out / name)

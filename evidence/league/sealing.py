@@ -252,12 +252,38 @@ def opened(folder: Path, predicts: Mapping[str, Quantity], measured: Path) -> di
         UnreadableFile: there is no seal, or the measurement is in another unit, of another quantity or has no source.
     """
     read_seal(folder)
-    if not path_exists(measured):
-        return {}
-    found = {}
-    for name, data in read_json(measured).items():
+    return _measurements(predicts, measured) if path_exists(measured) else {}
+
+
+def check_measured(predicts: Mapping[str, Quantity], measured: Path) -> None:
+    """Refuse a file of a measurement by its form, before anything is predicted; its values are not looked at.
+
+    Args:
+        predicts: quantities of the contestant.
+        measured: file of the measurement.
+
+    Raises:
+        UnreadableFile: it is no such file.
+    """
+    _measurements(predicts, measured)
+
+
+def _measurements(predicts: Mapping[str, Quantity], measured: Path) -> dict[str, Measured]:
+    """Return what a file of a measurement holds, by quantity; see ``opened``."""
+    tables = read_json(measured)
+    if not isinstance(tables, dict):
+        raise UnreadableFile(
+            f"{measured} holds a {type(tables).__name__}; a table is needed: "
+            "{quantity: {value, low, high, unit, source}}."
+        )
+    measurements = {}
+    for name, data in tables.items():
         if name not in predicts:
             raise UnreadableFile(f"{measured} measures {name!r}, which is not predicted; {', '.join(predicts)} are.")
+        if not isinstance(data, dict):
+            raise UnreadableFile(
+                f"{measured} has {data!r} for {name}; a table of value, low, high, unit and source is needed."
+            )
         lacking = [
             field
             for field in ("value", "low", "high", "unit", "source")
@@ -269,9 +295,32 @@ def opened(folder: Path, predicts: Mapping[str, Quantity], measured: Path) -> di
             raise UnreadableFile(
                 f"{measured} has {name} in {data['unit']}, and it is predicted in {predicts[name].unit}: convert it."
             )
+        _check_interval(measured, name, data)
         ends = {end: bound_value(data[end]) for end in ("value", "low", "high")}
-        found[name] = Measured(**ends, unit=data["unit"], source=data["source"])
-    return found
+        measurements[name] = Measured(**ends, unit=data["unit"], source=data["source"])
+    return measurements
+
+
+def _check_interval(measured: Path, name: str, ends: Mapping[str, Any]) -> None:
+    """Refuse a value outside its interval, and what is no finite number.
+
+    Args:
+        measured: file of the measurement.
+        name: of the quantity.
+        ends: value, low and high, each a number or several.
+
+    Raises:
+        UnreadableFile: they are none, not as many, or in another order.
+    """
+    try:
+        low, value, high = (np.atleast_1d(np.asarray(ends[end], float)) for end in ("low", "value", "high"))
+    except (TypeError, ValueError):
+        low = value = high = np.array([np.nan])
+    numbers_text = ", ".join(f"{end} {ends[end]}" for end in ("low", "value", "high"))
+    if not (low.shape == value.shape == high.shape) or not np.isfinite([*low, *value, *high]).all():
+        raise UnreadableFile(f"{measured} has {numbers_text} of {name}; finite numbers are needed, as many of each.")
+    if not ((low <= value) & (value <= high)).all():
+        raise UnreadableFile(f"{measured} has {numbers_text} of {name}; the value lies between low and high.")
 
 
 @cache

@@ -1,6 +1,6 @@
 """Range checks of designs: all invalid fields of one part are reported in one error."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, isfinite
@@ -9,6 +9,7 @@ from typing import Any
 
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import misfits, show
+from suchus.core.printable import name_complaint
 
 Schedule = float | tuple[tuple[float, float], ...]
 """A number, or a table of time since the beginning of the run [s] and number; straight between, steady beyond."""
@@ -171,6 +172,12 @@ class Checks:
         value = getattr(self._design, field)
         if isinstance(value, str) and value not in names:
             self._complain(field, f"is {_show(value)}; {', '.join(names)} is allowed")
+
+    def printable(self, names: Iterable[str]) -> None:
+        """Refuse names with characters that steer a terminal or turn its writing round; the first one is named."""
+        complaint = next((text for name in names if (text := name_complaint(name))), None)
+        if complaint is not None:
+            self._complain("", complaint)
 
     def that(self, holds: bool, text: str) -> None:
         """Refuse a combination of fields that does not hold, with a clause that says why."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from suchus.core.errors import UnreadableFile
+from suchus.core.printable import check_content
 
 MAX_FILE_SIZE = 64 * 2**20
 """Size of a file that is read [byte]."""
@@ -127,30 +128,34 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """Return what a TOML file says.
 
     Raises:
-        UnreadableFile: it cannot be read, or is no TOML.
+        UnreadableFile: it cannot be read, is no TOML, nests too deeply, or holds texts that must not be printed.
     """
     text = read_text(path)
     try:
-        return tomllib.loads(text)
+        tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise UnreadableFile(f"{path} is not valid TOML: {error}.") from error
     except (ValueError, RecursionError) as error:
         raise _nesting_error(path, error) from error
+    check_content(path, tables)
+    return tables
 
 
 def read_json(path: str | Path) -> Any:
     """Return what a JSON file says.
 
     Raises:
-        UnreadableFile: it cannot be read, or is no JSON.
+        UnreadableFile: it cannot be read, is no JSON, or nests too deeply.
     """
     text = read_text(path)
     try:
-        return json.loads(text)
+        content = json.loads(text)
     except json.JSONDecodeError as error:
         raise UnreadableFile(f"{path} is not valid JSON: {error}.") from error
     except (ValueError, RecursionError) as error:
         raise _nesting_error(path, error) from error
+    check_content(path, content, check_texts=False)
+    return content
 
 
 def _nesting_error(path: str | Path, error: ValueError | RecursionError) -> UnreadableFile:

@@ -27,6 +27,7 @@ from types import ModuleType
 from typing import Any
 
 from suchus.core.errors import AmbiguousName, UnreadableFile
+from suchus.core.printable import name_complaint
 from suchus.core.reading import read_toml
 
 VARIABLE = "SUCHUS_PROJECT"
@@ -86,6 +87,9 @@ class Project:
         folder = self.folder / shelf
         folder_entries = sorted(folder.iterdir()) if folder.is_dir() else []
         for path in (*folder_entries, *self.named.get(shelf, ())):
+            complaint = name_complaint(path.name) if path.suffix in _suffixes(shelf) else None
+            if complaint is not None:
+                raise UnreadableFile(f"a file of the folder {shelf} cannot be taken: {complaint}.")
             if path.suffix in _suffixes(shelf) and path.is_file():
                 yield path.stem, path
             elif (path / "__init__.py").is_file():

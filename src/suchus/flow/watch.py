@@ -180,7 +180,7 @@ class Watch:
                     f"that side. Put it at least {needed * width * h:.3g} m behind them.",
                 )
 
-    def _reynolds(self, water: Fluid, width: int) -> float:
+    def _reynolds(self, water: Fluid, width: float) -> float:
         """Return the Reynolds number of the far stream past bodies of a width in cells [-]."""
         return length(water.border.stream) * width * water.grid.cell / self.setup.viscosity
 

@@ -23,6 +23,7 @@ from suchus.core.errors import (
     out_of_memory,
     plain_warnings,
 )
+from suchus.core.printable import name_complaint
 from suchus.core.sources import project_context
 from suchus.core.stopping import StopSignal, stopping
 from suchus.core.writing import is_text, replacing
@@ -273,14 +274,17 @@ def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] | No
 
 
 def _check_words(words: Sequence[str]) -> None:
-    """Refuse words that are not UTF-8, since every result stores its command as text.
+    """Refuse words that are not UTF-8 or steer a terminal, since every result stores its command as text.
 
     Raises:
-        BadCommand: a word has bytes that are no UTF-8.
+        BadCommand: a word has bytes that are no UTF-8, or characters that must not be printed.
     """
     for word in words:
         if not is_text(word):
             raise BadCommand(f"{word!r} is no text in UTF-8, as results, which hold their command, are: rename it.")
+        complaint = name_complaint(word)
+        if complaint is not None:
+            raise BadCommand(f"{complaint}.")
 
 
 def _check_memory() -> None:

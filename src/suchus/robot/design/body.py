@@ -190,6 +190,8 @@ def _check_names(robot: Robot, check: Checks) -> None:
     ]
     hinges = [hinge.name for hinge in robot.axis_hinges] + [cable.name for cable in robot.cables]
     shapes = [shape.name for segment in robot.axis for shape in segment.shapes]
+    limb_hinges = [hinge.name for girdle in robot.girdles for hinge in girdle.limb.hinges]
+    check.printable([robot.name, *names, *bodies, *limbs, *hinges, *limb_hinges, *shapes])
     for kind, group_names in (
         ("segments or links", [*names, *bodies]),
         ("limbs", limbs),

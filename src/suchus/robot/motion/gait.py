@@ -50,6 +50,7 @@ class Gait:
 
     def __post_init__(self) -> None:
         with Checks("gait", self) as check:
+            check.printable([self.name])
             check.number("period", 1e-3, 3600.0, "s")
             check.number("duty_factor", 0.05, 0.95, "")
             check.number("height", 0.0, 2.0, "limb reach")

@@ -13,6 +13,7 @@ from xml.parsers import expat
 
 from suchus.core.errors import UnreadableFile
 from suchus.core.files import read_text
+from suchus.core.printable import escaped, unprintable
 from suchus.sim.model.export.urdf import MUJOCO
 from suchus.sim.model.importing.meshes import Meshes, path_inside
 
@@ -44,6 +45,13 @@ def parse(path: Path) -> ElementTree.Element:
                 f"{path} holds <{tag[:40]}>, an element of a macro language; expand it first, as with "
                 "`xacro robot.urdf.xacro > robot.urdf`."
             )
+        for name in (tag, *attributes, *attributes.values()):
+            character = unprintable(name, allow_lines=True)
+            if character is not None:
+                raise UnreadableFile(
+                    f"{path} holds '{escaped(name)}' with the character {character}, which "
+                    "steers a terminal or turns its writing round; letters, digits and signs are allowed: rename it."
+                )
         builder.start(tag, attributes)
 
     def end(tag: str) -> None:
