@@ -166,8 +166,7 @@ def frame_by_names(tree: Tree) -> NamedFrame:
 def _named_positions(tree: Tree) -> Iterable[tuple[str, np.ndarray]]:
     """Yield each name of a body or hinge with its place in the file's frame [m]."""
     for tree_part in tree.parts:
-        for name in tree_part.names:
-            yield name, tree_part.com
+        yield from zip(tree_part.names, tree_part.centres, strict=True)
         for joint in tree_part.joints:
             yield joint.name, joint.anchor
 
