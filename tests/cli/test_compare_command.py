@@ -59,6 +59,22 @@ def test_measures_have_their_difference_and_those_that_differ_most_come_first(tw
     assert [one.name for one in found.measures][:3] == ["load", "far", "same"]
 
 
+def test_both_answers_and_the_numbers_that_carry_them_come_first(two, tmp_path, capsys):
+    for folder, sentence in zip(two, ("It gets 2 m far. More.", "It gets 1.5 m far."), strict=True):
+        file = folder / "outcome.json"
+        told = json.loads(file.read_text()) | {"decides": f"{sentence} And why.", "answers": ["far", "gone"]}
+        file.write_text(json.dumps(told))
+    found = compare(load_result(two[0]), load_result(two[1]), ("a", "b"))
+    assert [one.name for one in found.measures][:3] == ["far", "load", "same"]
+    assert found.sentences == ("It gets 2 m far. More.", "It gets 1.5 m far. And why.")
+    page = tmp_path / "page.html"
+    assert main(["compare", str(two[0]), str(two[1]), "--out", str(page)]) == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert "A answers: It gets 2 m far. More. B answers: It gets 1.5 m far. And why." in out
+    assert out.index("far 2") < out.index("load 0")
+    assert "It gets 1.5 m far." in page.read_text()
+
+
 def test_measures_that_only_one_outcome_has_are_folded_away(two, tmp_path):
     found = compare(load_result(two[0]), load_result(two[1]), ("a", "b"))
     assert [one.name for one in found.common_measures] == ["load", "far", "same"]

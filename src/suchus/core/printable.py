@@ -59,17 +59,17 @@ def check_content(label: object, content: Any, *, check_texts: bool = True) -> N
     """
     level = [content]
     for _ in range(MAX_NESTING + 1):
-        below: list[Any] = []
+        next_level: list[Any] = []
         for item in level:
             if isinstance(item, str) and check_texts:
                 _check_text(label, item)
             elif isinstance(item, Mapping):
                 for key in item if check_texts else ():
                     _check_text(label, str(key))
-                below += item.values()
+                next_level += item.values()
             elif isinstance(item, list):
-                below += item
-        level = below
+                next_level += item
+        level = next_level
         if not level:
             return
     raise UnreadableFile(

@@ -4,7 +4,8 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from suchus.core.files import read_toml, write
+from suchus.core.errors import UnreadableFile
+from suchus.core.files import path_exists, read_toml, write
 from suchus.hardware.bus import STEP, BoardPlace, BusPlace, ServoPlace, Wiring
 from suchus.robot.blueprint import parse_table
 from suchus.robot.design import Robot
@@ -20,6 +21,11 @@ def read_wiring(path: str | Path, robot: Robot) -> Wiring:
         InvalidDesign: it is for another robot, or not for all of its servos.
     """
     path = Path(path)
+    if not path_exists(path):
+        raise UnreadableFile(
+            f"there is no file {path}, which says where each servo hangs: suchus calibrate wiring --robot {robot.name} "
+            "writes one with the servos at hand, and suchus emulate one of an emulated robot."
+        )
     wiring: Wiring = parse_table(read_toml(path), Wiring, path.name)
     wiring.ordered(robot)
     return replace(

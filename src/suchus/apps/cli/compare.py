@@ -74,6 +74,9 @@ def _show(comparison: Comparison) -> None:
     console = Console(highlight=False)
     for letter, name in zip("AB", comparison.names, strict=True):
         console.print(escape(printable(f"{letter}: {name}")), soft_wrap=True)
+    for letter, sentence in zip("AB", comparison.sentences, strict=True):
+        if sentence:
+            console.print(escape(printable(f"{letter} answers: {sentence}")), soft_wrap=True)
     _print(console, ("setting", "A", "B"), _settings(comparison)[:_MAX_ROWS])
     _print(
         console,

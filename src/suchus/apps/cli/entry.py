@@ -142,6 +142,7 @@ COMMANDS = (
         "crawl|FILE.toml [--out DIR]",
         "search for a better gait or body, resumable",
         "suchus.apps.cli.optimise:optimise",
+        shelf_options=("robot",),
     ),
     Subcommand(
         "import",

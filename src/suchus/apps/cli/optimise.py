@@ -8,6 +8,7 @@ from typing import Annotated
 
 import tyro
 
+from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import SCHEDULER, parse
 from suchus.apps.cli.terminal import working
 from suchus.core.errors import UnknownName
@@ -16,7 +17,9 @@ from suchus.core.jobs import at_scheduler
 from suchus.experiments.optimise import AIMS, READY, Optimisation, read_optimisation, write_results
 from suchus.experiments.optimise import optimise as conduct
 from suchus.experiments.optimise.conduct import run_files
+from suchus.experiments.optimise.ready import FOR_ANY_ROBOT
 from suchus.experiments.optimise.results import RESULT
+from suchus.robot.design import Robot
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,6 +28,8 @@ class OptimiseOptions:
 
     what: Annotated[str, tyro.conf.Positional]
     """A ready-made search, or a TOML file; see docs/optimise.md."""
+    robot: Robot | None = None
+    """Another robot for the search crawl, each of its two groups with its best legs; by default caiman."""
     out: Path | None = None
     """Folder of results; by default out/optimise/NAME. A search that began there is continued."""
     evaluations: int | None = None
@@ -67,8 +72,13 @@ def optimise(words: Sequence[str]) -> int:
 
 def _read_search(options: OptimiseOptions) -> Optimisation:
     """Return the search that is asked for."""
+    if options.robot is not None and options.what not in FOR_ANY_ROBOT:
+        raise BadCommand(
+            f"--robot is for the search {' or '.join(FOR_ANY_ROBOT)}; {options.what} is of the robot that it names: "
+            "leave --robot out, or write the robot into the file of the search."
+        )
     if options.what in READY:
-        spec = READY[options.what]()
+        spec = READY[options.what](options.robot) if options.robot is not None else READY[options.what]()
     elif options.what.endswith(".toml") or path_exists(Path(options.what)):
         spec = read_optimisation(Path(options.what))
     else:

@@ -159,7 +159,7 @@ class Chance:
         return f"{self.broken.part} {self.broken.kind()} from {self.broken.at:.2f} s"
 
 
-class History:
+class EpisodeHistory:
     """How the present episodes of a pack came to be: the random numbers of their beginnings, and all actions since.
 
     Args:
@@ -247,7 +247,7 @@ class Pack:
         """Sentence on the fault of each episode, see ``Chance.fault``."""
         self.causes = np.full(count, "", dtype=object)
         """Why each episode ended; empty until it does."""
-        self._history = History(count)
+        self._history = EpisodeHistory(count)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of: the task, and how each episode came to be as it is."""
@@ -258,7 +258,7 @@ class Pack:
 
         The simulation itself lies in the memory of MuJoCo, which cannot be copied as it is.
         """
-        history: History = state["history"]
+        history: EpisodeHistory = state["history"]
         self.__init__(state["task"], state["count"])  # type: ignore[misc]
         for robot, random in history.randoms.items():
             self.restart([robot], [deepcopy(random)])

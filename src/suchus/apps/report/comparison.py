@@ -6,6 +6,7 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
+from suchus.apps.report.outcome_page import answer
 from suchus.apps.report.rendering import render
 from suchus.apps.report.result import MediaFile, Picture, Result
 from suchus.core.errors import IncompatibleRecord
@@ -68,7 +69,9 @@ class Comparison:
     results: tuple[Result, Result]
     """The two outcomes."""
     measures: tuple[MeasureComparison, ...]
-    """Every measure of either, the largest relative difference first."""
+    """Every measure of either: those that carry the answer first, then the largest relative difference."""
+    sentences: tuple[str, str] = ("", "")
+    """The answer of each outcome in words."""
     verdicts: tuple[VerdictComparison, ...]
     """Every claim that either judges, those with another verdict first."""
     settings: tuple[Setting, ...]
@@ -113,8 +116,13 @@ def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Compa
             f"{result_a.folder} ({result_a.name}) and {result_b.folder} ({result_b.name}) have no measure in common; "
             "compare two outcomes of one experiment."
         )
+    answers = list(dict.fromkeys([*result_a.outcome.get("answers", ()), *result_b.outcome.get("answers", ())]))
     measures.sort(
-        key=lambda measure: (measure.difference is None, -_size(measure))
+        key=lambda measure: (
+            measure.difference is None,
+            answers.index(measure.name) if measure.name in answers else len(answers),
+            -_size(measure),
+        )
     )  # a stable sort: equal measures keep their order
     verdicts = list(_pair_verdicts(result_a.outcome["verdicts"], result_b.outcome["verdicts"]))
     verdicts.sort(
@@ -127,6 +135,7 @@ def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Compa
     differ = [name for name in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(name) != flat[1].get(name)]
     return Comparison(
         names=names,
+        sentences=(answer(result_a.outcome["decides"]), answer(result_b.outcome["decides"])),
         results=(result_a, result_b),
         measures=tuple(measures),
         verdicts=tuple(verdicts),

@@ -1,15 +1,18 @@
 """Ready-made searches, by name."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
+from suchus.core.errors import UnknownName, UnsuitedRobot
 from suchus.experiments.optimise.spec import Aim, Limit, Optimisation
 from suchus.experiments.study import Arm, Vary
 from suchus.experiments.study.plan import vary_assumption
 from suchus.robot.control import Standing, Walking
-from suchus.robot.design import value_at
-from suchus.robot.gaits import GAITS, conditions_of
+from suchus.robot.design import Robot, check_needs, layout, value_at
+from suchus.robot.gaits import GAITS, conditions_of, control_group, default_gait
 from suchus.robot.gaits.belly_crawl import FRONT, HIND
+from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run
 
@@ -57,8 +60,10 @@ def _limbs_only() -> Arm:
     return Arm(name="limbs_only", values={f"gait.{name}": value_at(limbs, name) for name, _, _ in _BODY})
 
 
-def crawl() -> Optimisation:
+def crawl(robot: Robot | None = None) -> Optimisation:
     """The farthest two cycles with spine and tail, and the farthest with limbs only, on the same budget."""
+    if robot is not None and robot != ROBOTS["caiman"]:
+        return _crawl_of(robot)
     return Optimisation(
         name="crawl",
         run=Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"]),
@@ -70,6 +75,73 @@ def crawl() -> Optimisation:
         seed=1,
         reasons=_CRAWL_REASONS,
     )
+
+
+def _crawl_of(robot: Robot) -> Optimisation:
+    """Return the search for the best legs of another body, with its axis and with limbs only.
+
+    It starts from the robot's own gait. Each range is that of the article's crawl, moved as far as it must be to hold
+    the gait's own value. Limits in metres grow with the length of the body.
+
+    Raises:
+        UnsuitedRobot: it has no limbs or no axis that bends, or its feet follow no paths.
+    """
+    check_needs(robot, ("foot_paths", "axis"), "the search crawl")
+    gait = default_gait(robot)
+    if not gait.has("strokes"):
+        raise UnsuitedRobot(
+            f"the search crawl needs limbs whose feet follow paths; robot {robot.name!r} walks in the gait "
+            f"{gait.name!r}, which has none: choose another robot, or write a search as a file (docs/optimise.md)."
+        )
+    legs = [row for row in _LEGS if not row[0].startswith("limbs[")]
+    for number in range(len(gait.limbs)):
+        pattern = 0 if number < len(gait.limbs) - 1 else 1
+        legs += [
+            (f"limbs[{number}].{name}", lower, upper)
+            for path, lower, upper in _LEGS
+            for head, _, name in [path.partition("].")]
+            if head == f"limbs[{pattern}"
+        ]
+    body = [row for row in _BODY if row[0] != "tail_pitch" or layout(robot).tail_pitch]
+    rows = [_shifted(row, value) for row in (*legs, *body) if (value := _number_at(gait, row[0])) is not None]
+    control = control_group(gait)
+    fixed = {f"gait.{name}": value_at(control, name) for name, _, _ in rows if name in {row[0] for row in _BODY}}
+    length_ratio = robot.length / ROBOTS["caiman"].length
+    return Optimisation(
+        name=f"crawl_{robot.name}",
+        run=Run(robot=robot, gait=gait),
+        vary=_vary(tuple(rows)),
+        aims=(Aim(name="displacement"),),
+        limits=tuple(
+            replace(limit, value=limit.value * length_ratio) if limit.name in ("clearance", "sideways") else limit
+            for limit in _LIMITS
+        ),
+        arms=(Arm(name="coordinated"), Arm(name="limbs_only", values=fixed)),
+        evaluations=960,
+        seed=1,
+        reasons=(
+            "The cycle is that of the robot's own gait. Ranges are those of the article's crawl in parts of the limbs, "
+            "moved where they would not hold the gait's own value.",
+            "Both conditions have the same legs, ranges, limits, population and budget; limbs_only holds the axis "
+            "straight.",
+        ),
+    )
+
+
+def _number_at(gait: Gait, path: str) -> float | None:
+    """Return the number of a field of a gait; None where the gait has no such field or no number there."""
+    try:
+        value = value_at(gait, path)
+    except UnknownName:
+        return None
+    return float(value) if isinstance(value, (int, float)) else None
+
+
+def _shifted(row: tuple[str, float, float], value: float) -> tuple[str, float, float]:
+    """Return a range of the same width, moved as little as lets it hold a value."""
+    name, lower, upper = row
+    shift = min(0.0, value - lower) + max(0.0, value - upper)
+    return name, lower + shift, upper + shift
 
 
 def thrift() -> Optimisation:
@@ -167,7 +239,9 @@ def lifted() -> Optimisation:
     )
 
 
-READY: Mapping[str, Callable[[], Optimisation]] = MappingProxyType(
+FOR_ANY_ROBOT = ("crawl",)
+"""Those that take another robot than the article's."""
+READY: Mapping[str, Callable[..., Optimisation]] = MappingProxyType(
     {maker.__name__: maker for maker in (crawl, thrift, turn, stand, lifted)}
 )
 """What makes each; its docstring says what it is."""

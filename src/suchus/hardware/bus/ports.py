@@ -181,7 +181,12 @@ def _serial(name: str, baud: int) -> Port:
 def _ports_text() -> str:
     """Return a sentence that names the serial ports of this computer."""
     adapters = sorted(Path("/dev/serial/by-id").glob("*")) or sorted(Path("/dev").glob("tty[UA][SC][BM]*"))
-    return f"there is {', '.join(map(str, adapters))}." if adapters else "no adapter is plugged in."
+    if adapters:
+        return f"there is {', '.join(map(str, adapters))}."
+    return (
+        "no adapter is plugged in, or none that this computer has a driver for: plug it in, or start suchus emulate, "
+        "which prints the port of an emulated robot."
+    )
 
 
 def _lower_latency(device: Any) -> None:

@@ -30,6 +30,7 @@ from suchus.robot.design import layout
 from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import CONDITIONS, belly_crawl, conditions_of
 from suchus.robot.motion import START, FootPath, Gait, suits
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.sim.metrics import displacement as displacement_of
@@ -220,7 +221,15 @@ class Displacement(TwoGroups):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how far it gets and what decides, or that it does not move."""
-        return self.render_explanation(measures, least=self._min_motion)
+        return self.render_explanation(measures, least=self._min_motion, best_legs=self._search_command())
+
+    def _search_command(self) -> str:
+        """Return the command that searches each group's best legs; empty where the gait has no strokes to search."""
+        if not self.gait.has("strokes"):
+            return ""
+        name = self.robot.name
+        word = name if name in ROBOTS else f"{name}.toml"
+        return "suchus optimise crawl" if name == "caiman" else f"suchus optimise crawl --robot {word}"
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the crawls, what each part adds, the displacement over time and what decides it."""

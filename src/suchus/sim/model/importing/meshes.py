@@ -172,7 +172,7 @@ def _folders_below(root: Path) -> tuple[Path, ...]:
     """
     folders, visited, level = [root], {root.resolve()}, [root]
     for _ in range(_MAX_PACKAGE_DEPTH):
-        below: list[Path] = []
+        subfolders: list[Path] = []
         for folder in level:
             if folder != root and (folder / _MANIFEST).is_file():
                 continue  # packages do not lie in packages
@@ -185,9 +185,9 @@ def _folders_below(root: Path) -> tuple[Path, ...]:
                     return tuple(folders)
                 if child.is_dir() and child.resolve() not in visited:
                     visited.add(child.resolve())
-                    below.append(child)
+                    subfolders.append(child)
                     folders.append(child)
-        level = below
+        level = subfolders
     return tuple(folders)
 
 

@@ -114,26 +114,26 @@ def _side_of(word: str) -> int:
 class NamedFrame:
     """Directions in the file's horizontal plane that names give, each a unit vector of shape (2,) or None."""
 
-    forward: np.ndarray | None
+    forward_axis: np.ndarray | None
     """From what is called hind to what is called front."""
-    left: np.ndarray | None
+    left_axis: np.ndarray | None
     """From what is called right to what is called left."""
 
     @property
     def heading(self) -> float | None:
         """Direction of forward, from the file's x axis to the left [degree]; None where names do not say it."""
-        if self.forward is not None:
-            return float(np.degrees(np.arctan2(self.forward[1], self.forward[0])))
-        if self.left is not None:
-            return float(np.degrees(np.arctan2(-self.left[0], self.left[1])))
+        if self.forward_axis is not None:
+            return float(np.degrees(np.arctan2(self.forward_axis[1], self.forward_axis[0])))
+        if self.left_axis is not None:
+            return float(np.degrees(np.arctan2(-self.left_axis[0], self.left_axis[1])))
         return None
 
     @property
     def is_mirrored(self) -> bool:
         """Whether the left of the names lies to the right of their front."""
-        if self.forward is None or self.left is None:
+        if self.forward_axis is None or self.left_axis is None:
             return False
-        return bool(self.forward[0] * self.left[1] - self.forward[1] * self.left[0] < -_MIN_TURN)
+        return bool(self.forward_axis[0] * self.left_axis[1] - self.forward_axis[1] * self.left_axis[0] < -_MIN_TURN)
 
 
 _MIN_TURN = 0.5  # sine of the angle from forward to left; sides that lie less across the front say nothing
@@ -156,18 +156,17 @@ def frame_by_names(tree: Tree) -> NamedFrame:
     hinds = [p for d, p in directions if d.end < 0 and not (is_strong and d.is_weak)]
     lefts = [position for direction, position in directions if direction.side > 0]
     rights = [position for direction, position in directions if direction.side < 0]
-    forward = None
+    forward_axis = None
     if fronts or hinds:
-        forward = _horizontal(_mean(fronts, tree.com) - _mean(hinds, tree.com), tree.size)
-    left = _horizontal(_mean(lefts, tree.com) - _mean(rights, tree.com), tree.size) if lefts and rights else None
-    return NamedFrame(forward=forward, left=left)
+        forward_axis = _horizontal(_mean(fronts, tree.com) - _mean(hinds, tree.com), tree.size)
+    left_axis = _horizontal(_mean(lefts, tree.com) - _mean(rights, tree.com), tree.size) if lefts and rights else None
+    return NamedFrame(forward_axis=forward_axis, left_axis=left_axis)
 
 
 def _named_positions(tree: Tree) -> Iterable[tuple[str, np.ndarray]]:
     """Yield each name of a body or hinge with its place in the file's frame [m]."""
     for tree_part in tree.parts:
-        for name in tree_part.names:
-            yield name, tree_part.com
+        yield from zip(tree_part.names, tree_part.centres, strict=True)
         for joint in tree_part.joints:
             yield joint.name, joint.anchor
 

@@ -165,9 +165,9 @@ def _disagreements(plane: Plane, by_shape: Plane, named_frame: NamedFrame, *, ha
             "say --front BODY or --heading DEGREES."
         )
     elif heading is not None and not _is_along(by_shape, plane.heading):
-        either = " or ".join(f"{(by_shape.heading + turn) % 360:g}" for turn in (0, 180))
+        shape_headings = " or ".join(f"{(by_shape.heading + turn) % 360:g}" for turn in (0, 180))
         sentences.append(
-            f"Names and shape disagree: by shape alone the front would be at {either} degrees; the names were "
+            f"Names and shape disagree: by shape alone the front would be at {shape_headings} degrees; the names were "
             f"followed. If the shape is right, say --heading {by_shape.heading % 360:g}."
         )
     if named_frame.is_mirrored and has_limbs:

@@ -117,6 +117,7 @@ def _turn(parts: list[TreePart], plan: BodyPlan, part_index: int, joint_index: i
             tensor=rotation.as_matrix() @ parts[i].tensor @ rotation.as_matrix().T,
             origin=rotate_points(parts[i].origin),
             points=rotate_points(parts[i].points),
+            centres=rotate_points(parts[i].centres),
             pieces=tuple(_rotated_piece(piece, rotate_points, rotation) for piece in parts[i].pieces),
         )
 

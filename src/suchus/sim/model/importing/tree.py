@@ -162,6 +162,8 @@ class TreePart:
     """Origins of its bodies and sites, shape (n, 3) [m]."""
     names: tuple[str, ...]
     """Names of its bodies."""
+    centres: np.ndarray
+    """Centre of mass of each of its bodies, shape (body, 3) [m]."""
 
     @property
     def corners(self) -> np.ndarray:
@@ -294,6 +296,7 @@ def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> Tr
         pieces=of_body(model, data, body),
         points=np.array([data.xpos[body], *sites]),
         names=(name,),
+        centres=data.xipos[body][None].copy(),
     )
 
 
@@ -335,6 +338,7 @@ def _fused(carrier: TreePart, child: TreePart) -> TreePart:
         pieces=carrier.pieces + child.pieces,
         points=np.concatenate([carrier.points, child.points]),
         names=carrier.names + child.names,
+        centres=np.concatenate([carrier.centres, child.centres]),
     )
 
 

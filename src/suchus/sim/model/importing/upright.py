@@ -165,6 +165,7 @@ def _turned(tree: Tree, up: str, remark: str) -> Tree:
                 ShapePiece(ends=piece.ends @ matrix.T, half=np.abs(matrix) @ piece.half) for piece in tree_part.pieces
             ),
             points=tree_part.points @ matrix.T,
+            centres=tree_part.centres @ matrix.T,
         )
         for tree_part in tree.parts
     )
