@@ -17,6 +17,8 @@ CALLS = 10
 """How often a function is looked at in a test, arguments and result counted apart [-]."""
 _calls: Counter[tuple[str, str]] = Counter()
 _resting: list[Any] = []
+_replaced: list[tuple[Any, str, Any]] = []
+"""Where a function rests that its module or class shows unchecked: the place, the name and the checked function."""
 
 
 def checked(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -38,15 +40,23 @@ def begin() -> None:
     _calls.clear()
     while _resting:
         del _resting.pop().__no_type_check__
+    while _replaced:
+        setattr(*_replaced.pop())
 
 
 def _rest(module: str, name: str) -> None:
     """Let jaxtyping call a function unchecked; it asks for the attribute of ``typing.no_type_check`` at each call.
 
-    A version of jaxtyping that does not is only slower.
+    Whoever finds the function by its module or class is not even asked. A version of jaxtyping that does not look at
+    the attribute is only slower.
     """
     with suppress(AttributeError):  # what is made inside a function, or is a property, has no such place
-        function = reduce(getattr, name.split("."), sys.modules[module])
-        function = function.__wrapped__  # where jaxtyping looks first
-        function.__no_type_check__ = True
-        _resting.append(function)
+        *path, last = name.split(".")
+        place = reduce(getattr, path, sys.modules[module])
+        function = getattr(place, last)
+        unchecked = function.__wrapped__  # where jaxtyping looks first
+        unchecked.__no_type_check__ = True
+        _resting.append(unchecked)
+        if vars(place)[last] is function:  # no method of a class as such, and none that is inherited
+            setattr(place, last, unchecked)
+            _replaced.append((place, last, function))
