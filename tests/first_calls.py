@@ -18,7 +18,7 @@ CALLS = 10
 _calls: Counter[tuple[str, str]] = Counter()
 _resting: list[Any] = []
 _replaced: list[tuple[Any, str, Any]] = []
-"""Where a function rests that its module or class shows unchecked: the place, the name and the checked function."""
+"""Methods that their classes show unchecked: the class, the name and the checked method."""
 
 
 def checked(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -47,8 +47,8 @@ def begin() -> None:
 def _rest(module: str, name: str) -> None:
     """Let jaxtyping call a function unchecked; it asks for the attribute of ``typing.no_type_check`` at each call.
 
-    Whoever finds the function by its module or class is not even asked. A version of jaxtyping that does not look at
-    the attribute is only slower.
+    A class even shows its method unchecked; a module keeps its function, which may be pickled by its name. A version of
+    jaxtyping that does not look at the attribute is only slower.
     """
     with suppress(AttributeError):  # what is made inside a function, or is a property, has no such place
         *path, last = name.split(".")
@@ -57,6 +57,6 @@ def _rest(module: str, name: str) -> None:
         unchecked = function.__wrapped__  # where jaxtyping looks first
         unchecked.__no_type_check__ = True
         _resting.append(unchecked)
-        if vars(place)[last] is function:  # no method of a class as such, and none that is inherited
+        if isinstance(place, type) and vars(place).get(last) is function:  # neither inherited nor of the class as such
             setattr(place, last, unchecked)
             _replaced.append((place, last, function))
