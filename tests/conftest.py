@@ -42,6 +42,7 @@ from suchus.robot.gaits import GAITS  # noqa: E402
 from suchus.robot.motion import Gait  # noqa: E402
 from suchus.robot.robots import ROBOTS  # noqa: E402
 
+gc.disable()  # until all tests are collected: modules stay, and the search for garbage takes a fifth of their import
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 """Processes that tests start get the default: under nohup they would inherit an ignored hang-up and not stop on it."""
 if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
@@ -71,6 +72,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 def pytest_collection_finish() -> None:
     gc.freeze()  # a million objects of modules and of tests stay: nothing looks through them again
+    gc.enable()
     gc.set_threshold(100_000, 20, 50)  # looked for less often than in a program that has little memory
 
 

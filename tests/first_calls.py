@@ -17,6 +17,8 @@ CALLS = 10
 """How often a function is looked at in a test, arguments and result counted apart [-]."""
 _calls: Counter[tuple[str, str]] = Counter()
 _resting: list[Any] = []
+_replaced: list[tuple[Any, str, Any]] = []
+"""Methods that their classes show unchecked: the class, the name and the checked method."""
 
 
 def checked(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -38,15 +40,23 @@ def begin() -> None:
     _calls.clear()
     while _resting:
         del _resting.pop().__no_type_check__
+    while _replaced:
+        setattr(*_replaced.pop())
 
 
 def _rest(module: str, name: str) -> None:
     """Let jaxtyping call a function unchecked; it asks for the attribute of ``typing.no_type_check`` at each call.
 
-    A version of jaxtyping that does not is only slower.
+    A class even shows its method unchecked; a module keeps its function, which may be pickled by its name. A version of
+    jaxtyping that does not look at the attribute is only slower.
     """
     with suppress(AttributeError):  # what is made inside a function, or is a property, has no such place
-        function = reduce(getattr, name.split("."), sys.modules[module])
-        function = function.__wrapped__  # where jaxtyping looks first
-        function.__no_type_check__ = True
-        _resting.append(function)
+        *path, last = name.split(".")
+        place = reduce(getattr, path, sys.modules[module])
+        function = getattr(place, last)
+        unchecked = function.__wrapped__  # where jaxtyping looks first
+        unchecked.__no_type_check__ = True
+        _resting.append(unchecked)
+        if isinstance(place, type) and vars(place).get(last) is function:  # neither inherited nor of the class as such
+            setattr(place, last, unchecked)
+            _replaced.append((place, last, function))

@@ -4,7 +4,8 @@ Numpy, SciPy, numba, MuJoCo, xarray and matplotlib take two seconds of processor
 once for each worker of the tests, and forks for each program. It imports nothing of suchus: a program that lacks an
 import of suchus fails as it does alone. Where there is no safe fork, each program is an interpreter of its own.
 
-``python tests/programs.py`` is the server. A line of JSON is a request, and the exit code is the answer.
+``python tests/programs.py`` is the server. A line of JSON is a request, and the exit code is the answer; an empty line
+ends the server.
 """
 
 import gc
@@ -26,7 +27,7 @@ LIBRARIES = (
     "numpy", "scipy.constants", "scipy.interpolate", "scipy.ndimage", "scipy.optimize", "scipy.signal",
     "scipy.spatial.transform", "scipy.stats", "numba", "llvmlite.binding", "mujoco", "xarray", "h5netcdf", "h5py",
     "matplotlib.figure", "matplotlib.backends.backend_agg", "mpl_toolkits.mplot3d", "PIL.Image", "pydantic", "jinja2",
-    "rich.progress",
+    "rich.progress", "jaxtyping", "tyro",
 )  # fmt: skip
 """What most programs import; nothing of suchus."""
 CAN_FORK = sys.platform == "linux"
@@ -81,7 +82,12 @@ def started() -> Iterator[Programs]:
         own = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         words = [sys.executable, __file__]
         with subprocess.Popen(words, env=own, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as server:
-            yield Programs(Path(folder), server)
+            try:
+                yield Programs(Path(folder), server)
+            finally:
+                assert server.stdin is not None
+                server.stdin.write("\n")  # a closed pipe is not enough: forked processes may hold its other end
+                server.stdin.flush()
 
 
 def serve(requests: IO[str], answers: IO[str]) -> dict[str, Any] | None:
@@ -93,7 +99,7 @@ def serve(requests: IO[str], answers: IO[str]) -> dict[str, Any] | None:
     for library in LIBRARIES:
         importlib.import_module(library)
     gc.freeze()  # what is collected in a program is its own
-    for line in iter(requests.readline, ""):
+    while (line := requests.readline()).strip():
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 warns of the idle threads of libraries
             process = os.fork()

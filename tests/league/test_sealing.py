@@ -27,7 +27,11 @@ def _hook(event, args):
             _OPENED.append(path)
 
 
-sys.addaudithook(_hook)
+@pytest.fixture(scope="module")
+def opened_files():
+    """Files of measurements that were opened; the hook stays in the process, so no other test waits for it before."""
+    sys.addaudithook(_hook)
+    return _OPENED
 
 
 def _truth(folder, data=None):
@@ -53,7 +57,7 @@ def test_a_prediction_has_its_form_and_its_seal(tmp_path):
     assert again.date == seal.date
 
 
-def test_nothing_that_was_measured_is_read_before_the_seal(tmp_path, monkeypatch):
+def test_nothing_that_was_measured_is_read_before_the_seal(tmp_path, opened_files):
     """By an audit hook, which sees every file that this process opens; digests of the code are made anew."""
     package_digest.cache_clear()
     sealing.code_state.cache_clear()
@@ -61,13 +65,13 @@ def test_nothing_that_was_measured_is_read_before_the_seal(tmp_path, monkeypatch
     measured = _truth(tmp_path)
     for one in (stone(), *(_cheap(find(CONTESTANTS, name)) for name in ("catshark_2", "amphibot"))):
         there = measured if one.name == "stone" else measured_file(one.name)
-        _OPENED.clear()
+        opened_files.clear()
         with pytest.raises(UnreadableFile):
             opened(tmp_path / one.name, one.predicts, there)
         sealed_prediction(one, tmp_path)
-        assert _OPENED == []
+        assert opened_files == []
         standing(one, tmp_path, there)
-        assert ([there] if there.is_file() else []) == _OPENED
+        assert ([there] if there.is_file() else []) == opened_files
 
 
 def _cheap(one):

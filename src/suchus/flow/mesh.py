@@ -33,6 +33,8 @@ _AMPLE = 1.05
 """Margin of that radius [-]."""
 _CELLS_ALONG_BOX = 100
 """Cells along the longest side of the box in which the surface of a signed distance is searched [-]."""
+_BALL_MARGIN = 1.0 + 1e-6
+"""Radius of the ball around a triangle over the distance of its farthest corner from its centroid [-]."""
 _NEWTON = 3
 """Newton steps that move the corners onto the surface [-]."""
 
@@ -369,6 +371,21 @@ def _nearest_point(px, py, pz, t):
 
 
 @kernel_part
+def _enclosing_ball(t):
+    """Return centre and radius of a ball that holds a triangle, larger by far more than both are rounded.
+
+    Args:
+        t: corners of the triangle, shape (corner, axis).
+    """
+    cx, cy, cz = (t[0, 0] + t[1, 0] + t[2, 0]) / 3, (t[0, 1] + t[1, 1] + t[2, 1]) / 3, (t[0, 2] + t[1, 2] + t[2, 2]) / 3
+    square = 0.0
+    for k in range(3):
+        x, y, z = t[k, 0] - cx, t[k, 1] - cy, t[k, 2] - cz
+        square = max(square, _dot(x, y, z, x, y, z))
+    return cx, cy, cz, _BALL_MARGIN * np.sqrt(square)
+
+
+@kernel_part
 def _span(lower_bound, upper_bound, reach, start, h, count):
     """Return the first point of a line that lies within a reach of an interval, and the point after the last.
 
@@ -411,8 +428,13 @@ def paint_mesh(window_field, x, y, z, corners, normals, reach, h):
                 continue
             j0, j1 = _span(min(t[0, 1], t[1, 1], t[2, 1]), max(t[0, 1], t[1, 1], t[2, 1]), reach, y[0], h, y.size)
             i0, i1 = _span(min(t[0, 0], t[1, 0], t[2, 0]), max(t[0, 0], t[1, 0], t[2, 0]), reach, x[0], h, x.size)
+            cx, cy, cz, radius = _enclosing_ball(t)
             for j in range(j0, j1):
+                square_beside = (y[j] - cy) ** 2 + (z[q] - cz) ** 2
                 for i in range(i0, i1):
+                    max_distance = abs(window_field[0, q, j, i]) + radius
+                    if square_beside + (x[i] - cx) ** 2 > max_distance * max_distance:
+                        continue  # another triangle is nearer
                     v, w, feature = _nearest_point(x[i], y[j], z[q], t)
                     u = 1.0 - v - w
                     dx = x[i] - (u * t[0, 0] + v * t[1, 0] + w * t[2, 0])

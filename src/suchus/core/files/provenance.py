@@ -17,6 +17,8 @@ from suchus.core import machine
 _PACKAGE = Path(__file__).parents[2]
 _NO_SYNTAX = frozenset({"lineno", "col_offset", "end_lineno", "end_col_offset", "ctx", "kind", "type_ignores"})
 """Attributes of nodes of syntax trees that are positions, or follow from the other nodes."""
+_DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+"""Nodes of syntax trees whose bodies may hold docstrings."""
 _PACKAGES = ("suchus", "mujoco", "numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
 
 
@@ -45,13 +47,16 @@ def digest(settings: Mapping[str, Any]) -> str:
 
 def versions() -> dict[str, str]:
     """Return the version of Python and of every package that can change a number or a picture."""
-    package_versions = {"python": platform.python_version()}
-    for name in _PACKAGES:
-        try:
-            package_versions[name] = version(name)
-        except PackageNotFoundError:
-            package_versions[name] = "not installed"
-    return package_versions
+    return {"python": platform.python_version(), **{name: _installed_version(name) for name in _PACKAGES}}
+
+
+@cache
+def _installed_version(package: str) -> str:
+    """Return the version of a package, looked up once: the search goes through all installed packages."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed"
 
 
 @cache
@@ -72,9 +77,15 @@ def code_digest(*paths: str) -> str:
         if not location.exists():
             raise FileNotFoundError(f"suchus has no {path}, whose source was to be compared.")
         for file in [location] if location.is_file() else sorted([*location.rglob("*.py"), *location.rglob("*.toml")]):
-            source = file.read_bytes() if file.suffix == ".toml" else syntax_of(file.read_bytes())
+            source = file.read_bytes() if file.suffix == ".toml" else _syntax_of_file(file)
             text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + source + b"\0")
     return text.hexdigest()
+
+
+@cache
+def _syntax_of_file(file: Path) -> bytes:
+    """Return the syntax tree of a module of suchus; most digests are of overlapping sets of modules."""
+    return syntax_of(file.read_bytes())
 
 
 def syntax_of(source: bytes) -> bytes:
@@ -86,12 +97,8 @@ def syntax_of(source: bytes) -> bytes:
     Raises:
         SyntaxError: the source is no Python.
     """
-    tree = ast.parse(source)
-    for node in ast.walk(tree):
-        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
-            node.body = [statement for statement in node.body if not is_docstring(statement)]
     text: list[str] = []
-    _write(tree, text.append)
+    _write(ast.parse(source), text.append)
     return "".join(text).encode()
 
 
@@ -105,13 +112,18 @@ def is_docstring(statement: ast.stmt) -> bool:
 
 
 def _write(node: ast.AST, write: Callable[[str], None]) -> None:
-    """Write a syntax tree without positions."""
+    """Write a syntax tree without positions and docstrings."""
     write(f"{type(node).__name__}(")
     for name, value in node.__dict__.items():
-        if name in _NO_SYNTAX or value is None or value == []:
+        if name in _NO_SYNTAX or value is None:
+            continue
+        elements = value if isinstance(value, list) else (value,)
+        if name == "body" and isinstance(node, _DOCUMENTED):
+            elements = [statement for statement in elements if not is_docstring(statement)]
+        if not elements:
             continue
         write(f"{name}=")
-        for element in value if isinstance(value, list) else (value,):
+        for element in elements:
             if isinstance(element, ast.AST):
                 _write(element, write)
             else:
