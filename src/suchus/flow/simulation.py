@@ -264,6 +264,8 @@ class Simulation(Fields):
         """
         max_distance = courant * self.setup.grid.cell
         for name, swimmer in self.swimmers.items():
+            if self.setup.contact is None and not swimmer.is_pushed(self.setup.density):
+                continue  # the water alone moves it, and its speed bounds the step
             relative_to = self.frame[1].copy()
             if name == self.setup.follow:  # the water passes it, and it does not move in the grid
                 travels = (*self.setup.follow_axes, False)[: self.ndim]
