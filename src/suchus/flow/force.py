@@ -184,6 +184,8 @@ class ControlVolume:
     def force(self, water: Fluid, dt: float, push: tuple[float, ...], density: float) -> tuple[float, ...]:
         """Return the mean force on the bodies in the box over the step that just ended [N/m, N].
 
+        Not a number in the first step, unless ``start`` was called before it.
+
         Args:
             water: after the step.
             dt: length of the step [s].
@@ -192,7 +194,8 @@ class ControlVolume:
         """
         h, previous_balance = water.grid.cell, self.last_balance
         balance = self.start(water)
-        assert previous_balance is not None  # start was called before the first step
+        if previous_balance is None:
+            return (float("nan"),) * water.ndim
         cells = np.prod(np.subtract(self.box[1::2], self.box[::2]))
         body_cells = (1 - water.mu0[0]).sum(dtype=np.float64)
         rate = (balance[0] - balance[1] - previous_balance[0] + previous_balance[1]) / dt
