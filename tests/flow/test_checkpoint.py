@@ -43,7 +43,7 @@ def ribbon(width):
 def setup():
     """One of everything that a setup can hold."""
     return still_setup(
-        stream=(0.3, -0.1), follow="ell", step=0.01, follow_axes=(False, False),
+        stream=(0.3, 0.0), follow="ell", step=0.01, follow_axes=(False, False),
         contact=flow.BodyContact(gap=0.1, pressure=2.0),
         sides=flow.Sides(left=flow.Inflow(profile=lambda y: 0.3 + 0 * y), right=flow.Outflow(), bottom=flow.Slip(),
                          top=flow.Wall(speed=0.2)),

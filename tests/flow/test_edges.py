@@ -135,7 +135,7 @@ def test_a_grid_too_coarse_for_the_layer_is_refused_doubted_or_taken(recwarn):
 
 def test_the_estimate_is_in_the_record():
     sim = flow.Simulation(in_stream(16, 40))
-    sim.advance()
+    sim.run(1.5, progress=False)  # then the layer of the sudden start is as thick as that of the steady flow
     cells = 16 / np.sqrt(40)
     assert sim.record.column("layer_error")[-1] == pytest.approx(0.14 * cells**-1.5, rel=0.01)
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import show
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
@@ -29,8 +30,20 @@ class Body:
     """Its name in records and messages."""
 
     def pose(self, time: float) -> Pose:
-        """Return the pose at a time [s]."""
-        return self.motion if isinstance(self.motion, Pose) else self.motion(time)
+        """Return the pose at a time [s].
+
+        Raises:
+            InvalidDesign: the motion gives something else than a pose.
+        """
+        if isinstance(self.motion, Pose):
+            return self.motion
+        pose = self.motion(time)
+        if not isinstance(pose, Pose):
+            raise InvalidDesign(
+                f"the motion of {self.name} gives {show(pose)} at t = {time:.4g} s; a motion returns a Pose, with "
+                f"position, angle, velocity and spin."
+            )
+        return pose
 
     @property
     def is_static(self) -> bool:

@@ -93,7 +93,7 @@ class _Notice(event.Listener):  # type: ignore[misc]
             if not self._is_printed and self._compile_time > self.DELAY:
                 self._is_printed = True
                 print(
-                    "Compiling the flow solver for this machine: once, about a minute for each precision ...",
+                    "Compiling the flow solver for this machine: once for each precision in plane and space ...",
                     file=sys.stderr, flush=True,
                 )  # fmt: skip
             self._open += 1

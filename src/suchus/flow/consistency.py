@@ -7,17 +7,21 @@ power are wrong and nothing else shows it.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
+from warnings import warn
 
 import numpy as np
 
 from suchus.core import rotation
-from suchus.core.errors import InvalidDesign
+from suchus.core.errors import Doubtful, InvalidDesign
 from suchus.flow.linked import LinkStates
 from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Motion, Pose
 
 RATE_TOLERANCE = 0.1
 """Largest difference of declared and measured rate, over the larger of the two [-]."""
+
+DOUBTFUL_RATE_TOLERANCE = 0.03
+"""The same difference above which a warning is issued [-]."""
 
 MIN_SPEED_RATIO = 0.05
 """Speed, over the fastest so far, below which differences are compared with this speed instead of the rates [-]."""
@@ -214,6 +218,10 @@ class Consistency:
     """Fastest speed so far, of either kind [m/s]."""
     consecutive_errors: int = 0
     """Times in a row that rates and positions disagreed [-]."""
+    consecutive_doubts: int = 0
+    """Times in a row that they disagreed by more than ``DOUBTFUL_RATE_TOLERANCE`` [-]."""
+    is_doubtful: bool = False
+    """Whether a warning of rates has been issued."""
     steps: int = 0
     """Steps looked at [-]."""
     max_half_step_distance: float = 0.0
@@ -254,7 +262,7 @@ class Consistency:
             range(MAX_CONSECUTIVE_ERRORS)
         ):  # last at the start of the step, so that the message is about the start
             self._compare(time + k * dt / MAX_CONSECUTIVE_ERRORS, dt)
-        self.consecutive_errors = 0
+        self.consecutive_errors = self.consecutive_doubts = 0
 
     def check_step(self, time: float, dt: float) -> None:
         """Compare rates and positions at the start of a step and over all of it.
@@ -314,6 +322,12 @@ class Consistency:
             DISTANCE_TOLERANCE * self.cell / dt,
         )
         excess = rate_error / np.maximum(RATE_TOLERANCE * sizes, min_speed)[series.kinds]
+        doubt = rate_error / np.maximum(DOUBTFUL_RATE_TOLERANCE * sizes, min_speed)[series.kinds]
+        self.consecutive_doubts = self.consecutive_doubts + 1 if (doubt > 1).any() else 0
+        if self.consecutive_doubts == MAX_CONSECUTIVE_ERRORS and not self.is_doubtful:
+            self.is_doubtful = True
+            text = self.source.error_text(int(doubt.argmax()), declared_rate, measured_rate)
+            warn(Doubtful(f"at t = {time:.4g} s {text}"), stacklevel=4)
         if not (excess > 1).any():
             self.consecutive_errors = 0
             return

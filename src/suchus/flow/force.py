@@ -171,10 +171,20 @@ class ControlVolume:
     last_balance: np.ndarray | None = None
     """Momentum of water and bodies, and flow through the sides, at the last step, shape (3, axis)."""
 
+    def start(self, water: Fluid) -> np.ndarray:
+        """Store and return the balance now, from which the next step counts; see ``last_balance``."""
+        self.last_balance = np.array(
+            [
+                momentum(water.velocity, self.box), momentum(water.weighted_body_velocity, self.box),
+                boundary_flux(water.velocity, water.p, float(water.nu), self.box),
+            ]
+        )  # fmt: skip
+        return self.last_balance
+
     def force(self, water: Fluid, dt: float, push: tuple[float, ...], density: float) -> tuple[float, ...]:
         """Return the mean force on the bodies in the box over the step that just ended [N/m, N].
 
-        Not a number in the first step.
+        Not a number in the first step, unless ``start`` was called before it.
 
         Args:
             water: after the step.
@@ -182,14 +192,8 @@ class ControlVolume:
             push: uniform acceleration of the water [m/s^2].
             density: of the water [kg/m^3].
         """
-        h = water.grid.cell
-        balance = np.array(
-            [
-                momentum(water.velocity, self.box), momentum(water.weighted_body_velocity, self.box),
-                boundary_flux(water.velocity, water.p, float(water.nu), self.box),
-            ]
-        )  # fmt: skip
-        previous_balance, self.last_balance = self.last_balance, balance
+        h, previous_balance = water.grid.cell, self.last_balance
+        balance = self.start(water)
         if previous_balance is None:
             return (float("nan"),) * water.ndim
         cells = np.prod(np.subtract(self.box[1::2], self.box[::2]))

@@ -1,6 +1,6 @@
 """The grid: square cells in a rectangle or cubic ones in a box, and where its staggered values sit."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil, floor, isfinite
 from numbers import Real
 from typing import TYPE_CHECKING
@@ -87,6 +87,8 @@ class Grid:
     """Side of a cell [m]."""
     origin: tuple[float, ...] = ()
     """Corner of the domain with the smallest coordinates, one for each axis; all 0 if it is not given [m]."""
+    request: tuple[tuple[float, float], ...] = field(default=(), compare=False, repr=False)
+    """First and last place along each axis that ``covering`` was asked for; empty of other grids [m]."""
 
     def __post_init__(self) -> None:
         """Refuse sizes that cannot be or that multigrid cannot halve far enough; an empty origin becomes 0."""
@@ -161,7 +163,8 @@ class Grid:
                     f"multigrid needs, are {n * cell:.6g} m; take cells of {side / n:.12g} m."
                 )
             origin.append(start - (n * cell - side) * (0.0 if is_low_held else 1.0 if is_high_held else 0.5))
-        return cls(cells=cells, cell=cell, origin=tuple(origin))  # type: ignore[arg-type]
+        request = tuple((float(start), float(end)) for start, end in pairs)
+        return cls(cells=cells, cell=cell, origin=tuple(origin), request=request)  # type: ignore[arg-type]
 
     def patch(
         self, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float] | None = None, *, ratio: int = 4

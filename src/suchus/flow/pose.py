@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from math import isfinite
+from math import degrees, isfinite, pi, radians
 from typing import Any
 
 import numpy as np
@@ -41,6 +41,21 @@ def speeds(velocity: np.ndarray) -> np.ndarray:
     """Return the lengths of vectors, shape (axis, ...), of two or three axes, in their unit."""
     size: np.ndarray = np.hypot(velocity[0], velocity[1])
     return size if len(velocity) == 2 else np.hypot(size, velocity[2])
+
+
+def angle_text(name: str, angle: float) -> str | None:
+    """Return a sentence about an angle of more than a turn, or None.
+
+    Args:
+        name: of the angle.
+        angle: its value [rad].
+    """
+    if abs(angle) <= 2 * pi:
+        return None
+    return (
+        f"{name} is {angle:.4g} rad, {degrees(angle):.4g} degrees or {angle / (2 * pi):.2g} turns. Angles are in "
+        f"radians: {angle:.4g} degrees are {radians(angle):.4g} rad."
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

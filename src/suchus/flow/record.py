@@ -2,18 +2,20 @@
 
 from dataclasses import dataclass, field
 from math import isfinite
+from warnings import warn
 
 import numpy as np
 
 from suchus.core import rotation
-from suchus.core.errors import OutsideLimits, UnknownName
+from suchus.core.errors import Doubtful, OutsideLimits, UnknownName
+from suchus.flow.pose import angle_text
 
 COLUMNS = (
     "pressure_x", "pressure_y", "shear_x", "shear_y", "torque", "power", "x", "y", "angle", "velocity_x", "velocity_y",
     "spin", "force_x", "force_y", "layer_error",
 )  # fmt: skip
 """Quantities of each body at each step, in the order of the last axis of ``Record.bodies``. ``layer_error`` is the
-estimated relative error of the force, see ``resolution``."""
+estimated relative error of the force, see ``resolution``; the thin layer of a sudden start counts as it is then."""
 
 SPACE_COLUMNS = (
     "torque_x", "torque_y", "torque", "power", "x", "y", "z", "angle", "pitch", "roll", "velocity_x", "velocity_y",
@@ -210,6 +212,9 @@ class Record:
         ):  # fmt: skip
             if not (isfinite(value) and value > 0):
                 raise OutsideLimits(f"the {name} of the reference is {value} {unit}; give a positive number.")
+        text = angle_text("stream_angle", stream_angle)
+        if text is not None:
+            warn(text, Doubtful, stacklevel=2)
         pressure = 0.5 * density * speed**2
         fx, fy = self.force(body).T[:2] / (pressure * size)
         c, s = np.cos(stream_angle), np.sin(stream_angle)

@@ -26,7 +26,7 @@ from suchus.flow.resolution import (
     required_cells,
 )
 from suchus.flow.scheme import QUICK, Scheme
-from suchus.flow.sides import Sides
+from suchus.flow.sides import NAMES, Periodic, Sides
 from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
 
@@ -62,6 +62,9 @@ class Setup:
     start: Callable[..., Sequence[np.ndarray]] | None = None
     """Velocity of the water at time 0 along every axis, a function of the coordinates x, y (and z) [m] that returns
     arrays of their shape; None is that of the far stream. The first step removes its divergence [m/s]."""
+    perturb: float = 0.0
+    """Disturbance of the water at time 0, over the speed of the far stream: a gust across the stream, as wide as the
+    first body and 1.5 widths behind it. A symmetric wake needs one to begin to shed vortices; 0.2 is enough [-]."""
     sides: Sides = field(default_factory=Sides)
     """Boundary conditions on the sides of the domain."""
     bodies: tuple[Body | FreeBody, ...] = ()
@@ -121,12 +124,20 @@ class Setup:
             )
         if not callable(self.stream):
             self._check_stream(self.stream, "")
+        if not (isfinite(self.perturb) and abs(self.perturb) <= 1):
+            raise InvalidDesign(f"perturb is {self.perturb}; give -1 to 1, over the stream's speed, say 0.2.")
+        if self.perturb and not (self.bodies and any(self.far_velocity(0.0))):
+            raise InvalidDesign(
+                f"perturb is {self.perturb}, and there is no body or no far stream at t = 0 to disturb; give both, or "
+                f"start= for water that moves otherwise."
+            )
         names = [b.name for b in self.bodies]
         if len(set(names)) != len(names):
             raise InvalidDesign(f"bodies are named {names}; give each its own name.")
         if self.follow is not None and self.follow not in names:
             raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
         self._check_dimension()
+        self._check_passage()
         if self.scheme != QUICK:  # the check compiles the scheme
             self.scheme.check()
         if self.follow is not None:
@@ -159,6 +170,22 @@ class Setup:
         if ndim == 3 and self.contact is not None:
             raise InvalidDesign("contact acts between plane outlines, and the grid has three axes; leave it None.")
 
+    def _check_passage(self) -> None:
+        """Refuse a far stream through a side through which no water passes.
+
+        Raises:
+            InvalidDesign: naming the side.
+        """
+        for axis, component in enumerate(self.far_velocity(0.0)):
+            for name in NAMES[2 * axis : 2 * axis + 2]:
+                side = getattr(self.sides, name)
+                if component and not (side.is_permeable or isinstance(side, Periodic)) and side.is_domain_end:
+                    raise InvalidDesign(
+                        f"stream has {component:.4g} m/s along {'xyz'[axis]}, and the {name} side is a "
+                        f"{type(side).__name__}, through which no water passes; take a stream without that component, "
+                        f"another side, or start= for water that moves in a closed box."
+                    )
+
     @property
     def dtype(self) -> type:
         """Type of the fields."""
@@ -183,11 +210,13 @@ class Setup:
         Raises:
             InvalidDesign: ``start`` returns something else than a velocity.
         """
-        if self.start is None:
+        if self.start is None and not self.perturb:
             return self.far_velocity(0.0)[component]
         ends = [n + 2 * PAD for n in grid.cells]
         coordinates = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
         points = np.meshgrid(*coordinates[::-1], indexing="ij")[::-1]
+        if self.start is None:
+            return self.far_velocity(0.0)[component] + self._gust(component, points)
         velocities = self.start(*points)
         if len(velocities) != self.grid.ndim:
             raise InvalidDesign(
@@ -199,7 +228,29 @@ class Setup:
                 f"start gives {show(velocities[component])} along {'xyz'[component]}; a finite velocity for each point "
                 f"is needed [m/s], shape {points[0].shape}."
             )
-        return velocity
+        return velocity + self._gust(component, points)
+
+    def _gust(self, component: int, points: Sequence[np.ndarray]) -> np.ndarray | float:
+        """Return one component of the disturbance of the water at time 0; see ``perturb`` [m/s].
+
+        Args:
+            component: axis of the component.
+            points: coordinates along each axis [m].
+        """
+        if not self.perturb:
+            return 0.0
+        body, stream = self.bodies[0], np.array(self.far_velocity(0.0))
+        pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.from_body(body).pose(body.shape.mass(0.0))
+        ends = np.reshape(body.shape.bounds(0.0, pose.in_dimensions(self.grid.ndim)), (-1, 2))
+        speed, width = float(np.linalg.norm(stream)), float(np.ptp(ends, axis=1).max())
+        direction = stream / speed
+        transverse = np.zeros(self.grid.ndim)
+        transverse[int(np.abs(direction).argmin())] = 1.0  # an axis across the stream
+        transverse -= (transverse @ direction) * direction
+        centre = ends.mean(axis=1) + 1.5 * width * direction
+        square = sum((p - c) ** 2 for p, c in zip(points, centre, strict=True)) / width**2
+        gust: np.ndarray = self.perturb * speed * transverse[component] / np.linalg.norm(transverse) * np.exp(-square)
+        return gust
 
     def _check_stream(self, stream: Any, time_text: str) -> None:
         allowed = [(2,), (self.grid.ndim,)]
@@ -274,7 +325,7 @@ class Setup:
         """
         extent = float(np.ptp(markers.points, axis=1).max())
         speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())
-        cells, is_blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), _has_blunt_shape(body)
+        cells, is_blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), has_blunt_shape(body)
         error, min_cells = (
             estimate_force_error(cells, is_compact=is_blunt),
             required_cells(MAX_FORCE_ERROR, is_compact=is_blunt),
@@ -303,7 +354,7 @@ class Setup:
         if self.coarse or error <= WARNING_FORCE_ERROR:
             return None
         cells, better = (
-            required_cells(target_error, is_compact=_has_blunt_shape(body))
+            required_cells(target_error, is_compact=has_blunt_shape(body))
             for target_error in (error, WARNING_FORCE_ERROR)
         )
         times = ceil(100 * better / cells) / 100
@@ -317,5 +368,6 @@ class Setup:
         )
 
 
-def _has_blunt_shape(body: Body | FreeBody) -> bool:
+def has_blunt_shape(body: Body | FreeBody) -> bool:
+    """Return whether a body is a blunt one in space."""
     return isinstance(body.shape, SpaceShape) and body.shape.is_compact

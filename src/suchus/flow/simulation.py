@@ -33,7 +33,8 @@ from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
-from suchus.flow.setup import Setup
+from suchus.flow.resolution import estimate_force_error
+from suchus.flow.setup import Setup, has_blunt_shape
 from suchus.flow.shape import Cylinder
 from suchus.flow.solid import Sphere
 from suchus.flow.swimmer import Swimmer
@@ -125,6 +126,7 @@ class Simulation(Fields):
                 component[:] = setup.initial_velocity(c, layer.grid) - self.frame[1, c]
             layer.border.stream = stream
         self._is_placed = False
+        self._starts_at_once = length(stream) > 0 and setup.start is None
         self._latest_step: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
         self._outlines = outlines = [
@@ -146,6 +148,7 @@ class Simulation(Fields):
             if isinstance(body, FreeBody) and body.free is None:
                 self.swimmers[body.name].is_free &= np.array(symmetric(mirror_cuts))
         self._log.store_contents(self.water, outlines)
+        self._watch.inputs()
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(self._bodies, outlines, strict=True)]
         )  # fmt: skip
@@ -261,6 +264,8 @@ class Simulation(Fields):
         """
         max_distance = courant * self.setup.grid.cell
         for name, swimmer in self.swimmers.items():
+            if self.setup.contact is None and not swimmer.is_pushed(self.setup.density):
+                continue  # the water alone moves it, and its speed bounds the step
             relative_to = self.frame[1].copy()
             if name == self.setup.follow:  # the water passes it, and it does not move in the grid
                 travels = (*self.setup.follow_axes, False)[: self.ndim]
@@ -418,7 +423,8 @@ class Simulation(Fields):
                 swimmer.load = np.array([*act.force, *act.moment])
                 if swimmer.steps % ADDED_MASS_INTERVAL == 1:
                     self._set_added_mass(k, point)
-            values += columns(load, act, step.drift, body_pose, self._watch.errors[k])
+            error = max(self._watch.errors[k], self._start_error(body))
+            values += columns(load, act, step.drift, body_pose, error)
             part_values += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
@@ -436,6 +442,17 @@ class Simulation(Fields):
         if len(self._log.rows) % SIDE_CHECK_INTERVAL == 0:
             self._watch.sides(water, self.time)
             self._watch.wakes(water, self.time)
+            self._watch.headings(self.time)
+
+    def _start_error(self, body: AnyBody) -> float:
+        """Return the estimated error of a body's force while the boundary layer of a sudden start grows [-].
+
+        The layer is ``sqrt(viscosity time)`` thin until it is as thick as that of the steady flow.
+        """
+        if not self._starts_at_once:
+            return 0.0
+        cells = float(np.sqrt(self.setup.viscosity * self.time)) / self.setup.grid.cell
+        return min(estimate_force_error(cells, is_compact=has_blunt_shape(body)), 1.0)
 
     def last_loads(self, name: str) -> FlowLoads:
         """Return the force of the water on a body and on each of its parts in the last step.
@@ -634,6 +651,8 @@ class Simulation(Fields):
                 saver.save(self, is_forced=True)
         self._watch.sides(self.water, self.time)
         self._watch.wakes(self.water, self.time)
+        self._watch.symmetry(self.water, self.time)
+        self._watch.headings(self.time)
         return self.record
 
     def _refuse_past(self, end_time: float, subject: str, remedy: str) -> None:
@@ -676,7 +695,9 @@ class Simulation(Fields):
             for start, stop, cells in zip(window[::2], window[1::2], reversed(self.setup.grid.cells), strict=True)
             for end in (max(start - k, PAD + 2), min(stop + k, PAD + cells - 2))
         )
-        self._log.controls = [ControlVolume(box)]
+        volume = ControlVolume(box)
+        volume.start(self.water)
+        self._log.controls = [volume]
 
     @property
     def control_forces(self) -> np.ndarray:

@@ -15,11 +15,12 @@ not drift, and the error of its attitude is of second order.
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
+from warnings import warn
 
 import numpy as np
 
 from suchus.core import rotation
-from suchus.core.errors import Diverged, InvalidDesign
+from suchus.core.errors import Diverged, Doubtful, InvalidDesign
 from suchus.core.kinds import show
 from suchus.flow.free import FreeBody
 from suchus.flow.mass import Mass, SpaceMass
@@ -141,6 +142,8 @@ class Swimmer:
     """Momentum given by water and other forces that has not yet changed the body's motion [kg/s, kg m/s]."""
     applied: np.ndarray = field(init=False)
     """Force and torque in the last step, except those of the water [N/m, N]."""
+    is_said: bool = False
+    """Whether a warning of a force of three numbers has been issued."""
     span: float = 0.0
     """Length of the last step [s]."""
     steps: int = 0
@@ -469,6 +472,15 @@ class Swimmer:
                     f"the force of {body.name} at t = {time:.4g} s is {show(force)}; give three finite numbers, the "
                     f"force along x and y in N/m and the torque in N (in space N and N m, or six numbers: forces along "
                     f"and torques about x, y and z)."
+                )
+            if ndim == 3 and len(force) == 3 and self.is_free[2:5].any() and not self.is_said:
+                self.is_said = True
+                warn(
+                    Doubtful(
+                        f"the force of {body.name} at t = {time:.4g} s is {show(force)}; of three numbers in space the "
+                        f"third is the torque about z. Give six: forces along and torques about x, y and z."
+                    ),
+                    stacklevel=2,
                 )
             outer = outer + to_degrees_of_freedom(np.asarray(force, float).tolist(), ndim)
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff

@@ -8,6 +8,7 @@ import numpy as np
 from suchus.core.errors import Doubtful
 from suchus.flow.compiled import PAD
 from suchus.flow.immerse import REACH
+from suchus.flow.plausibility import heading_text, implausible_inputs
 from suchus.flow.pose import length
 from suchus.flow.setup import Setup
 from suchus.flow.sides import Stream
@@ -34,6 +35,13 @@ MIN_STREET_DISTANCE = 11.0
 
 MIN_STREET_RE = 47.0
 """Reynolds number from which on a blunt body in the plane sheds vortices [-]."""
+
+MIN_STREET_TRAVEL = 20.0
+"""Way of the stream, over the width of the bodies, after which a wake should not be symmetric any more [-]."""
+
+MAX_SYMMETRIC_DIFFERENCE = 0.2
+"""Difference of a wake from its mirror image, over the stream's speed, up to which it counts as symmetric [-]; that of
+a street is one or so."""
 
 MAX_BLUNT_LENGTH = 2.0
 """Length along the stream, over the width across it, up to which a body is blunt [-]."""
@@ -153,7 +161,7 @@ class Watch:
         window, ndim = water.window, water.ndim
         if len(water.layers) > 1 or window[1] <= window[0]:
             return
-        margin, spin = REACH + 2, None
+        margin, spin = REACH + 3, None
         spans = [(window[2 * d] - PAD + margin, window[2 * d + 1] - PAD - margin) for d in reversed(range(ndim))]
         for edge in water.border.edges:
             if edge.convective_weight < 0.5:
@@ -179,6 +187,49 @@ class Watch:
                     f"{distance * h:.3g} m behind the bodies or {distance / width:.2g} times their width: {effect} on "
                     f"that side. Put it at least {needed * width * h:.3g} m behind them.",
                 )
+
+    def symmetry(self, water: Fluid, time: float) -> None:
+        """Warn of a wake in the plane that is still its mirror image, although it should shed vortices.
+
+        Args:
+            water: the water after a step, with the bodies.
+            time: time, for the message [s].
+        """
+        stream, window = water.border.stream, water.window
+        if water.ndim == 3 or len(water.layers) > 1 or window[1] <= window[0] or np.count_nonzero(stream) != 1:
+            return
+        axis, speed = int(np.abs(stream).argmax()), length(stream)
+        margin = 2 * (REACH + 3)
+        lengths = [window[2 * d + 1] - window[2 * d] - margin for d in (1, 0)]
+        width = lengths[1 - axis]
+        reynolds, travel = self._reynolds(water, width), speed * time / (width * water.grid.cell)
+        if lengths[axis] > MAX_BLUNT_LENGTH * width or reynolds <= MIN_STREET_RE or travel < MIN_STREET_TRAVEL:
+            return
+        inner = slice(PAD + 1, -PAD)
+        along = water.velocity[axis].T if axis == 1 else water.velocity[axis]
+        across = water.velocity[1 - axis].T if axis == 1 else water.velocity[1 - axis]
+        along, across = along[PAD:-PAD, inner], across[inner, inner]  # rows across the stream
+        asymmetry = max(float(np.abs(along - along[::-1]).max()), float(np.abs(across + across[::-1]).max())) / speed
+        if asymmetry < MAX_SYMMETRIC_DIFFERENCE:
+            self._say(
+                "symmetry",
+                f"at t = {time:.4g} s the wake at Reynolds number {reynolds:.3g} is still its mirror image, to "
+                f"{asymmetry:.2g} of the stream's speed, after {travel:.3g} widths of travel. It would shed vortices, "
+                f"and forces are those before it does. Give Setup(perturb=0.2), or run much longer.",
+            )
+
+    def inputs(self) -> None:
+        """Warn of inputs that are possible and probably not meant."""
+        for text in implausible_inputs(self.setup):
+            self._say(text, text)
+        self.headings(0.0)
+
+    def headings(self, time: float) -> None:
+        """Warn of midlines whose headings are not their directions, at a time [s]."""
+        for body in self.setup.bodies:
+            text = heading_text(body, time)
+            if text is not None:
+                self._say(f"heading {body.name}", text)
 
     def _reynolds(self, water: Fluid, width: float) -> float:
         """Return the Reynolds number of the far stream past bodies of a width in cells [-]."""

@@ -655,7 +655,10 @@ class Swim:
         checkpoint: str | Path | None = None,
         checkpoint_every: float = 15.0,
     ) -> None:
-        """Simulate until a time, a whole number of control periods [s]; an interrupted run gives the same bytes.
+        """Simulate until a time, a whole number of control periods [s].
+
+        A run that is killed and goes on from its checkpoint gives the same bytes. A second call for a later time does
+        not: before each end the last steps are evened out, so that none is very short.
 
         Args:
             end_time: time to reach [s].
