@@ -65,10 +65,10 @@ def read_poses(
     """
     software = software or _guess(path)
     if path.suffix.lower() in _TEXT and software in _TABLE_SOFTWARE:
-        poses = read_pose_table(path, software, individual)
+        frame, poses = read_pose_table(path, software, individual)
         if rate is None:
             raise UnusableTracks(_NO_RATE.format(path.name))
-        time = poses.frame / rate
+        time = frame / rate
     else:
         time, poses = _movement_poses(_load(path, software, rate), path, individual, rate)
     position = poses.position.copy()
@@ -102,7 +102,7 @@ def _movement_poses(data: Any, path: Path, individual: str | None, rate: float |
     time, frame = data.time.values.astype(float), _frame_index(path)
     if frame is not None and rate is not None and len(frame) == len(time):
         time = frame / rate
-    return time, Poses(frame, tuple(str(name) for name in data[dims[0]].values), position, confidence)
+    return time, Poses(tuple(str(name) for name in data[dims[0]].values), position, confidence)
 
 
 def _frame_index(path: Path) -> np.ndarray | None:
@@ -140,8 +140,8 @@ def _load(path: Path, software: str, rate: float | None) -> Any:
         text = " ".join(str(error).split()).rstrip(".")
         if software == "DeepLabCut" and "reshape" in text:
             raise UnreadableFile(
-                f"{path} holds body parts that belong to no individual, as 'single' ones do, which the movement library "
-                "does not read; give the CSV table instead, which deeplabcut.analyze_videos_converth5_to_csv writes."
+                f"{path} holds body parts that belong to no individual, as 'single' ones do, which movement "
+                "does not read; give the CSV table instead: deeplabcut.analyze_videos_converth5_to_csv writes it."
             ) from error
         raise UnreadableFile(f"{path} cannot be read as a file of {software}: {text}.") from error
 
