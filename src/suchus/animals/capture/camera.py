@@ -22,7 +22,7 @@ _MIN_Z_SCORE = 5.0  # velocity of the ground that is significant [standard error
 _Z_95 = 1.96  # standard errors in half a 95 % interval
 
 
-class Ground(NamedTuple):
+class GroundMotion(NamedTuple):
     """Tracks over ground at rest."""
 
     tracks: Tracks
@@ -33,7 +33,7 @@ class Ground(NamedTuple):
     """That the ground moves in the picture, and how fast; empty for a camera at rest."""
 
 
-def rest_ground(tracks: Tracks, period: float) -> Ground:
+def rest_ground(tracks: Tracks, period: float) -> GroundMotion:
     """Return tracks over ground at rest: corrected if standing feet show that the ground moves in the picture.
 
     Args:
@@ -42,7 +42,7 @@ def rest_ground(tracks: Tracks, period: float) -> Ground:
     """
     times, velocities, weights, legs = _stance_velocities(tracks, period)
     if len(times) < _MIN_STANCES or len(set(legs)) < _MIN_FEET:
-        return Ground(tracks, 0.0, ())
+        return GroundMotion(tracks, 0.0, ())
     mean = np.average(velocities, axis=0, weights=weights)
     speed = float(np.linalg.norm(mean))
     foot_means = np.array([np.median(velocities[np.array(legs) == leg], axis=0) for leg in sorted(set(legs))])
@@ -54,7 +54,7 @@ def rest_ground(tracks: Tracks, period: float) -> Ground:
     body_velocity = (trunk[seen[-1]] - trunk[seen[0]]) / (tracks.time[seen[-1]] - tracks.time[seen[0]])
     animal_speed = float(np.linalg.norm(body_velocity - mean))
     if speed < _MIN_SPEED * animal_speed or speed < _MIN_Z_SCORE * error or spread > _MAX_SPREAD * speed:
-        return Ground(tracks, 0.0, ())
+        return GroundMotion(tracks, 0.0, ())
     course = _ground_course(tracks.time, times, velocities, period)
     position = tracks.position.copy()
     position[..., :2] -= course[:, None]
@@ -71,7 +71,7 @@ def rest_ground(tracks: Tracks, period: float) -> Ground:
         "animal's speed: the camera follows it, or it walks on a belt; positions are corrected by that, and intervals "
         "hold its uncertainty"
     )
-    return Ground(corrected, _Z_95 * error, (note,))
+    return GroundMotion(corrected, _Z_95 * error, (note,))
 
 
 def _stance_velocities(

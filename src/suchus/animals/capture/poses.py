@@ -23,7 +23,7 @@ _MAX_LINE = 2**20  # bytes of the first line that are looked at
 _SLEAP_FRAME, _SLEAP_TRACK = "frame_idx", "track"
 
 
-class Poses(NamedTuple):
+class PoseTracks(NamedTuple):
     """Keypoints of one individual, as a pose estimator wrote them."""
 
     points: tuple[str, ...]
@@ -48,7 +48,7 @@ def software_of(path: Path) -> str | None:
     return None
 
 
-def read_pose_table(path: Path, software: str, individual: str | None) -> tuple[np.ndarray, Poses]:
+def read_pose_table(path: Path, software: str, individual: str | None) -> tuple[np.ndarray, PoseTracks]:
     """Return the numbers of the frames in a CSV table of a pose estimator, and the keypoints of one individual.
 
     Args:
@@ -93,7 +93,7 @@ def _rows(path: Path) -> list[list[str]]:
         raise UnreadableFile(f"{path} is no CSV table: {error}.") from error
 
 
-def _deeplabcut(rows: list[list[str]], individual: str | None, name: str) -> tuple[np.ndarray, Poses]:
+def _deeplabcut(rows: list[list[str]], individual: str | None, name: str) -> tuple[np.ndarray, PoseTracks]:
     """Return the frames and the keypoints of one individual in a table of DeepLabCut or LightningPose."""
     header: dict[str, list[str]] = {}
     for row in rows[:4]:
@@ -115,7 +115,7 @@ def _deeplabcut(rows: list[list[str]], individual: str | None, name: str) -> tup
     return frame, _poses(body, columns, "likelihood", name)
 
 
-def _sleap(rows: list[list[str]], individual: str | None, name: str) -> tuple[np.ndarray, Poses]:
+def _sleap(rows: list[list[str]], individual: str | None, name: str) -> tuple[np.ndarray, PoseTracks]:
     """Return the frames and the keypoints of one track in SLEAP's analysis table."""
     header = [cell.strip() for cell in rows[0]]
     if _SLEAP_FRAME not in header:
@@ -143,7 +143,7 @@ def _sleap(rows: list[list[str]], individual: str | None, name: str) -> tuple[np
     return frame, _poses([body[i] for i in order], columns, "score", name)
 
 
-def _anipose(rows: list[list[str]], name: str) -> tuple[np.ndarray, Poses]:
+def _anipose(rows: list[list[str]], name: str) -> tuple[np.ndarray, PoseTracks]:
     """Return the frames and the keypoints of a table of Anipose."""
     header = [cell.strip() for cell in rows[0]]
     points = [cell.removesuffix("_ncams") for cell in header if cell.endswith("_ncams")]
@@ -215,7 +215,7 @@ def _poses(
     columns: dict[tuple[str, str], int],
     confidence_axis: str,
     name: str,
-) -> Poses:
+) -> PoseTracks:
     """Return positions and confidence from the cells of a table.
 
     Args:
@@ -239,4 +239,4 @@ def _poses(
         elif axis == confidence_axis:
             confidence[:, points.index(point)] = series
     position[~np.isfinite(position)] = np.nan
-    return Poses(points, position, confidence)
+    return PoseTracks(points, position, confidence)

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from suchus.animals.capture.markers import SUFFIXES, read_markers, upright
-from suchus.animals.capture.poses import Poses, read_pose_table, software_of
+from suchus.animals.capture.poses import PoseTracks, read_pose_table, software_of
 from suchus.animals.capture.retarget import Captured
 from suchus.animals.capture.table import is_table, read_table
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, View, map_keypoint_names
@@ -86,7 +86,7 @@ def read_poses(
     )
 
 
-def _movement_poses(data: Any, path: Path, individual: str | None, rate: float | None) -> tuple[np.ndarray, Poses]:
+def _movement_poses(data: Any, path: Path, individual: str | None, rate: float | None) -> tuple[np.ndarray, PoseTracks]:
     """Return times [s] and keypoints of one individual in a data set of the ``movement`` library.
 
     The library counts the rows of DeepLabCut's files from 0; their index has the numbers of the frames.
@@ -102,7 +102,7 @@ def _movement_poses(data: Any, path: Path, individual: str | None, rate: float |
     time, frame = data.time.values.astype(float), _frame_index(path)
     if frame is not None and rate is not None and len(frame) == len(time):
         time = frame / rate
-    return time, Poses(tuple(str(name) for name in data[dims[0]].values), position, confidence)
+    return time, PoseTracks(tuple(str(name) for name in data[dims[0]].values), position, confidence)
 
 
 def _frame_index(path: Path) -> np.ndarray | None:

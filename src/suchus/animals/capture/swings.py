@@ -365,7 +365,7 @@ _SWINGS_PER_MARK = 4  # swings whose mean is one mark of the clock: noise and a 
 
 _MIN_PIECE = 1e-3  # [marks]; shortest part of the marks that shows a pace
 _TREND_NOISE = 0.03  # relative difference of two periods that is probably noise
-_TREND_REACH = 0.9  # [cycle]; from the middle of the last cycle between marks to that of what lies beyond
+_TREND_REACH = 0.7  # [cycle]; from the middle of the last cycle between marks to that of what lies beyond
 
 
 class Clock(NamedTuple):
@@ -400,11 +400,11 @@ class Clock(NamedTuple):
     def _end_periods(self) -> tuple[float, float]:
         """Return the duration of a cycle before the first mark and after the last one [s].
 
-        It is that of the nearest cycle between marks, and its trend from the cycle beside it.
+        It is that of the nearest cycle between marks, and its trend over the three nearest.
         """
         first, last = self.cycles[[0, -1]]
-        first_periods = self._periods(first, first + 1.0), self._periods(first + 1.0, first + 2.0)
-        last_periods = self._periods(last - 1.0, last), self._periods(last - 2.0, last - 1.0)
+        first_periods = [self._periods(first + i, first + i + 1.0) for i in range(3)]
+        last_periods = [self._periods(last - i - 1.0, last - i) for i in range(3)]
         return _with_trend(*first_periods), _with_trend(*last_periods)
 
     def _periods(self, start: float, end: float) -> float:
@@ -416,11 +416,16 @@ class Clock(NamedTuple):
         return float((last_time - first_time) / (end - start))
 
 
-def _with_trend(nearest: float, next_nearest: float) -> float:
-    """Return the period beyond the end of the marks from those of two cycles; a small difference is noise."""
-    difference = nearest - next_nearest
-    if not np.isfinite(difference):
+def _with_trend(nearest: float, second: float, third: float) -> float:
+    """Return the period beyond the end of the marks from those of the nearest cycles.
+
+    Only a trend of the same sense in all of them goes on; a small difference, or one that turns, is noise.
+    """
+    differences = np.array([nearest - second, second - third])
+    differences = differences[np.isfinite(differences)]
+    if not len(differences) or np.ptp(np.sign(differences)) > 0:
         return nearest
+    difference = float(differences[0])
     weight = difference**2 / (difference**2 + (_TREND_NOISE * nearest) ** 2)
     return float(np.clip(nearest + _TREND_REACH * weight * difference, 0.7 * nearest, 1.4 * nearest))
 

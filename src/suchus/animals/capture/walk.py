@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.animals.capture.angles import azimuth, bend_angles, joint_bends, standing_index, wrapped
-from suchus.animals.capture.camera import Ground, rest_ground
+from suchus.animals.capture.camera import GroundMotion, rest_ground
 from suchus.animals.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
 from suchus.animals.capture.feet import GRID, FootContact, FootSweep, contact, continuous, forward_path, steps, sweep
 from suchus.animals.capture.late import find_late_keypoints
@@ -211,12 +211,12 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     )
 
 
-def _rest_ground(tracks: Tracks) -> Ground:
+def _rest_ground(tracks: Tracks) -> GroundMotion:
     """Return the tracks over ground at rest; as they are where nothing repeats, which is refused later."""
     try:
         period = find_period(tracks.time, np.array(list(_swinging(tracks).values())), tracks.source)
     except UnusableTracks:
-        return Ground(tracks, 0.0, ())
+        return GroundMotion(tracks, 0.0, ())
     return rest_ground(tracks, period)
 
 
