@@ -24,7 +24,10 @@ KEPT = Path(__file__).with_name("intervals.json")
 PAGE = ROOT / "docs" / "capture.md"
 READS = tuple(
     f"capture/{name}.py"
-    for name in ("angles", "animal", "cycle", "feet", "film", "late", "screen", "strides", "swings", "tracks", "walk")
+    for name in (
+        *("angles", "animal", "camera", "cycle", "exchange", "feet", "film", "late", "names", "pauses", "screen"),
+        *("strides", "swings", "tracks", "walk"),
+    )
 )
 """What films are made and read with; the rest of the room reads no number."""
 _NAMES = {

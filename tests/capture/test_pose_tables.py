@@ -65,7 +65,13 @@ def test_a_table_may_have_frames_and_times(tmp_path):
 
 
 def trc(path, frames, times, rate=100.0):
-    lines = ["PathFileType\t4\t(X/Y/Z)\ta.trc", "DataRate\tUnits", f"{rate:g}\tmm", "Frame#\tTime\thip\t\t", "\t\tX1\tY1\tZ1"]
+    lines = [
+        "PathFileType\t4\t(X/Y/Z)\ta.trc",
+        "DataRate\tUnits",
+        f"{rate:g}\tmm",
+        "Frame#\tTime\thip\t\t",
+        "\t\tX1\tY1\tZ1",
+    ]
     rows = [f"{frame}\t{time}\t{i}\t0\t0" for i, (frame, time) in enumerate(zip(frames, times, strict=True))]
     path.write_text("\n".join([*lines, *rows]) + "\n")
     return path

@@ -32,12 +32,34 @@ class Species(NamedTuple):
 
 
 SPECIES = {  # proportions of adults and of their walks and trots, rounded from drawings and films
-    "gecko": Species((0.40, 0.60), (0.8, 1.2), (0.40, 0.65), (0.8, 1.4), (0.50, 0.70), (0.2, 0.6), (0.2, 0.9), (0.15, 0.5)),
-    "lizard": Species((0.35, 0.50), (1.4, 2.6), (0.35, 0.60), (0.8, 1.6), (0.50, 0.80), (0.2, 0.9), (0.2, 1.0), (0.2, 1.0)),
-    "salamander": Species((0.25, 0.40), (0.8, 1.3), (0.25, 0.40), (0.5, 0.9), (0.65, 0.85), (0.4, 1.0), (0.4, 1.2), (0.8, 2.5)),
-    "mouse": Species((0.50, 0.80), (1.0, 1.6), (0.14, 0.25), (0.7, 1.2), (0.50, 0.75), (0.05, 0.3), (0.1, 0.8), (0.2, 0.6)),
-    "crocodile": Species((0.50, 0.75), (1.1, 1.6), (0.25, 0.40), (0.6, 1.0), (0.60, 0.85), (0.1, 0.5), (0.2, 0.8), (0.8, 2.5)),
-    "snake": Species((0.10, 0.20), (0.2, 0.4), (0.10, 0.20), (0.5, 0.9), (0.50, 0.70), (0.6, 1.6), (0.2, 0.8), (0.5, 2.0)),
+    "gecko": Species(
+        (0.40, 0.60), (0.8, 1.2), (0.40, 0.65), (0.8, 1.4), (0.50, 0.70), (0.2, 0.6), (0.2, 0.9), (0.15, 0.5)
+    ),
+    "lizard": Species(
+        (0.35, 0.50), (1.4, 2.6), (0.35, 0.60), (0.8, 1.6), (0.50, 0.80), (0.2, 0.9), (0.2, 1.0), (0.2, 1.0)
+    ),
+    "salamander": Species(
+        (0.25, 0.40), (0.8, 1.3), (0.25, 0.40), (0.5, 0.9), (0.65, 0.85), (0.4, 1.0), (0.4, 1.2), (0.8, 2.5)
+    ),
+    "mouse": Species(
+        (0.50, 0.80), (1.0, 1.6), (0.14, 0.25), (0.7, 1.2), (0.50, 0.75), (0.05, 0.3), (0.1, 0.8), (0.2, 0.6)
+    ),
+    "crocodile": Species(
+        (0.50, 0.75), (1.1, 1.6), (0.25, 0.40), (0.6, 1.0), (0.60, 0.85), (0.1, 0.5), (0.2, 0.8), (0.8, 2.5)
+    ),
+    "snake": Species(
+        (0.10, 0.20), (0.2, 0.4), (0.10, 0.20), (0.5, 0.9), (0.50, 0.70), (0.6, 1.6), (0.2, 0.8), (0.5, 2.0)
+    ),
+}
+SWINGS = {  # fraction of the way over the fraction of a swing
+    "cycloid": lambda u: u - np.sin(2 * np.pi * u) / (2 * np.pi),
+    "even": lambda u: u,
+    "cosine": lambda u: (1 - np.cos(np.pi * u)) / 2,
+    "jerk-free": lambda u: u**3 * (10 - 15 * u + 6 * u**2),
+    "ramp": lambda u: (
+        np.clip(np.where(u < 0.2, u**2 / 0.4, u - 0.1), 0, None) / 0.8 - np.clip(u - 0.8, 0, None) ** 2 / 0.32
+    ),
+    "late": lambda u: (1 - np.cos(np.pi * u**1.3)) / 2,
 }
 PATHS = ("straight", "turning", "climbing", "stopping", "starting and stopping")
 
@@ -68,6 +90,7 @@ def specimen(
     cycles: float | None = None,
     rate: float | None = None,
     jumps: float | None = None,
+    swing: str = "cycloid",
 ) -> Specimen:
     """Return the animal of a number and its film in pixels; what is not given is drawn.
 
@@ -83,6 +106,7 @@ def specimen(
         cycles: that are filmed.
         rate: frames per cycle.
         jumps: fraction of points two trunk lengths off.
+        swing: of ``SWINGS``.
     """
     random = np.random.default_rng(seed)
     species = species or list(SPECIES)[seed % len(SPECIES)]
@@ -103,9 +127,17 @@ def specimen(
     limb_phases = (0.0, 0.5, lag, (lag + 0.5) % 1.0)
     time, clock = _clock(random, path, cycles, period, rate)
     midline = _Body(
-        random=random, clock=clock, snake=species == "snake", turning=path == "turning", spine=spine,
-        tail_bend=tail_bend, stride=stride, head=head, tail=tail,
+        random=random,
+        clock=clock,
+        snake=species == "snake",
+        turning=path == "turning",
+        spine=spine,
+        tail_bend=tail_bend,
+        stride=stride,
+        head=head,
+        tail=tail,
     )
+    midline.swing = swing
     position = midline.points()
     if species != "snake":
         reach = random.uniform(-0.05, 0.25), random.uniform(-0.05, 0.25)
@@ -128,9 +160,7 @@ def specimen(
         start = int(random.integers(len(time) // 2))
         place[start : start + int(rate / 3), int(random.integers(len(names)))] = np.nan
     tracks = Tracks(time=time, points=names, position=place, unit="px", source=f"the film of {species} {seed}")
-    return Specimen(
-        species, path, duty, limb_phases, stride * trunk, period, trunk, tracks, np.stack([time, clock])
-    )
+    return Specimen(species, path, duty, limb_phases, stride * trunk, period, trunk, tracks, np.stack([time, clock]))
 
 
 def _clock(random, path: str, cycles: float, period: float, rate: float) -> tuple[np.ndarray, np.ndarray]:
@@ -144,6 +174,8 @@ def _clock(random, path: str, cycles: float, period: float, rate: float) -> tupl
         pace *= 1.0 - np.clip((fine - first) / 0.4, 0.0, 1.0) * np.clip((first + 0.8 + pause - fine) / 0.4, 0.0, 1.0)
     if path == "climbing":
         pace *= 0.7
+    if path == "slowing":
+        pace = np.clip(1.15 - 0.5 * fine / cycles, 0.6, None)  # to half of the first
     shows = np.concatenate([[0.0], np.cumsum(pace[:-1]) * 0.002])
     last = np.interp(cycles, shows, fine) if shows[-1] > cycles else 1.2 * cycles
     time = np.arange(0.0, last, 1.0 / rate)
@@ -159,7 +191,7 @@ class _Body:
         self.head, self.tail, self.spine, self.tail_bend = head, tail, spine, tail_bend
         self.wave = random.uniform(0.0, 0.5)  # lag of the tail's tip behind its root
         self.tail_lag = random.uniform(0.0, 0.5)
-        self.rightmost = random.uniform()
+        self.rightmost, self.swing = random.uniform(), "cycloid"
         self.curl = random.uniform(-0.8, 0.8) if random.uniform() < 0.3 else 0.0
         self.joints = int(random.integers(2, 5))
         self.tails = int(random.integers(2, 6))
@@ -218,7 +250,7 @@ class _Body:
         """Return the places of a foot: it rests where it passes its girdle in the middle of its stance."""
         number, part = np.floor(phases), np.mod(phases, 1.0)  # a swing, then a stance
         swing = np.clip(part / (1.0 - duty), 0.0, 1.0)
-        gone = swing - np.sin(2 * np.pi * swing) / (2 * np.pi)
+        gone = SWINGS[self.swing](swing)
 
         def print_of(number):
             middle = number + 1.0 - duty / 2 - phase
@@ -294,5 +326,14 @@ if __name__ == "__main__":
             found[f"named: {kind}"] += 1
         else:
             found[f"not named: {kind}"] += 1
-            print("not named", seed, animal.species, animal.path, f"{animal.trunk:.0f} px", pair, animal.tracks.points, text[:260])
+            print(
+                "not named",
+                seed,
+                animal.species,
+                animal.path,
+                f"{animal.trunk:.0f} px",
+                pair,
+                animal.tracks.points,
+                text[:260],
+            )
     print(*sorted(found.items()), sep="\n")

@@ -144,10 +144,7 @@ class _Body:
         index = {name: self._index[track] for name, track in tracks_of.items()}
         return [
             *(self._link(pair, index) for pair in pairwise(self._chain)),
-            *(
-                self._fold(triple, index)
-                for triple in zip(self._chain, self._chain[1:], self._chain[2:], strict=False)
-            ),
+            *(self._fold(triple, index) for triple in zip(self._chain, self._chain[1:], self._chain[2:], strict=False)),
             *(penalty for leg in self._legs for penalty in self._foot(leg, index)),
         ]
 

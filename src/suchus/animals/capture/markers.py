@@ -44,7 +44,7 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
         raise UnreadableFile(f"{path.name} says that it has {rate:g} frames a second; more than 0 are needed.")
     point_names = map_keypoint_names(points, names, path.name)
     return Tracks(
-        time=frame / rate,
+        time=(frame - frame[0]) / rate,
         points=point_names,
         position=UNITS[unit] * upright(place, point_names, path.name),
         unit="m",

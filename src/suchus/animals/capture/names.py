@@ -41,8 +41,8 @@ def is_keypoint(name: str) -> bool:
 def nearest_name(name: str) -> str | None:
     """Return the keypoint of ours that a name probably means, as LF for ``left_fore_paw``; None if nothing is near."""
     words = [word for word in re.split(r"[^a-z]+", name.lower()) if word]
-    for keypoint, ends in _TAIL_ENDS.items():
-        if "tail" in words and ends & set(words):
+    for keypoint, tail_ends in _TAIL_ENDS.items():
+        if "tail" in words and tail_ends & set(words):
             return keypoint
     for keypoint, synonyms in _WORDS.items():
         if set(words) & {*synonyms, keypoint} or "".join(words) in synonyms:
@@ -75,7 +75,9 @@ def unused_text(points: Sequence[str]) -> str:
     if not suggestions:
         return ""
     renamed = " ".join(f"{name}={nearest}" for name, nearest in suggestions.items() if nearest)
-    remedy = f"give --names {renamed}, if that is what they are" if renamed else "name with --names THEIRS=OURS any of use"
+    remedy = (
+        f"give --names {renamed}, if that is what they are" if renamed else "name with --names THEIRS=OURS any of use"
+    )
     return f"{', '.join(suggestions)} {'is' if len(suggestions) == 1 else 'are'} not used: {remedy}"
 
 
@@ -89,10 +91,11 @@ def check_feet(tracks: Tracks) -> None:
     feet = {name: nearest for name, nearest in suggestions.items() if nearest in LEGS}
     if feet and not tracks.legs:
         renamed = " ".join(f"{name}={nearest}" for name, nearest in feet.items())
-        other = " ".join(f"{name}=other_{i}" for i, name in enumerate(feet, 1))
+        others = " ".join(f"{name}=other_{i}" for i, name in enumerate(feet, 1))
         raise UnusableTracks(
             f"in {tracks.source} no keypoint is called LF, RF, LH or RH, but {' and '.join(feet)} "
-            f"seem{'s' * (len(feet) == 1)} to be feet; give --names {renamed}, or, to measure without feet, --names {other}."
+            f"seem{'s' * (len(feet) == 1)} to be feet; give --names {renamed}, or, to measure without feet, "
+            f"--names {others}."
         )
 
 

@@ -23,11 +23,9 @@ _MAX_LINE = 2**20  # bytes of the first line that are looked at
 _SLEAP_FRAME, _SLEAP_TRACK = "frame_idx", "track"
 
 
-class Poses(NamedTuple):
+class PoseTracks(NamedTuple):
     """Keypoints of one individual, as a pose estimator wrote them."""
 
-    frame: np.ndarray | None
-    """Number of each frame, shape (frame,) [-]; None where the file has none."""
     points: tuple[str, ...]
     """Names of the keypoints."""
     position: np.ndarray
@@ -50,8 +48,8 @@ def software_of(path: Path) -> str | None:
     return None
 
 
-def read_pose_table(path: Path, software: str, individual: str | None) -> Poses:
-    """Read a CSV table of a pose estimator.
+def read_pose_table(path: Path, software: str, individual: str | None) -> tuple[np.ndarray, PoseTracks]:
+    """Return the numbers of the frames in a CSV table of a pose estimator, and the keypoints of one individual.
 
     Args:
         path: the file.
@@ -74,8 +72,8 @@ def check_width(count: int, name: str) -> None:
     """Refuse a table with more columns than an animal can have keypoints."""
     if count > MAX_COLUMNS:
         raise UnreadableFile(
-            f"{name} has {count} columns; at most {MAX_COLUMNS} are read: one row per frame is needed, and the columns of "
-            "one animal."
+            f"{name} has {count} columns; at most {MAX_COLUMNS} are read: one row per frame is needed, and the columns "
+            "of one animal."
         )
 
 
@@ -95,8 +93,8 @@ def _rows(path: Path) -> list[list[str]]:
         raise UnreadableFile(f"{path} is no CSV table: {error}.") from error
 
 
-def _deeplabcut(rows: list[list[str]], individual: str | None, name: str) -> Poses:
-    """Return the keypoints of one individual in a table of DeepLabCut or LightningPose."""
+def _deeplabcut(rows: list[list[str]], individual: str | None, name: str) -> tuple[np.ndarray, PoseTracks]:
+    """Return the frames and the keypoints of one individual in a table of DeepLabCut or LightningPose."""
     header: dict[str, list[str]] = {}
     for row in rows[:4]:
         if row[0].strip().lower() in ("scorer", "individuals", "bodyparts", "coords"):
@@ -112,15 +110,13 @@ def _deeplabcut(rows: list[list[str]], individual: str | None, name: str) -> Pos
     first = next(i for i, cell in enumerate(header["coords"]) if cell in ("x", "y", "z", "likelihood"))
     owners = header.get("individuals", [""] * width)
     owner = _choice(list(dict.fromkeys(owners[first:])), individual, name)
-    columns = {
-        (header["bodyparts"][j], header["coords"][j]): j for j in range(first, width) if owners[j] == owner
-    }
+    columns = {(header["bodyparts"][j], header["coords"][j]): j for j in range(first, width) if owners[j] == owner}
     frame = np.array([_frame_number(row[first - 1], i, name) for i, row in enumerate(body, 1)])
-    return _poses(frame, body, columns, "likelihood", name)
+    return frame, _poses(body, columns, "likelihood", name)
 
 
-def _sleap(rows: list[list[str]], individual: str | None, name: str) -> Poses:
-    """Return the keypoints of one track in SLEAP's analysis table."""
+def _sleap(rows: list[list[str]], individual: str | None, name: str) -> tuple[np.ndarray, PoseTracks]:
+    """Return the frames and the keypoints of one track in SLEAP's analysis table."""
     header = [cell.strip() for cell in rows[0]]
     if _SLEAP_FRAME not in header:
         raise UnreadableFile(f"{name} is no analysis table of SLEAP: it has no column {_SLEAP_FRAME!r}.")
@@ -144,11 +140,11 @@ def _sleap(rows: list[list[str]], individual: str | None, name: str) -> Poses:
         point, dot, axis = cell.rpartition(".")
         if dot and axis in ("x", "y", "z", "score") and point != "instance":
             columns[point, axis] = j
-    return _poses(frame, [body[i] for i in order], columns, "score", name)
+    return frame, _poses([body[i] for i in order], columns, "score", name)
 
 
-def _anipose(rows: list[list[str]], name: str) -> Poses:
-    """Return the keypoints of a table of Anipose."""
+def _anipose(rows: list[list[str]], name: str) -> tuple[np.ndarray, PoseTracks]:
+    """Return the frames and the keypoints of a table of Anipose."""
     header = [cell.strip() for cell in rows[0]]
     points = [cell.removesuffix("_ncams") for cell in header if cell.endswith("_ncams")]
     if not points or "fnum" not in header:
@@ -162,7 +158,7 @@ def _anipose(rows: list[list[str]], name: str) -> Poses:
         if f"{point}_{axis}" in header
     }
     frame = np.array([_number(row[header.index("fnum")], "fnum", i, name) for i, row in enumerate(body, 1)])
-    return _poses(frame, body, columns, "score", name)
+    return frame, _poses(body, columns, "score", name)
 
 
 def _check_rows(body: Sequence[Sequence[str]], width: int, name: str) -> None:
@@ -196,7 +192,8 @@ def _frame_number(cell: str, row: int, name: str) -> float:
         if digits:
             return float(digits[-1])
     raise UnreadableFile(
-        f"row {row} of {name} begins with {cell.strip()!r}; the number of a frame is needed, or a picture's name with it."
+        f"row {row} of {name} begins with {cell.strip()!r}; the number of a frame is needed, or the name of a picture "
+        "that holds it."
     )
 
 
@@ -214,16 +211,14 @@ def _number(cell: str, column: str, row: int, name: str) -> float:
 
 
 def _poses(
-    frame: np.ndarray,
     body: Sequence[Sequence[str]],
     columns: dict[tuple[str, str], int],
     confidence_axis: str,
     name: str,
-) -> Poses:
+) -> PoseTracks:
     """Return positions and confidence from the cells of a table.
 
     Args:
-        frame: numbers of the frames.
         body: the table without its header.
         columns: index of the column of each keypoint and axis.
         confidence_axis: how the column of the confidence is called.
@@ -244,4 +239,4 @@ def _poses(
         elif axis == confidence_axis:
             confidence[:, points.index(point)] = series
     position[~np.isfinite(position)] = np.nan
-    return Poses(frame, points, position, confidence)
+    return PoseTracks(points, position, confidence)

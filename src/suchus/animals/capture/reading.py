@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from suchus.animals.capture.markers import SUFFIXES, read_markers, upright
-from suchus.animals.capture.poses import Poses, read_pose_table, software_of
+from suchus.animals.capture.poses import PoseTracks, read_pose_table, software_of
 from suchus.animals.capture.retarget import Captured
 from suchus.animals.capture.table import is_table, read_table
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, View, map_keypoint_names
@@ -65,10 +65,10 @@ def read_poses(
     """
     software = software or _guess(path)
     if path.suffix.lower() in _TEXT and software in _TABLE_SOFTWARE:
-        poses = read_pose_table(path, software, individual)
+        frame, poses = read_pose_table(path, software, individual)
         if rate is None:
             raise UnusableTracks(_NO_RATE.format(path.name))
-        time = poses.frame / rate
+        time = frame / rate
     else:
         time, poses = _movement_poses(_load(path, software, rate), path, individual, rate)
     position = poses.position.copy()
@@ -86,7 +86,7 @@ def read_poses(
     )
 
 
-def _movement_poses(data: Any, path: Path, individual: str | None, rate: float | None) -> tuple[np.ndarray, Poses]:
+def _movement_poses(data: Any, path: Path, individual: str | None, rate: float | None) -> tuple[np.ndarray, PoseTracks]:
     """Return times [s] and keypoints of one individual in a data set of the ``movement`` library.
 
     The library counts the rows of DeepLabCut's files from 0; their index has the numbers of the frames.
@@ -102,7 +102,7 @@ def _movement_poses(data: Any, path: Path, individual: str | None, rate: float |
     time, frame = data.time.values.astype(float), _frame_index(path)
     if frame is not None and rate is not None and len(frame) == len(time):
         time = frame / rate
-    return time, Poses(frame, tuple(str(name) for name in data[dims[0]].values), position, confidence)
+    return time, PoseTracks(tuple(str(name) for name in data[dims[0]].values), position, confidence)
 
 
 def _frame_index(path: Path) -> np.ndarray | None:
@@ -140,8 +140,8 @@ def _load(path: Path, software: str, rate: float | None) -> Any:
         text = " ".join(str(error).split()).rstrip(".")
         if software == "DeepLabCut" and "reshape" in text:
             raise UnreadableFile(
-                f"{path} holds body parts that belong to no individual, as 'single' ones do, which the movement library "
-                "does not read; give the CSV table instead, which deeplabcut.analyze_videos_converth5_to_csv writes."
+                f"{path} holds body parts that belong to no individual, as 'single' ones do, which movement "
+                "does not read; give the CSV table instead: deeplabcut.analyze_videos_converth5_to_csv writes it."
             ) from error
         raise UnreadableFile(f"{path} cannot be read as a file of {software}: {text}.") from error
 

@@ -123,15 +123,15 @@ def _stuck_keypoints(tracks: Tracks, noise: Mapping[str, float]) -> dict[str, st
         return {}
     repeated = np.full(tracks.position.shape[1:], np.nan)  # fraction of frames, by keypoint and axis
     values = np.full(tracks.position.shape[1:], np.nan)
-    for index in np.ndindex(*repeated.shape):
-        series = tracks.position[:, *index]
+    for i, j in np.ndindex(*repeated.shape):
+        series = tracks.position[:, i, j]
         series = series[np.isfinite(series)]
         if len(series) >= _MIN_WALKING_FRAMES:
-            repeated[index] = np.mean(np.diff(series) == 0.0)
-            values[index] = series[-1]
+            repeated[i, j] = np.mean(np.diff(series) == 0.0)
+            values[i, j] = series[-1]
     faults = {}
     for i, name in enumerate(tracks.points):
-        for j, axis in enumerate("xyz"[: repeated.shape[1]]):
+        for j, axis in enumerate("xyz"[: tracks.position.shape[-1]]):
             others = np.delete(repeated[:, j], i)
             others = others[np.isfinite(others)]
             is_alone = len(others) > 1 and np.mean(others < _MAX_REPEATED_FRACTION) > _MAX_REPEATED_FRACTION
@@ -323,8 +323,8 @@ def _without_jumps(tracks: Tracks, scale: float, walking: np.ndarray) -> tuple[T
 
     A jump is a distance of more than a fifth of the trunk from the median of the seven frames around it. It must also
     exceed three times the distance that 90 % of the frames with movement stay below, so that a fast foot in a slow film
-    is no jump. This is Hampel's identifier with a quantile that is valid for a foot that rests most of the time. Longer faults,
-    such as two exchanged feet, are no jumps.
+    is no jump. This is Hampel's identifier with a quantile that is valid for a foot that rests most of the time. Longer
+    faults, such as two exchanged feet, are no jumps.
     """
     position = tracks.position.copy()
     padded = np.pad(position, ((_MEDIAN_HALF_WINDOW, _MEDIAN_HALF_WINDOW), (0, 0), (0, 0)), constant_values=np.nan)

@@ -25,6 +25,9 @@ _SLOPE = np.sqrt(12.0)  # standard error of a slope over a whole stride, over th
 # the harmonics explain most of a straight line.
 _SLOPE_INFLATION = float((1 - 12 / (2 * np.pi**2) * sum(1 / k**2 for k in (1, 2, 3))) ** -0.5)
 _SHARED = 1.5  # cycles per independent cycle: neighbours share marks of the clock, and their errors
+_EXTRAPOLATION_ERROR = 0.1  # half width of a pace beyond the marks of the clock, over the pace
+_MIN_TURN = 0.05  # [rad]; change of heading in a stride from which on paths are straightened
+_MIN_VISIBLE_FRACTION = 0.8  # least fraction of a stride's frames with a point that shows its advance
 _MIN_FRAMES = 8  # least frames of a stride
 PHASES = 100
 """Phases of the mean cycle in tables [-]."""
@@ -54,7 +57,8 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], ze
     rows = [_body(stride_tracks, period) for stride_tracks in stride_list]
     data = xr.Dataset(coords={"stride": ("stride", np.arange(1, len(numbers) + 1), {"units": "1"})})
     data["start"] = ("stride", ends[:-1], _attributes("s", "time at which the stride begins"))
-    error = np.full(len(lasts), jitter * period)
+    cut_error = np.hypot(jitter, _EXTRAPOLATION_ERROR * _extrapolated(clock, numbers + zero))
+    error = cut_error * period
     _add_with_interval(data, "period", ("stride",), lasts, error, "s", "duration of the stride")
     unit = tracks.unit
     kinds = {
@@ -68,7 +72,7 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], ze
     for name, (unit_of, meaning) in kinds.items():
         pairs = np.array([row.get(name, (np.nan, np.nan)) for row in rows]).reshape(-1, 2)
         if np.isfinite(pairs[:, 0]).any():
-            error = np.hypot(pairs[:, 1], jitter * pairs[:, 0]) if name == "stride_length" else pairs[:, 1]
+            error = np.hypot(pairs[:, 1], cut_error * pairs[:, 0]) if name == "stride_length" else pairs[:, 1]
             _add_with_interval(data, name, ("stride",), pairs[:, 0], error, unit_of, meaning)
             if name == "stride_length":
                 speed, error = (pairs / lasts[:, None]).T
@@ -76,6 +80,12 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], ze
     if feet:
         _put_feet(data, clock, feet, zero, numbers, unit)
     return data
+
+
+def _extrapolated(clock: Clock, starts: Float[np.ndarray, " stride"]) -> Float[np.ndarray, " stride"]:
+    """Return how far the ends of strides lie before the first mark of the clock and after the last one [cycle]."""
+    before, after = clock.cycles[0] - starts, starts + 1.0 - clock.cycles[-1]
+    return np.asarray(np.maximum(before, 0.0) + np.maximum(after, 0.0))
 
 
 def _jitter(feet: Mapping[str, FootContact]) -> float:
@@ -91,11 +101,16 @@ def _jitter(feet: Mapping[str, FootContact]) -> float:
 def _body(stride_tracks: Tracks, period: float) -> dict[str, tuple[float, float]]:
     """Return advance, turn and bends of the trunk in one stride, each with the half width of its interval."""
     quantities: dict[str, tuple[float, float]] = {}
+    if stride_tracks.view == "top":
+        front, rear = stride_tracks.line
+        heading = continuous(azimuth(stride_tracks, front, rear))
+        quantities |= _amplitude_row("turning", heading, stride_tracks, period, drift=1)
+    turning = quantities.get("turning", (0.0, 0.0))[0]
     advances, noise, point_count = [], [], 0
     for name in stride_tracks.trunk_chain:
-        place = stride_tracks.at(name)[:, :2]
+        place = _straightened(stride_tracks.time, stride_tracks.at(name)[:, :2], turning / period)
         n = int(np.isfinite(place[:, 0]).sum())
-        if n >= _MIN_FRAMES:
+        if n >= max(_MIN_FRAMES, _MIN_VISIBLE_FRACTION * len(place)):
             count = harmonics_for(n, stride_tracks.rate * period, max_harmonics=3)
             courses = [fit(stride_tracks.time, row, period, harmonics=count, drift=1) for row in place.T]
             advances.append([course.drift[0] * period for course in courses])
@@ -104,14 +119,34 @@ def _body(stride_tracks: Tracks, period: float) -> dict[str, tuple[float, float]
     if advances:
         mean = np.mean(advances, axis=0)
         error = _Z_95 * _SLOPE_INFLATION * _SLOPE * float(np.linalg.norm(noise)) / point_count
-        quantities["stride_length"] = float(np.hypot(*mean)), error
-    if stride_tracks.view == "top":
-        front, rear = stride_tracks.line
-        heading = continuous(azimuth(stride_tracks, front, rear))
-        quantities |= _amplitude_row("turning", heading, stride_tracks, period, drift=1)
+        length = float(np.hypot(*mean))
+        if abs(turning) > _MIN_TURN:  # points ahead of others head elsewhere
+            length = float(np.mean(np.hypot(*np.transpose(advances))))
+        quantities["stride_length"] = length, error
     for name, series in bend_angles(stride_tracks)._asdict().items():
         quantities |= _amplitude_row(f"{name}_amplitude", series, stride_tracks, period)
     return quantities
+
+
+def _straightened(
+    time: Float[np.ndarray, " frame"], place: Float[np.ndarray, "frame axis"], turning_rate: float
+) -> Float[np.ndarray, "frame axis"]:
+    """Return the path of a point as it would be if the animal did not turn: sway that turns would look like advance.
+
+    Args:
+        time: by the clock [s].
+        place: of the point, NaN where it was lost [m or px].
+        turning_rate: mean change of heading [rad/s].
+    """
+    is_seen = np.isfinite(place).all(axis=-1)
+    if abs(turning_rate) * (time[-1] - time[0]) < _MIN_TURN or is_seen.sum() < 2:
+        return place
+    filled = np.stack([np.interp(time, time[is_seen], row[is_seen]) for row in place.T], axis=-1)
+    steps, angle = np.diff(filled, axis=0), -turning_rate * ((time[1:] + time[:-1]) / 2 - (time[0] + time[-1]) / 2)
+    c, s = np.cos(angle), np.sin(angle)
+    turned = np.stack([c * steps[:, 0] - s * steps[:, 1], s * steps[:, 0] + c * steps[:, 1]], axis=-1)
+    path = np.concatenate([np.zeros((1, 2)), np.cumsum(turned, axis=0)]) + filled[0]
+    return np.where(is_seen[:, None], path, np.nan)
 
 
 def _amplitude_row(
@@ -119,7 +154,7 @@ def _amplitude_row(
 ) -> dict[str, tuple[float, float]]:
     """Return amplitude or drift of an angle over a stride, with the half width of its interval [rad]."""
     n = int(np.isfinite(series).sum())
-    if n < _MIN_FRAMES:
+    if n < max(_MIN_FRAMES, _MIN_VISIBLE_FRACTION * len(series) if drift else 0):
         return {}
     course = fit(
         stride_tracks.time,

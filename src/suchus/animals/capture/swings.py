@@ -20,9 +20,13 @@ _TURNS = 0.15  # share of the range of its path by which a foot must pass the mi
 _HALF = 0.25  # [cycle]; least time in the film before and after the middle of a swing
 _MIN_DURATION = 0.02  # [cycle]; shortest swing
 _SHAPE, _SHAPES = np.log([1.4, 2.4, 1.0]), np.array([0.5, 0.5, 0.25])  # logarithms of p, q, s: mean and spread
-_MIN_SHAPE, _MAX_SHAPE = np.log([0.8, 1.5, 0.6]), np.log([2.5, 6.0, 1.6])  # their bounds
+_EVEN_SPREAD = 1.2  # spread of the logarithm of p below its mean: a swing may be at an even speed
+_MIN_SHAPE, _MAX_SHAPE = np.log([0.05, 1.5, 0.6]), np.log([2.5, 6.0, 1.6])  # their bounds; p near 0 is an even speed
 _EDGES, _PLACES = 0.15, 0.5  # [cycle], [stride]; prior spread of edges and positions
 _ROUNDS, _STEPS = 4, 4
+_SOFTNESS = 4  # index of the logarithm of p among the parameters of the pooled fit
+_STANCE_MARGIN = 0.25  # fraction of a stance at either end that may belong to the swing
+_MAX_STANCE = 1.0  # [cycle]; longer, and a swing between was not seen
 _TAIL = 4.0  # standard deviations at which a frame counts half
 _BLUR = 0.05  # [stride]; first scale of the robust fit
 _SHARP = 4e-3  # [stride]; least error of a position
@@ -60,7 +64,7 @@ class Swing(NamedTuple):
     scatter: float
     """Standard deviation of the share from stride to stride that noise does not explain [-]."""
     shares: Float[np.ndarray, " swing"]
-    """Duration of each swing, drawn to that of all as far as noise blurs it [cycle]."""
+    """Duration of each swing by its own frames [cycle]."""
     shares_error: Float[np.ndarray, " swing"]
     """Standard error of each, that of all included [cycle]."""
     phases_error: Float[np.ndarray, " swing"]
@@ -115,6 +119,7 @@ def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: floa
     is_near = np.abs(offset) < float(np.mean(durations)) / 2 + _MARGIN
     offset, trace = _median_frames(offset[is_near], trace[is_near])
     pooled_fit, covariance = _fit_pooled_swing(offset, trace, float(np.mean(durations)))
+    parameters, _, durations, durations_error, places_error = _fit_each_swing(frames, parameters, pooled_fit[4:])
     duration_weights, middle_weights = np.array([-1.0, 1.0]), np.array([0.5, 0.5])
     duration, half = float(pooled_fit[:2] @ duration_weights), float(pooled_fit[:2] @ middle_weights)
     fast = float(pooled_fit[0] + duration * _fast(pooled_fit[4:]))
@@ -124,7 +129,6 @@ def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: floa
         np.linalg.norm([np.sqrt(duration_weights @ covariance @ duration_weights), _FAMILY * duration, blind])
     )
     scatter = float(np.sqrt(max(0.0, np.var(durations) - np.mean(durations_error**2))))
-    shrinkage = scatter**2 / np.maximum(scatter**2 + durations_error**2, 1e-12)
     return Swing(
         phase=middle + fast,
         skew=half - fast,
@@ -132,8 +136,8 @@ def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: floa
         share_error=duration_error,
         middle_error=float(np.hypot(np.sqrt(middle_weights @ covariance @ middle_weights), blind / 2)),
         scatter=scatter,
-        shares=np.maximum(duration + shrinkage * (durations - np.mean(durations)), _MIN_DURATION),
-        shares_error=np.sqrt(duration_error**2 + shrinkage * durations_error**2),
+        shares=np.maximum(duration + durations - np.mean(durations), _MIN_DURATION),
+        shares_error=np.sqrt(duration_error**2 + durations_error**2),
         phases_error=error,
         paths=(parameters[:, 3] - parameters[:, 2]) * frames.stride,
         paths_error=places_error * frames.stride,
@@ -183,6 +187,21 @@ def _turns(time: np.ndarray, forward: np.ndarray) -> Float[np.ndarray, "swing 2"
             (grid_time[fall_index - np.argmin(rear_part[::-1])], grid_time[rise_index + int(np.argmax(front_part))])
         )
     return np.array(turns).reshape(-1, 2)
+
+
+def stance_intervals(time: np.ndarray, forward: np.ndarray, period: float) -> Float[np.ndarray, "stance 2"]:
+    """Return the inner parts of a foot's stances between two swings, by its path along the body alone [s].
+
+    Args:
+        time: shape (frame,) [s].
+        forward: how far the foot is ahead of its body, shape (frame,).
+        period: of the cycle, roughly [s].
+    """
+    turns = _turns(time / period, forward) * period
+    start, end = turns[:-1, 1], turns[1:, 0]
+    margin = _STANCE_MARGIN * (end - start)
+    is_stance = (end > start) & (end - start < _MAX_STANCE * period)
+    return np.stack([start + margin, end - margin], axis=1)[is_stance]
 
 
 def _swing_frames(time: np.ndarray, place: np.ndarray, turns: np.ndarray) -> tuple[_Frames, np.ndarray]:
@@ -236,9 +255,9 @@ def _fast(shape: np.ndarray) -> float:
 
 
 def _fit_each_swing(
-    frames: _Frames, start: np.ndarray
+    frames: _Frames, start: np.ndarray, shape: np.ndarray = _SHAPE
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Fit lift-off, touchdown and both positions of each swing, with the expected shape.
+    """Fit lift-off, touchdown and both positions of each swing, with one shape for all.
 
     The fit takes Gauss-Newton steps with robust weights. The durations have a prior about their mean; without it noise
     would shorten some swings and lengthen others.
@@ -261,7 +280,7 @@ def _fit_each_swing(
         )
         duration_variance = max(float(np.var(durations) - np.mean(durations_error**2)), (_MIN_DURATION / 2) ** 2)
         for _ in range(_STEPS):
-            A, r = _normal(frames, parameters)
+            A, r = _normal(frames, parameters, shape)
             duration_prior = np.outer(duration, duration) / duration_variance
             pull = (
                 r
@@ -285,11 +304,11 @@ def _fit_each_swing(
     )
 
 
-def _normal(frames: _Frames, parameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _normal(frames: _Frames, parameters: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the normal matrices and right-hand sides of the fits to all swings."""
     lift_off, touch_down, start_place, end_place = (parameters[:, i, None] for i in range(4))
     u = np.clip((frames.time - lift_off) / (touch_down - lift_off), 0.0, 1.0)
-    course, speed = _course(_SHAPE)
+    course, speed = _course(shape)
     fraction, run = (
         np.interp(u, _GRID, course),
         (end_place - start_place) / (touch_down - lift_off) * np.interp(u, _GRID, speed),
@@ -319,7 +338,10 @@ def _fit_pooled_swing(times: np.ndarray, trace: np.ndarray, share: float) -> tup
     def residuals(x: np.ndarray) -> np.ndarray:
         u = np.clip((times - x[0]) / max(x[1] - x[0], _MIN_DURATION), 0.0, 1.0)
         residual = trace - x[2] - (x[3] - x[2]) * np.interp(u, _GRID, _course(x[4:])[0])
-        return np.asarray(np.concatenate([residual / spread, (x - expected) / loose]))
+        prior = (x - expected) / loose
+        if x[_SOFTNESS] < expected[_SOFTNESS]:
+            prior[_SOFTNESS] *= _SHAPES[0] / _EVEN_SPREAD
+        return np.asarray(np.concatenate([residual / spread, prior]))
 
     edge = 4 * loose[:4]
     bounds = (
@@ -337,11 +359,20 @@ def _fit_pooled_swing(times: np.ndarray, trace: np.ndarray, share: float) -> tup
 
 
 _MIN_SWINGS = 6  # swings of all feet together below which pace cannot be told from noise
+_DROPPED_MARKS = 3  # marks of the fewest swings at either end of the film, which are too uncertain
 _SWINGS_PER_MARK = 4  # swings whose mean is one mark of the clock: noise and a limping foot weigh little then
 
 
+_MIN_PIECE = 1e-3  # [marks]; shortest part of the marks that shows a pace
+_TREND_NOISE = 0.03  # relative difference of two periods that is probably noise
+_TREND_REACH = 0.7  # [cycle]; from the middle of the last cycle between marks to that of what lies beyond
+
+
 class Clock(NamedTuple):
-    """Numbers of cycles at given times; interpolation and extrapolation are linear."""
+    """Numbers of cycles at given times; interpolation and extrapolation are linear.
+
+    Before the first mark and after the last one the pace is that of the nearest cycle, and its trend.
+    """
 
     time: Float[np.ndarray, " mark"]
     """Increasing [s]."""
@@ -353,14 +384,50 @@ class Clock(NamedTuple):
     def read(self, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
         """Return the time on the clock, in mean periods [s]."""
         interpolation = np.interp(time, self.time, self.cycles)
-        extrapolation = np.minimum(time - self.time[0], 0.0) + np.maximum(time - self.time[-1], 0.0)
-        return np.asarray(self.period * interpolation + extrapolation)
+        first_period, last_period = self._end_periods()
+        extrapolation = np.minimum(time - self.time[0], 0.0) / first_period
+        extrapolation += np.maximum(time - self.time[-1], 0.0) / last_period
+        return np.asarray(self.period * (interpolation + extrapolation))
 
     def seconds(self, cycles: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
         """Return the times at given numbers of cycles [s]."""
         interpolation = np.interp(cycles, self.cycles, self.time)
-        extrapolation = np.minimum(cycles - self.cycles[0], 0.0) + np.maximum(cycles - self.cycles[-1], 0.0)
-        return np.asarray(interpolation + self.period * extrapolation)
+        first_period, last_period = self._end_periods()
+        extrapolation = first_period * np.minimum(cycles - self.cycles[0], 0.0)
+        extrapolation += last_period * np.maximum(cycles - self.cycles[-1], 0.0)
+        return np.asarray(interpolation + extrapolation)
+
+    def _end_periods(self) -> tuple[float, float]:
+        """Return the duration of a cycle before the first mark and after the last one [s].
+
+        It is that of the nearest cycle between marks, and its trend over the three nearest.
+        """
+        first, last = self.cycles[[0, -1]]
+        first_periods = [self._periods(first + i, first + i + 1.0) for i in range(3)]
+        last_periods = [self._periods(last - i - 1.0, last - i) for i in range(3)]
+        return _with_trend(*first_periods), _with_trend(*last_periods)
+
+    def _periods(self, start: float, end: float) -> float:
+        """Return the mean period between two cycle numbers, as far as the marks go; NaN outside of them [s]."""
+        start, end = max(start, float(self.cycles[0])), min(end, float(self.cycles[-1]))
+        if end - start < _MIN_PIECE * (self.cycles[-1] - self.cycles[0]):
+            return float("nan")
+        first_time, last_time = np.interp([start, end], self.cycles, self.time)
+        return float((last_time - first_time) / (end - start))
+
+
+def _with_trend(nearest: float, second: float, third: float) -> float:
+    """Return the period beyond the end of the marks from those of the nearest cycles.
+
+    Only a trend of the same sense in all of them goes on; a small difference, or one that turns, is noise.
+    """
+    differences = np.array([nearest - second, second - third])
+    differences = differences[np.isfinite(differences)]
+    if not len(differences) or np.ptp(np.sign(differences)) > 0:
+        return nearest
+    difference = float(differences[0])
+    weight = difference**2 / (difference**2 + (_TREND_NOISE * nearest) ** 2)
+    return float(np.clip(nearest + _TREND_REACH * weight * difference, 0.7 * nearest, 1.4 * nearest))
 
 
 def walk_clock(feet: Mapping[str, SwingMidpoints], period: float) -> Clock:
@@ -399,11 +466,11 @@ def _cycle_numbers(time: np.ndarray, lasts: float) -> np.ndarray:
 
 
 def _clock_of_marks(time: np.ndarray, cycle: np.ndarray, weight: np.ndarray) -> Clock:
-    """Return the clock through means of several successive swings."""
+    """Return the clock through means of several successive swings; at the ends of the film, of fewer."""
     kernel = np.ones(min(_SWINGS_PER_MARK, len(time) - 1))
-    total = np.convolve(weight, kernel, mode="valid")
-    times = np.convolve(weight * time, kernel, mode="valid") / total
-    shows = np.convolve(weight * cycle, kernel, mode="valid") / total
+    total = np.convolve(weight, kernel)[_DROPPED_MARKS:-_DROPPED_MARKS]
+    times = np.convolve(weight * time, kernel)[_DROPPED_MARKS:-_DROPPED_MARKS] / total
+    shows = np.convolve(weight * cycle, kernel)[_DROPPED_MARKS:-_DROPPED_MARKS] / total
     steps = [np.diff(np.maximum.accumulate(row)) > 0 for row in (times, shows)]
     rises = np.concatenate([[True], steps[0] & steps[1]])
     slope = np.polyfit(time, cycle, 1, w=np.sqrt(weight))[0]

@@ -1,6 +1,7 @@
 """Tracks as a plain CSV table: one row per frame, a header that names every column and its unit.
 
-``time [s], hip_x [mm], hip_y [mm], ...``: the first column is the time, which a column ``frame`` may stand beside; the others are a keypoint, an axis (x and y,
+``time [s], hip_x [mm], hip_y [mm], ...``: the first column is the time, beside which a column ``frame`` may stand; the
+others are a keypoint, an axis (x and y,
 or x, y and z) and a unit (m, cm, mm or px, the same for all). An empty cell is a lost point. A column
 ``hip_confidence [-]`` may follow. Where the first column is ``frame``, its numbers are divided by the frame rate.
 Metres have y to the left of x, seen from above; pixels, as in images, to the right.

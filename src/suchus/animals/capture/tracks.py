@@ -212,9 +212,7 @@ def map_keypoint_names(points: tuple[str, ...], names: Mapping[str, str], source
     if unknown:
         raise UnusableTracks(f"{source} holds no keypoint {unknown[0]!r}; it holds {', '.join(points)}.")
     known_spellings = {known_name(name): keypoint for name, keypoint in names.items() if name not in points}
-    point_names = tuple(
-        names.get(name) or known_spellings.get(known_name(name)) or known_name(name) for name in points
-    )
+    point_names = tuple(names.get(name) or known_spellings.get(known_name(name)) or known_name(name) for name in points)
     duplicates = sorted({name for name in point_names if point_names.count(name) > 1})
     if duplicates:
         raise UnusableTracks(f"{source} holds more than one keypoint {duplicates[0]!r}; each needs a name of its own.")

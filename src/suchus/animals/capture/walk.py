@@ -8,10 +8,12 @@ import numpy as np
 import xarray as xr
 
 from suchus.animals.capture.angles import azimuth, bend_angles, joint_bends, standing_index, wrapped
+from suchus.animals.capture.camera import GroundMotion, rest_ground
 from suchus.animals.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
 from suchus.animals.capture.feet import GRID, FootContact, FootSweep, contact, continuous, forward_path, steps, sweep
 from suchus.animals.capture.late import find_late_keypoints
 from suchus.animals.capture.names import check_feet, check_trunk, unused_text
+from suchus.animals.capture.pauses import longest_bout
 from suchus.animals.capture.screen import screen_tracks
 from suchus.animals.capture.strides import half_width, over_phase, per_stride, times
 from suchus.animals.capture.swings import Clock, walk_clock
@@ -29,7 +31,8 @@ _MIN_VISIBLE_FRACTION = 0.25  # least fraction of frames with all points of a si
 _MIN_LAG = 0.015  # [cycle]; phase lag of a foot that may be late in the film
 _LAG_TOLERANCE = 0.35  # relative difference between its phase lag and its lag in position
 _PLACE_ERROR = 0.005  # error of a step by the unknown shape of the swing, over its length
-_PLACES = 0.7  # least fraction of frames with a point, for its advance in a cycle
+_PLACES = 0.8  # least fraction of frames with a point, for its advance in a cycle
+_TURNS = 0.1  # [rad per cycle]; turning from which on the advance is taken along the path
 _ADVANCE = 0.3  # least advance of the body over the distance that feet sweep
 
 
@@ -116,7 +119,10 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     check_tracks(tracks)
     check_feet(tracks)
     unused = unused_text(tracks.points)
+    tracks, pauses = longest_bout(tracks)
     screening = screen_tracks(tracks)
+    ground = _rest_ground(screening.tracks)
+    screening = screening._replace(tracks=ground.tracks)
     faults = dict(screening.wrong)
     tail_end = tracks.tail_chain[-2:]
     while True:
@@ -152,6 +158,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     _check_feet(feet, tracks.source)
     zero = _zero(feet)
     strides = per_stride(tracks, clock, feet, zero)
+    mean_reading = mean_reading._replace(advance=_advance_on_curve(strides, mean_reading.advance))
     numbers = _measurements(mean_reading, cycle_readings, feet, zero, clock, tracks.time[0])
     if np.isfinite(mean_reading.trunk):
         lengths = np.array(
@@ -162,6 +169,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             mean_reading.trunk, spread, float(half_width(mean_reading.trunk, lengths, 0.0)), tracks.unit
         )
     numbers |= _paced(strides, numbers["period"], mean_reading, tracks.unit)
+    _widen_by_ground(numbers, ground.error, mean_reading)
     unsure = 0.0  # of where the cycle begins
     if feet:
         lead = feet.get("LF") or next(iter(feet.values()))
@@ -181,6 +189,8 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         lacks=lacking(tracks.points),
         notes=(
             *(f"{name} {reason}" for name, reason in faults.items()),
+            *pauses,
+            *ground.notes,
             *([unused] if unused else ()),
             *_missing_point_notes(tracks),
             *screening.notes,
@@ -199,6 +209,24 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         ),
         cycle=_mean_cycle(tracks, mean_reading, feet, zero),
     )
+
+
+def _rest_ground(tracks: Tracks) -> GroundMotion:
+    """Return the tracks over ground at rest; as they are where nothing repeats, which is refused later."""
+    try:
+        period = find_period(tracks.time, np.array(list(_swinging(tracks).values())), tracks.source)
+    except UnusableTracks:
+        return GroundMotion(tracks, 0.0, ())
+    return rest_ground(tracks, period)
+
+
+def _widen_by_ground(numbers: dict[str, Measurement], error: float, reading: _Reading) -> None:
+    """Widen the intervals of lengths over the ground by the uncertainty of the ground's velocity [m/s or px/s]."""
+    scales = {"stride": reading.period / reading.trunk, "stride_length": reading.period, "speed": 1.0}
+    for name, number in list(numbers.items()):
+        scale = scales.get(name, reading.period if name.startswith("step_length") else 0.0)
+        if error and scale:
+            numbers[name] = number._replace(error=float(np.hypot(number.error, error * scale)))
 
 
 def _timed(tracks: Tracks) -> tuple[Tracks, Clock, float]:
@@ -319,17 +347,25 @@ def _widen_late_phases(numbers: dict[str, Measurement]) -> list[str]:
     return notes
 
 
+def _advance_on_curve(strides: xr.Dataset, advance: float) -> float:
+    """Return the advance in a cycle: along the path of the strides if the animal turns [m or px]."""
+    if "turning" not in strides or "stride_length" not in strides:
+        return advance
+    turns, lengths = strides.turning.values, strides.stride_length.values
+    lengths = lengths[np.isfinite(lengths)]
+    is_turning = np.isfinite(turns).any() and abs(float(np.nanmean(turns))) > _TURNS
+    return float(np.mean(lengths)) if is_turning and len(lengths) else advance
+
+
 def _paced(strides: xr.Dataset, period: Measurement, mean_reading: _Reading, unit: str) -> dict[str, Measurement]:
     """Return how far and how fast the body goes, and how it turns: means over all cycles, intervals over strides."""
-    numbers = {}
+    numbers, advance = {}, mean_reading.advance
     for name, size in (("stride_length", unit), ("speed", f"{unit}/s"), ("turning", "rad")):
         if name in strides:
             stride_values = strides[name].values
             stride_values = stride_values[np.isfinite(stride_values)]
             mean = float(np.mean(stride_values))
-            value = {"stride_length": mean_reading.advance, "speed": mean_reading.advance / period.value}.get(
-                name, mean
-            )
+            value = {"stride_length": advance, "speed": advance / period.value}.get(name, mean)
             spread = float(np.std(stride_values, ddof=1)) if len(stride_values) > 1 else float("nan")
             error = float(half_width(value, stride_values, 0.0))
             if name == "speed":  # the mean of the speeds of strides is not the mean speed

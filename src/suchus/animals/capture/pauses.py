@@ -1,0 +1,85 @@
+"""Pauses of an animal that stops: the longest walk without one is measured."""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from suchus.animals.capture.tracks import Tracks
+
+_WINDOW = 0.015  # [film]; time over which displacements are taken
+_MOVING_POINTS = 85.0  # percentile of the keypoints' displacements: in a cycle some keypoint always moves
+_WALK_PERCENTILE = 80.0  # of this over the film: the displacement of a walk
+_MAX_REST, _MIN_WALK = 0.15, 0.5  # displacement over that of the walk: at rest, and at the ends of a walk
+_MIN_PAUSE = 0.05  # [film]; shorter rests belong to the gait
+_LONGER = 2.0  # length of a pause over that of the longest other rest: rests that recur belong to the gait
+_ALWAYS = 0.3  # [film]; a longer rest is a pause in any case
+_MIN_FRAMES = 8  # the same in frames
+
+
+class Bout(NamedTuple):
+    """A stretch in which an animal walks."""
+
+    tracks: Tracks
+    """Frames of the stretch."""
+    notes: tuple[str, ...]
+    """Where the animal stands, and what is measured; empty if it walks throughout."""
+
+
+def longest_bout(tracks: Tracks) -> Bout:
+    """Return the longest stretch of tracks in which the animal does not pause; all of them if it never does."""
+    activity = _activity(tracks)
+    if activity is None:
+        return Bout(tracks, ())
+    usual_activity = float(np.nanpercentile(activity, _WALK_PERCENTILE))
+    min_frames = max(_MIN_FRAMES, _MIN_PAUSE * len(activity))
+    rests = _runs(activity < _MAX_REST * usual_activity)
+    lengths = np.array([end - start for start, end in rests])
+    pauses = [
+        run
+        for i, run in enumerate(rests)
+        if lengths[i] >= _ALWAYS * len(activity)
+        or (lengths[i] >= min_frames and lengths[i] > _LONGER * np.max(np.delete(lengths, i), initial=0))
+    ]
+    if not pauses or usual_activity <= 0.0:
+        return Bout(tracks, ())
+    edges = [0, *(frame for pause in pauses for frame in pause), len(activity)]
+    start, end = max(zip(edges[::2], edges[1::2], strict=True), key=lambda bout: bout[1] - bout[0])
+    walking = np.flatnonzero(activity[start:end] > _MIN_WALK * usual_activity)
+    if not len(walking):
+        return Bout(tracks, ())
+    first, last = start + int(walking[0]) * (start > 0), (start + int(walking[-1]) if end < len(activity) else end - 1)
+    stands = ", ".join(f"{tracks.time[a]:.2f} to {tracks.time[b - 1]:.2f} s" for a, b in pauses)
+    note = (
+        f"the animal stands from {stands}: measured is its longest walk, from {tracks.time[first]:.2f} to "
+        f"{tracks.time[last]:.2f} s; --start and --end choose another"
+    )
+    return Bout(tracks.between(float(tracks.time[first]), float(tracks.time[last])), (note,))
+
+
+def _activity(tracks: Tracks) -> Float[np.ndarray, " frame"] | None:
+    """Return how far the keypoints go in a short time about each frame [m or px]; None in too short a film."""
+    frames = len(tracks.time)
+    half = max(2, round(_WINDOW * frames))
+    if frames < 20 * half:
+        return None
+    place = np.full_like(tracks.position, np.nan)
+    for index in np.ndindex(*place.shape[1:]):
+        series = tracks.position[:, *index]
+        is_seen = np.isfinite(series)
+        if is_seen.mean() > 0.5:
+            filled = np.interp(tracks.time, tracks.time[is_seen], series[is_seen])
+            padded = np.pad(filled, half // 2, mode="edge")
+            place[:, *index] = np.convolve(padded, np.ones(2 * (half // 2) + 1), mode="valid") / (2 * (half // 2) + 1)
+    place = place[:, np.isfinite(place).all(axis=(0, 2))]
+    if not place.shape[1]:
+        return None
+    after, before = np.minimum(np.arange(frames) + half, frames - 1), np.maximum(np.arange(frames) - half, 0)
+    speed = np.linalg.norm(place[after] - place[before], axis=-1) / (tracks.time[after] - tracks.time[before])[:, None]
+    return np.asarray(np.percentile(speed, _MOVING_POINTS, axis=1))
+
+
+def _runs(mask: Bool[np.ndarray, " frame"]) -> list[tuple[int, int]]:
+    """Return the first frame of each run of true values, and the frame after its last."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]])))
+    return [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
