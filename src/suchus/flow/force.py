@@ -201,24 +201,24 @@ class ControlVolume:
 
 
 @kernel_part
-def interpolate_at(a, steps, spot):
-    """Return the interpolation of a flat field at a place in padded indices, linear along each axis.
+def interpolate_at(field, strides, position):
+    """Return the value of a flat field at a position, interpolated linearly along each axis; bounds are not checked.
 
     Args:
-        a: the field, its cells end to end.
-        steps: distance in memory of neighbours along each axis [-].
-        spot: the place, in padded indices, shape (axis,).
+        field: values of the cells, end to end, shape (cell,).
+        strides: difference of the flat indices of neighbours along each axis, shape (axis,) [-].
+        position: fractional index of the padded array along each axis, shape (axis,).
     """
     total = 0.0
-    for corner in range(1 << spot.size):
-        weight, k = 1.0, 0
-        for d in range(spot.size):
-            i = int(spot[d])
-            past = spot[d] - i
+    for corner in range(1 << position.size):
+        weight, flat_index = 1.0, 0
+        for d in range(position.size):
+            i = int(position[d])
+            fraction = position[d] - i
             is_upper = (corner >> d) & 1
-            weight *= past if is_upper else 1.0 - past
-            k += (i + is_upper) * steps[d]
-        total += weight * a[k]
+            weight *= fraction if is_upper else 1.0 - fraction
+            flat_index += (i + is_upper) * strides[d]
+        total += weight * field[flat_index]
     return total
 
 
@@ -232,11 +232,11 @@ def interpolate(a, steps, places, samples):
         places: in padded indices, shape (axis, point).
         samples: array to write to, shape (point,).
     """
-    spot = np.empty(places.shape[0])
+    position = np.empty(places.shape[0])
     for m in range(places.shape[1]):
-        for d in range(spot.size):
-            spot[d] = places[d, m]
-        samples[m] = interpolate_at(a, steps, spot)
+        for d in range(position.size):
+            position[d] = places[d, m]
+        samples[m] = interpolate_at(a, steps, position)
 
 
 @compiled
@@ -254,13 +254,13 @@ def wall_pressure(p, steps, places, normals, gap, pressure):
         gap: distance of the points [cells].
         pressure: array to write to, shape (marker,).
     """
-    spot = np.empty(places.shape[0])
+    position = np.empty(places.shape[0])
     for m in range(places.shape[1]):
         pressure[m] = 0.0
         for k in range(1, 4):
-            for d in range(spot.size):
-                spot[d] = places[d, m] + k * gap * normals[d, m]
-            pressure[m] += (3.0, -3.0, 1.0)[k - 1] * interpolate_at(p, steps, spot)
+            for d in range(position.size):
+                position[d] = places[d, m] + k * gap * normals[d, m]
+            pressure[m] += (3.0, -3.0, 1.0)[k - 1] * interpolate_at(p, steps, position)
 
 
 @compiled
@@ -281,7 +281,7 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
         shear: array to write to, shape (axis, marker) [m/s per cell].
     """
     ndim = places.shape[0]
-    spot, wall_velocity = np.empty(ndim), np.empty(ndim)
+    position, wall_velocity = np.empty(ndim), np.empty(ndim)
     for m in range(places.shape[1]):
         for c in range(ndim):
             shear[c, m] = 0.0
@@ -295,8 +295,8 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
                 wall_velocity[second_axis] += spins[n, m] * k * gap * normals[first_axis, m]
             for c in range(ndim):
                 for d in range(ndim):
-                    spot[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
-                shear[c, m] += weight * (interpolate_at(velocity[c], steps, spot) - wall_velocity[c])
+                    position[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
+                shear[c, m] += weight * (interpolate_at(velocity[c], steps, position) - wall_velocity[c])
         normal_shear = 0.0
         for d in range(ndim):
             normal_shear += shear[d, m] * normals[d, m]

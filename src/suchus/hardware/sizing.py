@@ -96,7 +96,7 @@ class Sizing:
     """The robot as it is designed."""
     cases: tuple[LoadCase, ...]
     """What it shall do."""
-    own: Mapping[str, Mapping[str, ServoLoad]]
+    designed_loads: Mapping[str, Mapping[str, ServoLoad]]
     """What its own servos bear, by case."""
     families: tuple[ServoFamily, ...]
     """Families, those first that do, the cheapest first."""
@@ -219,7 +219,7 @@ def size(
     return Sizing(
         robot=robot,
         cases=tuple(load_cases),
-        own=dict(zip([case.name for case in load_cases], own_loads, strict=True)),
+        designed_loads=dict(zip([case.name for case in load_cases], own_loads, strict=True)),
         families=tuple(order),
     )
 

@@ -159,7 +159,7 @@ def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
     count = _harmonics(tracks, leg, period, 8)
     path = fit(tracks.time, forward, period, harmonics=count)
     lift = float("nan")
-    if tracks.upright:
+    if tracks.has_heights:
         lift = float(np.ptp(fit(tracks.time, tracks.at(leg)[:, 2], period, harmonics=count).swing(grid() * period)))
     course = path.mean + path.swing(grid() * period)
     return FootSweep(course, float(np.nanmean(outward)), lift, *_fitting_path(course))

@@ -223,7 +223,7 @@ def read_tracks(path: str | Path, options: ReadingOptions | None = None) -> Trac
     if options.rate is not None and not 0.0 < options.rate < np.inf:
         raise UnusableTracks(f"the frame rate is {options.rate:g}; a number above 0 is needed, in frames per second.")
     tracks = _read_by_format(path, options)
-    if options.view == "side" and tracks.upright:
+    if options.view == "side" and tracks.has_heights:
         raise UnusableTracks(f"{path.name} holds heights, so that it needs no view from the side; leave --view out.")
     return replace(tracks, view=options.view)
 

@@ -78,7 +78,7 @@ class Tracks:
         return float(1.0 / np.median(np.diff(self.time)))
 
     @property
-    def upright(self) -> bool:
+    def has_heights(self) -> bool:
         """Whether heights were seen."""
         return self.position.shape[-1] == 3
 

@@ -59,7 +59,7 @@ class Walk:
     """File that the tracks are from."""
     cycles: float
     """Number of cycles that were seen [-]."""
-    upright: bool
+    has_heights: bool
     """Whether heights were seen."""
     tail_share: float
     """Where along the tail its lateral angle was taken, 1 at the tip [-]."""
@@ -87,13 +87,13 @@ class Walk:
         return self.numbers[name].value
 
 
-class _Reading(NamedTuple):
-    """Quantities read from one stretch of time."""
+class _CycleFits(NamedTuple):
+    """Fits to the tracks in one interval of time, which repeat with the period."""
 
     angles: dict[str, PeriodicFit]
     sweeps: dict[str, FootSweep]
     advance: float  # of the body in one cycle [m or px]
-    trunk: float  # [m or px]
+    trunk_length: float  # from hip to shoulder [m or px]
     period: float
     tail_share: float
 
@@ -131,7 +131,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         if len(screening.tracks.without(faults).trunk_chain) < 2:
             names = ", ".join(f"{name} {reason}" for name, reason in runs_late.items())
             raise UnusableTracks(f"in {tracks.source} frames of one keypoint are not those of others: {names}.")
-    mean_reading = _fit_reading(tracks, period, tail_share)
+    mean_fits = _fit_cycle(tracks, period, tail_share)
     feet: dict[str, FootContact] = {}
     for leg in tracks.legs:
         foot_contact = contact(tracks, leg, period)
@@ -143,40 +143,40 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             feet[leg] = foot_contact
     tracks = tracks.without(faults)
     count = int((tracks.time[-1] - tracks.time[0]) / period + 0.05)
-    cycle_readings = [_fit_reading(_cycle(tracks, i, period), period, tail_share) for i in range(count)]
-    advances = [cycle_reading.advance for cycle_reading in cycle_readings if np.isfinite(cycle_reading.advance)] or [
-        mean_reading.advance
+    cycle_fits = [_fit_cycle(_cycle(tracks, i, period), period, tail_share) for i in range(count)]
+    advances = [single_fits.advance for single_fits in cycle_fits if np.isfinite(single_fits.advance)] or [
+        mean_fits.advance
     ]
-    mean_reading = mean_reading._replace(advance=float(np.mean(advances)))  # along a path that may be curved
-    _check_advance(mean_reading, tracks.source)
+    mean_fits = mean_fits._replace(advance=float(np.mean(advances)))  # along a path that may be curved
+    _check_advance(mean_fits, tracks.source)
     _check_feet(feet, tracks.source)
-    zero = _zero(feet)
-    strides = per_stride(tracks, clock, feet, zero)
-    numbers = _measurements(mean_reading, cycle_readings, feet, zero, clock, tracks.time[0])
-    if np.isfinite(mean_reading.trunk):
+    start_phase = _start_phase(feet)
+    strides = per_stride(tracks, clock, feet, start_phase)
+    numbers = _measurements(mean_fits, cycle_fits, feet, start_phase, clock, tracks.time[0])
+    if np.isfinite(mean_fits.trunk_length):
         lengths = np.array(
-            [cycle_reading.trunk for cycle_reading in cycle_readings if np.isfinite(cycle_reading.trunk)]
+            [single_fits.trunk_length for single_fits in cycle_fits if np.isfinite(single_fits.trunk_length)]
         )
         spread = float(np.std(lengths, ddof=1)) if len(lengths) > 1 else float("nan")
         numbers["trunk_length"] = Measurement(
-            mean_reading.trunk, spread, float(half_width(mean_reading.trunk, lengths, 0.0)), tracks.unit
+            mean_fits.trunk_length, spread, float(half_width(mean_fits.trunk_length, lengths, 0.0)), tracks.unit
         )
-    numbers |= _paced(strides, numbers["period"], mean_reading, tracks.unit)
-    unsure = 0.0  # of where the cycle begins
+    numbers |= _paced(strides, numbers["period"], mean_fits, tracks.unit)
+    start_error = 0.0  # of where the cycle begins
     if feet:
         lead = feet.get("LF") or next(iter(feet.values()))
         duties = float(np.mean([foot.duty_error for foot in feet.values()])) / 2
-        unsure = float(np.hypot(lead.middle_error, duties))
+        start_error = float(np.hypot(lead.middle_error, duties))
     unlike = _widen_late_phases(numbers)
     for name, chain in _chains(tracks).items():
         numbers[f"standing_{name}"] = Measurement(_index(tracks, chain, period), float("nan"), float("nan"), "-")
     return Walk(
         source=tracks.source,
         cycles=float((tracks.time[-1] - tracks.time[0]) / period),
-        upright=tracks.upright,
+        has_heights=tracks.has_heights,
         tail_share=tail_share,
         numbers=numbers,
-        bends={name: complex(_first_harmonic(mean_reading.angles[name], zero)) for name in mean_reading.angles},
+        bends={name: complex(_first_harmonic(mean_fits.angles[name], start_phase)) for name in mean_fits.angles},
         wrong=tuple(faults),
         lacks=lacking(tracks.points),
         notes=(
@@ -190,14 +190,14 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         strides=strides,
         phases=over_phase(
             tracks,
-            mean_reading.angles,
-            mean_reading.sweeps,
-            [(cycle_reading.angles, cycle_reading.sweeps) for cycle_reading in cycle_readings],
+            mean_fits.angles,
+            mean_fits.sweeps,
+            [(single_fits.angles, single_fits.sweeps) for single_fits in cycle_fits],
             period,
-            zero,
-            unsure,
+            start_phase,
+            start_error,
         ),
-        cycle=_mean_cycle(tracks, mean_reading, feet, zero),
+        cycle=_mean_cycle(tracks, mean_fits, feet, start_phase),
     )
 
 
@@ -241,20 +241,20 @@ def _missing_point_notes(tracks: Tracks) -> list[str]:
 
 
 def _measurements(
-    mean_reading: _Reading,
-    cycle_readings: Sequence[_Reading],
+    mean_fits: _CycleFits,
+    cycle_fits: Sequence[_CycleFits],
     feet: Mapping[str, FootContact],
-    zero: float,
+    start_phase: float,
     clock: Clock,
     start: float,
 ) -> dict[str, Measurement]:
     """Return every number with its spread and its interval."""
     count, cycle_numbers, numbers = (
-        len(cycle_readings),
-        [_numbers(cycle_reading, zero) for cycle_reading in cycle_readings],
+        len(cycle_fits),
+        [_numbers(single_fits, start_phase) for single_fits in cycle_fits],
         {},
     )
-    for name, value in _numbers(mean_reading, zero).items():
+    for name, value in _numbers(mean_fits, start_phase).items():
         deviations = _deviations(name, value, cycle_numbers)
         spread = float(np.std(deviations, ddof=1)) if len(deviations) > 1 else float("nan")
         error = float(half_width(0.0, deviations, 0.0))
@@ -271,10 +271,10 @@ def _measurements(
         lead_foot = feet["LF"]
         error = float(np.hypot(lead_foot.middle_error, foot.middle_error)) if leg != "LF" else 0.0
         numbers[f"phase_{leg}"] = Measurement((lead_foot.middle - foot.middle) % 1.0, float("nan"), error, "cycle")
-    durations = np.diff(clock.seconds(start / mean_reading.period + np.arange(count + 1)))
+    durations = np.diff(clock.seconds(start / mean_fits.period + np.arange(count + 1)))
     spread = float(np.std(durations, ddof=1)) if count >= 2 else float("nan")
     error = times(count) * spread / np.sqrt(count) if count >= 2 else float("nan")
-    numbers["period"] = Measurement(mean_reading.period, spread, error, "s")
+    numbers["period"] = Measurement(mean_fits.period, spread, error, "s")
     return numbers
 
 
@@ -319,7 +319,7 @@ def _widen_late_phases(numbers: dict[str, Measurement]) -> list[str]:
     return notes
 
 
-def _paced(strides: xr.Dataset, period: Measurement, mean_reading: _Reading, unit: str) -> dict[str, Measurement]:
+def _paced(strides: xr.Dataset, period: Measurement, mean_fits: _CycleFits, unit: str) -> dict[str, Measurement]:
     """Return how far and how fast the body goes, and how it turns: means over all cycles, intervals over strides."""
     numbers = {}
     for name, size in (("stride_length", unit), ("speed", f"{unit}/s"), ("turning", "rad")):
@@ -327,9 +327,7 @@ def _paced(strides: xr.Dataset, period: Measurement, mean_reading: _Reading, uni
             stride_values = strides[name].values
             stride_values = stride_values[np.isfinite(stride_values)]
             mean = float(np.mean(stride_values))
-            value = {"stride_length": mean_reading.advance, "speed": mean_reading.advance / period.value}.get(
-                name, mean
-            )
+            value = {"stride_length": mean_fits.advance, "speed": mean_fits.advance / period.value}.get(name, mean)
             spread = float(np.std(stride_values, ddof=1)) if len(stride_values) > 1 else float("nan")
             error = float(half_width(value, stride_values, 0.0))
             if name == "speed":  # the mean of the speeds of strides is not the mean speed
@@ -413,7 +411,7 @@ def _swinging(tracks: Tracks) -> dict[str, np.ndarray]:
     return visible_signals
 
 
-def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
+def _fit_cycle(tracks: Tracks, period: float, tail_share: float) -> _CycleFits:
     """Fit the angles, the advance and the foot paths of tracks over their mean cycle.
 
     Args:
@@ -434,7 +432,7 @@ def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
         advanced = [fit(tracks.time, place[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
         advance = float(np.hypot(*advanced)) * period
     sweeps = {leg: sweep(tracks, leg, period) for leg in tracks.legs}
-    return _Reading(
+    return _CycleFits(
         fits,
         {leg: foot_sweep for leg, foot_sweep in sweeps.items() if foot_sweep is not None},
         advance,
@@ -444,35 +442,39 @@ def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
     )
 
 
-def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
-    """Return the numbers of a reading by name: lengths over the trunk's [-], angles [rad], phases [cycle].
+def _numbers(fits: _CycleFits, start_phase: float) -> dict[str, float]:
+    """Return the finite numbers of a walk by name.
+
+    Lengths are over the length of the trunk [-], angles in rad, phases in cycles. An angle ``NAME`` has its amplitude
+    as ``NAME``, its mean as ``NAME_steady``, and the amplitude of its overtones over that of the first harmonic as
+    ``NAME_overtones`` [-]. ``spine_rightmost`` is the phase at which the spine bends most to the right.
 
     Args:
-        reading: fits over the mean cycle.
-        zero: phase of the tracks' clock at which the gait begins [cycle].
+        fits: fits over the mean cycle.
+        start_phase: phase of the tracks' clock at which the gait begins [cycle].
     """
-    bends = {name: _first_harmonic(reading.angles[name], zero) for name in reading.angles}
-    spine, tail = (bends.get(name, 0j) for name in ("spine_lateral", "tail_lateral"))
-    numbers = {"stride": reading.advance / reading.trunk}
-    for leg, path in reading.sweeps.items():
+    first_harmonics = {name: _first_harmonic(fits.angles[name], start_phase) for name in fits.angles}
+    spine_harmonic, tail_harmonic = (first_harmonics.get(name, 0j) for name in ("spine_lateral", "tail_lateral"))
+    numbers = {"stride": fits.advance / fits.trunk_length}
+    for leg, foot_sweep in fits.sweeps.items():
         numbers |= {
-            f"retraction_{leg}": path.retraction,
-            f"stroke_{leg}": path.stroke / reading.trunk,
-            f"outward_{leg}": path.outward / reading.trunk,
-            f"ahead_{leg}": float(path.forward.mean()) / reading.trunk,
-            f"lift_{leg}": path.lift / reading.trunk,
+            f"retraction_{leg}": foot_sweep.retraction,
+            f"stroke_{leg}": foot_sweep.stroke / fits.trunk_length,
+            f"outward_{leg}": foot_sweep.outward / fits.trunk_length,
+            f"ahead_{leg}": float(foot_sweep.forward.mean()) / fits.trunk_length,
+            f"lift_{leg}": foot_sweep.lift / fits.trunk_length,
         }
-    for name, angle in reading.angles.items():
+    for name, angle in fits.angles.items():
         numbers |= {name: float(abs(angle.harmonics[0])), f"{name}_steady": angle.mean}
         numbers[f"{name}_overtones"] = float(np.linalg.norm(angle.harmonics[1:]) / max(abs(angle.harmonics[0]), 1e-12))
-    if abs(spine) > _STRAIGHT:
-        numbers["spine_rightmost"] = float(-np.angle(spine) / (2 * np.pi)) % 1.0
-        if abs(tail) > _STRAIGHT:
-            numbers["tail_lag"] = float(np.angle(spine / tail) / (2 * np.pi)) % 1.0
+    if abs(spine_harmonic) > _STRAIGHT:
+        numbers["spine_rightmost"] = float(-np.angle(spine_harmonic) / (2 * np.pi)) % 1.0
+        if abs(tail_harmonic) > _STRAIGHT:
+            numbers["tail_lag"] = float(np.angle(spine_harmonic / tail_harmonic) / (2 * np.pi)) % 1.0
     return {name: value for name, value in numbers.items() if np.isfinite(value)}
 
 
-def _zero(feet: Mapping[str, FootContact]) -> float:
+def _start_phase(feet: Mapping[str, FootContact]) -> float:
     """Return the phase of the tracks' clock at which the gait begins [cycle].
 
     It is the mid-stance of LF minus the swing and half of the stance. Without LF the first tracked foot takes its
@@ -485,8 +487,8 @@ def _zero(feet: Mapping[str, FootContact]) -> float:
     return lead_foot.touch_down + lead_foot.duty / 2 - (1.0 - duty / 2)
 
 
-def _first_harmonic(angle_fit: PeriodicFit, zero: float) -> complex:
-    return complex(angle_fit.harmonics[0] * np.exp(2j * np.pi * zero))
+def _first_harmonic(angle_fit: PeriodicFit, start_phase: float) -> complex:
+    return complex(angle_fit.harmonics[0] * np.exp(2j * np.pi * start_phase))
 
 
 def _cycle(tracks: Tracks, number: int, period: float) -> Tracks:
@@ -526,40 +528,40 @@ def _index(tracks: Tracks, chain: tuple[str, ...], period: float) -> float:
     return standing_index(amplitude, phase) if len(amplitude) > 1 else float("nan")
 
 
-def _check_advance(reading: _Reading, source: str) -> None:
+def _check_advance(fits: _CycleFits, source: str) -> None:
     """Refuse tracks in which the body advances less per cycle than a foot sweeps back."""
-    if not reading.sweeps:
+    if not fits.sweeps:
         return
-    swept = 2 * float(np.mean([path.stroke for path in reading.sweeps.values()]))
-    if reading.advance < _ADVANCE * swept:
+    swept = 2 * float(np.mean([foot_sweep.stroke for foot_sweep in fits.sweeps.values()]))
+    if fits.advance < _ADVANCE * swept:
         raise UnusableTracks(
-            f"in {source} the body advances by {reading.advance / reading.trunk:.2f} of its trunk's length in a cycle "
-            f"while its feet sweep {swept / reading.trunk:.2f} of it: it walks on a belt, on the spot, or the camera "
-            "goes along; standing feet can only be recognised over ground that rests in the picture."
+            f"in {source} the body advances by {fits.advance / fits.trunk_length:.2f} of its trunk's length in a cycle "
+            f"while its feet sweep {swept / fits.trunk_length:.2f} of it: it walks on a belt, on the spot, or the "
+            "camera goes along; standing feet can only be recognised over ground that rests in the picture."
         )
 
 
-def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
+def _mean_cycle(tracks: Tracks, fits: _CycleFits, feet: Mapping[str, FootContact], start_phase: float) -> xr.Dataset:
     """Return angles, foot speeds and stance over the phase of the mean cycle, with the scatter of the frames.
 
     Args:
         tracks: the keypoints, by the clock.
-        reading: fits over the mean cycle.
+        fits: fits over the mean cycle.
         feet: contact of each foot.
-        zero: phase of the tracks' clock at which the gait begins [cycle].
+        start_phase: phase of the tracks' clock at which the gait begins [cycle].
     """
     phase = np.arange(GRID) / GRID
-    time = (phase + zero) * reading.period
+    time = (phase + start_phase) * fits.period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(feet)})
-    for name, angle in reading.angles.items():
+    for name, angle in fits.angles.items():
         attrs = {"units": "rad", "long_name": f"{name.replace('_', ' ')}, {_positive(name)} positive"}
         data[name] = ("phase", angle.mean + angle.swing(time), attrs)
         data[f"{name}_spread"] = (
             "phase",
-            _residual_spread(tracks, angle, phase, zero),
+            _residual_spread(tracks, angle, phase, start_phase),
             {"units": "rad", "long_name": "standard deviation of the frames about the mean, camera noise included"},
         )
-    back = -round(zero * GRID)
+    back = -round(start_phase * GRID)
     for name, field, unit in (("foot_speed", "speed", f"{tracks.unit}/s"), ("stance", "stance", "1")):
         rows = [np.roll(getattr(feet[leg], field), back) for leg in feet]
         data[name] = (("leg", "phase"), np.array(rows).reshape(-1, GRID), {"units": unit})
@@ -570,9 +572,9 @@ def _positive(name: str) -> str:
     return "right" if name.endswith("lateral") else "down"
 
 
-def _residual_spread(tracks: Tracks, angle_fit: PeriodicFit, phase: np.ndarray, zero: float) -> np.ndarray:
+def _residual_spread(tracks: Tracks, angle_fit: PeriodicFit, phase: np.ndarray, start_phase: float) -> np.ndarray:
     """Return the standard deviation of the frames about the mean cycle, over the phase [rad]."""
-    phases = np.mod(tracks.time / angle_fit.period - zero, 1.0)
+    phases = np.mod(tracks.time / angle_fit.period - start_phase, 1.0)
     bins = np.minimum((phases * _BINS).astype(int), _BINS - 1)
     use = np.isfinite(angle_fit.residual)
     count = np.bincount(bins[use], minlength=_BINS)

@@ -102,31 +102,33 @@ def errors(share: float) -> float:
     return float(norm.ppf(np.clip(share, 1e-6, 1 - 1e-6))) / _Z_95
 
 
-def unsure(walk: Walk) -> tuple[str, ...]:
-    """Return the numbers of a walk that have an interval.
+def names_with_interval(walk: Walk) -> tuple[str, ...]:
+    """Return the names of the numbers of a walk that have an interval, and refuse a walk without the required ones.
+
+    Names of quantities of a leg end in that leg, as in ``duty_LF``.
 
     Raises:
-        UnusableTracks: one that forces rest on has none, since too few cycles were seen.
+        UnusableTracks: a number that the forces depend on has no interval, because too few cycles were seen.
     """
-    names = tuple(name for name, measurement in walk.numbers.items() if np.isfinite(measurement.error))
+    with_interval = tuple(name for name, measurement in walk.numbers.items() if np.isfinite(measurement.error))
     required = [
         name for name in walk.numbers if name in _REQUIRED_NUMBERS or name.partition("_")[0] in _REQUIRED_FOOT_NUMBERS
     ]
-    lacking = [name for name in required if name not in names]
+    lacking = [name for name in required if name not in with_interval]
     if lacking:
         raise UnusableTracks(
             f"{walk.source} shows {walk.cycles:.1f} cycles, by which {' and '.join(lacking)} "
             f"ha{'ve' if len(lacking) > 1 else 's'} no interval, and so no force has one: film one more cycle."
         )
-    return names
+    return with_interval
 
 
 def sample_walk(walk: Walk, shares: Mapping[str, float]) -> Walk:
     """Return a possible walk: each number is at a quantile of its distribution.
 
     Args:
-        walk: the measured one.
-        shares: of the distribution of each of ``unsure(walk)``.
+        walk: the measured walk.
+        shares: quantile of each of ``names_with_interval(walk)`` in its distribution, 0 to 1 [-].
     """
     numbers = dict(walk.numbers)
     for name, measurement in walk.numbers.items():
@@ -148,12 +150,14 @@ def _change(walk: Walk, numbers: Mapping[str, Measurement], name: str) -> float:
 
 
 def _deviate(name: str, measurement: Measurement, deviation: float) -> float:
-    """Return a number at some standard errors from its mean, within the range that is possible for it.
+    """Return a possible value of a measured number, within the range that its quantity allows.
+
+    Fractions of the cycle stay within 0.05 and 0.95. Positive quantities stay above 2 % of the measured value.
 
     Args:
-        name: of the number.
-        measurement: the measured number.
-        deviation: from the mean [standard error].
+        name: name of the number, as in ``Walk.numbers``.
+        measurement: measured value with the half width of its 95 % interval.
+        deviation: deviation from the measured value [half width of the interval].
     """
     value, stem = measurement.value + deviation * measurement.error, name.partition("_")[0]
     if stem in _SHARES:

@@ -73,36 +73,48 @@ class Rules:
         Raises:
             UnsuitedRobot: a robot lacks the servos that its rule needs.
         """
-        self._yaw = list(layout(robots[0]).trunk_yaw)
-        self._spined = [i for i, rule in enumerate(spines) if rule is not None]
-        self._tailed = [i for i, rule in enumerate(tails) if rule is not None]
+        self._trunk_yaw_servos = list(layout(robots[0]).trunk_yaw)
+        self._spine_runs = [i for i, rule in enumerate(spines) if rule is not None]
+        self._tail_runs = [i for i, rule in enumerate(tails) if rule is not None]
         self._spine: SpineController | None = None
         self._tail: TailController | None = None
-        if self._spined:
-            if not self._yaw:
+        if self._spine_runs:
+            if not self._trunk_yaw_servos:
                 raise UnsuitedRobot(
                     f"the rule spine to spine needs servos that bend the trunk sideways; robot {robots[0].name!r} "
                     "lacks them: leave spine out."
                 )
-            self._spine = SpineController([spines[i] for i in self._spined], [robots[i] for i in self._spined], period)
-        if self._tailed:
+            self._spine = SpineController(
+                [spines[i] for i in self._spine_runs], [robots[i] for i in self._spine_runs], period
+            )
+        if self._tail_runs:
             self._tail = TailController(
-                [tails[i] for i in self._tailed],
-                [robots[i] for i in self._tailed],
-                [_with_tail(robots[i], gaits[i]) for i in self._tailed],
+                [tails[i] for i in self._tail_runs],
+                [robots[i] for i in self._tail_runs],
+                [_with_tail(robots[i], gaits[i]) for i in self._tail_runs],
                 period,
             )
 
     def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
-        """Return the targets as the rules change them."""
+        """Correct the servo targets by the rules of spine and tail, in place, and return them [rad].
+
+        The rule of the spine changes the bend of the trunk by the bend that the servos reached (``SpineController``).
+        The rule of the tail changes its pitch by the load on its servo (``TailController``).
+
+        Args:
+            targets: servo angles of all runs; those of runs with a rule are changed in place.
+            sensed: readings of all runs.
+        """
         if self._spine is not None:
-            spine_targets = targets[self._spined]
-            target_bend = spine_targets[:, self._yaw].sum(axis=1)
-            targets[self._spined] = self._spine.correct(
-                spine_targets, target_bend, _sensed_of_runs(sensed, self._spined)
+            targets_of_spine_runs = targets[self._spine_runs]
+            target_bend = targets_of_spine_runs[:, self._trunk_yaw_servos].sum(axis=1)
+            targets[self._spine_runs] = self._spine.correct(
+                targets_of_spine_runs, target_bend, _sensed_of_runs(sensed, self._spine_runs)
             )
         if self._tail is not None:
-            targets[self._tailed] = self._tail.correct(targets[self._tailed], _sensed_of_runs(sensed, self._tailed))
+            targets[self._tail_runs] = self._tail.correct(
+                targets[self._tail_runs], _sensed_of_runs(sensed, self._tail_runs)
+            )
         return targets
 
 

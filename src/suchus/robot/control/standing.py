@@ -15,7 +15,7 @@ from suchus.robot.design import Layout, Robot, layout
 from suchus.robot.design.measures import LegMeasures
 from suchus.robot.design.skeleton import skeleton
 from suchus.robot.motion import Gait, intended
-from suchus.robot.motion.posture import Keyed, hind_leg, plan, upright
+from suchus.robot.motion.posture import Keyed, hind_leg, sample_postures, upright
 from suchus.robot.motion.rising import stand_up
 
 
@@ -161,7 +161,7 @@ class Standing:
         rise, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
         rise_time = np.minimum(time - self.at - self.blend, rise.duration)
         descent_time = rise.duration - (time - leave) / self.slower_down
-        planned = plan(robot, rise, np.where(time < leave, rise_time, descent_time))
+        planned = sample_postures(robot, rise, np.where(time < leave, rise_time, descent_time))
         blend_progress = np.clip(np.minimum(time - self.at, end - time) / self.blend, 0.0, 1.0)
         fraction = (1.0 - np.cos(np.pi * blend_progress)) / 2.0
         phase, crawling = intended(robot, gait, np.where(time < end, np.minimum(time, self.at), time - (end - self.at)))

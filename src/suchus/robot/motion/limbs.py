@@ -153,7 +153,7 @@ class LimbMotion:
             foot = _clip_to_reach(
                 foot, np.zeros(3), (min_reach + _REACH_MARGIN * max_reach, max_reach - _REACH_MARGIN * max_reach)
             )
-        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(parameters.swivel, forward.shape))
+        return limb_kinematics.inverse(limb, foot, swivel=np.broadcast_to(parameters.swivel, forward.shape))
 
     def _crank_angle(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
         """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above.

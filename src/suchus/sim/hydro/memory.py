@@ -50,24 +50,24 @@ def pointer(typing, address):  # type: ignore[no-untyped-def]
 
 
 class Bodies(NamedTuple):
-    """The tree of bodies and joints."""
+    """The tree of bodies and degrees of freedom (dof) of a MuJoCo model, and the pattern of its mass matrix."""
 
     parent: np.ndarray
-    """Of each body (body,)."""
+    """Index of each body's parent, shape (body,)."""
     root: np.ndarray
-    """First body of its tree (body,)."""
-    first_joint: np.ndarray
-    """First joint of each body (body,)."""
-    dofs: np.ndarray
-    """Number of its joints (body,)."""
+    """First body of each body's tree, shape (body,)."""
+    first_dof: np.ndarray
+    """First degree of freedom of each body, shape (body,)."""
+    dof_counts: np.ndarray
+    """Number of degrees of freedom of each body, shape (body,)."""
     owner: np.ndarray
-    """Body that each joint moves (joint,)."""
+    """Body that each degree of freedom moves, shape (dof,)."""
     rownnz: np.ndarray
-    """Numbers in each row of the matrix (joint,)."""
+    """Number of entries in each row of the sparse mass matrix, shape (dof,)."""
     rowadr: np.ndarray
-    """Where each row begins (joint,)."""
+    """Index of the first entry of each row, shape (dof,)."""
     column: np.ndarray
-    """Joint of each number."""
+    """Degree of freedom of each entry's column, shape (entry,)."""
 
 
 class Motion(NamedTuple):

@@ -216,8 +216,8 @@ def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) 
     return {
         "length": robot.length, "mass": robot.mass, "volume": sum(volumes(robot).values()),
         "frequency": gait.frequency, "keel": flotation.metacentric_height,
-        "trim": flotation.trim if flotation.floats else flotation.trim_submerged, "vanishing": flotation.vanishing,
-        "speed": direction_sign * float(np.hypot(*displacement[:2])) / duration, "surplus": flotation.surplus,
+        "trim": flotation.trim if flotation.is_floating else flotation.trim_submerged, "vanishing": flotation.vanishing,
+        "speed": direction_sign * float(np.hypot(*displacement[:2])) / duration, "surplus": flotation.surplus_mass,
         "heel": float(np.abs(rotation.heel(excerpt.orientation.values)).max()),
         "pitch": float(rotation.pitch(excerpt.orientation.values).mean()),
         "under": float(excerpt.share_under.mean()), "swing": float(np.ptp(lateral_offset)),
@@ -229,7 +229,7 @@ def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) 
 def trim_submerged(robot: Robot) -> float:
     """Return the equilibrium pitch of a submerged robot in the mean posture of the swim, nose down positive [rad]."""
     gait = animal_gait(robot, FREQUENCIES[0])
-    return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heels=3).trim_submerged
+    return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heel_count=3).trim_submerged
 
 
 def measures(record: xr.Dataset) -> Measures:

@@ -196,7 +196,7 @@ class Shore(Experiment):
             case_paths[name] = ("case", np.array(values), {"units": unit})
         shown_index = self._shown_case_index(case_paths)
         back = cycle_targets(self.robot, straight_gait(self.robot, limbs=LIMBS_BACK), np.zeros(1))[0]
-        floating = hydrostatics(self.robot, back, heels=3)
+        floating = hydrostatics(self.robot, back, heel_count=3)
         metres = self._metres(staged(progress, "work per metre on land, at the surface and below", 0.9, 1.0))
         full_record = xr.merge(
             [record.isel(run=[shown_index]), case_paths, metres], combine_attrs="override", compat="no_conflicts"

@@ -85,7 +85,7 @@ def dive_record(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
 def _hovering(run: Run) -> float:
     """Return the pitch of a robot that hovers in the first posture of its swim, nose down positive [rad]."""
     posture = cycle_targets(run.robot, run.gait, np.zeros(1), np.zeros(1))[0]
-    return hydrostatics(run.robot, posture, air_fraction=neutral_air_fraction(run.robot), heels=3).trim_submerged
+    return hydrostatics(run.robot, posture, air_fraction=neutral_air_fraction(run.robot), heel_count=3).trim_submerged
 
 
 def measures(record: xr.Dataset) -> Measures:

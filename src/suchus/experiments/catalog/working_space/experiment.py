@@ -163,7 +163,7 @@ def draw_room(record: xr.Dataset, states: Sequence[str]) -> Figure:
                 snout, colour = record[f"snout_{state}"].values, COLOURS[role]
                 if vertical_axis == 1:
                     snout = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])
-                _cells(ax, snout[:, [horizontal_axis, vertical_axis]], record.attrs["cell"], colour)
+                _fill_occupied_cells(ax, snout[:, [horizontal_axis, vertical_axis]], record.attrs["cell"], colour)
                 ax.plot([], [], "s", color=colour, alpha=0.55, markersize=10, label=state)
             for state, role in zip(states, _ROLES, strict=True):
                 if f"body_{state}" in record:
@@ -175,11 +175,18 @@ def draw_room(record: xr.Dataset, states: Sequence[str]) -> Figure:
     return figure
 
 
-def _cells(ax: Any, points: np.ndarray, cell: float, colour: str) -> None:
-    """Fill the cells that hold a point."""
+def _fill_occupied_cells(ax: Any, points: np.ndarray, cell_size: float, colour: str) -> None:
+    """Draw the squares of a regular grid that contain at least one point, in one translucent colour.
+
+    Args:
+        ax: axes to draw on.
+        points: points in the plane of the panel, shape (point, 2) [m].
+        cell_size: side of a square [m].
+        colour: colour of the squares.
+    """
     if len(points) == 0:
         return
-    edges = [np.arange(p.min(), p.max() + 2 * cell, cell) for p in points.T]
+    edges = [np.arange(coordinates.min(), coordinates.max() + 2 * cell_size, cell_size) for coordinates in points.T]
     counts, _ = np.histogramdd(points, bins=edges)
     occupied = np.ma.masked_equal(counts.T > 0, False)
     ax.pcolormesh(*edges, occupied, cmap=ListedColormap([colour]), alpha=0.38, antialiased=False, linewidth=0, zorder=1)
