@@ -88,9 +88,9 @@ def sample(water: Fluid, markers: Markers, density: float) -> Surface:
     """Return pressure and friction at the markers; densities in [kg/m^3].
 
     Args:
-        water: with its pressure and velocity.
+        water: water with its pressure and velocity.
         markers: points on the body's surface.
-        density: of the water [kg/m^3].
+        density: density of the water [kg/m^3].
     """
     places, normals = padded(markers.points, water.grid), np.ascontiguousarray(markers.normals)
     pressure, shear = np.empty(places.shape[1]), np.empty(places.shape)
@@ -111,7 +111,7 @@ def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
     """Return the momentum of the faces of a box of cells, half of those on its sides, shape (axis,) [m/s cells].
 
     Args:
-        velocity: on the faces before the cells, shape (axis, ...) [m/s].
+        velocity: velocity on the faces before the cells, shape (axis, ...) [m/s].
         box: padded cell indices, first and end along each axis, the last axis first.
     """
     ndim = len(velocity)
@@ -128,7 +128,7 @@ def boundary_flux(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int
     """Return the flux into a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
 
     Args:
-        velocity: on the faces before the cells, shape (axis, ...) [m/s].
+        velocity: velocity on the faces before the cells, shape (axis, ...) [m/s].
         p: pressure over density [m^2/s^2].
         nu: viscosity [m/s cells].
         box: as for ``momentum``.
@@ -180,7 +180,7 @@ class ControlVolume:
             water: after the step.
             dt: length of the step [s].
             push: uniform acceleration of the water [m/s^2].
-            density: of the water [kg/m^3].
+            density: density of the water [kg/m^3].
         """
         h = water.grid.cell
         balance = np.array(
@@ -229,7 +229,7 @@ def interpolate(a, steps, places, samples):
     Args:
         a: the field, its cells end to end.
         steps: distance in memory of neighbours along each axis [-].
-        places: in padded indices, shape (axis, point).
+        places: positions in padded indices, shape (axis, point).
         samples: array to write to, shape (point,).
     """
     position = np.empty(places.shape[0])

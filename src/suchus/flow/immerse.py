@@ -92,7 +92,7 @@ def fill(distance, normal, thickness, mu0, mu1):
     Args:
         distance: signed distance of each point from the surface [cells].
         normal: outward normal, shape (axis, point).
-        thickness: of the body at the nearest point of the surface [cells].
+        thickness: thickness of the body at the nearest point of the surface [cells].
         mu0: fluid fraction to write, shape (point,).
         mu1: half of the first moment along the normal to write, shape (axis, point) [cells].
     """

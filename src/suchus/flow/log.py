@@ -193,7 +193,7 @@ def part_columns(
         body: which.
         acts: load of the water on each part, its torque about one point.
         reference_point: that point, in the frame of the grid [m].
-        pose: of the body, in the frame of the grid.
+        pose: pose of the body, in the frame of the grid.
         time: end of the step [s].
         frame: mean velocity of the grid [m/s].
     """

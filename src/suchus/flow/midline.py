@@ -193,7 +193,7 @@ class Midline(Shape):
         """Return the part whose section passes through each point of a window near the body; 0 elsewhere.
 
         Args:
-            midline: in the world.
+            midline: midline in the world.
             x: coordinates of the window's columns [m].
             y: coordinates of the window's rows [m].
             is_near: which points are in or near the body, shape (y, x).

@@ -127,7 +127,8 @@ def _restrict_residual(coarse, coarse_slab, residual, b, slab, inner, coarse_inn
     Args:
         coarse: right side of the coarse level, to write to.
         coarse_slab: which of its slabs.
-        residual: on entry the operator applied to the solution in both slabs, shape (2, cell); a work array then.
+        residual: the residual; on entry the operator applied to the solution in both slabs, shape (2, cell); then a
+            work array.
         b: right side of the level.
         slab: first of the two slabs.
         inner: strides within a slab.
@@ -341,8 +342,8 @@ def _relaxation_factors(cells, ndim):
     as many steps, an even number, as leave the fraction ``MAX_RESIDUAL_RATIO`` of each error.
 
     Args:
-        cells: of the longest side.
-        ndim: of the grid.
+        cells: number of cells along the longest side.
+        ndim: number of axes of the grid.
     """
     min_eigenvalue = (1.0 - np.cos(np.pi / cells)) / ndim
     middle = 1.0 + 0.5 * min_eigenvalue

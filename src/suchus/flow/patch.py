@@ -39,7 +39,7 @@ def patch_layouts(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
     must not lie where a mirror cuts a body.
 
     Args:
-        layout: of the levels.
+        layout: layout of the levels.
         repeats: which axes are periodic.
     """
     rows, offset, ndim = [], 0, layout.shape[1] // 3

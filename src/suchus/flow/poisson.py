@@ -238,7 +238,7 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
         d: direction, shape (slab, cell).
         q: work array, shape (slab, cell).
         store: values of all multigrid levels.
-        layout: of the levels; see ``slab``.
+        layout: layout of the levels; see ``slab``.
         buffer: values of the patches; see ``patch``.
         rects: the patches; see ``patch``.
         inner: strides within a slab.
@@ -339,7 +339,7 @@ def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
     """Return the store of a layout, in which all coefficients are 1 as in water without bodies.
 
     Args:
-        layout: of the levels; see ``levels``.
+        layout: layout of the levels; see ``levels``.
         dtype: precision of the fields.
     """
     ndim = layout.shape[1] // 3
@@ -355,7 +355,7 @@ def place_window(layout: np.ndarray, window: Window) -> None:
     """Write a window and its coarser images to the layout of all levels.
 
     Args:
-        layout: of the levels; see ``slab``.
+        layout: layout of the levels; see ``slab``.
         window: padded indices, first and end along each axis, the last axis first.
     """
     ndim = layout.shape[1] // 3

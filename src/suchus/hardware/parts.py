@@ -210,10 +210,10 @@ def sheet(
     """Return what a robot is built of.
 
     Args:
-        robot: whose servos' windings name the servos that are bought.
+        robot: robot whose servos' windings name the servos that are bought.
         motors: the servos that are sold; those that suchus knows if None.
         wall: thickness of printed walls [m].
-        density: of what is printed [kg/m3].
+        density: density of what is printed [kg/m3].
     """
     require("parts", "wall", wall, 1e-5, 0.1, "m")
     require("parts", "density", density, 1.0, 2e4, "kg/m3")
@@ -379,7 +379,7 @@ def _bodies(
         robot: the design.
         motor_by_servo: servos that are sold, by name.
         seats: body and position of each servo.
-        parts: of all bodies.
+        parts: parts of all bodies.
         skin: mass of a printed wall per area [kg/m2].
     """
     masses, _ = body_masses(robot)

@@ -190,7 +190,7 @@ def size(
     sufficient. A gait that is too fast for a family is tried with a longer period.
 
     Args:
-        robot: who.
+        robot: the robot.
         load_cases: what it shall do.
         motors: the servos that are sold; those that suchus knows if None.
         family: the only one that is looked at.
@@ -380,9 +380,9 @@ def with_better(
     Every named servo has been simulated in its position.
 
     Args:
-        robot: who.
+        robot: the robot.
         case: what it does.
-        loads: from ``loads_of_cases``.
+        loads: loads from ``loads_of_cases``.
         motors: the servos that are sold; those that suchus knows if None.
     """
     replaceable = {name for names in places(robot) for name in names}

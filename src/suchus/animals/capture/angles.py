@@ -108,8 +108,8 @@ def standing_index(amplitude: ArrayLike, phase: ArrayLike) -> float:
     tell the two waves apart: half a turn at a node resembles a lag.
 
     Args:
-        amplitude: of the bend at each joint, of any one unit.
-        phase: of the bend at each joint [rad].
+        amplitude: amplitude of the bend at each joint, of any one unit.
+        phase: phase of the bend at each joint [rad].
 
     Returns:
         NaN if nothing bends.

@@ -77,7 +77,7 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
     Args:
         time: shape (frame,) [s].
         values: shape (frame,), NaN where the quantity was not seen.
-        period: of one cycle [s].
+        period: period of one cycle [s].
         harmonics: how many.
         drift: highest power of time that is fitted, 0 to 2.
     """
@@ -131,8 +131,8 @@ def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], so
 
     Args:
         time: shape (frame,) [s].
-        signals: that swing once a cycle, NaN where not seen.
-        source: for messages.
+        signals: signals that swing once a cycle, NaN where not seen.
+        source: name of the source, for messages.
 
     Raises:
         UnusableTracks: nothing repeats, or less than one cycle or too few frames of it were seen.

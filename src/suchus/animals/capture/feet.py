@@ -88,8 +88,8 @@ def contact(tracks: Tracks, leg: str, period: float) -> FootContact | None:
 
     Args:
         tracks: the keypoints, by a clock that follows the animal's pace.
-        leg: of ``LEGS``.
-        period: of the cycle [s].
+        leg: one of ``LEGS``.
+        period: period of the cycle [s].
     """
     swings = swing(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
     if swings is None:
@@ -143,8 +143,8 @@ def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
 
     Args:
         tracks: the keypoints.
-        leg: of ``LEGS``.
-        period: of the cycle [s].
+        leg: one of ``LEGS``.
+        period: period of the cycle [s].
     """
     girdle = tracks.thorax if leg.endswith("F") else tracks.pelvis
     if girdle is None or tracks.view == "side":

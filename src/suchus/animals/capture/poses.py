@@ -56,7 +56,7 @@ def read_pose_table(path: Path, software: str, individual: str | None) -> Poses:
     Args:
         path: the file.
         software: DeepLabCut, LightningPose, SLEAP or Anipose.
-        individual: whose keypoints, where the table holds several.
+        individual: individual whose keypoints are read, where the table holds several.
 
     Raises:
         UnreadableFile: the table is broken, or not of this software.
@@ -227,7 +227,7 @@ def _poses(
         body: the table without its header.
         columns: index of the column of each keypoint and axis.
         confidence_axis: how the column of the confidence is called.
-        name: of the file, for messages.
+        name: name of the file, for messages.
     """
     points = tuple(dict.fromkeys(point for point, axis in columns if axis in ("x", "y", "z")))
     if not points:

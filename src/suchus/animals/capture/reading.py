@@ -53,7 +53,7 @@ def read_poses(
         path: the file.
         software: one of ``SOFTWARE``; guessed from the file if None.
         rate: frames per second, which most of these files do not hold [1/s].
-        individual: whose tracks, where the file holds several.
+        individual: individual whose tracks are read, where the file holds several.
         names: our name of a keypoint by the file's, where they differ.
         confidence: points with less are lost.
         y_down: whether y points to the right of x, seen from above; None: it does, unless there are three axes.

@@ -210,7 +210,7 @@ def _with_timing(walk: Walk, gait: Gait, duty: Duty, factor: float, notes: list[
 
     Args:
         walk: the measured walk.
-        gait: whose other fields are kept.
+        gait: gait whose other fields are kept.
         duty: fraction that becomes the duty factor, see ``Duty``.
         factor: period of the robot over that of the animal [-].
         notes: sentences for the user, to which this function appends.
@@ -428,9 +428,9 @@ def to_curves(cycle: AngleCycle, robot: Robot, *, name: str, period: float) -> G
 
     Args:
         cycle: the angles, as ``read_angles`` returns them.
-        robot: who plays them.
-        name: of the gait.
-        period: of its cycle [s].
+        robot: robot that plays them.
+        name: name of the gait.
+        period: period of its cycle [s].
 
     Raises:
         UnknownName: a column belongs to no servo of the robot.

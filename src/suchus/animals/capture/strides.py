@@ -41,7 +41,7 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], st
     Args:
         tracks: the keypoints, by the clock.
         clock: on which strides last equally long.
-        feet: that were seen.
+        feet: feet that were seen.
         start_phase: phase at which strides begin [cycle].
     """
     period = clock.period
@@ -190,10 +190,10 @@ def over_phase(
 
     Args:
         tracks: the keypoints, by the clock.
-        angles: of trunk and tail over all cycles.
-        sweeps: of the feet over all cycles.
+        angles: angles of trunk and tail over all cycles.
+        sweeps: sweeps of the feet over all cycles.
         cycle_fits: the same of every cycle by itself.
-        period: of a cycle [s].
+        period: period of a cycle [s].
         start_phase: phase at which the cycle begins [cycle].
         start_error: half the width of the interval of that [cycle].
     """
@@ -315,8 +315,8 @@ def half_width(value: np.ndarray | float, cycle_values: np.ndarray, start_error:
     phase at which the cycle begins.
 
     Args:
-        value: over all cycles, any shape; where ``start_error`` is given, phases are the last axis.
-        cycle_values: of single cycles, their number first.
+        value: value over all cycles, any shape; where ``start_error`` is given, phases are the last axis.
+        cycle_values: values of single cycles, their number first.
         start_error: half the width of the interval of the cycle's beginning [cycle].
     """
     n = len(cycle_values)

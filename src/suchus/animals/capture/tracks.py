@@ -200,9 +200,9 @@ def map_keypoint_names(points: tuple[str, ...], names: Mapping[str, str], source
     """Return our names of a file's keypoints.
 
     Args:
-        points: as the file calls them.
+        points: points as the file calls them.
         names: our name of some, by the file's name.
-        source: for messages.
+        source: name of the source, for messages.
 
     Raises:
         UnusableTracks: a name that the file does not hold, or two keypoints of one name.

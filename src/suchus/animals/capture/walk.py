@@ -102,7 +102,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     """Read a walk from tracks.
 
     Args:
-        tracks: of one body that walks with a steady gait.
+        tracks: tracks of one body that walks with a steady gait.
         tail_share: where along the tail its lateral angle is taken, 1 at the tip [-]; for a robot whose tail's end is
             passive, the share that its servo bends.
 
@@ -416,7 +416,7 @@ def _fit_cycle(tracks: Tracks, period: float, tail_share: float) -> _CycleFits:
 
     Args:
         tracks: the keypoints, by the clock.
-        period: of the cycle [s].
+        period: period of the cycle [s].
         tail_share: fraction of the tail's length at which its lateral angle is taken [-].
     """
     angles = bend_angles(tracks, tail_share)._asdict()

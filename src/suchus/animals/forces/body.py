@@ -90,7 +90,7 @@ def choices(names: Sequence[str], count: int) -> list[dict[str, float]]:
     """Return choices of what is not known, each number a share of its distribution, by a Latin hypercube.
 
     Args:
-        names: of what is not known.
+        names: names of what is not known.
         count: choices.
     """
     shares = qmc.LatinHypercube(d=len(names), rng=np.random.default_rng(_SEED)).random(count)
@@ -173,7 +173,7 @@ def resize_body(robot: Robot, length: float, mass: float | None = None) -> Robot
     Args:
         robot: the body.
         length: factor on its lengths [-].
-        mass: of the whole body [kg]; in proportion to the cube of the length if None.
+        mass: mass of the whole body [kg]; in proportion to the cube of the length if None.
     """
     is_unchanged = abs(length - 1.0) < 1e-12 and mass is None
     return robot if is_unchanged else rescale(robot, length_factor=length, mass_factor=mass and mass / robot.mass)
@@ -184,7 +184,7 @@ def widen_body(robot: Robot, volume: float) -> Robot:
 
     Args:
         robot: the body.
-        volume: of the whole body [m3].
+        volume: volume of the whole body [m3].
     """
     for _ in range(30):
         current_volume = sum(volumes(robot).values())
@@ -226,8 +226,8 @@ def add_with_interval(
 
     Args:
         data: the dataset.
-        name: of the variable.
-        dims: of a value.
+        name: name of the variable.
+        dims: dimensions of a value.
         answers: each as ``dims`` say, the most likely one first.
         description: its unit and what it is.
     """

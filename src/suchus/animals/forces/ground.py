@@ -91,7 +91,7 @@ def walked_forces(
 
     Args:
         walk: the measured walk, with all keypoints.
-        robot: whose body it is, four limbs with feet that can be put on a path.
+        robot: robot whose body it is, four limbs with feet that can be put on a path.
         base: gait from which what was not measured is taken; the robot's own if None.
         unknown: the ranges of what the film does not show.
         duty: which share of the cycle is the duty factor of the most likely choice.
@@ -246,8 +246,8 @@ def played_forces(
 
     Args:
         cycle: the table.
-        robot: whose joints it is of.
-        period: of the cycle [s].
+        robot: robot of the joints.
+        period: period of the cycle [s].
         unknown: the ranges of what the table does not show.
         progress: told the share that is done.
 

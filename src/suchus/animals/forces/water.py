@@ -83,7 +83,7 @@ def swum_forces(
 
     Args:
         walk: what was measured of the swim: bends along the midline.
-        robot: whose body it is, with an axis that bends.
+        robot: robot whose body it is, with an axis that bends.
         rungs: which models of the water are asked.
         unknown: the ranges of what the film does not show; with a mass the body gets the volume of so much water.
         length: the animal's, where the film does not show it [m].
@@ -148,7 +148,7 @@ def swim_gait(walk: Walk, robot: Robot) -> Gait:
 
     Args:
         walk: what was measured.
-        robot: who is to swim so.
+        robot: robot that is to swim so.
 
     Raises:
         UnusableTracks: too few bends were seen.
@@ -260,7 +260,7 @@ def _hinge_harmonics(
 
     Args:
         harmonics: harmonics of the bends at keypoints [rad].
-        places: of the keypoints along the midline, 0 to 1 [-].
+        places: positions of the keypoints along the midline, 0 to 1 [-].
         hinges: places of the hinges along the body, 0 to 1 [-].
     """
     ends = np.concatenate([[0.0], places, [1.0]])
@@ -344,7 +344,7 @@ def _spread(swims: Sequence[_SwimCycle], sections: Sequence[_SwimCycle]) -> list
     A model that was run once gets the relative interval of the section model, scaled by the size of its forces.
 
     Args:
-        swims: of the model, one or one for each choice.
+        swims: swims of the model, one or one for each choice.
         sections: the same choices by the section model.
     """
     if len(swims) > 1:

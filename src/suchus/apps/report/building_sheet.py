@@ -24,8 +24,8 @@ def write_parts(sheet: Sheet, folder: Path, *, gait: Gait, samples: Commands, ou
 
     Args:
         sheet: what the robot is built of.
-        folder: where to.
-        gait: whose trajectory is written.
+        folder: folder to write to.
+        gait: gait whose trajectory is written.
         samples: its commands.
         outlines: whether STL and DXF are written, which need the extra ``parts``.
 

@@ -48,7 +48,7 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
 
     Args:
         sizing: what was found.
-        folder: where to.
+        folder: folder to write to.
         hours: for which the battery is asked [h].
     """
     write(folder / SERVOS, servos_csv(sizing))

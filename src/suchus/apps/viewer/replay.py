@@ -74,8 +74,8 @@ def takes(path: Path, robot: Robot | None = None) -> tuple[Take, ...]:
     """Return the runs of a record on land.
 
     Args:
-        path: of the file.
-        robot: who walks in it; by default the robot of the catalog that the record names.
+        path: path of the file.
+        robot: robot that walks in it; by default the robot of the catalog that the record names.
 
     Raises:
         UnreadableFile: there is no such file.

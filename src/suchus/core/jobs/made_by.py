@@ -26,7 +26,7 @@ def source_versions(paths: Sequence[str] = LAND_SOURCES, libraries: Sequence[str
     """Return the versions of what makes the bytes of a result, the files of the user's project among them.
 
     Args:
-        paths: whose source decides, see ``record.code_digest``.
+        paths: paths whose source decides, see ``record.code_digest``.
         libraries: further packages whose versions decide.
     """
     package_versions = versions()

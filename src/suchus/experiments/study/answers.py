@@ -42,7 +42,8 @@ def answer_claims(results: Mapping[str, tuple[np.ndarray, np.ndarray]], paramete
     """Return number and truth of each claim in every sample, and the parameters that decide them.
 
     Args:
-        results: by claim its number in every sample, NaN where it cannot be judged, and whether its statement holds.
+        results: for each claim its number in every sample, NaN where it cannot be judged, and whether its statement
+            holds.
         parameters: values of what varies, shape (sample, parameter).
     """
     numbers, holds = (np.array(values) for values in zip(*results.values(), strict=True))
@@ -156,7 +157,7 @@ def agreement(record: xr.Dataset, reference: xr.Dataset) -> Agreement:
     among the claims times their number (Bonferroni).
 
     Args:
-        record: of ``answers``, merged with its record.
+        record: record of ``answers``, merged with its record.
         reference: the same, made otherwise.
     """
     is_comparable = np.isfinite(record.number.values) & np.isfinite(reference.number.values)

@@ -233,7 +233,7 @@ def load_board(protocol: str, kind: str, places: int, unit: float) -> Table:
     """Return the table of a board that measures the normal force at several positions.
 
     Args:
-        protocol: that it speaks.
+        protocol: protocol that it speaks.
         kind: ``feet``, ``belly`` or ``tail``.
         places: how many.
         unit: force of a step [N].

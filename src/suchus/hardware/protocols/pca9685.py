@@ -65,7 +65,7 @@ class Pulses:
     Args:
         wires: the bus.
         boards: their numbers, from 0.
-        rate: of pulses [Hz].
+        rate: rate of pulses [Hz].
 
     Raises:
         InvalidDesign: a rate that the boards cannot give.

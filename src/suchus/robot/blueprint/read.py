@@ -81,7 +81,7 @@ def parse_robot(values: Mapping[str, Any]) -> Robot:
     """Return the robot that the plain values of a result's settings describe.
 
     Args:
-        values: of a robot, or of the tables that it was made of, as ``dataclasses.asdict`` gives them.
+        values: values of a robot, or of the tables that it was made of, as ``dataclasses.asdict`` gives them.
 
     Raises:
         ValidationError: they describe none.

@@ -58,9 +58,9 @@ class Attitude:
         """Gather gains and hip positions of the batch.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            period: of control [s].
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
+            period: control period [s].
         """
         active_rules = [rule if rule is not None else _INACTIVE_RULE for rule in rules]
         time_scale = np.array([_time_scale(robot) for robot in robots])

@@ -131,7 +131,7 @@ class Heading:
         """Return the steering that the present heading error demands.
 
         Args:
-            sensed: what is felt.
+            sensed: sensor readings.
             walking: which runs walk; the others are not steered, and begin anew with what stays. False: nothing is felt
                 either.
         """

@@ -94,10 +94,10 @@ class HeadingHolds:
         """Gather the gains of the batch.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
             cycle: length of each gait's cycle in control periods.
-            period: of control [s].
+            period: control period [s].
         """
         neutral_rule = HeadingHold(gain=0.0, integral_gain=0.0, turn=0.0, trunk_turn=0.0)
         active_rules = [rule or neutral_rule for rule in rules]
@@ -124,9 +124,9 @@ class DepthHolds:
         """Gather the gains of the batch, and the air with which each robot is neutrally buoyant.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            period: of control [s].
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
+            period: control period [s].
         """
         self._is_active = np.array([rule is not None for rule in rules])
         neutral_rule = DepthHold(depth=0.0)

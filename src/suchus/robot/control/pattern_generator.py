@@ -66,9 +66,9 @@ class Rules:
         Args:
             spines: rule of the spine, one for each run; None for a run without one.
             tails: rule of the tail, one for each run; None for a run without one.
-            robots: one for each run.
-            gaits: one for each run.
-            period: of control [s].
+            robots: robot of each run.
+            gaits: gait of each run.
+            period: control period [s].
 
         Raises:
             UnsuitedRobot: a robot lacks the servos that its rule needs.
@@ -248,10 +248,10 @@ class Generator:
 
         Args:
             controls: settings, one for each run.
-            robots: one for each run, all with the same layout.
-            gaits: one for each run.
-            seeds: of random first phases, one for each run.
-            period: of control [s].
+            robots: robot of each run, all with the same layout.
+            gaits: gait of each run.
+            seeds: seeds of random first phases, one for each run.
+            period: control period [s].
         """
         self._period = period
         self._groups = _grouped(controls, robots, gaits)
@@ -496,7 +496,7 @@ def _initial(
         control: its settings.
         robot: the design.
         gait: its gait.
-        seed: of random phases.
+        seed: seed of random phases.
         posture: segments of the axis, and the phase shift between limbs and oscillators.
         lag: phase lag of each segment behind the one ahead of it [cycle].
         has_active_limbs: whether the drive moves the limbs.
@@ -546,11 +546,11 @@ def oscillate(
     """Let pattern generators turn without a body, from the time at which a walk begins.
 
     Args:
-        controls: of the runs.
-        robot: whose oscillators they are.
+        controls: controls of the runs.
+        robot: robot whose oscillators they are.
         gait: which they drive.
-        duration: of the oscillation [s].
-        seeds: one for each run; all 0 if None.
+        duration: duration of the oscillation [s].
+        seeds: seed of each run; all 0 if None.
         sample_interval: keep one sample of so many control periods.
         progress: told the share that is done.
     """

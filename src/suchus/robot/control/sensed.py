@@ -45,6 +45,6 @@ def decay_factor(delay: float, period: float) -> float:
 
     Args:
         delay: time constant of the filter [s]; 0 for none.
-        period: of control [s].
+        period: control period [s].
     """
     return exp(-period / delay) if delay > 0.0 else 0.0

@@ -155,8 +155,8 @@ class Standing:
 
         Args:
             robot: the design.
-            gait: of the crawl before and after.
-            time: since the beginning of the run, shape (tick,) [s].
+            gait: gait that is walked before and after.
+            time: time since the beginning of the run, shape (tick,) [s].
         """
         rise, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
         rise_time = np.minimum(time - self.at - self.blend, rise.duration)
@@ -207,10 +207,10 @@ class Stander:
         Args:
             balances: rule of each run; None for a run that follows its course without feedback.
             course: intended motion of every distinct robot, gait and control.
-            row: of the course, one for each run.
+            row: row of the course, one for each run.
             legs: hind leg of each run's robot.
             place: layout that all robots share.
-            period: of control [s].
+            period: control period [s].
         """
         self._gains = {f.name: np.array([getattr(b or BALANCE, f.name) for b in balances]) for f in fields(Balance)}
         self._answers = np.array([b is not None for b in balances])

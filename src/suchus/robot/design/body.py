@@ -300,9 +300,9 @@ def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float
     Args:
         check: collects what is wrong.
         robot: its name.
-        servos: by name.
-        mass: of the robot [kg].
-        length: of the robot [m].
+        servos: servos by name.
+        mass: mass of the robot [kg].
+        length: length of the robot [m].
     """
     for name, servo in servos.items():
         inertia_ratio = servo.armature / (mass * length**2)

@@ -74,7 +74,7 @@ class Drawing:
         """Return it as a robot.
 
         Args:
-            servo: in every joint; one that holds the water if None, see ``design.scale.swim_servo_for``.
+            servo: servo in every joint; one that holds the water if None, see ``design.scale.swim_servo_for``.
 
         Raises:
             InvalidDesign: no sections of these proportions have the volume.
@@ -96,7 +96,7 @@ class Drawing:
 
         Args:
             scale: factor on width and height of the drawn sections [-].
-            servo: in every joint; None for one that holds the water.
+            servo: servo in every joint; None for one that holds the water.
         """
         ends = (0.0, *self.joints, 1.0)
         drive = servo or swim_servo_for(self.mass, self.length)
@@ -124,7 +124,7 @@ class Drawing:
         """Return place and half axes, both [body length], and relative size of each ellipsoid of a segment.
 
         Args:
-            number: of the segment, from the snout [-].
+            number: number of the segment, from the snout [-].
             ends: places of the joints with both ends of the body [body length].
             scale: factor on width and height [-].
         """
@@ -161,9 +161,9 @@ class Drawing:
         """Return the ellipsoids of one segment, and its keel if there is one.
 
         Args:
-            number: of the segment, from the snout [-].
+            number: number of the segment, from the snout [-].
             shells: place [body length], half axes [body length] and relative size of each ellipsoid.
-            center: of the segment, from the snout [body length].
+            center: center of the segment, from the snout [body length].
             total: sum of the relative sizes of all segments.
             segment_length: length of the segment [body length].
         """

@@ -123,7 +123,7 @@ def _disc(
 
     Args:
         body: index of the body that carries it.
-        center: in the frame of the body [m].
+        center: center in the frame of the body [m].
         axes: unit vectors across, upward and forward.
         half: half axes along them [m].
         volume: [m3].
@@ -151,7 +151,7 @@ def ball(body: int, center: tuple[float, float, float] | np.ndarray, radius: flo
 
     Args:
         body: index of the body that carries it.
-        center: in the frame of the body [m].
+        center: center in the frame of the body [m].
         radius: [m].
     """
     volume = 4 / 3 * pi * radius**3
@@ -188,8 +188,8 @@ def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
 
     Args:
         place: layout of the robot.
-        table: of the pieces, changed in place.
-        hull: of the robot.
+        table: table of the pieces, changed in place.
+        hull: hull of the robot.
     """
     number = {body.name: i for i, body in enumerate(place.bodies)}
     for foam in hull.foam:
@@ -255,9 +255,9 @@ def _check_hollow(place: Layout, body: str, air: float, volume: float) -> None:
 
     Args:
         place: layout of the robot.
-        body: that holds the chamber.
-        air: in the chamber [m3].
-        volume: of the body with its foam [m3].
+        body: body that holds the chamber.
+        air: volume of air in the chamber [m3].
+        volume: volume of the body with its foam [m3].
     """
     max_air = max(volume - masses(place.robot)[body] / SOLID, 0.0)
     if air > max_air + 1e-12:

@@ -94,7 +94,7 @@ def inverse(
 
     Args:
         limb: the limb.
-        foot: from the hip: forward, outward, up [m].
+        foot: position of the foot from the hip: forward, outward, up [m].
         swivel: for a limb of the kind ``arm``: rotation of the elbow forward about the line from hip to foot, 0 where
             it stands up [rad].
         start: angles near the answer, for chains without a closed form [rad]; the middle of the ranges if None.
@@ -179,7 +179,7 @@ def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: in
 
     Args:
         limb: the design.
-        points: of the foot from the hip, shape (*batch, 3) [m].
+        points: points of the foot from the hip, shape (*batch, 3) [m].
         start: angles near the answer [rad]; the middle of the ranges if None.
         tries: how often a point may start again [-].
     """
@@ -223,10 +223,10 @@ def _descend(
 
     Args:
         limb: the design.
-        points: of the foot from the hip, shape (point, 3) [m].
-        angles: at the start, shape (point, hinge) [rad].
-        lower_bound: of each hinge [rad].
-        upper_bound: of each hinge [rad].
+        points: points of the foot from the hip, shape (point, 3) [m].
+        angles: angles at the start, shape (point, hinge) [rad].
+        lower_bound: lower bound of each hinge [rad].
+        upper_bound: upper bound of each hinge [rad].
     """
     size, angles = limb.reach, angles.copy()
     error = np.full(len(points), np.inf)
@@ -252,7 +252,7 @@ def _chain(limb: Limb, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     Args:
         limb: the design.
-        angles: of the hinges, shape (*batch, hinge) [rad].
+        angles: angles of the hinges, shape (*batch, hinge) [rad].
     """
     batch = angles.shape[:-1]
     turn = np.broadcast_to(np.eye(3), (*batch, 3, 3))

@@ -94,9 +94,9 @@ def reading(
 
     Args:
         name: letter of the reading.
-        length: of the body [m]; only reading I depends on it.
+        length: length of the body [m]; only reading I depends on it.
         angular_frequency: omega, which the article does not give [rad/s].
-        sign: of omega t; 1 as printed.
+        sign: sign of omega t; 1 as printed.
         waves_per_body: wavelengths along the body [-]; only reading I depends on it.
 
     Raises:

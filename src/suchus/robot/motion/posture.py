@@ -250,7 +250,7 @@ def hind_leg(
     Args:
         leg: the hind leg.
         feet: centre of the foot from the hip in the world: outward, forward, down [m].
-        pitch: of the pelvis, front end up positive [rad].
+        pitch: pitch angle of the pelvis, front end up positive [rad].
         clip: let a leg that is too short point to its foot.
 
     Raises:
@@ -355,9 +355,9 @@ def trunk_angles(
     """Return the angles of the trunk's pitch hinges, from the root forward [rad]; see ``Posture.trunk_second``.
 
     Args:
-        chains: of the body.
-        first_angle: of the first hinge, front end up positive [rad].
-        second_angle: of all other hinges together, front end up positive [rad].
+        chains: chains of the body.
+        first_angle: angle of the first hinge, front end up positive [rad].
+        second_angle: angle of all other hinges together, front end up positive [rad].
     """
     other_count = len(chains.trunk) - 1
     return np.stack(
@@ -375,9 +375,9 @@ def tail_down(
     """Return the pitch of a straight tail that brings its tip to a depth below the ground [rad].
 
     Args:
-        chains: of the body.
-        height: of the hips above the ground [m].
-        pitch: of the pelvis, front end up positive [rad].
+        chains: chains of the body.
+        height: height of the hips above the ground [m].
+        pitch: pitch angle of the pelvis, front end up positive [rad].
         press: the depth [m].
     """
     root = height - chains.tail_root * np.sin(pitch) - chains.hips[2] * np.cos(pitch)

@@ -61,7 +61,7 @@ def stand_up(
     Heights follow the hind legs; where the hips are follows from the centre of mass.
 
     Args:
-        robot: who stands up.
+        robot: robot that stands up.
         lead: where the centre of mass is commanded behind the feet when standing [m]; ``LEAD`` in its size if None.
         slower: factor on all times [-].
         size: factor on clearances and on how far apart the feet stand, 1 for the article's [-]; ``size_of`` if None.

@@ -40,7 +40,7 @@ class Transition(NamedTuple):
         """Return the servo angles at a time [rad].
 
         Args:
-            time: since the beginning of the transition [s].
+            time: time since the beginning of the transition [s].
             start: servo angles at that beginning [rad].
         """
         i = int(np.searchsorted(self.times, time, side="right"))

@@ -86,10 +86,10 @@ def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: floa
     """Return whether all pieces are far above the surface, waves of a height included.
 
     Args:
-        table: of the pieces, shape (block, column, lane).
+        table: table of the pieces, shape (block, column, lane).
         count: number of pieces [-].
         water: its properties.
-        height: of the waves above the level, at most [m].
+        height: height of the waves above the level, at most [m].
         motion: positions of the bodies.
     """
     for n in range(count):
@@ -105,7 +105,7 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
     """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``).
 
     Args:
-        table: of the pieces, shape (block, column, lane).
+        table: table of the pieces, shape (block, column, lane).
         count: number of pieces [-].
         water: its properties.
         bodies: the tree of bodies and joints.

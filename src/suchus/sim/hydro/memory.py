@@ -125,7 +125,7 @@ def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
     Args:
         model: address of a ``mjModel``.
         data: address of its ``mjData``.
-        offsets: of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
     """
     model_words = carray(model, (4096,), np.int64)
     state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
@@ -163,8 +163,8 @@ def read_water(model: int, user: np.ndarray, offsets: np.ndarray, length: float)
     Args:
         model: address of a ``mjModel``.
         user: numbers of the water, see ``water_table``.
-        offsets: of ``FIELDS`` and ``DATA_FIELDS`` [byte].
-        length: of the robot, for the Reynolds number of friction [m].
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        length: length of the robot, for the Reynolds number of friction [m].
     """
     down = three(carray(model, (4096,), np.float64), offsets[_GRAVITY] // 8)
     gravity = sqrt(dot(down, down))

@@ -149,7 +149,7 @@ def surfaced(
         lake: the water.
         up_axis: against gravity, unit vector.
         qpos: the posture on the ground.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
     """
     level, air_fraction = lake.state_at(0.0)
     table = np.array(pieces(robot))

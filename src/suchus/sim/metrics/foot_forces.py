@@ -88,7 +88,7 @@ def step(force: xr.DataArray, min_force: float) -> FootStep:
     """Return what stands out in the force on one foot over a cycle.
 
     Args:
-        force: of one foot, ``phase part`` [body weight].
+        force: force of one foot, ``phase part`` [body weight].
         min_force: vertical force from which it stands [body weight].
     """
     parts = {name: force.sel(part=name).values for name in PARTS}

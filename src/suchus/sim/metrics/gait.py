@@ -109,7 +109,7 @@ def loaded(record: xr.Dataset, threshold: float | None = None) -> xr.DataArray:
     """Tell which limbs carry at each instant; for stances, which last, see ``stance``.
 
     Args:
-        record: of one run or several, or one instant.
+        record: record of one run or several, or one instant.
         threshold: least normal force of a limb that carries [N]; ``LOADED_SHARE`` of the weight if None.
     """
     return limb_load(record).sel(xyz="z") > threshold_of(record, threshold)
@@ -140,7 +140,7 @@ def sensed_phase(record: xr.Dataset, start: float = START, end: float | None = N
     """Return the phase by which each leg is ahead of the first, LF, from the first harmonic of its stance [cycle].
 
     Args:
-        record: over a whole number of cycles.
+        record: record over a whole number of cycles.
         start: [s].
         end: [s]; the last sample if None.
     """

@@ -106,7 +106,7 @@ def printed_wave(
     """Return (20) on a robot in one of its readings.
 
     Args:
-        robot: whose body it runs along.
+        robot: robot whose body it runs along.
         reading: letter of ``kinematics.wave.READINGS``.
         frequency: which the article does not give [Hz].
         sign: -1 runs from head to tail; 1 as printed.

@@ -27,8 +27,8 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
     """Draw one robot per run from above at the beginning, between and at the end of its walk.
 
     Args:
-        robot: whose record it is.
-        record: with one run per arm.
+        robot: robot whose record it is.
+        record: record with one run per arm.
         arms: roles of ``style.LINES``.
     """
     end = float(record.time[-1])
@@ -80,7 +80,7 @@ def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed_distances: Ma
     """Draw how far each condition gets, of the robots as built and as designed.
 
     Args:
-        record: of the experiment.
+        record: record of the experiment.
         designed: displacement of each condition of the robot as designed [m].
         printed_distances: the article's displacements by condition [m]; empty for another robot or gait.
     """
@@ -127,7 +127,7 @@ def draw_course(record: xr.Dataset, arms: Sequence[str], printed_distances: Mapp
     """Draw the displacement over time with all of the axis and without, and where the robots as built end.
 
     Args:
-        record: of the experiment, the two conditions first.
+        record: record of the experiment, the two conditions first.
         arms: names of the two conditions.
         printed_distances: the article's displacements by condition [m]; empty where they are not for this run.
     """
@@ -261,10 +261,10 @@ def draw_map(
     """Draw filled contours of a positive quantity on a logarithmic scale, with labelled lines.
 
     Args:
-        ax: to draw on; its labels come from the ``long_name`` and ``units`` of the coordinates.
+        ax: axes to draw on; their labels come from the ``long_name`` and ``units`` of the coordinates.
         values: two-dimensional, the first dimension up, the second to the right.
-        levels: of the lines, increasing; doubled on from the last until none of the values lies above them.
-        label: of the colour bar.
+        levels: levels of the lines, increasing; doubled on from the last until none of the values lies above them.
+        label: label of the colour bar.
         emphasised: level to draw thick.
     """
     vertical, horizontal = (values[d] for d in values.dims)

@@ -269,7 +269,7 @@ def draw_righting(record: xr.Dataset) -> Figure:
     """Draw the righting lever over the heel, and the heel over time of robots that were let go.
 
     Args:
-        record: with ``lever`` (hull, heel) [m], and runs with ``orientation``.
+        record: record with ``lever`` (hull, heel) [m], and runs with ``orientation``.
     """
     with styled():
         figure, axes = panels(1, 2, width=12.0, height=4.2)

@@ -124,7 +124,7 @@ def draw_sweep(record: xr.Dataset, oscillators: Oscillators) -> Any:
 
 
 def draw_locks(record: xr.Dataset) -> Any:
-    """Return how the starts come to the locked state, at the two drives."""
+    """Draw how the phases of the starts converge to the locked state, at the two drives."""
     with styled():
         figure, axes = panels(1, 2, width=10.0, height=3.8, sharey=True)
         for ax, state in zip(axes[0], ("walk", "swim"), strict=True):
@@ -150,7 +150,7 @@ def draw_locks(record: xr.Dataset) -> Any:
 
 
 def draw_land(record: xr.Dataset) -> Any:
-    """Return stride over the drive, and turning by each kind of steering."""
+    """Draw the stride over the drive, and the turning by each kind of steering."""
     strides = ("drive_low", "straight", "drive_high")
     turns = ("straight", "asymmetry", "steering", "steering_right")
     with styled():

@@ -51,7 +51,7 @@ def steps(record: xr.Dataset, cycle_window: Window, stance_threshold: float) -> 
     """Return forces on fore and hind feet, each the mean of left and right, and the slip of the feet.
 
     Args:
-        record: of one run.
+        record: record of one run.
         cycle_window: start of the first cycle [s], period [s], number of cycles.
         stance_threshold: vertical force from which a foot stands [body weight].
     """

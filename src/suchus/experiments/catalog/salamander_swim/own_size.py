@@ -159,9 +159,9 @@ def swim_animals(names: Sequence[str], *, settle: int, cycles: int, progress: Pr
     Each starts upright at the surface, or on the ground if it sinks, and swims.
 
     Args:
-        names: in ``ANIMALS``.
+        names: names in ``ANIMALS``.
         settle: cycles before anything is measured [-].
-        cycles: that are measured [-].
+        cycles: number of cycles that are measured [-].
         progress: called with the fraction that is done.
     """
     rows = [
@@ -261,7 +261,7 @@ def draw(record: xr.Dataset, filmed_stride: float) -> Figure:
     """Draw how far each animal comes in a cycle, and how it lies in the water.
 
     Args:
-        record: with ``animal``.
+        record: record with ``animal``.
         filmed_stride: stride of the salamander that was filmed [body length].
     """
     names, rows = [str(name) for name in record.animal.values], np.arange(record.sizes["animal"])

@@ -153,7 +153,8 @@ def draw_room(record: xr.Dataset, states: Sequence[str]) -> Figure:
     """Draw the cells that the snout reaches in two states, and the highest configuration of each.
 
     Args:
-        record: with ``snout_STATE`` (kept, xyz), ``body_STATE`` (point, xyz), ``legs_STATE`` (leg, end, xyz) [m].
+        record: record with ``snout_STATE`` (kept, xyz), ``body_STATE`` (point, xyz), ``legs_STATE`` (leg, end, xyz)
+            [m].
         states: their names, the smaller room first.
     """
     with styled():
@@ -197,10 +198,10 @@ def _posture(ax: Any, record: xr.Dataset, state: str, axes: tuple[int, int], col
 
     Args:
         ax: axes to draw on.
-        record: with ``body_STATE`` and ``legs_STATE`` [m].
+        record: record with ``body_STATE`` and ``legs_STATE`` [m].
         state: one of ``STATES``.
         axes: indices of the horizontal and the vertical coordinate in ``xyz``.
-        colour: of the lines.
+        colour: colour of the lines.
     """
     body, legs = record[f"body_{state}"].values[:, list(axes)], record[f"legs_{state}"].values[..., list(axes)]
     ax.plot(
