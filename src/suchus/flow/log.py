@@ -28,9 +28,9 @@ class FlowLoads:
     reference_point: np.ndarray
     """Point of the torques, in the frame of the grid, shape (axis,) [m]."""
     total: Reaction
-    """On the whole body, mean over the step."""
+    """Load on the whole body, mean over the step."""
     parts: Reaction
-    """On each of its parts, along the first axis; of a body that is not divided the whole."""
+    """Load on each of its parts, along the first axis; of a body that is not divided the whole."""
     internal_pressure: np.ndarray
     """What the pressure does inside the parts, where there is no water: its integral over each and its first moments
     about ``reference_point``, shape (part, 1 + axis), 0 in a body that is not divided [N, N m; N m, N m2].

@@ -13,7 +13,7 @@ from suchus.hardware.drive import TickClock
 from suchus.hardware.rig import Rig
 
 NUDGE = radians(5.0)
-"""By how much a servo is moved so that people see which one it is [rad]."""
+"""Angle by which a servo is moved so that people see which one it is [rad]."""
 _PACE = radians(20.0)  # [rad/s]; how fast
 _READINGS = 10  # of each servo in a known posture; their median counts
 _MIN_SAMPLES = 50  # samples from which a servo is judged

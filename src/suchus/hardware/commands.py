@@ -19,7 +19,7 @@ class Commands(NamedTuple):
     """Commanded angles of the servos [rad], in the order of the robot's layout; the last sample equals the first."""
 
     time: Float[np.ndarray, " sample"]
-    """From the beginning of the first cycle [s]."""
+    """Time from the beginning of the first cycle [s]."""
     angles: Float[np.ndarray, "sample servo"]
     """Angles of the joints; for a cable that of its pulley, or the travel of its actuator over ``pulleys`` [rad]."""
     speeds: Float[np.ndarray, "sample servo"]

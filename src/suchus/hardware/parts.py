@@ -125,7 +125,7 @@ class Cord:
     section: float
     """Length of a cord from the first plate to the last with the tail straight [m]."""
     travel: float
-    """By how much a cord is drawn in at the greatest bend [m]."""
+    """Length by which a cord is drawn in at the greatest bend [m]."""
     table: tuple[tuple[float, float, float, float], ...]
     """Bend [rad], angle of the pulley [rad] or place of the linear actuator [m], change of the cord on the side of the
     bend and of the other one [m]."""
@@ -154,7 +154,7 @@ class Buoyancy:
     """Volumes that carry a robot in water."""
 
     mass: float
-    """Of the robot [kg]."""
+    """Mass of the robot [kg]."""
     bare: float
     """Volume of its bodies without foam [m3]."""
     foam: tuple[tuple[str, float, float], ...]

@@ -24,7 +24,7 @@ class FootContact(NamedTuple):
     """One foot over its mean cycle; phases count from time zero of the tracks [cycle]."""
 
     speed: Float[np.ndarray, " grid"]
-    """Over the ground in the mean cycle [m/s or px/s]."""
+    """Speed over the ground in the mean cycle [m/s or px/s]."""
     stance: Bool[np.ndarray, " grid"]
     """Whether it stands."""
     lift_off: float

@@ -120,7 +120,7 @@ class _Paced(NamedTuple):
     """Lag of a point behind its neighbours, estimated from the variation of their distance with the pace."""
 
     lag: float
-    """By its links together [s]."""
+    """Lag of the keypoint by its links together [s]."""
     error: float
     """Standard error of that [s]."""
     z_score: float

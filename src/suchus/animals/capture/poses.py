@@ -33,7 +33,7 @@ class Poses(NamedTuple):
     position: np.ndarray
     """Shape (frame, point, axis), NaN where a point was lost [px, or the unit of a calibration]."""
     confidence: np.ndarray
-    """Of each point, shape (frame, point), NaN where none is given [-]."""
+    """Confidence of each point, shape (frame, point), NaN where none is given [-]."""
 
 
 def software_of(path: Path) -> str | None:

@@ -190,7 +190,7 @@ class ReadingOptions:
     software: str | None = None
     """What wrote the file, of ``SOFTWARE``; guessed if None."""
     individual: str | None = None
-    """Whose tracks, where the file holds several."""
+    """Individual whose tracks are read, where the file holds several."""
     confidence: float = 0.6
     """Points with less are lost [-]; what DeepLabCut and movement use."""
     y_down: bool | None = None

@@ -37,7 +37,7 @@ class Measurement(NamedTuple):
     """A number that was seen."""
 
     value: float
-    """Over all cycles."""
+    """Value over all cycles."""
     spread: float
     """Standard deviation from cycle to cycle; NaN if fewer than two were seen."""
     error: float
@@ -447,7 +447,9 @@ def _numbers(fits: _CycleFits, start_phase: float) -> dict[str, float]:
 
     Lengths are over the length of the trunk [-], angles in rad, phases in cycles. An angle ``NAME`` has its amplitude
     as ``NAME``, its mean as ``NAME_steady``, and the amplitude of its overtones over that of the first harmonic as
-    ``NAME_overtones`` [-]. ``spine_rightmost`` is the phase at which the spine bends most to the right.
+    ``NAME_overtones`` [-]. ``spine_rightmost`` is the phase at which the spine bends most to the right. Of the feet,
+    ``stroke`` is half of the distance that a foot goes back, and ``retraction`` the fraction of the cycle in which it
+    does.
 
     Args:
         fits: fits over the mean cycle.

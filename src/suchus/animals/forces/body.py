@@ -33,10 +33,10 @@ class Unknown:
     """What a film does not show, each as the ends of its range; a choice is drawn evenly from it."""
 
     mass: tuple[float, float] | None = None
-    """Of the animal [kg]; None: 0.7 to 1.4 times what the named body weighs at the animal's length."""
+    """Mass of the animal [kg]; None: 0.7 to 1.4 times what the named body weighs at the animal's length."""
     friction: tuple[float, float] = (0.4, 1.0)
-    """Between feet and ground [-]: rubber or claws on wood, stone and soil; a film whose feet do not slip says only
-    that there was enough of it."""
+    """Coefficient of friction between feet and ground [-]: rubber or claws on wood, stone and soil. A film whose
+    feet do not slip shows only that there was enough of it."""
     lift: tuple[float, float] = (0.5, 1.5)
     """How high feet are lifted where no heights were seen, over what the gait does that lends it [-]."""
     height: tuple[float, float] = (0.95, 1.05)
@@ -51,7 +51,7 @@ class Unknown:
     shedding: tuple[float, float] = (0.3, 1.2)
     """Share of Lighthill's momentum that is shed at the end of the tail [-]."""
     viscosity: tuple[float, float] = (0.9e-6, 1.15e-6)
-    """Of fresh water at 15 to 25 C [m2/s]."""
+    """Kinematic viscosity of fresh water at 15 to 25 C [m2/s]."""
     draws: int = DRAWS
     """Choices beside the most likely one [-]; see ``DRAWS``."""
 

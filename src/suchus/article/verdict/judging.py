@@ -111,7 +111,7 @@ def digest(claims: Mapping[str, Mapping[str, object]]) -> str:
 SHARES: Mapping[str, Share] = MappingProxyType(
     {key: Share(claim=key, **row) for key, row in _shipped().items() if "share" in row}
 )
-"""By claim."""
+"""Fractions of plausible designs by claim."""
 SPARSE_SHARES: Mapping[str, SparseShare] = MappingProxyType(
     {key: SparseShare(claim=key, **row) for key, row in _shipped().items() if "share" not in row}
 )

@@ -160,7 +160,7 @@ class _News(NamedTuple):
     """A message of a thread about its piece."""
 
     number: int
-    """Of the piece."""
+    """Number of the piece."""
     kind: str
     """``begun``, ``far``, ``done`` or ``raised``."""
     value: Any = None

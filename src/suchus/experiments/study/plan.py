@@ -24,11 +24,11 @@ class Point(NamedTuple):
     """One run of a study."""
 
     values: Mapping[str, Any]
-    """By field."""
+    """Values by field."""
     seed: int
     """Seed of the run."""
     arm: Arm | None = None
-    """Of the comparison, where there is one."""
+    """Arm of the comparison, where there is one."""
 
 
 class Plan(Sequence[Point]):

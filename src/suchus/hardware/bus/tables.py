@@ -36,7 +36,7 @@ class Register:
     name: str
     """As ``present_position``."""
     address: int
-    """Of its first byte."""
+    """Address of its first byte."""
     size: int
     """Width [byte]."""
     unit: float = 1.0
@@ -81,7 +81,7 @@ class Table:
     protocol: str
     """What it speaks: a name of ``suchus.hardware.protocols``."""
     registers: tuple[Register, ...]
-    """In the order of their addresses."""
+    """Registers in the order of their addresses."""
     motor: Motor | None = None
     """What is bought; None for a board."""
     felt: tuple[str, str]

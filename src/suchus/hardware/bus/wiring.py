@@ -120,7 +120,7 @@ class Wiring:
     robot: str
     """Name of the robot that it was made for."""
     fingerprint: str
-    """Of that robot's servos and their ranges: another robot is refused."""
+    """Fingerprint of that robot's servos and their ranges: another robot is refused."""
     bus: tuple[BusPlace, ...]
     """The buses."""
     servo: tuple[ServoPlace, ...]

@@ -37,7 +37,7 @@ class AttitudeRule:
     memory: float = 0.04
     """Time constant of the low pass on both rates [s]; 0 for none."""
     washout: float = 3.0
-    """Over which roll and pitch are compared with their own means [s]: a slope is no stumble."""
+    """Time over which roll and pitch are compared with their own means [s]: a slope is no stumble."""
     most: float = 0.03
     """Most that a foot is raised or lowered [m], with limbs as long as those of the article's robot; a leg gives little
     more. Other limbs as much of their reach."""

@@ -100,7 +100,7 @@ class Couplings(NamedTuple):
     sender: Int[np.ndarray, " edge"]
     """Number of the oscillator that drives it."""
     weight: Float[np.ndarray, " edge"]
-    """[1/s]."""
+    """Strength of the coupling [1/s]."""
     bias: Float[np.ndarray, " edge"]
     """Phase lead of the sender at which the coupling vanishes [rad]."""
 

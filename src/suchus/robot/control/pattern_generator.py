@@ -286,7 +286,7 @@ class Generator:
         max_bend = np.abs(self._gain).max(axis=1, keepdims=True, initial=_AMPLITUDE_TOLERANCE)
         self._max_steering_change = self._max_steering_change / max_bend
         self.couplings = []
-        """Of each run; see ``oscillators.Couplings``."""
+        """Couplings of each run; see ``oscillators.Couplings``."""
         phases = []
         self._sensed_drive = LoadDrive([control.load for control in controls], robots, period)
         _, amplitude = self._natural_rhythm(START)
@@ -522,7 +522,7 @@ class OscillatorStates(NamedTuple):
     """Phases and amplitudes of oscillators that are integrated without a body."""
 
     time: Float[np.ndarray, " time"]
-    """Since the beginning of the run [s]."""
+    """Time since the beginning of the run [s]."""
     phase: Float[np.ndarray, "run time oscillator"]
     """Phase of the oscillators, not wrapped [cycle]."""
     amplitude: Float[np.ndarray, "run time oscillator"]

@@ -12,7 +12,7 @@ class Sensed:
     """Sensor readings; nothing else reaches a controller."""
 
     time: float
-    """Since the beginning of the run [s]."""
+    """Time since the beginning of the run [s]."""
     servo_position: Float[np.ndarray, "run servo"]
     """Servo angles [rad]."""
     servo_velocity: Float[np.ndarray, "run servo"]

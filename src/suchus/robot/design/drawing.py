@@ -20,7 +20,7 @@ _OVERLAP = 1.6
 _KEEL = 0.25
 """Share of the mass that lies in a keel inside the body, low, unless a drawing says otherwise [-]."""
 _FRICTION = 0.4
-"""Of the skin on the ground, which a swimmer does not touch [-]."""
+"""Coefficient of friction of the skin on the ground, which a swimmer does not touch [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,9 +30,9 @@ class Drawing:
     name: str
     """Name, as messages, tables and files show it."""
     length: float
-    """From the tip of the snout to the tip of the tail [m]."""
+    """Length from the tip of the snout to the tip of the tail [m]."""
     mass: float
-    """Of the whole body [kg]."""
+    """Mass of the whole body [kg]."""
     density: float = WATER_DENSITY
     """Mass over volume of the whole body, its air and lungs included [kg/m3]: the drawn sections are made larger or
     smaller alike until the volume is right. One that hovers has the density of its water."""

@@ -39,9 +39,9 @@ class PlainLeg(NamedTuple):
     tibia: float
     """Length from knee to the foot's centre [m]."""
     foot_radius: float
-    """Of the ball [m]."""
+    """Radius of the foot's ball [m]."""
     hip_height: float
-    """Of the hip over the axis of the body [m]."""
+    """Height of the hip over the axis of the body [m]."""
 
     @property
     def reach(self) -> tuple[float, float]:

@@ -38,7 +38,7 @@ class TravellingWave:
     angular_frequency: float
     """omega [rad/s]."""
     sign: int
-    """Of omega t: -1 runs from head to tail, +1 from tail to head, as printed [-]."""
+    """Sign of omega t: -1 runs from head to tail, +1 from tail to head, as printed [-]."""
 
     def __post_init__(self) -> None:
         with Checks("wave", self) as check:

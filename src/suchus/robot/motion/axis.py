@@ -24,7 +24,7 @@ class Hinges(NamedTuple):
     parts: tuple[AxisRegion, ...]
     """Part of the axis that each belongs to."""
     axial_positions: tuple[float, ...]
-    """Of each along the body, 0 at the snout and 1 at the tip of the tail [-]."""
+    """Position of each along the body, 0 at the snout and 1 at the tip of the tail [-]."""
 
     def indices_in(self, region: AxisRegion) -> list[int]:
         """Return which of them a part has."""

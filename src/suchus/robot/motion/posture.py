@@ -91,7 +91,7 @@ class Keyed:
 
     @property
     def duration(self) -> float:
-        """Of the whole sequence [s]."""
+        """Duration of the whole sequence [s]."""
         return self.times[-1]
 
     def reversed(self, name: str, *, slower: float = 1.0) -> "Keyed":

@@ -22,9 +22,10 @@ from suchus.robot.motion.posture import (
 )
 
 PELVIS_PITCH = radians(80)
-"""Of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its range."""
+"""Pitch of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its
+range."""
 TRUNK_FIRST, TRUNK_SECOND = radians(6), radians(3)
-"""Of the trunk's pitch joints when standing [rad]; the trunk then points straight up."""
+"""Angles of the trunk's pitch joints when standing [rad]; the trunk then points straight up."""
 LEAD = 0.05
 """Where the centre of mass is commanded behind the feet when the article's robot stands [m].
 

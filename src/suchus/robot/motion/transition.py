@@ -33,7 +33,7 @@ class Transition(NamedTuple):
 
     @property
     def duration(self) -> float:
-        """Of the whole [s]."""
+        """Duration of the whole transition [s]."""
         return float(self.times[-1])
 
     def angles_at(self, time: float, start: Float[np.ndarray, " servo"]) -> Float[np.ndarray, " servo"]:

@@ -74,7 +74,7 @@ class Motion(NamedTuple):
     """Where the bodies are and how they move, in the world."""
 
     time: float
-    """[s]."""
+    """Time of the simulation [s]."""
     xpos: np.ndarray
     """Origins (body, 3) [m]."""
     xmat: np.ndarray

@@ -57,7 +57,7 @@ class Wave:
 
     @property
     def frequency(self) -> float:
-        """Of deep water, sqrt(g / (2 pi length)) [Hz]."""
+        """Frequency of the wave on deep water, sqrt(g / (2 pi length)) [Hz]."""
         return sqrt(GRAVITY / (tau * self.length))
 
 

@@ -25,7 +25,8 @@ from suchus.sim.land.readings import Recorder, Sensors
 from suchus.sim.land.run import Push, Run
 
 CONTROL_PERIOD = 0.01
-"""Of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has those of others."""
+"""Control period of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has
+those of others."""
 
 
 def physics_steps(timestep: float, period: float = CONTROL_PERIOD) -> int:

@@ -79,7 +79,7 @@ class FootStep(NamedTuple):
     parts: Mapping[str, float]
     """Its components at that instant, by ``PARTS`` [body weight]."""
     time: float
-    """That instant as a share of stance [-]."""
+    """Time of that instant as a fraction of stance [-]."""
     stance: float
     """Duration of the stance that holds it [cycle]."""
 

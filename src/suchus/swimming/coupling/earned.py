@@ -30,11 +30,11 @@ class ForceParts:
     """Force across a link in one swim, and the two parts of the force that the section model predicts."""
 
     flow: Float[np.ndarray, " sample"]
-    """Of the flow [N]."""
+    """Force across a link by the flow solver [N]."""
     added_mass: Float[np.ndarray, " sample"]
-    """Of sections, by the acceleration [N]."""
+    """Force by the section model, the part by acceleration [N]."""
     drag: Float[np.ndarray, " sample"]
-    """Of sections, by the speed [N]."""
+    """Force by the section model, the part by speed [N]."""
     block: int
     """Samples in half a cycle [-]."""
 

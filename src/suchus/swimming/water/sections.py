@@ -55,7 +55,7 @@ class SectionFlow(NamedTuple):
     residual: float
     """Rms of the force that drag and added mass do not explain, over that of the force [-]."""
     digest: str
-    """Of set-up and code of the flow."""
+    """Hash of set-up and code of the flow."""
 
 
 def attached_coefficients(keulegan: float, stokes: float = STOKES) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from suchus.flow.immerse import MIN_THICKNESS
 from suchus.robot.design import WATER_DENSITY, Robot
 
 DENSITY = WATER_DENSITY
-"""Of the water [kg/m3]."""
+"""Density of the water [kg/m3]."""
 GROWS = 0.5
 """Part of the first cycle in which the motion grows from nothing [cycle]."""
 FREE, ON_THE_SPOT, TETHERED = (True, True, True), (False, True, True), (False, False, False)

@@ -51,7 +51,7 @@ class ResolvedSwim:
 
     @property
     def period(self) -> float:
-        """Of one cycle [s]."""
+        """Period of one cycle [s]."""
         return 1.0 / self.motion.frequency
 
     @property

@@ -28,7 +28,7 @@ class Skin:
     """The surface of a body and how it follows the bones; the arrays are not to be written to."""
 
     vertices: np.ndarray
-    """At zero posture in the frame of the pelvis, (n, 3) [m]."""
+    """Positions at zero posture in the frame of the pelvis, (n, 3) [m]."""
     normals: np.ndarray
     """Unit normals, outward, (n, 3) [-]."""
     faces: np.ndarray

@@ -37,13 +37,13 @@ class OwnSize:
     """An animal at its own size, and how it swims."""
 
     length: float
-    """[m]."""
+    """Length of the body [m]."""
     mass: float
-    """[kg]."""
+    """Mass of the body [kg]."""
     density: float
     """Mass over volume, lungs or air included [kg/m3]."""
     frequency: float
-    """Of the swim [Hz]."""
+    """Frequency of the swim [Hz]."""
     body: "Callable[[OwnSize], Robot]"
     """Makes its body."""
     swim: "Callable[[OwnSize, Robot], Gait]"
