@@ -99,9 +99,9 @@ def arms(count: int) -> None:
     rng = np.random.default_rng(3)
     angles = rng.uniform(-0.6, 0.6, (count, 4)) + np.array([0.0, 0.3, 0.0, 1.0])
     foot = limb.forward(arm, angles)
-    found = limb.inverse(arm, foot, plane=0.2)
+    found = limb.inverse(arm, foot, swivel=0.2)
     error = float(np.abs(limb.forward(arm, found) - foot).max()) / arm.reach
-    seconds = best_of(lambda: limb.inverse(arm, foot, plane=0.2))
+    seconds = best_of(lambda: limb.inverse(arm, foot, swivel=0.2))
     verdict = "target 20 ms: " + ("met" if seconds < 0.02 else "MISSED")
     inverse = report("limb.inverse, four joints", seconds, count, f"error {error:.1e} of the reach  {verdict}")
     forward = report("limb.forward, four joints", best_of(lambda: limb.forward(arm, angles)), count)

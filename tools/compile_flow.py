@@ -27,7 +27,7 @@ def main(which: str) -> None:
     cylinder = flow.Body(shape=flow.Cylinder(diameter=0.25), motion=flow.Oscillation(frequency=1.0, heave=(0.01, 0.0)))
     if which == "single":
         wetting.install()
-        hydrostatics(ROBOTS["caiman"], heels=3)
+        hydrostatics(ROBOTS["caiman"], heel_count=3)
         setup = flow.Setup(grid=grid, viscosity=0.01, bodies=(swimmer,), follow=swimmer.name, coarse=True)
     else:
         setup = flow.Setup(

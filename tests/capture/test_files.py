@@ -175,7 +175,7 @@ KINDS = ("DeepLabCut.h5", "DeepLabCut.csv", "SLEAP.analysis.h5", "SLEAP.slp", "A
 
 def poses(kind, tracks, path):
     """Write tracks as a file of a pose estimator; ``movement`` and the libraries that come with it do."""
-    position = tracks.position if tracks.upright else tracks.position * [1.0, -1.0]  # images have y down
+    position = tracks.position if tracks.has_heights else tracks.position * [1.0, -1.0]  # images have y down
     if kind == "SLEAP.slp":
         sio = pytest.importorskip("sleap_io")
         skeleton, track = sio.Skeleton(list(tracks.points)), sio.Track("it")

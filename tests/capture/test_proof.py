@@ -114,7 +114,7 @@ def test_heights_give_lift_and_tail_pitch(caiman, crawl, filmed, noisy):
     heights = crawl.foot_position.sel(xyz="z", time=slice(START, None))
     lifts = (heights.max("time") - heights.min("time")).values / (caiman.spine.length + caiman.thorax.shoulder)
     np.testing.assert_allclose([walk.value(f"lift_{leg}") for leg in LEGS], lifts, atol=0.02)
-    assert walk.upright
+    assert walk.has_heights
 
 
 def test_what_was_captured_runs_as_far(caiman, crawl, filmed, noisy, tmp_path):

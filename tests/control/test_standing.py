@@ -14,7 +14,7 @@ from suchus.robot.design import with_values
 from suchus.robot.design.scale import coarse_step, rescale
 from suchus.robot.gaits import default_gait
 from suchus.robot.kinematics import leg as leg_kinematics
-from suchus.robot.motion.posture import plan
+from suchus.robot.motion.posture import sample_postures
 from suchus.robot.motion.rising import stand_up, stretched_length
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics.reach import lead, reach
@@ -70,7 +70,7 @@ def test_commands_never_jump():
 def test_in_balance_nothing_is_corrected():
     controller = started(SOON)
     tick = round((SOON.upright_from(CAIMAN) + 1.0) / PERIOD)
-    top = plan(CAIMAN, stand_up(CAIMAN), np.array([99.0]))
+    top = sample_postures(CAIMAN, stand_up(CAIMAN), np.array([99.0]))
     for i in range(5):
         told = controller.command(tick + i, felt(top.pitch[0])).targets
     assert told == pytest.approx(top.targets, abs=1e-6)
@@ -80,7 +80,7 @@ def test_in_balance_nothing_is_corrected():
 def test_who_tips_forward_moves_hips_and_trunk_back(sign):
     controller = started(SOON)
     tick = round((SOON.upright_from(CAIMAN) + 1.0) / PERIOD)
-    top = plan(CAIMAN, stand_up(CAIMAN), np.array([99.0]))
+    top = sample_postures(CAIMAN, stand_up(CAIMAN), np.array([99.0]))
     controller.command(tick, felt(top.pitch[0]))
     told = controller.command(tick + 1, felt(top.pitch[0] - sign * 0.05, rate=sign * 0.3)).targets[0]
     bend = BALANCE.trunk_per_pitch * 0.05 * (1 - PERIOD / BALANCE.washout) + BALANCE.trunk_per_rate * 0.3
@@ -96,7 +96,7 @@ def test_a_tail_without_load_makes_the_hips_creep_back_to_a_limit():
     keen = replace(SOON, hold=60.0, balance=replace(BALANCE, hips_per_tail=0.5, hips_most=0.01))
     controller = started(keen, ticks=3000)
     tick = round((keen.upright_from(CAIMAN) + 1.0) / PERIOD)
-    top = plan(CAIMAN, stand_up(CAIMAN), np.array([99.0]))
+    top = sample_postures(CAIMAN, stand_up(CAIMAN), np.array([99.0]))
     told = [controller.command(tick + i, felt(top.pitch[0], tail=0.0)).targets[0, 6:9] for i in range(40)]
     steps = np.linalg.norm(np.diff(told, axis=0), axis=1)
     assert steps[0] > 0
@@ -106,7 +106,7 @@ def test_a_tail_without_load_makes_the_hips_creep_back_to_a_limit():
 def test_each_robot_of_a_batch_is_answered_for_itself():
     both = started(SOON, (CAIMAN, CAIMAN))
     tick = round((SOON.upright_from(CAIMAN) + 1.0) / PERIOD)
-    top = plan(CAIMAN, stand_up(CAIMAN), np.array([99.0]))
+    top = sample_postures(CAIMAN, stand_up(CAIMAN), np.array([99.0]))
     both.command(tick, felt(top.pitch[0], count=2))
     told = both.command(tick + 1, felt(np.array([top.pitch[0], top.pitch[0] - 0.1]), count=2)).targets
     assert told[0] == pytest.approx(top.targets[0], abs=1e-6)
@@ -130,7 +130,7 @@ def test_without_balance_nothing_is_corrected():
     for i, pitch in enumerate((1.4, 1.2)):
         told = both.command(tick + i, felt(np.array([pitch, pitch]), count=2)).targets
     assert np.abs(told[0] - told[1]).max() > 0.01
-    assert told[1] == pytest.approx(plan(CAIMAN, stand_up(CAIMAN), np.array([99.0])).targets[0], abs=1e-9)
+    assert told[1] == pytest.approx(sample_postures(CAIMAN, stand_up(CAIMAN), np.array([99.0])).targets[0], abs=1e-9)
 
 
 def test_the_caiman_stands_up_and_down_again():

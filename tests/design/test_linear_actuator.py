@@ -180,7 +180,7 @@ def test_what_only_servos_that_turn_can_do_is_refused_in_a_sentence(bought):
 def test_sheets_exports_and_pictures_speak_of_it(bought, tmp_path):
     found = sheet(bought)
     (part,) = [part for part in found.parts if part.name == "tail_cable"]
-    assert part.about == "linear actuator of 131 N, 32 mm/s and 100.0 mm stroke"
+    assert part.description == "linear actuator of 131 N, 32 mm/s and 100.0 mm stroke"
     assert "tail_cable" not in found.bought
     bend, place, toward, _ = found.cords[0].table[-1]
     assert found.cords[0].linear

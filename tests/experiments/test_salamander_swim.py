@@ -149,8 +149,8 @@ def test_an_animal_has_its_own_length_mass_and_volume(name):
     assert robot.mass == pytest.approx(one.mass)
     assert one.mass / sum(volumes(robot).values()) == pytest.approx(one.density, rel=1e-6)
     check_limits(robot, one.swim(one, robot))
-    afloat = hydrostatics(robot, heels=3)
-    assert afloat.floats == (one.density < WATER_DENSITY)
+    afloat = hydrostatics(robot, heel_count=3)
+    assert afloat.is_floating == (one.density < WATER_DENSITY)
     assert afloat.metacentric_height > 0.0  # the centre of buoyancy is above that of mass
 
 

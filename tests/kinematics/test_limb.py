@@ -65,7 +65,7 @@ def test_an_arm_reaches_its_foot_and_stands_in_its_plane(out, ahead, up, plane):
     foot = np.array([ahead, out, up])
     if not 0.0011 < np.linalg.norm(foot) < 0.0109:
         return
-    angles = limb.inverse(ARM, foot, plane=plane)
+    angles = limb.inverse(ARM, foot, swivel=plane)
     np.testing.assert_allclose(limb.forward(ARM, angles), foot, atol=1e-13)
     elbow = limb.forward(replace(ARM, links=ARM.links[:1]), angles[:3])
     along = foot / np.linalg.norm(foot)
@@ -77,7 +77,7 @@ def test_an_arm_reaches_its_foot_and_stands_in_its_plane(out, ahead, up, plane):
 
 def test_an_arm_straight_below_the_hip_has_an_answer():
     foot = np.array([0.0, 0.0, -0.008])
-    angles = limb.inverse(ARM, foot, plane=0.0)
+    angles = limb.inverse(ARM, foot, swivel=0.0)
     np.testing.assert_allclose(limb.forward(ARM, angles), foot, atol=1e-15)
     elbow = limb.forward(replace(ARM, links=ARM.links[:1]), angles[:3])
     assert elbow[1] > 0.001  # the plane's zero, up, falls outward here

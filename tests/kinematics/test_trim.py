@@ -54,7 +54,7 @@ def test_what_hovers_is_displaced_where_the_mass_is():
 
 def test_it_hovers_level_and_with_the_air_in_its_foam_it_did_not():
     air_fraction = neutral_air_fraction(ROBOT)
-    level, steep = (hydrostatics(one, BACK, air_fraction=air_fraction, heels=3) for one in (ROBOT, IN_FOAM))
+    level, steep = (hydrostatics(one, BACK, air_fraction=air_fraction, heel_count=3) for one in (ROBOT, IN_FOAM))
     assert abs(level.trim_submerged) < 1e-6
     assert np.degrees(steep.trim_submerged) < -30.0  # nose up
     assert level.metacentric_height > 0.004
@@ -64,7 +64,7 @@ def test_air_that_moves_ahead_raises_the_nose():
     air_fraction, (front, rear) = neutral_air_fraction(ROBOT), chambers(ROBOT)
     for moved in (2e-5, -2e-5):
         found = hydrostatics(
-            ROBOT, BACK, air_fraction=(air_fraction + moved / front, air_fraction - moved / rear), heels=3
+            ROBOT, BACK, air_fraction=(air_fraction + moved / front, air_fraction - moved / rear), heel_count=3
         )
         assert found.volume * 1000.0 == pytest.approx(ROBOT.mass)
         assert np.sign(found.trim_submerged) == -np.sign(moved)

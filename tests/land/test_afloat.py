@@ -76,7 +76,7 @@ def test_who_capsizes_is_told_what_mass_to_lower_and_that_much_rights_it(share, 
     grams, lower = numbers(doubts(high).partition("lower more than")[2])[:2]
     assert grams == pytest.approx(1e2 * swimmer.mass, rel=0.01)
     moved = 1e-6 * grams * lower * share / swimmer.mass
-    height = hydrostatics(_higher(high, -moved), straight(high), heels=3).metacentric_height
+    height = hydrostatics(_higher(high, -moved), straight(high), heel_count=3).metacentric_height
     assert (height < 0.0) == told
     assert ("capsizes" in doubts(_higher(high, -moved - 0.001))) is False
 
@@ -84,7 +84,7 @@ def test_who_capsizes_is_told_what_mass_to_lower_and_that_much_rights_it(share, 
 @pytest.mark.parametrize(("below", "capsizes"), [(0.5, False), (2.0, True)])
 def test_a_metacentric_height_next_to_zero_is_not_called_capsizing(below, capsizes):
     swimmer = ROBOTS["swimmer"]
-    height = hydrostatics(swimmer, straight(swimmer), heels=3).metacentric_height
+    height = hydrostatics(swimmer, straight(swimmer), heel_count=3).metacentric_height
     raised = _higher(swimmer, height + below * INDIFFERENT * swimmer.length)
     assert ("capsizes" in doubts(raised)) == capsizes
 

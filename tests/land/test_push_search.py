@@ -20,7 +20,7 @@ def test_on_ice_the_smallest_push_grows_with_what_it_has_to_do():
     # way = F/m (t^2/2 + t wait): the push that moves it so far is known
     way = 0.02
     exact = way * CAIMAN.mass / (0.2**2 / 2 + 0.2 * 0.1)
-    found = smallest_pushes([icy], [(0, 1, 0), (0, -1, 0)], fell=moved(way), refinement_count=7, **SLIDES)
+    found = smallest_pushes([icy], [(0, 1, 0), (0, -1, 0)], has_fallen=moved(way), refinement_count=7, **SLIDES)
     assert found.shape == (1, 2)
     assert found[0] == pytest.approx(exact, abs=0.25 + 0.05 * exact)
     assert np.all(found >= exact * 0.95)
@@ -28,13 +28,15 @@ def test_on_ice_the_smallest_push_grows_with_what_it_has_to_do():
 
 def test_what_never_falls_needs_an_infinite_push_and_what_falls_at_once_the_least():
     run = Run(robot=CAIMAN, gait=CRAWL)
-    never = smallest_pushes([run], [(0, 1, 0)], fell=moved(99.0), refinement_count=1, **SLIDES)
+    never = smallest_pushes([run], [(0, 1, 0)], has_fallen=moved(99.0), refinement_count=1, **SLIDES)
     assert np.isinf(never).all()
-    always = smallest_pushes([run], [(0, 1, 0)], fell=moved(-1.0), refinement_count=3, **SLIDES)
+    always = smallest_pushes([run], [(0, 1, 0)], has_fallen=moved(-1.0), refinement_count=3, **SLIDES)
     assert always == pytest.approx(0.25)
-    assert smallest_pushes([run], [(0, 1, 0)], fell=moved(-1.0), refinement_count=0, **SLIDES) == pytest.approx(1.0)
+    assert smallest_pushes([run], [(0, 1, 0)], has_fallen=moved(-1.0), refinement_count=0, **SLIDES) == pytest.approx(
+        1.0
+    )
 
 
 def test_levels_must_increase():
     with pytest.raises(InvalidDesign, match="increasing forces above 0 N"):
-        smallest_pushes([], [], start_time=0.1, levels=(2.0, 1.0), fell=moved(1.0))
+        smallest_pushes([], [], start_time=0.1, levels=(2.0, 1.0), has_fallen=moved(1.0))

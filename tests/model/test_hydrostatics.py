@@ -25,24 +25,24 @@ POSTURE = cycle_targets(BARE, straight_gait(BARE, limbs=LIMBS_UP), np.zeros(1))[
 
 @pytest.fixture(scope="module")
 def floating():
-    return hydrostatics(FLOATING, POSTURE, heels=13)
+    return hydrostatics(FLOATING, POSTURE, heel_count=13)
 
 
 @pytest.fixture(scope="module")
 def bare():
-    return hydrostatics(BARE, heels=7)
+    return hydrostatics(BARE, heel_count=7)
 
 
 def test_the_published_robot_sinks_by_what_it_is_too_heavy(bare):
     volume = column(pieces(BARE), "volume").sum()
-    assert not bare.floats
-    assert bare.missing == pytest.approx(BARE.mass / 1000 - volume)
-    assert bare.surplus == pytest.approx(BARE.mass - 1000 * volume)
+    assert not bare.is_floating
+    assert bare.missing_volume == pytest.approx(BARE.mass / 1000 - volume)
+    assert bare.surplus_mass == pytest.approx(BARE.mass - 1000 * volume)
     assert np.isnan(bare.draft)
-    salty = hydrostatics(BARE, density=1.001 * BARE.mass / volume, heels=3)
-    assert salty.floats
+    salty = hydrostatics(BARE, density=1.001 * BARE.mass / volume, heel_count=3)
+    assert salty.is_floating
     assert np.isnan([salty.trim, salty.draft]).all()  # it hangs upright: no trim up to 80 degrees balances it
-    saltier = hydrostatics(BARE, density=1.2 * BARE.mass / volume, heels=3)
+    saltier = hydrostatics(BARE, density=1.2 * BARE.mass / volume, heel_count=3)
     assert saltier.draft > 0
     assert abs(saltier.trim) < radians(80)
 
@@ -58,7 +58,7 @@ def test_under_water_the_lever_is_that_of_buoyancy_over_mass(bare):
     ids = rows[:, 0].astype(int)
     at = data.xpos[ids] + np.einsum("nij,nj->ni", data.xmat[ids].reshape(-1, 3, 3), column(rows, "at"))
     over = np.average(at, axis=0, weights=column(rows, "volume")[:, 0]) - data.subtree_com[0]
-    found = hydrostatics(BARE, POSTURE, heels=7)
+    found = hydrostatics(BARE, POSTURE, heel_count=7)
     assert found.metacentric_height == pytest.approx(over[2], rel=1e-3)
     assert found.lever == pytest.approx(over[2] * np.sin(found.heel), abs=1e-9)
     assert over[2] < 0  # the limbs are heavy: it turns onto its side and on
@@ -66,26 +66,28 @@ def test_under_water_the_lever_is_that_of_buoyancy_over_mass(bare):
 
 
 def test_the_floating_one_rights_itself_from_any_heel_below_150_degrees(floating):
-    assert floating.floats
+    assert floating.is_floating
     assert floating.vanishing >= radians(150)
     assert floating.metacentric_height > 0.01
     assert floating.lever[[0, -1]] == pytest.approx(0.0, abs=1e-5)
     flat = replace(
         FLOATING, hull=replace(FLOATING.hull, foam=tuple(replace(f, raised=0.0) for f in FLOATING.hull.foam))
     )
-    assert hydrostatics(flat, POSTURE, heels=13).vanishing < radians(150)  # without the foam on its back it does not
+    assert hydrostatics(flat, POSTURE, heel_count=13).vanishing < radians(
+        150
+    )  # without the foam on its back it does not
 
 
 def test_the_lever_begins_with_the_metacentric_height(floating):
-    fine = hydrostatics(FLOATING, POSTURE, heels=121)
+    fine = hydrostatics(FLOATING, POSTURE, heel_count=121)
     assert fine.lever[1] == pytest.approx(floating.metacentric_height * fine.heel[1], rel=0.05)
 
 
 def test_air_let_out_takes_buoyancy(floating):
-    less = hydrostatics(FLOATING, POSTURE, air_fraction=0.6, heels=3)
+    less = hydrostatics(FLOATING, POSTURE, air_fraction=0.6, heel_count=3)
     assert floating.volume - less.volume == pytest.approx(0.4 * FLOATING.hull.air)
     assert less.draft > floating.draft
-    assert not hydrostatics(FLOATING, POSTURE, air_fraction=0.0, heels=3).floats
+    assert not hydrostatics(FLOATING, POSTURE, air_fraction=0.0, heel_count=3).is_floating
 
 
 @pytest.mark.parametrize(
@@ -103,7 +105,7 @@ def test_where_the_lever_vanishes(floating, lever, expected):
     [
         ({"density": 0.0}, "density is 0 kg/m3"),
         ({"air_fraction": 2.0}, "air_fraction is 2; 0 to 1"),
-        ({"servos": np.zeros(3)}, "3 servo angles are given and robot 'caiman' has 19"),
+        ({"servo_angles": np.zeros(3)}, "3 servo angles are given and robot 'caiman' has 19"),
     ],
 )
 def test_bad_hydrostatics_are_refused(given, message):
@@ -126,9 +128,9 @@ def test_heel_is_told_all_round():
 def test_every_robot_that_floats_displaces_its_weight(name):
     """Also one that is smaller than the height at which its model begins."""
     robot = ROBOTS[name]
-    found = hydrostatics(robot, heels=3)
+    found = hydrostatics(robot, heel_count=3)
     assert np.isfinite(found.lever).all()
-    assert found.floats == (found.missing < 0)
-    if found.floats:
+    assert found.is_floating == (found.missing_volume < 0)
+    if found.is_floating:
         assert 0 < found.draft < robot.length
         assert abs(found.lever[0]) < 1e-6 * robot.length

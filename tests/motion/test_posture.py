@@ -9,7 +9,7 @@ import suchus
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.robot.design import Spring, crocodile, layout
 from suchus.robot.kinematics import leg as leg_kinematics
-from suchus.robot.motion.posture import Keyed, hind_leg, plan
+from suchus.robot.motion.posture import Keyed, hind_leg, sample_postures
 from suchus.robot.motion.rising import STRETCH, max_snout_height, stand_up, stretched_length
 from suchus.sim.model import compile_model, joint_addresses
 
@@ -34,7 +34,7 @@ def in_mujoco(robot, targets, pitch, hip_height):
 @pytest.mark.parametrize("tick", [0, 15, 37, 50, 75])
 @pytest.mark.parametrize("robot", [CAIMAN, six(), hatchling(), eight()], ids=lambda robot: robot.name)
 def test_mujoco_finds_feet_and_centre_of_mass_where_the_plan_puts_them(robot, tick):
-    planned = plan(robot, stand_up(robot), TIME)
+    planned = sample_postures(robot, stand_up(robot), TIME)
     data = in_mujoco(robot, planned.targets[tick], planned.pitch[tick], planned.feet[tick, 2])
     for side, name in ((1.0, "LH"), (-1.0, "RH")):
         foot = data.site(f"{name}_foot").xpos
@@ -49,14 +49,14 @@ def test_mujoco_finds_feet_and_centre_of_mass_where_the_plan_puts_them(robot, ti
 def test_a_standing_body_touches_the_ground_with_the_tip_of_its_tail(robot):
     last = stand_up(robot).postures[-1]
     level = Keyed(name="level", times=(0.0,), postures=(replace(last, tail_press=0.0),))
-    planned = plan(robot, level, np.zeros(1))
+    planned = sample_postures(robot, level, np.zeros(1))
     data = in_mujoco(robot, planned.targets[0], planned.pitch[0], planned.feet[0, 2])
     tip = data.site("tail_tip").xpos[2] + robot.leg("LH").foot_radius  # the feet's centres are at zero
     assert tip == pytest.approx(robot.tail.radius_tip, abs=1e-9)
 
 
 def test_a_scaled_body_takes_the_scaled_posture():
-    large, small = (plan(robot, stand_up(robot), TIME) for robot in (CAIMAN, hatchling()))
+    large, small = (sample_postures(robot, stand_up(robot), TIME) for robot in (CAIMAN, hatchling()))
     assert small.targets == pytest.approx(large.targets, abs=1e-6)
     assert small.feet / hatchling().length == pytest.approx(large.feet / CAIMAN.length, abs=1e-6)
 
@@ -72,7 +72,7 @@ def test_one_pitch_joint_bends_for_both_and_three_share():
     ]
     single = replace(CAIMAN, name="single", axis=tuple(held))
     for robot, angles in ((single, [-0.5]), (six(), [-0.3, -0.1, -0.1])):
-        planned = plan(robot, Keyed(name="up", times=(0.0,), postures=(bent,)), np.zeros(1))
+        planned = sample_postures(robot, Keyed(name="up", times=(0.0,), postures=(bent,)), np.zeros(1))
         assert planned.targets[0, list(layout(robot).trunk_pitch)] == pytest.approx(angles)
 
 
@@ -92,22 +92,22 @@ def test_who_cannot_stand_up_is_told_what_it_lacks(name, missing):
             refused(suchus.ROBOTS[name])
         assert all(words in str(no.value) for words in missing)
     with pytest.raises(UnsuitedRobot):
-        plan(suchus.ROBOTS[name], RISE, TIME)
+        sample_postures(suchus.ROBOTS[name], RISE, TIME)
 
 
 def test_every_key_has_its_centre_of_mass_where_it_says():
-    planned = plan(CAIMAN, RISE, np.array(RISE.times))
+    planned = sample_postures(CAIMAN, RISE, np.array(RISE.times))
     assert planned.lead == pytest.approx([p.lead for p in RISE.postures], abs=1e-9)
 
 
 def test_the_centre_of_mass_is_behind_the_feet_before_the_front_lifts_and_stays_there():
-    planned = plan(CAIMAN, RISE, TIME)
+    planned = sample_postures(CAIMAN, RISE, TIME)
     lifted = RISE.times[2] <= TIME
     assert planned.lead[lifted].min() > 0.025
 
 
 def test_planted_feet_do_not_move_apart_and_the_hips_only_rise_and_go_forward():
-    planned = plan(CAIMAN, RISE, TIME)
+    planned = sample_postures(CAIMAN, RISE, TIME)
     planted = RISE.times[2] <= TIME
     assert np.ptp(planned.feet[planted, 0]) == pytest.approx(0.0, abs=1e-12)
     assert np.all(np.diff(planned.feet[planted, 2]) >= -1e-12)
@@ -116,20 +116,23 @@ def test_planted_feet_do_not_move_apart_and_the_hips_only_rise_and_go_forward():
 
 def test_the_body_rests_in_every_key():
     for key in RISE.times:
-        near = plan(CAIMAN, RISE, np.clip(np.array([key - 1e-4, key, key + 1e-4]), 0, RISE.duration)).targets
+        near = sample_postures(CAIMAN, RISE, np.clip(np.array([key - 1e-4, key, key + 1e-4]), 0, RISE.duration)).targets
         assert np.abs(np.diff(near, axis=0)).max() < 1e-6
 
 
 def test_left_and_right_are_alike_and_the_way_back_is_the_way_up():
-    planned = plan(CAIMAN, RISE, TIME).targets
+    planned = sample_postures(CAIMAN, RISE, TIME).targets
     assert np.array_equal(planned[:, 0:3], planned[:, 3:6])
     assert np.array_equal(planned[:, 6:9], planned[:, 9:12])
-    back = plan(CAIMAN, RISE.reversed("sit_down", slower=2.0), 2.0 * TIME).targets
+    back = sample_postures(CAIMAN, RISE.reversed("sit_down", slower=2.0), 2.0 * TIME).targets
     assert back == pytest.approx(planned[::-1], abs=1e-9)
 
 
 def test_before_and_after_the_keys_the_postures_hold():
-    early, late = plan(CAIMAN, RISE, np.array([-5.0, 0.0])), plan(CAIMAN, RISE, np.array([7.5, 99.0]))
+    early, late = (
+        sample_postures(CAIMAN, RISE, np.array([-5.0, 0.0])),
+        sample_postures(CAIMAN, RISE, np.array([7.5, 99.0])),
+    )
     assert np.array_equal(*early.targets)
     assert np.array_equal(*late.targets)
 
@@ -164,10 +167,10 @@ def test_a_longer_leg_makes_a_taller_posture():
 def test_a_posture_out_of_reach_is_refused_with_a_remedy():
     high = replace(RISE.postures[-1], hip_height=0.3)
     with pytest.raises(OutsideLimits, match=r"hind feet of robot 'caiman' cannot stay .* Lower hip_height, lead or"):
-        plan(CAIMAN, Keyed(name="up", times=(0.0,), postures=(high,)), TIME)
+        sample_postures(CAIMAN, Keyed(name="up", times=(0.0,), postures=(high,)), TIME)
     bent = replace(RISE.postures[0], trunk_first=1.4)
     with pytest.raises(OutsideLimits, match=r"asks spine_pitch_1 of robot 'caiman' for -1.400 rad; -1.047 to 1.047"):
-        plan(CAIMAN, Keyed(name="bent", times=(0.0,), postures=(bent,)), TIME)
+        sample_postures(CAIMAN, Keyed(name="bent", times=(0.0,), postures=(bent,)), TIME)
 
 
 def test_impossible_postures_and_times_are_refused():

@@ -29,8 +29,8 @@ def overlay(tracks: Tracks, strides: xr.Dataset, faulty_keypoints: Sequence[str]
     that is not known. A keypoint that is not to be trusted is a red cross.
 
     Args:
-        tracks: as they were read, in pixels.
-        strides: of the walk, with ``lift_off`` and ``touch_down``.
+        tracks: tracks as they were read, in pixels.
+        strides: strides of the walk, with ``lift_off`` and ``touch_down``.
         faulty_keypoints: keypoints that are not to be trusted.
         video: a video, a GIF, or a folder of pictures in the order of their names; a frame for every row of the tracks.
 
@@ -79,7 +79,7 @@ def _drawing(
         tracks: the keypoints.
         pictures: frames of the video, shape (height, width, 3) each.
         place: positions of the keypoints, shape (frame, point, 2) [px].
-        stands: by foot, 1 in stance, 0 in swing, NaN where it is not known.
+        stands: stance by foot, 1 in stance, 0 in swing, NaN where it is not known.
         faulty_keypoints: keypoints that are drawn as crosses.
     """
     height, width = pictures[0].shape[:2]

@@ -158,7 +158,7 @@ class Catalog(Mapping[str, T], Generic[T]):
         A path does, and a text that is not in the catalog, if it ends in .toml or a file has that name.
 
         Args:
-            value: as a user gives it.
+            value: value as a user gives it.
             folder: the folder from which paths are read.
         """
         if not isinstance(value, (str, Path)) or self._read_file is None or (isinstance(value, str) and value in self):
@@ -198,10 +198,10 @@ class Catalog(Mapping[str, T], Generic[T]):
         A TOML file declares nothing else, nor does a module of the user's that cannot be loaded.
 
         Args:
-            name: in the catalog.
+            name: name in the catalog.
             attribute: by which it is declared.
             default: what is returned where nothing is declared.
-            module: of a folder in which it is looked for, if there is one; the others are then not imported.
+            module: module of a folder in which it is looked for, if there is one; the others are then not imported.
 
         Raises:
             UnknownName: a name that is not in the catalog.

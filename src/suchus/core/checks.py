@@ -83,7 +83,7 @@ class Checks:
             names: one for each number of the row.
             lower_bound: least allowed number.
             upper_bound: greatest allowed number.
-            unit: of the numbers, for the message.
+            unit: unit of the numbers, for the message.
         """
         row = getattr(self._design, field)
         if not isinstance(row, (tuple, list)):
@@ -109,7 +109,7 @@ class Checks:
             field: name of the field.
             lower_bound: least allowed number.
             upper_bound: greatest allowed number.
-            unit: of the numbers, for the message.
+            unit: unit of the numbers, for the message.
         """
         value = getattr(self._design, field)
         pair = (
@@ -145,7 +145,7 @@ class Checks:
             field: holds a ``Schedule``.
             lower_bound: least number.
             upper_bound: greatest number.
-            unit: of the number.
+            unit: unit of the number.
             abscissa: noun for the first column of the table, in messages.
             start: least allowed time [s].
         """
@@ -194,10 +194,10 @@ def require(owner: str, field: str, value: float, lower_bound: float, upper_boun
     Args:
         owner: name of the design in the message.
         field: name of the field in the message.
-        value: of the field, in its unit.
+        value: value of the field, in its unit.
         lower_bound: least allowed value.
         upper_bound: greatest allowed value.
-        unit: of the value, for the message.
+        unit: unit of the value, for the message.
 
     Raises:
         InvalidFields: the value is not finite, below ``lower_bound`` or above ``upper_bound``.

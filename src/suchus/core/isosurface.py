@@ -27,7 +27,7 @@ def isosurface(values: np.ndarray, level: float, origin: tuple[float, float, flo
     """Return the surface on which a field has a value.
 
     Args:
-        values: at the nodes of a cubic grid, shape (z, y, x).
+        values: values at the nodes of a cubic grid, shape (z, y, x).
         level: the value.
         origin: x, y and z of the first node [m].
         cell: distance of neighbouring nodes [m].
@@ -67,10 +67,10 @@ def _crossings(
     The arrays have the shapes (edge, 3), (edge, 3) and (edge,).
 
     Args:
-        values: at the nodes of the grid, shape (z, y, x).
+        values: values at the nodes of the grid, shape (z, y, x).
         is_above: whether each value is above the level, same shape.
         level: value of the field on the surface.
-        axis: of the values, along which the edges run [-].
+        axis: axis of the values, along which the edges run [-].
     """
     lower_slice, upper_slice = [slice(None)] * 3, [slice(None)] * 3
     lower_slice[axis], upper_slice[axis] = slice(None, -1), slice(1, None)

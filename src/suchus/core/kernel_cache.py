@@ -75,7 +75,7 @@ def keep(kernel: Any, cache_folder: Path) -> None:
     """Let the machine code of a kernel be kept in a folder; see ``numba.core.dispatcher.Dispatcher.enable_caching``.
 
     Args:
-        kernel: that ``numba.njit`` made, without ``cache``.
+        kernel: kernel that ``numba.njit`` made, without ``cache``.
         cache_folder: the folder.
     """
     default_dir, config.CACHE_DIR = (

@@ -105,7 +105,7 @@ def portable_environment(environment: Mapping[str, str]) -> dict[str, str] | Non
     """Return the environment with which a process that asks for portable arithmetic must be restarted.
 
     Args:
-        environment: of this process.
+        environment: environment of this process.
 
     Returns:
         None where nobody asks for it, or where it is so already.

@@ -15,7 +15,7 @@ def staged(progress: Progress, stage: str, start: float, end: float) -> Progress
     """Return the progress of what fills the part from ``start`` to ``end`` of the whole.
 
     Args:
-        progress: of the whole.
+        progress: progress of the whole.
         stage: name under which all of the part is told; empty for the names of its own stages.
         start: share of the whole at which the part begins [-].
         end: share at which it ends [-].

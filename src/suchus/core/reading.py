@@ -59,10 +59,14 @@ def unreadable(path: str | Path, error: OSError | ValueError) -> UnreadableFile:
 
 
 def read_bytes(path: str | Path, max_size: int = MAX_FILE_SIZE) -> bytes:
-    """Return what is in a file of at most so many bytes.
+    """Return the content of a file.
+
+    Args:
+        path: the file.
+        max_size: greatest size that is accepted [byte].
 
     Raises:
-        UnreadableFile: it is no ordinary file, cannot be read, or is larger.
+        UnreadableFile: the file is no ordinary file, cannot be read, or is larger than ``max_size``.
     """
     path = Path(path)
     check_file(path)

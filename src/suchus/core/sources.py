@@ -56,7 +56,7 @@ class Source:
     """Where one thing in a catalog comes from."""
 
     name: str
-    """In the catalog."""
+    """Name in the catalog."""
     place: str
     """The file or the entry point, as messages name it."""
     module: str = ""

@@ -73,7 +73,7 @@ def new_file(path: str | Path, *, lasting: bool = False) -> Iterator[Path]:
     It is for what suchus keeps for itself, and replaces whatever is there; a file for a user is written by ``write``.
 
     Args:
-        path: of the file.
+        path: path of the file.
         lasting: whether it is on the disk when this ends, so that it outlives a loss of power.
 
     Raises:
@@ -113,7 +113,7 @@ def write(path: str | Path, content: str | bytes) -> Path:
     """Write a file for a user and return its path; what the user wrote or changed there is not replaced.
 
     Args:
-        path: of the file; in a folder that ``new_folder`` yields it is simply written.
+        path: path of the file; in a folder that ``new_folder`` yields it is simply written.
         content: bytes, or a text, which becomes UTF-8.
 
     Raises:

@@ -97,9 +97,9 @@ def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] 
     narrower with the number of repeats.
 
     Args:
-        name: of the measure.
+        name: name of the measure.
         repeats: number of every repeat; if one is not finite, the interval is the center alone.
-        unit: of the numbers.
+        unit: unit of the numbers.
         middle: function for the center, median or mean, along an axis.
     """
     values = np.asarray(repeats, float).ravel()

@@ -46,10 +46,10 @@ def added_mass(
     through a mirror that cuts the body are not symmetric and have NaN, and so have the modes that are not requested.
 
     Args:
-        water: with the bodies placed.
-        markers: of the body.
+        water: water with the bodies placed.
+        markers: markers of the body.
         reference_point: point that the rotations are about [m].
-        density: of the water [kg/m^3].
+        density: density of the water [kg/m^3].
         body: which body, counted from 0 [-].
         requested_modes: which modes are needed; None is all.
 
@@ -92,10 +92,10 @@ def generalised_added_mass(
     The sides of the domain are held, so the result is rather too large than too small. What lies beyond mirrors counts.
 
     Args:
-        water: with the bodies placed.
-        outlines: of each body.
+        water: water with the bodies placed.
+        outlines: outlines of each body.
         modes: velocities of all parts of all bodies for unit rates, symmetric about mirrors that cut the bodies.
-        density: of the water [kg/m^3].
+        density: density of the water [kg/m^3].
 
     Raises:
         NotConverged: the pressure solver got stuck.
@@ -119,7 +119,7 @@ def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndar
     """Return the work of each mode against the joint correction of each other mode, shape (mode, mode).
 
     Args:
-        water: with the bodies placed.
+        water: water with the bodies placed.
         modes: motions of all parts.
         joint_correction: see ``_ModeResponses``.
     """
@@ -156,7 +156,7 @@ def _rigid(water: Fluid, reference_point: tuple[float, ...], body: int) -> list[
     """Return the rigid motions of one body along each axis and about a point, the others at rest.
 
     Args:
-        water: with the bodies placed.
+        water: water with the bodies placed.
         reference_point: point that the rotations are about [m].
         body: which body, counted from 0 [-].
     """
@@ -199,7 +199,7 @@ class _ModeResponses:
         """Return the water's response to each mode.
 
         Args:
-            water: with the bodies placed.
+            water: water with the bodies placed.
             modes: motions of all parts.
             limit: divergence that may be left, relative to the accelerations [-].
             sides_held: whether the sides are held; then nothing is computed for sides that move as in open water.
@@ -262,8 +262,8 @@ def _rim(
     """Return the mass of the skin of water that moves with the bodies, over the density, shape (mode, mode).
 
     Args:
-        water: with the bodies placed.
-        outlines: of each body.
+        water: water with the bodies placed.
+        outlines: outlines of each body.
         modes: motions of the parts of each body.
         mirror_cuts: which mirrors cut each body.
     """
@@ -293,7 +293,7 @@ def _in_open_water(
         region_mass: mass of the body's region, over the density, shape (mode, mode).
         side_potentials: potential along each side, per mode [m/s^2 cells].
         inward: velocity that each mode induces on each side, per mode; empty in other water [m/s^2].
-        volume: of a cell at the sides [m^2, m^3].
+        volume: volume of a cell at the sides [m^2, m^3].
     """
     if not inward[0]:
         return fixed_side_mass

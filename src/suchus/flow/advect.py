@@ -26,13 +26,13 @@ from suchus.flow.compiled import (
 from suchus.flow.scheme import QUICK, Scheme, limited_quick
 from suchus.flow.slab import (
     EDGE,
-    MIN_PLANES,
+    MIN_SLABS,
     ZERO,
-    block_of,
     meets,
     near_shift,
     row_count,
     row_length,
+    slabs_per_block,
     window_columns,
     window_rows,
 )
@@ -224,10 +224,10 @@ def advance(velocity, blend, base, rate, p, raw, layout, near_layout, inner, rep
         keep: fraction of ``blend`` that stays [-].
     """
     size = velocity.shape[1] - 2 * PAD
-    block = block_of(inner, size, MIN_PLANES)
-    for n in prange((size + block - 1) // block):
-        first_slab = PAD + signed(n) * block
-        slabs = first_slab, min(first_slab + block, PAD + size)
+    block_size = slabs_per_block(inner, size, MIN_SLABS)
+    for n in prange((size + block_size - 1) // block_size):
+        first_slab = PAD + signed(n) * block_size
+        slabs = first_slab, min(first_slab + block_size, PAD + size)
         row_cells, rows = row_length(inner, velocity.shape[2]), row_count(inner, velocity.shape[2])
         margin, rows_per_block = (EDGE, unsigned(ROWS)) if len(inner) > 1 else (ZERO, UNIT)
         flux = np.empty((3 * len(inner) + 2, (rows_per_block + UNIT) * row_cells), velocity.dtype)

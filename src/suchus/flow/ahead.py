@@ -48,7 +48,7 @@ def precompile(ndim: int, dtype: type) -> None:
     process has started to compile. The flow then compiles its kernels itself.
 
     Args:
-        ndim: of the grid, 2 or 3.
+        ndim: number of axes of the grid, 2 or 3.
         dtype: type of the fields.
     """
     folder = compiled.FOLDER

@@ -60,7 +60,7 @@ class BendingMap:
 
         Args:
             places: coordinates in the body's frame, shape (axis, ...) [m].
-            time: when [s].
+            time: time [s].
 
         Raises:
             InvalidDesign: the map gives something that is no place.
@@ -86,7 +86,7 @@ class BendingMap:
 
         Args:
             places: coordinates in the body's frame, shape (axis, ...) [m].
-            time: when [s].
+            time: time [s].
         """
         step, columns = _STEP * self.size, []
         for d in range(self.ndim):
@@ -100,7 +100,7 @@ class BendingMap:
 
         Args:
             places: coordinates in the body's frame, shape (axis, ...) [m].
-            time: when [s].
+            time: time [s].
             tick: time over which the map is differentiated; None is that of the map [s].
         """
         half = 0.5 * (tick or self.difference_time)
@@ -113,7 +113,7 @@ class BendingMap:
 
         Args:
             still_points: points of the still shape, shape (axis, point) [m].
-            time: when [s].
+            time: time [s].
 
         Raises:
             InvalidDesign: the map folds the body, or no position was found.
@@ -146,7 +146,7 @@ class BendingMap:
 
         Args:
             places: coordinates in the body's frame, shape (axis, ...) [m].
-            time: when [s].
+            time: time [s].
 
         Raises:
             InvalidDesign: the velocity changes by more than ``MAX_VELOCITY_CHANGE`` when it is taken over half the

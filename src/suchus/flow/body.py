@@ -69,7 +69,7 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple
         body: the body.
         pose: its pose.
         grid: the grid.
-        time: when [s].
+        time: time [s].
         mirrors: whether there is a mirror at the low and at the high end of each axis; see ``Sides.has_mirror``. Empty:
             there are none.
 
@@ -104,7 +104,7 @@ def _out_of_grid_error(body: AnyBody, grid: Grid, ends: list[tuple[float, float]
         body: the body.
         grid: the grid.
         ends: smallest and largest coordinate of the body along each axis [m].
-        time: when [s].
+        time: time [s].
     """
     reach = ", ".join(
         f"{axis} = {lower_bound:.4g} to {upper_bound:.4g} m"
@@ -129,7 +129,7 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
         axis: axis across which the mirror lies: 0 is x, 1 is y, 2 is z.
         plane: coordinate of the mirror along that axis [m].
         h: side of a cell [m].
-        time: when [s].
+        time: time [s].
 
     Raises:
         InvalidDesign: its halves differ, its middle lies off the plane, it moves through the plane, or its axes are
@@ -206,7 +206,7 @@ def measure_all(
         bodies: the bodies.
         poses: the pose of each body.
         points: coordinates of the window along each axis [m].
-        time: when [s].
+        time: time [s].
         h: side of a cell [m].
     """
     nearest_field, owner, overlap = None, np.zeros([p.size for p in reversed(points)], np.int8), Overlap(0.0, (0, 0))
@@ -259,7 +259,7 @@ def thin_fraction(body: AnyBody, grid: Grid, time: float) -> float:
     Args:
         body: the body.
         grid: the grid.
-        time: when [s].
+        time: time [s].
 
     Raises:
         InvalidDesign: the body is too thin everywhere.

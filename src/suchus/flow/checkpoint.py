@@ -92,7 +92,7 @@ def arrays(content: bytes, path: Path) -> State:
     """Return the arrays of NumPy's ``npz``.
 
     Args:
-        content: of a file.
+        content: content of a file.
         path: what it is called in messages.
 
     Raises:

@@ -130,8 +130,8 @@ def replace_threaded_parts(kernel: Any, **parts: Any) -> Any:
     """Compile a threaded kernel with other parts in place of those of its module; its code is not kept.
 
     Args:
-        kernel: that ``threaded`` made.
-        parts: by the names that they have in the kernel's module.
+        kernel: kernel that ``threaded`` made.
+        parts: parts by the names that they have in the kernel's module.
     """
     return _compile(_rewritten(kernel.py_func, parts), parallel=True, use_cache=False)
 

@@ -43,7 +43,7 @@ def forces(contact: BodyContact, outlines: list[Markers], centres: list[np.ndarr
 
     Args:
         contact: the law.
-        outlines: of the bodies, in one frame.
+        outlines: outlines of the bodies, in one frame.
         centres: point that each body's torque is about, each of shape (2,) [m].
     """
     total = np.zeros((len(outlines), 3))

@@ -143,7 +143,7 @@ def paint_ellipsoid(window_field, x, y, z, turn, centre, velocity, spins, a, rea
         z: coordinates of the points.
         turn: rotation matrix of the body's frame, shape (3, 3).
         centre: middle of the ellipsoid, shape (3,).
-        velocity: of the middle, shape (3,).
+        velocity: velocity of the middle, shape (3,).
         spins: angular velocity, shape (3,).
         a: half-axes, shape (3,).
         reach: distance up to which distance and normal are exact; beyond, the distance is at least as far off.

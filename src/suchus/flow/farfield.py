@@ -232,7 +232,7 @@ class OpenWater:
         """Return the velocity into the domain that the fields induce on the faces of each side [m/s].
 
         Args:
-            velocity: on the left and on the lower faces, padded, shape (axis, ...) [m/s].
+            velocity: velocity on the left and on the lower faces, padded, shape (axis, ...) [m/s].
             window: padded cell indices around the bodies.
             fadings: the sides that carry a wake out.
 
@@ -256,7 +256,7 @@ class OpenWater:
         """Return the velocity into the domain on the faces of each side, between the points of the sides [m/s].
 
         Args:
-            induced_velocity: at the points of the sides, shape (2, point) [m/s].
+            induced_velocity: induced velocity at the points of the sides, shape (2, point) [m/s].
         """
         sides, start = [], 0
         for (index, weight), axis, sign in zip(self.interpolation, (0, 0, 1, 1), (1, -1, 1, -1), strict=True):
@@ -271,7 +271,7 @@ class OpenWater:
         A source has position x and y, then the four strengths of a block: shape (6, source).
 
         Args:
-            strength: of the blocks, shape (4, row, column).
+            strength: strength of the blocks, shape (4, row, column).
             fading: the side towards which the wake is faded.
             window: padded cell indices around the bodies.
         """
@@ -348,7 +348,7 @@ class Face:
         """Return the mean velocity over each panel, shape (3, panel) [m/s].
 
         Args:
-            velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
+            velocity: velocity on the faces before the cells, padded, shape (3, ...) [m/s].
             leaving: share of the wake's flux that is left out [-].
         """
         face_index = PAD + self.spans[self.axis][0 if self.is_lower_side else 1]
@@ -486,7 +486,7 @@ class FarField:
         """Return the velocity into the domain that the flow induces on the faces of each side, 0 on mirrors [m/s].
 
         Args:
-            velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
+            velocity: velocity on the faces before the cells, padded, shape (3, ...) [m/s].
             window: not used; the bodies are inside the surface.
             fadings: the sides that carry a wake out.
 

@@ -88,9 +88,9 @@ def sample(water: Fluid, markers: Markers, density: float) -> Surface:
     """Return pressure and friction at the markers; densities in [kg/m^3].
 
     Args:
-        water: with its pressure and velocity.
+        water: water with its pressure and velocity.
         markers: points on the body's surface.
-        density: of the water [kg/m^3].
+        density: density of the water [kg/m^3].
     """
     places, normals = padded(markers.points, water.grid), np.ascontiguousarray(markers.normals)
     pressure, shear = np.empty(places.shape[1]), np.empty(places.shape)
@@ -111,7 +111,7 @@ def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
     """Return the momentum of the faces of a box of cells, half of those on its sides, shape (axis,) [m/s cells].
 
     Args:
-        velocity: on the faces before the cells, shape (axis, ...) [m/s].
+        velocity: velocity on the faces before the cells, shape (axis, ...) [m/s].
         box: padded cell indices, first and end along each axis, the last axis first.
     """
     ndim = len(velocity)
@@ -128,7 +128,7 @@ def boundary_flux(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int
     """Return the flux into a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
 
     Args:
-        velocity: on the faces before the cells, shape (axis, ...) [m/s].
+        velocity: velocity on the faces before the cells, shape (axis, ...) [m/s].
         p: pressure over density [m^2/s^2].
         nu: viscosity [m/s cells].
         box: as for ``momentum``.
@@ -190,7 +190,7 @@ class ControlVolume:
             water: after the step.
             dt: length of the step [s].
             push: uniform acceleration of the water [m/s^2].
-            density: of the water [kg/m^3].
+            density: density of the water [kg/m^3].
         """
         h, previous_balance = water.grid.cell, self.last_balance
         balance = self.start(water)
@@ -205,24 +205,24 @@ class ControlVolume:
 
 
 @kernel_part
-def interpolate_at(a, steps, spot):
-    """Return the interpolation of a flat field at a place in padded indices, linear along each axis.
+def interpolate_at(field, strides, position):
+    """Return the value of a flat field at a position, interpolated linearly along each axis; bounds are not checked.
 
     Args:
-        a: the field, its cells end to end.
-        steps: distance in memory of neighbours along each axis [-].
-        spot: the place, in padded indices, shape (axis,).
+        field: values of the cells, end to end, shape (cell,).
+        strides: difference of the flat indices of neighbours along each axis, shape (axis,) [-].
+        position: fractional index of the padded array along each axis, shape (axis,).
     """
     total = 0.0
-    for corner in range(1 << spot.size):
-        weight, k = 1.0, 0
-        for d in range(spot.size):
-            i = int(spot[d])
-            past = spot[d] - i
+    for corner in range(1 << position.size):
+        weight, flat_index = 1.0, 0
+        for d in range(position.size):
+            i = int(position[d])
+            fraction = position[d] - i
             is_upper = (corner >> d) & 1
-            weight *= past if is_upper else 1.0 - past
-            k += (i + is_upper) * steps[d]
-        total += weight * a[k]
+            weight *= fraction if is_upper else 1.0 - fraction
+            flat_index += (i + is_upper) * strides[d]
+        total += weight * field[flat_index]
     return total
 
 
@@ -233,14 +233,14 @@ def interpolate(a, steps, places, samples):
     Args:
         a: the field, its cells end to end.
         steps: distance in memory of neighbours along each axis [-].
-        places: in padded indices, shape (axis, point).
+        places: positions in padded indices, shape (axis, point).
         samples: array to write to, shape (point,).
     """
-    spot = np.empty(places.shape[0])
+    position = np.empty(places.shape[0])
     for m in range(places.shape[1]):
-        for d in range(spot.size):
-            spot[d] = places[d, m]
-        samples[m] = interpolate_at(a, steps, spot)
+        for d in range(position.size):
+            position[d] = places[d, m]
+        samples[m] = interpolate_at(a, steps, position)
 
 
 @compiled
@@ -258,13 +258,13 @@ def wall_pressure(p, steps, places, normals, gap, pressure):
         gap: distance of the points [cells].
         pressure: array to write to, shape (marker,).
     """
-    spot = np.empty(places.shape[0])
+    position = np.empty(places.shape[0])
     for m in range(places.shape[1]):
         pressure[m] = 0.0
         for k in range(1, 4):
-            for d in range(spot.size):
-                spot[d] = places[d, m] + k * gap * normals[d, m]
-            pressure[m] += (3.0, -3.0, 1.0)[k - 1] * interpolate_at(p, steps, spot)
+            for d in range(position.size):
+                position[d] = places[d, m] + k * gap * normals[d, m]
+            pressure[m] += (3.0, -3.0, 1.0)[k - 1] * interpolate_at(p, steps, position)
 
 
 @compiled
@@ -285,7 +285,7 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
         shear: array to write to, shape (axis, marker) [m/s per cell].
     """
     ndim = places.shape[0]
-    spot, wall_velocity = np.empty(ndim), np.empty(ndim)
+    position, wall_velocity = np.empty(ndim), np.empty(ndim)
     for m in range(places.shape[1]):
         for c in range(ndim):
             shear[c, m] = 0.0
@@ -299,8 +299,8 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
                 wall_velocity[second_axis] += spins[n, m] * k * gap * normals[first_axis, m]
             for c in range(ndim):
                 for d in range(ndim):
-                    spot[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
-                shear[c, m] += weight * (interpolate_at(velocity[c], steps, spot) - wall_velocity[c])
+                    position[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
+                shear[c, m] += weight * (interpolate_at(velocity[c], steps, position) - wall_velocity[c])
         normal_shear = 0.0
         for d in range(ndim):
             normal_shear += shear[d, m] * normals[d, m]

@@ -14,13 +14,13 @@ from numba import prange
 
 from suchus.flow.compiled import UNIT, compiled, kernel_part, ordered_part, signed, threaded, unsigned
 from suchus.flow.slab import (
-    MIN_PLANES,
+    MIN_SLABS,
     ZERO,
-    block_of,
     meets,
     near_shift,
     near_strides,
     row_length,
+    slabs_per_block,
     window_columns,
     window_rows,
 )
@@ -92,7 +92,7 @@ def fill(distance, normal, thickness, mu0, mu1):
     Args:
         distance: signed distance of each point from the surface [cells].
         normal: outward normal, shape (axis, point).
-        thickness: of the body at the nearest point of the surface [cells].
+        thickness: thickness of the body at the nearest point of the surface [cells].
         mu0: fluid fraction to write, shape (point,).
         mu1: half of the first moment along the normal to write, shape (axis, point) [cells].
     """
@@ -291,15 +291,15 @@ def immerse(velocity, blend, raw, b, mu0, passage, mu1, p, component, near_layou
     for d in range(len(inner)):
         ei = inner[d] if d == component else ei
     w = len(inner) + 2
-    block = block_of(inner, near_layout[w + 1] - near_layout[w], MIN_PLANES)
+    block_size = slabs_per_block(inner, near_layout[w + 1] - near_layout[w], MIN_SLABS)
     row_cells = row_length(inner, p.shape[1])
     r0, r1 = window_rows(near_layout, inner)
     s, e = window_columns(near_layout, inner)
     strides = near_strides(near_layout, inner)
     r0, r1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)
-    for n in prange((near_layout[w + 1] - near_layout[w] + block - 1) // block):
-        first_slab = near_layout[w] + signed(n) * block
-        for j in range(max(first_slab, near_layout[w] + 1), min(first_slab + block, near_layout[w + 1] - 1)):
+    for n in prange((near_layout[w + 1] - near_layout[w] + block_size - 1) // block_size):
+        first_slab = near_layout[w] + signed(n) * block_size
+        for j in range(max(first_slab, near_layout[w] + 1), min(first_slab + block_size, near_layout[w + 1] - 1)):
             for row in range(r0, r1):
                 start = row * row_cells + s + UNIT
                 stop = row * row_cells + e - UNIT

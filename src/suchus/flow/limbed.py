@@ -336,7 +336,7 @@ def around_rod(length: float, radius: float, spacing: float) -> tuple[np.ndarray
 
     Args:
         length: between the middles of its ends [m].
-        radius: of the rod [m].
+        radius: radius of the rod [m].
         spacing: approximate distance of the points [m].
     """
     r = radius

@@ -235,10 +235,10 @@ class Linked(SpaceShape):
         """Return which points on one piece lie inside another piece.
 
         Args:
-            points: in the world, shape (3, point) [m].
+            points: points in the world, shape (3, point) [m].
             piece_poses: pose of each piece.
             piece_index: the piece that the points are on.
-            time: when [s].
+            time: time [s].
             earlier_only: whether only the pieces before it count.
         """
         is_inside = np.zeros(points.shape[1], bool)
@@ -360,7 +360,7 @@ def interpolate_links(start: LinkStates, end: LinkStates, span: float, fraction:
         start: state at fraction 0.
         end: state at fraction 1.
         span: time from the start to the end [s].
-        fraction: of the time; 0 at the start, 1 at the end [-].
+        fraction: fraction of the time; 0 at the start, 1 at the end [-].
     """
     if not 0.0 < fraction < 1.0:
         return (

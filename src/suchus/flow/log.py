@@ -28,9 +28,9 @@ class FlowLoads:
     reference_point: np.ndarray
     """Point of the torques, in the frame of the grid, shape (axis,) [m]."""
     total: Reaction
-    """On the whole body, mean over the step."""
+    """Load on the whole body, mean over the step."""
     parts: Reaction
-    """On each of its parts, along the first axis; of a body that is not divided the whole."""
+    """Load on each of its parts, along the first axis; of a body that is not divided the whole."""
     internal_pressure: np.ndarray
     """What the pressure does inside the parts, where there is no water: its integral over each and its first moments
     about ``reference_point``, shape (part, 1 + axis), 0 in a body that is not divided [N, N m; N m, N m2].
@@ -193,7 +193,7 @@ def part_columns(
         body: which.
         acts: load of the water on each part, its torque about one point.
         reference_point: that point, in the frame of the grid [m].
-        pose: of the body, in the frame of the grid.
+        pose: pose of the body, in the frame of the grid.
         time: end of the step [s].
         frame: mean velocity of the grid [m/s].
     """

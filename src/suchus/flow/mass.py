@@ -110,7 +110,7 @@ def of_trunk(spine: np.ndarray, half_height: np.ndarray) -> SpaceMass:
 
     Args:
         spine: rows of the midline; see ``of_midline``.
-        half_height: of the sections at the stations [m].
+        half_height: half height of the sections at the stations [m].
     """
     w, h = (spine[3, 1:] + spine[3, :-1]) / 2, (half_height[1:] + half_height[:-1]) / 2
     volume, centre, rate, (moment, xx, xy), swirl = _of_sections(spine, np.pi * w * h, np.pi * w**3 * h / 4)
@@ -128,7 +128,7 @@ def _of_sections(spine: np.ndarray, size: np.ndarray, second: np.ndarray) -> tup
 
     Args:
         spine: rows of the midline; see ``of_midline``.
-        size: of each section: its length or area.
+        size: size of each section: its length or area.
         second: its second moment about the midline, across the plane.
     """
     ds = np.hypot(np.diff(spine[0]), np.diff(spine[1]))

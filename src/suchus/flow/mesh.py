@@ -177,7 +177,7 @@ def face_centres(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.nd
     """Return the middles of faces, of large ones those of equal parts, the area of each and its normal.
 
     Args:
-        corners: of the faces, shape (face, corner, axis) [m].
+        corners: corners of the faces, shape (face, corner, axis) [m].
         spacing: approximate distance of the middles [m].
     """
     edges = np.roll(corners, -1, axis=1) - corners
@@ -390,8 +390,8 @@ def _span(lower_bound, upper_bound, reach, start, h, count):
     """Return the first point of a line that lies within a reach of an interval, and the point after the last.
 
     Args:
-        lower_bound: of the interval.
-        upper_bound: of the interval.
+        lower_bound: lower bound of the interval.
+        upper_bound: upper bound of the interval.
         reach: distance around it.
         start: coordinate of the line's first point.
         h: distance of the points.
@@ -412,7 +412,7 @@ def paint_mesh(window_field, x, y, z, corners, normals, reach, h):
         x: coordinates of the points, ``h`` apart.
         y: coordinates of the points, ``h`` apart.
         z: coordinates of the points.
-        corners: of the triangles, shape (face, 3, 3).
+        corners: corners of the triangles, shape (face, 3, 3).
         normals: pseudo-normals of faces, edges and corners, shape (face, 7, 3).
         reach: distance up to which both are exact.
         h: distance of the points.

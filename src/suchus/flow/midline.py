@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_midline
-from suchus.flow.paint import paint, ring, sections
+from suchus.flow.paint import paint, ring, section_motions
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Field, Shape, check_positive
 
@@ -193,7 +193,7 @@ class Midline(Shape):
         """Return the part whose section passes through each point of a window near the body; 0 elsewhere.
 
         Args:
-            midline: in the world.
+            midline: midline in the world.
             x: coordinates of the window's columns [m].
             y: coordinates of the window's rows [m].
             is_near: which points are in or near the body, shape (y, x).
@@ -231,7 +231,7 @@ class Midline(Shape):
         s = station[edge] * (1 - fraction) + np.roll(station, -1)[edge] * fraction
         side = np.where(edge < n - 1, -1.0, np.where((edge >= n) & (edge < 2 * n - 1), 1.0, 0.0))
         guess = np.where(edge < n, edge, 2 * n - 1 - edge)
-        vx, vy, spin = sections(point, guess, midline.rows, midline.half_width_rates)
+        vx, vy, spin = section_motions(point, guess, midline.rows, midline.half_width_rates)
         part_index = np.searchsorted(self.cuts, s, side="right") if self.cuts else None
         return Markers(
             points=point, weight=length[edge] / count, velocities=np.array([vx, vy]), normals=normal, spins=spin[None],

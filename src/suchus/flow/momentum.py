@@ -124,7 +124,7 @@ def _add_to_owners(sums, column, owners, o, index, columns, contribution):
         o: slab in the window.
         index: cell in the slab of the window.
         columns: cells along a row of the window.
-        contribution: of the cell.
+        contribution: contribution of the cell.
     """
     ndim = len(owners)
     face_contribution = contribution / (2 * ndim)
@@ -313,8 +313,8 @@ def skin_contents(
     The layer is ``offset`` cells thick.
 
     Args:
-        markers: of one body.
-        offset: of the wall [cells].
+        markers: markers of one body.
+        offset: offset of the wall [cells].
         origin: corner of the grid [m].
         h: cell [m].
         count: parts of the body, the rows of the result, shape (part, ``contents_of``) [-].
@@ -388,7 +388,7 @@ def reaction(
         reference_point: point of the torque, in the frame of the grid [m].
         origin: corner of the grid [m].
         h: cell [m].
-        density: of the water [kg/m^3].
+        density: density of the water [kg/m^3].
     """
     ndim, turns = len(origin), ROTATION_PLANES[len(origin)]
     energy = ndim + len(turns)

@@ -22,12 +22,12 @@ from suchus.flow.compiled import PAD, SERIAL_BELOW, UNIT, compiled, kernel_part,
 from suchus.flow.patch import SOLUTION, end, give_slab, patch, start, take_coefficients
 from suchus.flow.slab import (
     EDGE,
-    MIN_PLANES,
+    MIN_SLABS,
     ZERO,
-    block_of,
     row_count,
     row_length,
     run_of,
+    slabs_per_block,
     strides_like,
 )  # fmt: skip
 from suchus.flow.stencil import (
@@ -101,7 +101,7 @@ def _fold(j, n, periodic):
 
 
 @kernel_part
-def _first_smoothing(slabs, o, b, patch_values, rect, slab, inner, repeats):
+def _first_smoothing(slabs, o, b, patch_values, patch_layout, slab, inner, repeats):
     """Write the solution in one slab after the first smoothing steps, which start from nothing.
 
     Args:
@@ -109,14 +109,14 @@ def _first_smoothing(slabs, o, b, patch_values, rect, slab, inner, repeats):
         o: which of its slabs is written.
         b: right side of the level.
         patch_values: solution in the patch where more steps are taken; see ``patch``.
-        rect: where the patch lies.
+        patch_layout: where the patch lies.
         slab: slab of the level.
         inner: strides within a slab.
         repeats: whether each axis is periodic.
     """
     first_cell, end = run_of(inner, b.shape[1])
     first_steps(slabs, o, ZERO, b, slab, inner, first_cell, end)
-    give_slab(slabs, o, patch_values, rect, slab, inner)
+    give_slab(slabs, o, patch_values, patch_layout, slab, inner)
     seal_slab(slabs, o, inner, repeats)
 
 
@@ -127,7 +127,8 @@ def _restrict_residual(coarse, coarse_slab, residual, b, slab, inner, coarse_inn
     Args:
         coarse: right side of the coarse level, to write to.
         coarse_slab: which of its slabs.
-        residual: on entry the operator applied to the solution in both slabs, shape (2, cell); a work array then.
+        residual: the residual; on entry the operator applied to the solution in both slabs, shape (2, cell); then a
+            work array.
         b: right side of the level.
         slab: first of the two slabs.
         inner: strides within a slab.
@@ -151,7 +152,7 @@ def _restrict_residual(coarse, coarse_slab, residual, b, slab, inner, coarse_inn
 
 
 @kernel_part
-def _descend(coarse, b, faces, level_layout, buffer, rect, j0, j1, inner, coarse_inner, repeats):
+def _descend(coarse, b, faces, level_layout, buffer, patch_layout, j0, j1, inner, coarse_inner, repeats):
     """Write the summed residual after the first smoothing steps to some slabs of the coarse level.
 
     Args:
@@ -160,23 +161,23 @@ def _descend(coarse, b, faces, level_layout, buffer, rect, j0, j1, inner, coarse
         faces: coefficients of the level's faces.
         level_layout: the level's row of the layout; see ``slab``.
         buffer: values in the patches; see ``patch``.
-        rect: where the level's patch lies.
+        patch_layout: where the level's patch lies.
         j0: first coarse slab.
         j1: the coarse slab after the last.
         inner: strides within a slab.
         coarse_inner: the same on the coarse level.
         repeats: whether each axis is periodic.
     """
-    size, patch_values, is_periodic = level_layout[1], patch(buffer, rect, inner, SOLUTION), repeats[len(inner)]
+    size, patch_values, is_periodic = level_layout[1], patch(buffer, patch_layout, inner, SOLUTION), repeats[len(inner)]
     residual, rows = np.empty((2, b.shape[1]), b.dtype), np.empty((4, b.shape[1]), b.dtype)
     lower_slot, middle_slot, upper_slot, top_slot = 0, 1, 2, 3
     j = 2 * (j0 - PAD) + PAD
-    _first_smoothing(rows, lower_slot, b, patch_values, rect, _fold(j - 1, size, is_periodic), inner, repeats)
-    _first_smoothing(rows, middle_slot, b, patch_values, rect, j, inner, repeats)
+    _first_smoothing(rows, lower_slot, b, patch_values, patch_layout, _fold(j - 1, size, is_periodic), inner, repeats)
+    _first_smoothing(rows, middle_slot, b, patch_values, patch_layout, j, inner, repeats)
     for cj in range(j0, j1):
         j = 2 * (cj - PAD) + PAD
-        _first_smoothing(rows, upper_slot, b, patch_values, rect, j + 1, inner, repeats)
-        _first_smoothing(rows, top_slot, b, patch_values, rect, _fold(j + 2, size, is_periodic), inner, repeats)
+        _first_smoothing(rows, upper_slot, b, patch_values, patch_layout, j + 1, inner, repeats)
+        _first_smoothing(rows, top_slot, b, patch_values, patch_layout, _fold(j + 2, size, is_periodic), inner, repeats)
         apply_slabs(residual, 0, rows, lower_slot, middle_slot, upper_slot, faces, level_layout, j, inner)
         apply_slabs(residual, 1, rows, middle_slot, upper_slot, top_slot, faces, level_layout, j + 1, inner)
         _restrict_residual(coarse, cj, residual, b, j, inner, coarse_inner)
@@ -222,7 +223,7 @@ def _add_coarse(slabs, o, coarse, mix, slab, inner, coarse_inner):
 
 
 @kernel_part
-def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner, coarse_inner, repeats):
+def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, patch_layout, j0, j1, inner, coarse_inner, repeats):
     """Write the first smoothing steps, the coarse correction and the last two steps to some slabs.
 
     Args:
@@ -233,14 +234,14 @@ def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner
         dinv: inverse diagonal of the level.
         level_layout: the level's row of the layout; see ``slab``.
         buffer: values in the patches; see ``patch``.
-        rect: where the level's patch lies.
+        patch_layout: where the level's patch lies.
         j0: first slab.
         j1: the slab after the last.
         inner: strides within a slab.
         coarse_inner: the same on the coarse level.
         repeats: whether each axis is periodic.
     """
-    is_periodic, size, patch_values = repeats[len(inner)], level_layout[1], patch(buffer, rect, inner, SOLUTION)
+    is_periodic, size, patch_values = repeats[len(inner)], level_layout[1], patch(buffer, patch_layout, inner, SOLUTION)
     rows = np.empty((6, b.shape[1]), b.dtype)
     mix = np.empty(coarse.shape[1] + signed(row_length(coarse_inner, coarse.shape[1])), b.dtype)
     second_weights, first_weights = weights(inner, b.dtype.type)
@@ -249,7 +250,7 @@ def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner
     for j in range(j0 - 2, j1 + 2):
         a, m, z = m, z, a
         source_slab = _fold(j, size, is_periodic)
-        _first_smoothing(rows, z, b, patch_values, rect, source_slab, inner, repeats)
+        _first_smoothing(rows, z, b, patch_values, patch_layout, source_slab, inner, repeats)
         _add_coarse(rows, z, coarse, mix, source_slab, inner, coarse_inner)
         seal_slab(rows, z, inner, repeats)
         if j < j0:
@@ -273,25 +274,37 @@ def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner
 
 
 @threaded_part
-def _descend_threaded(coarse, b, faces, level_layout, buffer, rect, inner, coarse_inner, repeats):
+def _descend_threaded(coarse, b, faces, level_layout, buffer, patch_layout, inner, coarse_inner, repeats):
     """Do what ``_descend`` does for all slabs, on several threads."""
     end = coarse.shape[0] - PAD
-    block = block_of(inner, end - PAD, MIN_PLANES // 2)
-    for n in prange((end - PAD + block - 1) // block):
-        j0 = PAD + signed(n) * block
-        _descend(coarse, b, faces, level_layout, buffer, rect, j0, min(j0 + block, end), inner, coarse_inner, repeats)
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS // 2)
+    for n in prange((end - PAD + block_size - 1) // block_size):
+        j0 = PAD + signed(n) * block_size
+        _descend(
+            coarse,
+            b,
+            faces,
+            level_layout,
+            buffer,
+            patch_layout,
+            j0,
+            min(j0 + block_size, end),
+            inner,
+            coarse_inner,
+            repeats,
+        )
 
 
 @threaded_part
-def _ascend_threaded(x, b, coarse, faces, dinv, level_layout, buffer, rect, inner, coarse_inner, repeats):
+def _ascend_threaded(x, b, coarse, faces, dinv, level_layout, buffer, patch_layout, inner, coarse_inner, repeats):
     """Do what ``_ascend`` does for all slabs, on several threads."""
     end = x.shape[0] - PAD
-    block = block_of(inner, end - PAD, MIN_PLANES)
-    for n in prange((end - PAD + block - 1) // block):
-        j0 = PAD + signed(n) * block
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
+    for n in prange((end - PAD + block_size - 1) // block_size):
+        j0 = PAD + signed(n) * block_size
         _ascend(
-            x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, min(j0 + block, end), inner, coarse_inner,
-            repeats,
+            x, b, coarse, faces, dinv, level_layout, buffer, patch_layout, j0, min(j0 + block_size, end), inner,
+            coarse_inner, repeats,
         )  # fmt: skip
 
 
@@ -329,8 +342,8 @@ def _relaxation_factors(cells, ndim):
     as many steps, an even number, as leave the fraction ``MAX_RESIDUAL_RATIO`` of each error.
 
     Args:
-        cells: of the longest side.
-        ndim: of the grid.
+        cells: number of cells along the longest side.
+        ndim: number of axes of the grid.
     """
     min_eigenvalue = (1.0 - np.cos(np.pi / cells)) / ndim
     middle = 1.0 + 0.5 * min_eigenvalue
@@ -400,17 +413,17 @@ def cycle(x, store, layout, buffer, rects, inner, repeats):
     for k in range(last_level):
         level_inner, coarse_inner = _strides(layout, inner, k), _strides(layout, inner, k + 1)
         b, coarse = level(store, layout, inner, B, k), level(store, layout, inner, B, k + 1)
-        faces, level_layout, rect = faces_of(store, layout, inner, k), layout[k], rects[k]
+        faces, level_layout, patch_layout = faces_of(store, layout, inner, k), layout[k], rects[k]
         seal_ends(b, repeats[len(inner)])
-        if rect[1] < rect[2]:
-            start(buffer, rect, b, level_inner)
+        if patch_layout[1] < patch_layout[2]:
+            start(buffer, patch_layout, b, level_inner)
         if b.size < SERIAL_BELOW:
             _descend(
-                coarse, b, faces, level_layout, buffer, rect, PAD, coarse.shape[0] - PAD, level_inner, coarse_inner,
-                repeats,
+                coarse, b, faces, level_layout, buffer, patch_layout, PAD, coarse.shape[0] - PAD, level_inner,
+                coarse_inner, repeats,
             )  # fmt: skip
         else:
-            _descend_threaded(coarse, b, faces, level_layout, buffer, rect, level_inner, coarse_inner, repeats)
+            _descend_threaded(coarse, b, faces, level_layout, buffer, patch_layout, level_inner, coarse_inner, repeats)
     _solve_coarsest(
         x if last_level == 0 else level(store, layout, inner, X, last_level),
         level(store, layout, inner, B, last_level),
@@ -424,20 +437,20 @@ def cycle(x, store, layout, buffer, rects, inner, repeats):
         level_inner, coarse_inner = _strides(layout, inner, k), _strides(layout, inner, k + 1)
         b, coarse = level(store, layout, inner, B, k), level(store, layout, inner, X, k + 1)
         faces, dinv = faces_of(store, layout, inner, k), level(store, layout, inner, DINV, k)
-        level_layout, rect, solution = layout[k], rects[k], x if k == 0 else level(store, layout, inner, X, k)
+        level_layout, patch_layout, solution = layout[k], rects[k], x if k == 0 else level(store, layout, inner, X, k)
         if b.size < SERIAL_BELOW:
             _ascend(
-                solution, b, coarse, faces, dinv, level_layout, buffer, rect, PAD, solution.shape[0] - PAD, level_inner,
-                coarse_inner, repeats,
+                solution, b, coarse, faces, dinv, level_layout, buffer, patch_layout, PAD, solution.shape[0] - PAD,
+                level_inner, coarse_inner, repeats,
             )  # fmt: skip
         else:
             _ascend_threaded(
-                solution, b, coarse, faces, dinv, level_layout, buffer, rect, level_inner, coarse_inner, repeats
+                solution, b, coarse, faces, dinv, level_layout, buffer, patch_layout, level_inner, coarse_inner, repeats
             )
-        if rect[1] < rect[2]:
-            end(buffer, rect, solution, level_inner)
+        if patch_layout[1] < patch_layout[2]:
+            end(buffer, patch_layout, solution, level_inner)
             if len(inner) > 1:  # the patch has changed cells next to the sides
-                for j in range(max(rect[1], PAD), min(rect[2], solution.shape[0] - PAD)):
+                for j in range(max(patch_layout[1], PAD), min(patch_layout[2], solution.shape[0] - PAD)):
                     seal_slab(solution, j, level_inner, repeats)
         seal_ends(solution, repeats[len(inner)])
 

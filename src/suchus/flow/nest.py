@@ -149,7 +149,7 @@ def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarr
     and the mean of the fine values in a coarse cell is the coarse value.
 
     Args:
-        index: of the fine values, padded [-].
+        index: index of the fine values, padded [-].
         ratio: fine cells along a coarse one [-].
         on_faces: whether the values lie on faces across this axis.
 
@@ -206,7 +206,7 @@ def _interpolate(coarse, runs, first_cells, weights, taps, values):  # type: ign
         runs: consecutive values along one row of the patch: slab, row, first and end index along the row, and the index
             in ``values`` of the first one, shape (run, 5).
         first_cells: first coarse index of a box, by axis and index in the patch.
-        weights: of the coarse values along an axis, by axis, index in the patch, and position in the box.
+        weights: weights of the coarse values along an axis, by axis, index in the patch, and position in the box.
         taps: coarse values of a box along each axis.
         values: the values, shape (value,).
     """
@@ -564,7 +564,7 @@ class Nested(Fluid):
         times smaller than the velocity would be lost.
 
         Args:
-            velocity_change: on the faces of the fine window, shape (axis, ...) [m/s].
+            velocity_change: change of velocity on the faces of the fine window, shape (axis, ...) [m/s].
             dt: length of the step [s].
             limit: mean divergence that may be left [m/s per cell].
         """

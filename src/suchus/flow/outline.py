@@ -309,7 +309,7 @@ def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
     """Return the indices of two edges that cross or touch and are not neighbours; None if there are none.
 
     Args:
-        corners: of a polygon, shape (corner, 2) [m].
+        corners: corners of a polygon, shape (corner, 2) [m].
     """
     a, b = corners, np.roll(corners, -1, axis=0)
 

@@ -384,23 +384,27 @@ def measure_outline(fields, px, py, outline, flat):
 
 
 @compiled
-def sections(point, guess, spine, width_rate):
-    """Return velocity (x, y) and turning rate of the cross-sections that hold some points, shape (3, point).
+def section_motions(points, segment_guess, stations, half_width_rate):
+    """Return the motion of the cross-section that holds each point, at that point, shape (3, point).
+
+    The rows are the velocity along x and y, in the frame of the midline [m/s], and the turning rate [rad/s].
 
     Args:
-        point: the points, shape (2, point).
-        guess: segment of the midline at which the search of each point begins, shape (point,).
-        spine: stations of the midline; see ``section_velocity``.
-        width_rate: rate of the half-width at the stations.
+        points: x and y in the frame of the midline, shape (2, point) [m].
+        segment_guess: segment of the midline at which the search of each point begins, shape (point,).
+        stations: rows x, y, heading, half-width, and the rates of x, y and heading, shape (7, station).
+        half_width_rate: rate of the half-width at the stations, shape (station,) [m/s].
     """
-    n = spine.shape[1]
-    tx, ty = np.empty(n), np.empty(n)
-    for k in range(n):
-        tx[k], ty[k] = np.cos(spine[2, k]), np.sin(spine[2, k])
-    velocities = np.empty((3, point.shape[1]))
-    for m in range(point.shape[1]):
-        px, py = point[0, m], point[1, m]
-        k, f = find_section(px, py, min(guess[m], spine.shape[1] - 2), spine[0], spine[1], tx, ty)
-        velocities[0, m], velocities[1, m] = section_velocity(px, py, k, f, spine, width_rate)
-        velocities[2, m] = (1.0 - f) * spine[6, k] + f * spine[6, k + 1]
-    return velocities
+    station_count = stations.shape[1]
+    tx, ty = np.empty(station_count), np.empty(station_count)
+    for k in range(station_count):
+        tx[k], ty[k] = np.cos(stations[2, k]), np.sin(stations[2, k])
+    motions = np.empty((3, points.shape[1]))
+    for i in range(points.shape[1]):
+        px, py = points[0, i], points[1, i]
+        k, fraction = find_section(
+            px, py, min(segment_guess[i], stations.shape[1] - 2), stations[0], stations[1], tx, ty
+        )
+        motions[0, i], motions[1, i] = section_velocity(px, py, k, fraction, stations, half_width_rate)
+        motions[2, i] = (1.0 - fraction) * stations[6, k] + fraction * stations[6, k + 1]
+    return motions

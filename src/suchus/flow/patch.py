@@ -39,7 +39,7 @@ def patch_layouts(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
     must not lie where a mirror cuts a body.
 
     Args:
-        layout: of the levels.
+        layout: layout of the levels.
         repeats: which axes are periodic.
     """
     rows, offset, ndim = [], 0, layout.shape[1] // 3
@@ -70,65 +70,65 @@ def allocate_buffer(buffer: np.ndarray, patches: np.ndarray) -> np.ndarray:
 
 
 @kernel_part
-def _sizes(rect, inner):
+def _sizes(patch_layout, inner):
     """Return the number of slabs of a patch, the cells of one of its slabs, and the cells of one of its rows."""
-    slab_count, column_index = rect[2] - rect[1], 2 * len(inner) + 1
-    row_cells = rect[column_index + 1] - rect[column_index]
-    return slab_count, row_cells * (rect[4] - rect[3]) if len(inner) > 1 else row_cells, row_cells
+    slab_count, column_index = patch_layout[2] - patch_layout[1], 2 * len(inner) + 1
+    row_cells = patch_layout[column_index + 1] - patch_layout[column_index]
+    return slab_count, row_cells * (patch_layout[4] - patch_layout[3]) if len(inner) > 1 else row_cells, row_cells
 
 
 @kernel_part
-def patch(buffer, rect, inner, kind):
+def patch(buffer, patch_layout, inner, kind):
     """Return the values of one kind and one patch, a view of the buffer, shape (slab, cell)."""
-    slab_count, length, _ = _sizes(rect, inner)
-    return buffer[kind, rect[0] : rect[0] + slab_count * length].reshape(slab_count, length)
+    slab_count, length, _ = _sizes(patch_layout, inner)
+    return buffer[kind, patch_layout[0] : patch_layout[0] + slab_count * length].reshape(slab_count, length)
 
 
 @kernel_part
-def _rows(rect, inner):
+def _rows(patch_layout, inner):
     """Return the first row of a patch in its level's slabs, its end, and first and end of the cells of a row."""
     column_index = 2 * len(inner) + 1
-    r0, r1 = (unsigned(rect[3]), unsigned(rect[4])) if len(inner) > 1 else (ZERO, UNIT)
-    return r0, r1, unsigned(rect[column_index]), unsigned(rect[column_index + 1])
+    first_row, end_row = (unsigned(patch_layout[3]), unsigned(patch_layout[4])) if len(inner) > 1 else (ZERO, UNIT)
+    return first_row, end_row, unsigned(patch_layout[column_index]), unsigned(patch_layout[column_index + 1])
 
 
 @kernel_part
-def _take(target, rect, a, inner):
-    """Copy a patch from an array of its level.
+def _copy_from_level(patch_values, patch_layout, level_values, inner):
+    """Copy the values of a patch out of an array of its level.
 
     Args:
-        target: values of the patch, shape (slab, cell).
-        rect: row of ``patch_layouts``.
-        a: array of the level.
+        patch_values: array of the patch that is written, shape (slab, cell of the patch).
+        patch_layout: row of ``patch_layouts``: offset, first and end index along each axis, smoothing pairs.
+        level_values: array of the level, shape (slab, cell of the level).
         inner: strides within a slab.
     """
-    row_cells, (r0, r1, s, e) = row_length(inner, a.shape[1]), _rows(rect, inner)
-    for j in range(unsigned(target.shape[0])):
-        for row in range(r0, r1):
-            level_start = row * row_cells + s
-            patch_start = (row - r0) * (e - s)
-            for i in range(e - s):
-                target[j, patch_start + i] = a[j + unsigned(rect[1]), level_start + i]
+    row_cells, (first_row, end_row, start, end) = row_length(inner, level_values.shape[1]), _rows(patch_layout, inner)
+    for j in range(unsigned(patch_values.shape[0])):
+        for row in range(first_row, end_row):
+            level_start = row * row_cells + start
+            patch_start = (row - first_row) * (end - start)
+            for i in range(end - start):
+                patch_values[j, patch_start + i] = level_values[j + unsigned(patch_layout[1]), level_start + i]
 
 
 @kernel_part
-def _close_sides(buffer, rect, level_layout, inner):
+def _close_sides(buffer, patch_layout, level_layout, inner):
     """Set the coefficients to 0 on the faces where a patch in space extends beyond a side of the domain.
 
     Args:
         buffer: values of all patches.
-        rect: row of ``patch_layouts``.
+        patch_layout: row of ``patch_layouts``.
         level_layout: row of the layout for the level; see ``slab``.
         inner: strides within a slab.
     """
-    _, length, row_cells = _sizes(rect, inner)
+    _, length, row_cells = _sizes(patch_layout, inner)
     for d in range(len(inner) + 1):
-        face, r = patch(buffer, rect, inner, FACES + d), 5 - 2 * d
+        face, r = patch(buffer, patch_layout, inner, FACES + d), 5 - 2 * d
         step = 1 if d == 0 else row_cells
         for is_low in range(2):
-            if rect[r] >= PAD if is_low else rect[r + 1] <= level_layout[3 - d] + PAD:
+            if patch_layout[r] >= PAD if is_low else patch_layout[r + 1] <= level_layout[3 - d] + PAD:
                 continue
-            line = 1 if is_low else rect[r + 1] - rect[r] - 1
+            line = 1 if is_low else patch_layout[r + 1] - patch_layout[r] - 1
             for j in range(face.shape[0]):
                 for i in range(length):
                     index = j if d == len(inner) else i // step % row_cells if d == 0 else i // step
@@ -137,24 +137,24 @@ def _close_sides(buffer, rect, level_layout, inner):
 
 
 @kernel_part
-def take_coefficients(buffer, rect, level_layout, faces, dinv, inner):
+def take_coefficients(buffer, patch_layout, level_layout, faces, dinv, inner):
     """Copy the coefficients of a patch from its level to the buffer.
 
     Args:
         buffer: values of all patches.
-        rect: row of ``patch_layouts``.
+        patch_layout: row of ``patch_layouts``.
         level_layout: row of the layout for the level; see ``slab``.
         faces: face coefficients of the level along each axis.
         dinv: inverse diagonal of the level.
         inner: strides within a slab.
     """
     for d in range(len(inner) + 1):
-        _take(patch(buffer, rect, inner, FACES + d), rect, faces[d], inner)
+        _copy_from_level(patch(buffer, patch_layout, inner, FACES + d), patch_layout, faces[d], inner)
     if len(inner) > 1:
-        _close_sides(buffer, rect, level_layout, inner)
-    inverse = patch(buffer, rect, inner, INVERSE)
-    _take(inverse, rect, dinv, inner)
-    _, length, row_cells = _sizes(rect, inner)
+        _close_sides(buffer, patch_layout, level_layout, inner)
+    inverse = patch(buffer, patch_layout, inner, INVERSE)
+    _copy_from_level(inverse, patch_layout, dinv, inner)
+    _, length, row_cells = _sizes(patch_layout, inner)
     for j in range(inverse.shape[0]):
         for k in range(0, length, row_cells):
             inverse[j, k] = 0
@@ -166,70 +166,72 @@ def take_coefficients(buffer, rect, level_layout, faces, dinv, inner):
 
 
 @kernel_part
-def _relax(buffer, rect, inner, first_weight, second_weight):
+def _relax(buffer, patch_layout, inner, first_weight, second_weight):
     """Smooth the solution of a patch by pairs of Jacobi steps with two weights.
 
     Args:
         buffer: values of all patches.
-        rect: row of ``patch_layouts``; its last number is the number of pairs.
+        patch_layout: row of ``patch_layouts``; its last number is the number of pairs.
         inner: strides within a slab.
         first_weight: Jacobi weight of the first step of a pair [-].
         second_weight: Jacobi weight of the second step [-].
     """
-    x, y = patch(buffer, rect, inner, SOLUTION), patch(buffer, rect, inner, SOLUTION_COPY)
-    _, length, row_cells = _sizes(rect, inner)
+    x, y = patch(buffer, patch_layout, inner, SOLUTION), patch(buffer, patch_layout, inner, SOLUTION_COPY)
+    _, length, row_cells = _sizes(patch_layout, inner)
     strides = strides_like(inner, unsigned(row_cells)) + (unsigned(length),)  # noqa: RUF005  numba unpacks no tuples
     copy_slab(y, 0, x, 0)
     copy_slab(y, y.shape[0] - 1, x, x.shape[0] - 1)
-    x, y, b = x.reshape(-1), y.reshape(-1), patch(buffer, rect, inner, RIGHT_SIDE).reshape(-1)
-    faces, offset = buffer[FACES:], unsigned(rect[0])
-    dinv = patch(buffer, rect, inner, INVERSE).reshape(-1)
-    for _ in range(rect[-1]):
+    x, y, b = x.reshape(-1), y.reshape(-1), patch(buffer, patch_layout, inner, RIGHT_SIDE).reshape(-1)
+    faces, offset = buffer[FACES:], unsigned(patch_layout[0])
+    dinv = patch(buffer, patch_layout, inner, INVERSE).reshape(-1)
+    for _ in range(patch_layout[-1]):
         relax_patch(y, x, b, faces, offset, dinv, strides, first_weight)
         relax_patch(x, y, b, faces, offset, dinv, strides, second_weight)
 
 
 @kernel_part
-def start(buffer, rect, b, inner):
+def start(buffer, patch_layout, b, inner):
     """Write the first smoothing steps on a patch to the buffer; at the edge of the patch they are those without a body.
 
     Args:
         buffer: values of all patches.
-        rect: row of ``patch_layouts``.
+        patch_layout: row of ``patch_layouts``.
         b: right side of the level.
         inner: strides within a slab.
     """
-    _take(patch(buffer, rect, inner, RIGHT_SIDE), rect, b, inner)
-    x = patch(buffer, rect, inner, SOLUTION)
-    row_cells, (r0, r1, s, e) = row_length(inner, b.shape[1]), _rows(rect, inner)
-    for j in range(rect[1], rect[2]):
+    _copy_from_level(patch(buffer, patch_layout, inner, RIGHT_SIDE), patch_layout, b, inner)
+    x = patch(buffer, patch_layout, inner, SOLUTION)
+    row_cells, (r0, r1, s, e) = row_length(inner, b.shape[1]), _rows(patch_layout, inner)
+    for j in range(patch_layout[1], patch_layout[2]):
         for row in range(r0, r1):
             row_start = row * row_cells
-            first_steps(x, j - rect[1], row_start + s - (row - r0) * (e - s), b, j, inner, row_start + s, row_start + e)
+            first_steps(
+                x, j - patch_layout[1], row_start + s - (row - r0) * (e - s), b, j, inner, row_start + s, row_start + e
+            )
     first_weight, second_weight = weights(inner, buffer.dtype.type)
-    _relax(buffer, rect, inner, first_weight, second_weight)
+    _relax(buffer, patch_layout, inner, first_weight, second_weight)
 
 
 @kernel_part
-def end(buffer, rect, x, inner):
+def end(buffer, patch_layout, x, inner):
     """Smooth the solution of a level on a patch.
 
     Args:
         buffer: values of all patches.
-        rect: row of ``patch_layouts``.
+        patch_layout: row of ``patch_layouts``.
         x: solution of the level, which is changed.
         inner: strides within a slab.
     """
-    solution = patch(buffer, rect, inner, SOLUTION)
-    _take(solution, rect, x, inner)
+    solution = patch(buffer, patch_layout, inner, SOLUTION)
+    _copy_from_level(solution, patch_layout, x, inner)
     first_weight, second_weight = weights(inner, buffer.dtype.type)
-    _relax(buffer, rect, inner, second_weight, first_weight)
-    for j in range(rect[1] + 1, rect[2] - 1):
-        give_slab(x, j, solution, rect, j, inner)
+    _relax(buffer, patch_layout, inner, second_weight, first_weight)
+    for j in range(patch_layout[1] + 1, patch_layout[2] - 1):
+        give_slab(x, j, solution, patch_layout, j, inner)
 
 
 @kernel_part
-def give_slab(output, o, solution, rect, slab, inner):
+def give_slab(output, o, solution, patch_layout, slab, inner):
     """Copy one slab of a patch's solution, except the edge of the patch, to a slab of another array.
 
     Nothing happens if the patch does not contain the slab.
@@ -238,13 +240,13 @@ def give_slab(output, o, solution, rect, slab, inner):
         output: the other array.
         o: slab of ``output``.
         solution: solution of the patch, shape (slab, cell).
-        rect: row of ``patch_layouts``.
+        patch_layout: row of ``patch_layouts``.
         slab: slab of the level.
         inner: strides within a slab.
     """
-    if rect[1] < slab < rect[2] - 1:
-        o, j = unsigned(o), unsigned(slab - rect[1])
-        row_cells, (r0, r1, s, e) = row_length(inner, output.shape[1]), _rows(rect, inner)
+    if patch_layout[1] < slab < patch_layout[2] - 1:
+        o, j = unsigned(o), unsigned(slab - patch_layout[1])
+        row_cells, (r0, r1, s, e) = row_length(inner, output.shape[1]), _rows(patch_layout, inner)
         f0, f1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)
         for row in range(f0, f1):
             level_start, patch_start = row * row_cells + s, (row - r0) * (e - s)

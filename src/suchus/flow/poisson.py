@@ -15,7 +15,7 @@ from numba import prange
 
 from suchus.flow.compiled import PAD, Window, compiled, kernel_part, signed, threaded_part, unsigned
 from suchus.flow.multigrid import DINV, FACES, B, X, cycle, faces_of, level
-from suchus.flow.slab import EDGE, MIN_PLANES, block_of, row_count, row_length
+from suchus.flow.slab import EDGE, MIN_SLABS, row_count, row_length, slabs_per_block
 from suchus.flow.stencil import LANES, apply_slabs, copy_slab, largest_size, seal_slab
 
 MIN_ENERGY_RATIO = 1e-3
@@ -66,7 +66,7 @@ def _dots(z, az, r, d, slab, inner):
 
 
 @threaded_part
-def _measure(z, r, d, faces, level_layout, inner, sums):
+def _write_slab_products(z, r, d, faces, level_layout, inner, sums):
     """Write the products (z, A z), (d, A z), (r, z) and (r, d) of each slab to ``sums``; see ``_dots``.
 
     Args:
@@ -76,14 +76,14 @@ def _measure(z, r, d, faces, level_layout, inner, sums):
         faces: face coefficients of the finest level along each axis.
         level_layout: row of the layout for that level; see ``slab``.
         inner: strides within a slab.
-        sums: the products, shape (slab, 4).
+        sums: array that the four products of each slab are written to, shape (slab, 4).
     """
     end = z.shape[0] - PAD
-    block = block_of(inner, end - PAD, MIN_PLANES)
-    for n in prange((end - PAD + block - 1) // block):
-        block_start = PAD + signed(n) * block
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
+    for n in prange((end - PAD + block_size - 1) // block_size):
+        block_start = PAD + signed(n) * block_size
         az = np.empty((1, z.shape[1]), z.dtype)
-        for j in range(block_start, min(block_start + block, end)):
+        for j in range(block_start, min(block_start + block_size, end)):
             apply_slabs(az, 0, z, j - 1, j, j + 1, faces, level_layout, j, inner)
             sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j, inner)
 
@@ -139,11 +139,11 @@ def _first_step(r, z, faces, level_layout, alpha, inner, repeats, sums):
         sums: sum and maximum of each slab, shape (slab, 4).
     """
     end = z.shape[0] - PAD
-    block = block_of(inner, end - PAD, MIN_PLANES)
-    for n in prange((end - PAD + block - 1) // block):
-        block_start = PAD + signed(n) * block
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
+    for n in prange((end - PAD + block_size - 1) // block_size):
+        block_start = PAD + signed(n) * block_size
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
-        for j in range(block_start, min(block_start + block, end)):
+        for j in range(block_start, min(block_start + block_size, end)):
             apply_slabs(q, 0, z, j - 1, j, j + 1, faces, level_layout, j, inner)
             sums[j, 0] = _subtract_scaled(r, j, q, alpha, inner)
             sums[j, 1] = largest_size(r, j, inner, top)
@@ -167,13 +167,13 @@ def _step(r, z, d, faces, level_layout, alpha, beta, inner, repeats, sums):
         sums: sum and maximum of each slab, shape (slab, 4).
     """
     end, unity = z.shape[0] - PAD, z.dtype.type(1.0)
-    block = block_of(inner, end - PAD, MIN_PLANES)
-    for n in prange((end - PAD + block - 1) // block):
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
+    for n in prange((end - PAD + block_size - 1) // block_size):
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         rows = np.empty((3, z.shape[1]), z.dtype)
         lower_slab, mid, upper_slab = 0, 1, 2
-        block_start = PAD + signed(n) * block
-        for j in range(block_start - 1, min(block_start + block, end) + 1):
+        block_start = PAD + signed(n) * block_size
+        for j in range(block_start - 1, min(block_start + block_size, end) + 1):
             lower_slab, mid, upper_slab = mid, upper_slab, lower_slab
             _mix(rows, upper_slab, z, d, j, unity, beta)
             if j > block_start:
@@ -200,10 +200,10 @@ def _keep(x, e, z, d, alpha, beta, previous_alpha, inner):
         previous_alpha: step length along ``d`` that is not yet in ``x``.
         inner: strides within a slab.
     """
-    unity, block = z.dtype.type(1.0), block_of(inner, x.shape[0], MIN_PLANES)
-    for n in prange((x.shape[0] + block - 1) // block):
-        block_start = signed(n) * block
-        for j in range(block_start, min(block_start + block, x.shape[0])):
+    unity, block_size = z.dtype.type(1.0), slabs_per_block(inner, x.shape[0], MIN_SLABS)
+    for n in prange((x.shape[0] + block_size - 1) // block_size):
+        block_start = signed(n) * block_size
+        for j in range(block_start, min(block_start + block_size, x.shape[0])):
             _mix(e, j, z, d, j, unity, beta)
             if previous_alpha != 0:
                 _mix(x, j, z, d, j, alpha, alpha * beta + previous_alpha)
@@ -238,7 +238,7 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
         d: direction, shape (slab, cell).
         q: work array, shape (slab, cell).
         store: values of all multigrid levels.
-        layout: of the levels; see ``slab``.
+        layout: layout of the levels; see ``slab``.
         buffer: values of the patches; see ``patch``.
         rects: the patches; see ``patch``.
         inner: strides within a slab.
@@ -269,7 +269,7 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
             _keep(x, q, z, d, real(alpha), real(beta), real(previous_alpha), inner)
             d, q, previous_alpha, is_pending, is_stored = q, d, 0.0, False, True
         cycle(d if k == 0 else z, store, layout, buffer, rects, inner, repeats)
-        _measure(d if k == 0 else z, r, d, faces, level_layout, inner, sums)
+        _write_slab_products(d if k == 0 else z, r, d, faces, level_layout, inner, sums)
         z_az, d_az, r_z = _total(sums, 0), _total(sums, 1), _total(sums, 2)
         turn = 0.0 if k == 0 else -d_az / d_ad
         d_ad = z_az + turn * d_az
@@ -339,7 +339,7 @@ def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
     """Return the store of a layout, in which all coefficients are 1 as in water without bodies.
 
     Args:
-        layout: of the levels; see ``levels``.
+        layout: layout of the levels; see ``levels``.
         dtype: precision of the fields.
     """
     ndim = layout.shape[1] // 3
@@ -355,7 +355,7 @@ def place_window(layout: np.ndarray, window: Window) -> None:
     """Write a window and its coarser images to the layout of all levels.
 
     Args:
-        layout: of the levels; see ``slab``.
+        layout: layout of the levels; see ``slab``.
         window: padded indices, first and end along each axis, the last axis first.
     """
     ndim = layout.shape[1] // 3

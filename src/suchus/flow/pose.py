@@ -84,17 +84,20 @@ class Pose:
     """In space, angular velocity about y [rad/s]."""
 
     def in_dimensions(self, ndim: int) -> "Pose":
-        """Return the same pose with position and velocity of a domain with 2 or 3 axes; a missing z is 0.
+        """Return the same pose, with as many components of position and velocity as the domain has axes.
+
+        A missing z is 0.
 
         Args:
             ndim: number of axes of the domain, 2 or 3.
 
         Raises:
-            InvalidDesign: another number of components, an infinite number, or pitch or roll in the plane.
+            InvalidDesign: another number of components, a number that is not finite, or pitch, roll, ``spin_x`` or
+                ``spin_y`` in the plane.
         """
-        turns = self.angle + self.spin + self.pitch + self.roll + self.spin_x + self.spin_y
-        if not isfinite(sum(self.position) + sum(self.velocity) + turns):
-            self._refuse_endless()
+        scalars = (self.angle, self.spin, self.pitch, self.roll, self.spin_x, self.spin_y)
+        if not isfinite(sum(self.position) + sum(self.velocity) + sum(scalars)):
+            self._refuse_non_finite()
         position, velocity = (
             (*vector, 0.0) if len(vector) == 2 and ndim == 3 else vector for vector in (self.position, self.velocity)
         )
@@ -112,7 +115,7 @@ class Pose:
             return self
         return replace(self, position=position, velocity=velocity)
 
-    def _refuse_endless(self) -> None:
+    def _refuse_non_finite(self) -> None:
         """Refuse numbers that are not finite.
 
         Raises:
@@ -167,13 +170,16 @@ class Pose:
 
         Args:
             points: x, y and z in the world frame, shape (3, ...) [m].
+
+        Returns:
+            Components of the velocity along the axes x, y and z of the world, each of the points' shape [m/s].
         """
         pose = self.in_dimensions(3)
         relative = [coordinate - origin for coordinate, origin in zip(points, pose.position, strict=True)]
-        x, y, z = (
+        vx, vy, vz = (
             linear + rotational for linear, rotational in zip(pose.velocity, cross(pose.spins, relative), strict=True)
         )
-        return x, y, z
+        return vx, vy, vz
 
     def to_world(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return points of the body's frame in the world [m]."""

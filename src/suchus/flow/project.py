@@ -8,13 +8,13 @@ from numba import prange
 from suchus.flow.compiled import PAD, UNIT, compiled, kernel_part, signed, threaded, unsigned
 from suchus.flow.slab import (
     EDGE,
-    MIN_PLANES,
-    block_of,
+    MIN_SLABS,
     meets,
     near_shift,
     row_count,
     row_length,
     run_of,
+    slabs_per_block,
     window_columns,
     window_rows,
 )
@@ -60,11 +60,11 @@ def residual(r, velocity, source, dinv, level_layout, near_layout, mean, inner, 
         sums: summed and largest absolute value, shape (slab, 4).
     """
     end = r.shape[0] - PAD
-    block = block_of(inner, end - PAD, MIN_PLANES)
-    for n in prange((end - PAD + block - 1) // block):
-        start = PAD + signed(n) * block
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
+    for n in prange((end - PAD + block_size - 1) // block_size):
+        start = PAD + signed(n) * block_size
         top = np.empty(LANES, r.dtype)
-        for j in range(start, min(start + block, end)):
+        for j in range(start, min(start + block_size, end)):
             _divergence_slab(r, velocity, j, mean, inner)
             if meets(level_layout, inner, j):
                 c, row_cells, (r0, r1) = unsigned(j), row_length(inner, r.shape[1]), window_rows(level_layout, inner)
@@ -252,14 +252,14 @@ def correct(velocity, p, d, z, a, b, passage, level_layout, inner, gain):
         gain: factor from ``x`` to the pressure.
     """
     end = p.shape[0] - PAD
-    block = block_of(inner, end - PAD, MIN_PLANES)
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
     level = p.dtype.type(a * _along_sides(d, inner) + b * _along_sides(z, inner))
-    for n in prange((end - PAD + block - 1) // block):
-        block_start = PAD + signed(n) * block
+    for n in prange((end - PAD + block_size - 1) // block_size):
+        block_start = PAD + signed(n) * block_size
         x = np.empty((2, p.shape[1]), p.dtype)
         lower_slab, mid = 0, 1
         _add(x, mid, d, z, block_start - 1, a, b)
-        for j in range(block_start, min(block_start + block, end)):
+        for j in range(block_start, min(block_start + block_size, end)):
             lower_slab, mid = mid, lower_slab
             _add(x, mid, d, z, j, a, b)
             _correct_slab(velocity, p, j, x, lower_slab, mid, passage, level_layout, level, gain, inner)
@@ -283,10 +283,10 @@ def _speeds(output, velocity, slab, inner):
 def fastest(velocity, inner, sums):
     """Write the largest sum of absolute velocity components in each slab to ``sums[:, 0]``."""
     end = velocity.shape[1] - PAD
-    block = block_of(inner, end - PAD, MIN_PLANES)
-    for n in prange((end - PAD + block - 1) // block):
-        start = PAD + signed(n) * block
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
+    for n in prange((end - PAD + block_size - 1) // block_size):
+        start = PAD + signed(n) * block_size
         speed, top = np.empty((1, velocity.shape[2]), velocity.dtype), np.empty(LANES, velocity.dtype)
-        for j in range(start, min(start + block, end)):
+        for j in range(start, min(start + block_size, end)):
             _speeds(speed, velocity, j, inner)
             sums[j, 0] = largest_size(speed, 0, inner, top)

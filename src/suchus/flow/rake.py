@@ -44,7 +44,7 @@ def sample_water(water: Fluid, points: np.ndarray, frame: np.ndarray, density: f
         water: the fields.
         points: positions, shape (point, axis), or one point (axis,) [m].
         frame: position and velocity of the grid, shape (2, axis) [m, m/s].
-        density: of the water [kg/m^3].
+        density: density of the water [kg/m^3].
 
     Raises:
         InvalidDesign: a point that is not in the domain.

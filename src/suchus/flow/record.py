@@ -193,11 +193,11 @@ class Record:
 
         Args:
             body: its name or number.
-            length: of the reference, say the diameter or chord [m].
-            speed: of the reference, say that of the stream [m/s].
-            density: of the water; ``Setup`` has the same default [kg/m^3].
+            length: length of the reference, say the diameter or chord [m].
+            speed: speed of the reference, say that of the stream [m/s].
+            density: density of the water; ``Setup`` has the same default [kg/m^3].
             stream_angle: direction of the stream, counter-clockwise from x in the plane of x and y [rad].
-            area: of the reference, in space and only there, say the frontal area [m^2].
+            area: area of the reference, in space and only there, say the frontal area [m^2].
 
         Raises:
             UnknownName: there is no such body.

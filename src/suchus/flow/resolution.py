@@ -62,7 +62,7 @@ def cells_across(length: float, speed: float, viscosity: float, cell: float) -> 
     """Return the cells across the boundary layer of a body; infinite below Reynolds number 1, where there is none.
 
     Args:
-        length: of the body [m].
+        length: length of the body [m].
         speed: fastest speed of its surface through the water [m/s].
         viscosity: kinematic [m^2/s].
         cell: side of a cell [m].

@@ -317,7 +317,7 @@ class Setup:
             body: the body.
             markers: its outline or skin at that time.
             stream: velocity of the far water, in the frame of the markers [m/s].
-            time: at which it is estimated [s].
+            time: time at which it is estimated [s].
             slack: factor by which the speed may exceed what the grid resolves [-].
 
         Raises:

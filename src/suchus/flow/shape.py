@@ -102,7 +102,7 @@ def check_positive(name: str, value: float) -> None:
     """Refuse a length that is not a positive number.
 
     Args:
-        name: of the length, for the message.
+        name: name of the length, for the message.
         value: the length [m].
 
     Raises:

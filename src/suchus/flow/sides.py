@@ -48,7 +48,7 @@ class Side:
 
         Args:
             time: time [s].
-            ndim: of the domain, 2 or 3.
+            ndim: number of axes of the domain, 2 or 3.
         """
         del time, ndim
         return None
@@ -221,7 +221,7 @@ class Sides:
         A side without friction may travel along itself. Open and periodic sides may travel in any direction.
 
         Args:
-            ndim: of the domain.
+            ndim: number of axes of the domain.
             travels: whether the grid travels along x, y and z.
             body: name of the body that it travels with.
 

@@ -194,7 +194,7 @@ class Simulation(Fields):
         """Return the pose of a body in the world frame.
 
         Args:
-            name: of the body.
+            name: name of the body.
             time: another time than the present one, for a body that is not free [s].
         """
         body = self._bodies[self._number(name)]
@@ -280,7 +280,7 @@ class Simulation(Fields):
         """Compute the added mass of bodies that are pushed and have not moved yet; their first step needs it.
 
         Args:
-            offset: of the wall in the first step [cells].
+            offset: offset of the wall in the first step [cells].
         """
         if self._log.rows:
             return
@@ -458,7 +458,7 @@ class Simulation(Fields):
         """Return the force of the water on a body and on each of its parts in the last step.
 
         Args:
-            name: of the body.
+            name: name of the body.
 
         Raises:
             UnknownName: there is no such body.
@@ -511,7 +511,7 @@ class Simulation(Fields):
         """Return the generalised added mass of a body for motions of its parts; sides and other bodies stay fixed.
 
         Args:
-            name: of the body.
+            name: name of the body.
             modes: motions of its parts, one a row of the matrix; see ``added.generalised_added_mass``.
 
         Raises:
@@ -712,7 +712,7 @@ class Simulation(Fields):
         Only the part of a body inside the domain counts if mirrors cut it.
 
         Args:
-            name: of the body; None takes the first one.
+            name: name of the body; None takes the first one.
 
         Raises:
             UnknownName: there is no such body, or none at all.

@@ -26,8 +26,8 @@ EDGE = unsigned(PAD)
 ZERO = unsigned(0)
 """Zero as an unsigned integer, for the kernels [-]."""
 
-MAX_PLANES, MIN_PLANES = 16, 8
-"""Planes that one thread takes at a time: the most, and the fewest in a thin domain [-]."""
+MAX_SLABS, MIN_SLABS = 16, 8
+"""Most slabs that one thread takes at a time in space, and least number in a thin domain [-]."""
 
 Strides = tuple[np.uint64, ...]
 """Strides along the axes of a slab [-]."""
@@ -45,18 +45,18 @@ def strides_like(inner, row_cells):
 
 
 @kernel_part
-def block_of(inner, count, min_planes):
+def slabs_per_block(inner, count, min_slabs):
     """Return how many slabs a thread takes at a time; in space the number of blocks is even where possible.
 
     Args:
         inner: strides within a slab.
-        count: slabs in the whole loop.
-        min_planes: fewest planes of a block in space.
+        count: number of slabs in the whole loop.
+        min_slabs: least number of slabs of a block in space.
     """
     if len(inner) == 1:
         return BLOCK
-    blocks = 2 * ((count + 2 * MAX_PLANES - 1) // (2 * MAX_PLANES))
-    return max((count + blocks - 1) // blocks, min_planes)
+    blocks = 2 * ((count + 2 * MAX_SLABS - 1) // (2 * MAX_SLABS))
+    return max((count + blocks - 1) // blocks, min_slabs)
 
 
 @kernel_part

@@ -32,7 +32,7 @@ def to_degrees_of_freedom(values: Sequence[float], ndim: int) -> np.ndarray:
 
     Args:
         values: along x and y and about z, or all six.
-        ndim: of the domain, 2 or 3.
+        ndim: number of axes of the domain, 2 or 3.
     """
     if ndim == 2 or len(values) == 6:
         return np.array(values)
@@ -193,7 +193,7 @@ class Swimmer:
 
         Args:
             place: centre of mass and rotation vector [m, rad].
-            velocity: of the centre of mass [m/s].
+            velocity: velocity of the centre of mass [m/s].
             spins: angular velocity about x, y and z [rad/s].
         """
         yaw, pitch, roll = self._angles(place)
@@ -276,7 +276,7 @@ class Swimmer:
         Args:
             time: start of the step [s].
             dt: length of the step [s].
-            water_density: of the water [kg/m^3].
+            water_density: density of the water [kg/m^3].
             contact: force and torque of other bodies that nearly touch, shape (3,) [N/m, N].
 
         Raises:
@@ -292,7 +292,7 @@ class Swimmer:
         """Return whether weight, springs, dampers or a force act on the body besides the water.
 
         Args:
-            water_density: of the water [kg/m^3].
+            water_density: density of the water [kg/m^3].
         """
         body = self.body
         is_heavy = body.density not in (None, water_density) and any(body.gravity)
@@ -309,7 +309,7 @@ class Swimmer:
         Args:
             time: start of the step [s].
             dt: length of the step that the fields allow [s].
-            water_density: of the water [kg/m^3].
+            water_density: density of the water [kg/m^3].
             contact: see ``advance``.
             grid_velocity: velocity relative to which the distance counts, shape (axis,) [m/s].
             reach: distance of the surface from the centre of mass [m].
@@ -339,7 +339,7 @@ class Swimmer:
         """Return the greatest speed of a point of the surface [m/s].
 
         Args:
-            rate: of each degree of freedom [m/s, rad/s].
+            rate: rate of each degree of freedom [m/s, rad/s].
             grid_velocity: velocity relative to which it counts [m/s].
             reach: distance of the surface from the centre of mass [m].
         """
@@ -354,7 +354,7 @@ class Swimmer:
         Args:
             time: start of the step [s].
             dt: length of the step [s].
-            water_density: of the water [kg/m^3].
+            water_density: density of the water [kg/m^3].
             contact: force and torque of other bodies that nearly touch, or None.
             force_moment: fraction of the step at which the body's own force is evaluated [-].
         """
@@ -391,7 +391,7 @@ class Swimmer:
         """Return the momentum still owed at the start of a step [kg/s, kg m/s; in space kg m/s, kg m^2/s].
 
         Args:
-            momentum: of the body at the start of the step, in the same units.
+            momentum: momentum of the body at the start of the step, in the same units.
         """
         if not self.steps:
             return self.residual_impulse
@@ -417,7 +417,7 @@ class Swimmer:
 
         Args:
             total_inertia: mass of the body and added mass, with the terms of springs and dampers, a square matrix.
-            force: on a body that does not accelerate.
+            force: force on a body that does not accelerate.
         """
         push = np.zeros(self.coordinates.size)
         push[self.is_free] = np.linalg.solve(total_inertia[np.ix_(self.is_free, self.is_free)], force[self.is_free])

@@ -62,7 +62,7 @@ def resting_twists(rows: int, ndim: int) -> Twists:
 
     Args:
         rows: number of parts.
-        ndim: of the domain, 2 or 3.
+        ndim: number of axes of the domain, 2 or 3.
     """
     turns = len(ROTATION_PLANES[ndim])
     return Twists(
@@ -119,7 +119,7 @@ def clear_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
     """Set values beyond the mirrors that cut a body to 0.
 
     Args:
-        values: on the faces of a window, the last axis first.
+        values: values on the faces of a window, the last axis first.
         mirror_cuts: whether the mirror at the low and the high end of each axis cuts the body.
     """
     for k, is_cut in enumerate(mirror_cuts):

@@ -9,7 +9,7 @@ def velocity_gradient(velocity: np.ndarray, h: float) -> np.ndarray:
     Central differences inside, one-sided ones on the sides; both are exact where the velocity is linear.
 
     Args:
-        velocity: at the cell centres, shape (3, z, y, x) [m/s].
+        velocity: velocity at the cell centres, shape (3, z, y, x) [m/s].
         h: cell [m].
     """
     return np.stack([np.stack(np.gradient(component, h)[::-1]) for component in velocity])

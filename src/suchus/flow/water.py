@@ -55,7 +55,7 @@ def _inflow(velocity: np.ndarray, axis: int) -> np.ndarray:
     """Return the inflow into the cells of a window through their faces across an axis, that axis first.
 
     Args:
-        velocity: on the faces of the window.
+        velocity: velocity on the faces of the window.
         axis: index of the axis in the array.
     """
     faces = np.moveaxis(velocity, axis, 0)
@@ -217,7 +217,7 @@ class Fluid:
         """Return values of another window in the present one, shape (axis, ...), 0 outside the other window.
 
         Args:
-            values: on the faces of the other window, shape (axis, ...).
+            values: values on the faces of the other window, shape (axis, ...).
             window: the other window.
         """
         result = np.zeros_like(self.b)
@@ -416,7 +416,7 @@ class Fluid:
             stream: velocity of the far water at the end of the step [m/s].
             push: uniform acceleration of the water [m/s^2].
             limits: mean and largest divergence that may be left [m/s per cell].
-            time: of the end of the step, for sides that change [s].
+            time: time of the end of the step, for sides that change [s].
 
         On return the velocity is divergence-free to ``limits`` outside the bodies and fits the sides.
         """
@@ -441,7 +441,7 @@ class Fluid:
             dt: time step [s].
             stream: velocity of the far water at the end of the step [m/s].
             push: uniform acceleration of the water [m/s^2].
-            time: of the end of the step [s].
+            time: time of the end of the step [s].
 
         Returns:
             length of the step [cells per (m/s)] and the acceleration times the cell [(m/s)^2].
@@ -744,7 +744,7 @@ class Fluid:
         The result is a work array: use it before the next call.
 
         Args:
-            acceleration: on the faces of the window, shape (axis, ...).
+            acceleration: acceleration on the faces of the window, shape (axis, ...).
             limit: mean divergence that may be left.
 
         Raises:
@@ -756,7 +756,7 @@ class Fluid:
         """Return ``potential`` with an additional flow through the sides.
 
         Args:
-            acceleration: on the faces of the window, shape (axis, ...).
+            acceleration: acceleration on the faces of the window, shape (axis, ...).
             side_velocity: flow through the sides, as a velocity of the whole grid; None for none.
             limit: mean divergence that may be left.
         """

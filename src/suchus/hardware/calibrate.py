@@ -13,7 +13,7 @@ from suchus.hardware.drive import TickClock
 from suchus.hardware.rig import Rig
 
 NUDGE = radians(5.0)
-"""By how much a servo is moved so that people see which one it is [rad]."""
+"""Angle by which a servo is moved so that people see which one it is [rad]."""
 _PACE = radians(20.0)  # [rad/s]; how fast
 _READINGS = 10  # of each servo in a known posture; their median counts
 _MIN_SAMPLES = 50  # samples from which a servo is judged
@@ -95,7 +95,7 @@ def find_zeros(rig: Rig, posture: np.ndarray) -> tuple[Wiring, np.ndarray]:
 
     Args:
         rig: the open robot, which somebody holds in a posture.
-        posture: that it is held in, shape (servo,) [rad].
+        posture: posture that it is held in, shape (servo,) [rad].
 
     Raises:
         BusFailure: a servo does not answer.
@@ -160,7 +160,7 @@ def fit_log(record: xr.Dataset) -> Mapping[str, ServoFit]:
     from currents, and are as accurate as those.
 
     Args:
-        record: of one run; its goals act after the sample in which they stand.
+        record: record of one run; its goals act after the sample in which they stand.
 
     Raises:
         IncompatibleRecord: it holds no torques, or fewer samples than a fit needs.

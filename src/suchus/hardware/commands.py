@@ -19,7 +19,7 @@ class Commands(NamedTuple):
     """Commanded angles of the servos [rad], in the order of the robot's layout; the last sample equals the first."""
 
     time: Float[np.ndarray, " sample"]
-    """From the beginning of the first cycle [s]."""
+    """Time from the beginning of the first cycle [s]."""
     angles: Float[np.ndarray, "sample servo"]
     """Angles of the joints; for a cable that of its pulley, or the travel of its actuator over ``pulleys`` [rad]."""
     speeds: Float[np.ndarray, "sample servo"]
@@ -38,10 +38,10 @@ def commands(robot: Robot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> 
     A cycle has the whole number of intervals that is nearest to the map's rate.
 
     Args:
-        robot: who walks.
-        gait: how.
+        robot: robot that walks.
+        gait: gait that is walked.
         servo_map: how its servos are mounted.
-        cycles: how many.
+        cycles: number of cycles.
 
     Raises:
         OutsideLimits: the joints cannot follow the gait, or the rate gives a cycle fewer than 8 samples.
@@ -116,7 +116,7 @@ def trajectory_text(robot: Robot, samples: Commands, *, virtual: bool = False) -
     The URDF has no cable: all hinges that a cable bends get an equal part of the bend that its pulley gives.
 
     Args:
-        robot: who walks.
+        robot: robot that walks.
         samples: the commands.
         virtual: whether each cable is a joint of its own, that of its pulley, as in the URDF of ``hardware.ros``.
 

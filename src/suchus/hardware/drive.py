@@ -49,7 +49,7 @@ class WallClock:
     """Ticks by the time of this computer.
 
     Args:
-        period: of a tick [s].
+        period: period of a tick [s].
     """
 
     def __init__(self, period: float) -> None:
@@ -77,7 +77,7 @@ class BusClock:
     """Clock of an emulator that the host steps: no tick is late.
 
     Args:
-        rig: of emulated servos.
+        rig: rig of emulated servos.
     """
 
     def __init__(self, rig: Rig) -> None:
@@ -177,7 +177,7 @@ def drive(
 
     Args:
         rig: the open robot.
-        gait: in which it moves.
+        gait: gait in which it moves.
         control: what decides; open loop if None.
         settings: how; as by default if None.
         clock: that of this computer if None.
@@ -352,7 +352,7 @@ class _Drive:
         """Reset the watchdogs of the servos if they heard nothing for too long.
 
         Args:
-            time: since the first tick [s].
+            time: time since the first tick [s].
         """
         silence, self._last_goal_time = time - self._last_goal_time, time
         if silence > _WATCHDOG_FRACTION * self._rig.patience:

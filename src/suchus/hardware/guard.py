@@ -21,7 +21,7 @@ class DriveLimits:
     """Share of the torque that a servo can give continuously (``Motor.continuous_torque``), root mean square over
     ``memory``, from which people are warned [-]; it is heat that stops the robot."""
     memory: float = 10.0
-    """Over which the load is averaged [s]."""
+    """Time over which the load is averaged [s]."""
     volts: float = 0.0
     """Voltage below which the robot is stopped [V]: 3.2 V for each lithium cell; 0 leaves it to the servos."""
     silent: int = 10

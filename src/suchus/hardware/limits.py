@@ -91,9 +91,9 @@ def check_loads(
     """Refuse a gait that a servo cannot follow because it is at its torque limit.
 
     Args:
-        robot: who walks.
-        gait: how.
-        servo_loads: from ``loads``.
+        robot: robot that walks.
+        gait: gait that is walked.
+        servo_loads: loads of servos from ``loads``.
         at_limit: share of the walk from which on a servo counts as standing at its limit [-].
         tracking: how far such a servo may be from its commanded angle [rad].
 

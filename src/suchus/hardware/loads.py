@@ -85,7 +85,7 @@ def cases(
     """Return the load cases of a robot: gaits on level ground, on slopes and with faults, standing up, a swim.
 
     Args:
-        robot: who.
+        robot: the robot.
         gaits: how it walks.
         slopes: uphill, for each gait [rad].
         faults: one after the other, for each gait.
@@ -176,9 +176,9 @@ def loads_of_cases(
     """Return the loads of each servo in several cases, with the torque that four times as strong servos would give.
 
     Args:
-        robot: who.
+        robot: the robot.
         load_cases: what it does.
-        timestep: of the physics [s]; that of the robot's size if None.
+        timestep: time step of the physics [s]; that of the robot's size if None.
         progress: told the share that is done.
 
     Raises:
@@ -232,7 +232,7 @@ def measure_loads(robot: Robot, walk: xr.Dataset, strong_walk: xr.Dataset | None
     """Return the loads of each servo in a record.
 
     Args:
-        robot: whose record it is, with its windings.
+        robot: robot whose record it is, with its windings.
         walk: the part that counts.
         strong_walk: the same of ``with_strong_servos`` servos; that of the robot itself if None.
     """
@@ -268,8 +268,8 @@ def _electric(servo: Servo, mean_square: np.ndarray, power: np.ndarray) -> dict[
     """Return currents and heat of a servo; empty without a winding. Currents are means over control periods.
 
     Args:
-        servo: with its winding.
-        mean_square: of the torque in each control period, shape (time,) [N2 m2].
+        servo: servo with its winding.
+        mean_square: mean square of the torque in each control period, shape (time,) [N2 m2].
         power: mean mechanical power in it, shape (time,) [W].
     """
     winding = servo.winding
@@ -296,8 +296,8 @@ def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
     """Return the fraction of the time that each servo is at its limit [-], over other dimensions of a record.
 
     Args:
-        robot: whose record it is.
-        record: of the time that counts, as ``metrics.time_window`` cuts it.
+        robot: robot whose record it is.
+        record: record of the time that counts, as ``metrics.time_window`` cuts it.
     """
     full = xr.DataArray([full_from(robot.servo(str(name))) for name in record.servo.values], dims="servo")
     return (record.servo_torque_use >= full).mean("time")
@@ -308,8 +308,8 @@ def torque_use(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np
 
     Args:
         servo: another servo than that of the record.
-        torque: that a movement asks for [N m].
-        speed: of the shaft [rad/s].
+        torque: torque that a movement asks for [N m].
+        speed: speed of the shaft [rad/s].
     """
     available_torque = servo.available_torque(np.sign(torque) * speed)
     return float(np.quantile(np.abs(torque) / np.maximum(available_torque, 1e-9), 1.0 - AT_LIMIT))

@@ -17,8 +17,8 @@ class DriveLog:
     """Collects ticks, and converts them to a record.
 
     Args:
-        robot: that is driven.
-        gait: in which it moves.
+        robot: robot that is driven.
+        gait: gait in which it moves.
     """
 
     def __init__(self, robot: Robot, gait: Gait) -> None:
@@ -33,8 +33,9 @@ class DriveLog:
         """Add a tick.
 
         Args:
-            time: at which it was planned, since the controller's beginning [s].
-            values: by the names of ``record.VARIABLES`` and ``record.BUS_VARIABLES``; those left out are not known.
+            time: time at which it was planned, since the controller's beginning [s].
+            values: values by the names of ``record.VARIABLES`` and ``record.BUS_VARIABLES``; those left out are not
+                known.
         """
         self._times.append(time)
         self._rows.append({name: np.array(value, dtype=float) for name, value in values.items()})
@@ -114,8 +115,8 @@ def fix_in_place(record: xr.Dataset, robot: Robot) -> xr.Dataset:
     """Return a log that can be shown: a robot without a measured position is fixed above the ground, without loads.
 
     Args:
-        record: of one run; one that says where the robot was is returned as it is.
-        robot: whose it is.
+        record: record of one run; one that says where the robot was is returned as it is.
+        robot: robot of the record.
     """
     if "servo_heard" not in record or np.isfinite(record.position.values).any():
         return record

@@ -41,7 +41,7 @@ class BodyPart:
     """Mass in the simulation [kg]; of a servo, that of the one that is bought; NaN where that is not known."""
     centre: tuple[float, float, float]
     """Centre of mass in the frame of its body [m]."""
-    about: str = ""
+    description: str = ""
     """What it is, in words."""
 
 
@@ -125,7 +125,7 @@ class Cord:
     section: float
     """Length of a cord from the first plate to the last with the tail straight [m]."""
     travel: float
-    """By how much a cord is drawn in at the greatest bend [m]."""
+    """Length by which a cord is drawn in at the greatest bend [m]."""
     table: tuple[tuple[float, float, float, float], ...]
     """Bend [rad], angle of the pulley [rad] or place of the linear actuator [m], change of the cord on the side of the
     bend and of the other one [m]."""
@@ -154,7 +154,7 @@ class Buoyancy:
     """Volumes that carry a robot in water."""
 
     mass: float
-    """Of the robot [kg]."""
+    """Mass of the robot [kg]."""
     bare: float
     """Volume of its bodies without foam [m3]."""
     foam: tuple[tuple[str, float, float], ...]
@@ -210,10 +210,10 @@ def sheet(
     """Return what a robot is built of.
 
     Args:
-        robot: whose servos' windings name the servos that are bought.
+        robot: robot whose servos' windings name the servos that are bought.
         motors: the servos that are sold; those that suchus knows if None.
         wall: thickness of printed walls [m].
-        density: of what is printed [kg/m3].
+        density: density of what is printed [kg/m3].
     """
     require("parts", "wall", wall, 1e-5, 0.1, "m")
     require("parts", "density", density, 1.0, 2e4, "kg/m3")
@@ -233,7 +233,7 @@ def sheet(
         bought=motor_by_servo,
         parts=parts,
         bodies=bodies,
-        centre=_point(centre_of_mass(robot, zero_angles)),
+        centre=_rounded_point(centre_of_mass(robot, zero_angles)),
         built=_built_centre(robot, parts, wall * density),
         joints=_joints(robot),
         links=_links(robot),
@@ -258,7 +258,8 @@ def area(kind: str, size: Sequence[float]) -> float:
     return float(4 * pi * ((a * b + a * c + b * c) / 3) ** (1 / 1.6075))
 
 
-def _point(values: np.ndarray | Sequence[float]) -> tuple[float, float, float]:
+def _rounded_point(values: np.ndarray | Sequence[float]) -> tuple[float, float, float]:
+    """Return the coordinates x, y and z as rounded numbers, without a negative zero [m]."""
     x, y, z = (round(float(value), 12) + 0.0 for value in values)
     return x, y, z
 
@@ -270,17 +271,17 @@ def _shapes(robot: Robot) -> list[BodyPart]:
     shape_parts = []
     for body in place.bodies:
         for shape in segments[body.name].shapes if body.name in segments else ():
-            centre = _point((shape.centre[0] + body.shift, *shape.centre[1:]))
+            centre = _rounded_point((shape.centre[0] + body.shift, *shape.centre[1:]))
             if isinstance(shape, Rod):
                 length = float(np.linalg.norm(np.subtract(shape.end, shape.start)))
                 size = (length + 2 * shape.radius, 2 * shape.radius, 2 * shape.radius)
                 description = f"rod of {1000 * length:.1f} mm between the middles of its round ends"
                 shape_parts.append(BodyPart(body=body.name, name=shape.name, kind="rod", size=size, mass=shape.mass,
-                                  centre=centre, about=description))  # fmt: skip
+                                  centre=centre, description=description))  # fmt: skip
             else:
                 a, b, c = shape.half
                 shape_parts.append(BodyPart(body=body.name, name=shape.name, kind="shell", size=(2 * a, 2 * b, 2 * c),
-                                  mass=shape.mass, centre=centre, about="shell, an ellipsoid"))  # fmt: skip
+                                  mass=shape.mass, centre=centre, description="shell, an ellipsoid"))  # fmt: skip
     for limb in place.limbs:
         links = limb.girdle.limb.links
         for i, link in enumerate(links):
@@ -292,18 +293,18 @@ def _shapes(robot: Robot) -> list[BodyPart]:
             )
             shape_parts.append(BodyPart(body=carrier, name=f"{limb.name}_{link.name}", kind="rod", size=size,
                               mass=link.mass,
-                              centre=_point(np.array(end) / 2), about=description))  # fmt: skip
+                              centre=_rounded_point(np.array(end) / 2), description=description))  # fmt: skip
             if i == len(links) - 1:
                 foot = limb.girdle.limb.foot
                 ball = 2 * foot.radius
                 shape_parts.append(BodyPart(body=carrier, name=f"{limb.name}_foot", kind="foot",
                               size=(ball, ball, ball),
-                                  mass=foot.mass, centre=_point(end), about="rubber ball"))  # fmt: skip
+                                  mass=foot.mass, centre=_rounded_point(end), description="rubber ball"))  # fmt: skip
     return shape_parts
 
 
 def _foam(robot: Robot) -> list[BodyPart]:
-    """Return the blocks of foam of the hull, as cubes."""
+    """Return one part for each block of foam of the hull: a cube of its volume, in the frame of its body."""
     hull = robot.hull
     if hull is None:
         return []
@@ -315,7 +316,7 @@ def _foam(robot: Robot) -> list[BodyPart]:
         foam_parts.append(BodyPart(body=foam_block.body, name=f"{foam_block.body}_foam", kind="foam",
                           size=(side, side, side),
                           mass=hull.density * foam_block.volume,
-                          centre=_point(centres[foam_block.body]), about=description))  # fmt: skip
+                          centre=_rounded_point(centres[foam_block.body]), description=description))  # fmt: skip
     return foam_parts
 
 
@@ -326,12 +327,12 @@ def _seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
     for body in place.bodies:
         parent = place.bodies[body.parent] if body.parent >= 0 else body
         for _, name, _ in body.hinges:
-            seats[name] = (parent.name, _point(body.offset))
+            seats[name] = (parent.name, _rounded_point(body.offset))
     for cable in place.robot.cables:
         seats[cable.name] = seats[cable.hinges[0]]
         root = next((b for b in place.bodies if b.name == seats[cable.name][0] and b.parent >= 0), None)
         if root is not None:  # the pulley sits ahead of the section that it bends
-            seats[cable.name] = (place.bodies[root.parent].name, _point(root.offset))
+            seats[cable.name] = (place.bodies[root.parent].name, _rounded_point(root.offset))
     return {name: seats[name] for name in place.servos}
 
 
@@ -359,7 +360,7 @@ def _servos(
                 size=(nan, nan, nan) if motor is None else motor.size,
                 mass=nan if motor is None else motor.mass,
                 centre=position,
-                about=description if motor is None else motor.name,
+                description=description if motor is None else motor.name,
             )
         )
     return servo_parts
@@ -378,7 +379,7 @@ def _bodies(
         robot: the design.
         motor_by_servo: servos that are sold, by name.
         seats: body and position of each servo.
-        parts: of all bodies.
+        parts: parts of all bodies.
         skin: mass of a printed wall per area [kg/m2].
     """
     masses, _ = body_masses(robot)
@@ -416,7 +417,7 @@ def _built_centre(robot: Robot, parts: Sequence[BodyPart], skin: float) -> tuple
         )
         points.append(origin_by_body[body_part.body] + np.array(body_part.centre))
     total = float(np.sum(weights))
-    return _point(np.array(weights) @ np.array(points) / total)
+    return _rounded_point(np.array(weights) @ np.array(points) / total)
 
 
 def _joints(robot: Robot) -> tuple[HingePlace, ...]:
@@ -429,8 +430,8 @@ def _joints(robot: Robot) -> tuple[HingePlace, ...]:
         parent = place.bodies[body.parent].name if body.parent >= 0 else ""
         for hinge, name, axis in body.hinges:
             drive = name if isinstance(hinge.servo, Servo) else cable_by_hinge.get(name, "spring")
-            hinges.append(HingePlace(name=name, body=body.name, parent=parent, at=_point(origins[i]), axis=_point(axis),
-                               range=hinge.range, driven_by=drive))  # fmt: skip
+            hinges.append(HingePlace(name=name, body=body.name, parent=parent, at=_rounded_point(origins[i]),
+                               axis=_rounded_point(axis), range=hinge.range, driven_by=drive))  # fmt: skip
     return tuple(hinges)
 
 

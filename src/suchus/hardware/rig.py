@@ -91,7 +91,7 @@ class Rig:
         wiring: what hangs where.
         ports: to its buses, in their order; by default those that it names are opened.
         has_clock: whether an emulator's clock is told the time.
-        rate: of ticks [Hz]; that of the robot's control period if None.
+        rate: rate of ticks [Hz]; that of the robot's control period if None.
         limp_servos: names of servos that do without: they are not asked, and stay limp.
         required_senses: fields of ``control.Sensed`` that must be known at every tick; all if None. Boards that feel
             nothing of them are asked by turns, one in a tick.
@@ -509,7 +509,7 @@ class Rig:
         """Return the readings for a controller: NaN for quantities without a sensor.
 
         Args:
-            time: since the beginning [s].
+            time: time since the beginning [s].
         """
         reading, place = self.now, layout(self.robot)
         shapes = {

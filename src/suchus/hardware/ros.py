@@ -40,8 +40,8 @@ def ros_urdf(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_000
     Args:
         robot: the design.
         numbers: ids of the servos on their bus, in the order of the layout; 1 and so on if empty.
-        baud: of the bus [1/s].
-        port: of the bus.
+        baud: baud rate of the bus [1/s].
+        port: port of the bus.
 
     Raises:
         UnsuitedRobot: a linear actuator moves a cable.

@@ -96,7 +96,7 @@ class Sizing:
     """The robot as it is designed."""
     cases: tuple[LoadCase, ...]
     """What it shall do."""
-    own: Mapping[str, Mapping[str, ServoLoad]]
+    designed_loads: Mapping[str, Mapping[str, ServoLoad]]
     """What its own servos bear, by case."""
     families: tuple[ServoFamily, ...]
     """Families, those first that do, the cheapest first."""
@@ -190,7 +190,7 @@ def size(
     sufficient. A gait that is too fast for a family is tried with a longer period.
 
     Args:
-        robot: who.
+        robot: the robot.
         load_cases: what it shall do.
         motors: the servos that are sold; those that suchus knows if None.
         family: the only one that is looked at.
@@ -219,7 +219,7 @@ def size(
     return Sizing(
         robot=robot,
         cases=tuple(load_cases),
-        own=dict(zip([case.name for case in load_cases], own_loads, strict=True)),
+        designed_loads=dict(zip([case.name for case in load_cases], own_loads, strict=True)),
         families=tuple(order),
     )
 
@@ -380,9 +380,9 @@ def with_better(
     Every named servo has been simulated in its position.
 
     Args:
-        robot: who.
+        robot: the robot.
         case: what it does.
-        loads: from ``loads_of_cases``.
+        loads: loads from ``loads_of_cases``.
         motors: the servos that are sold; those that suchus knows if None.
     """
     replaceable = {name for names in places(robot) for name in names}

@@ -153,9 +153,9 @@ def check_faults(faults: Sequence[Fault], robot: Robot, duration: float) -> None
     """Refuse faults that cannot happen.
 
     Args:
-        faults: of one run.
-        robot: that they happen to.
-        duration: of the run [s].
+        faults: faults of one run.
+        robot: robot that they happen to.
+        duration: duration of the run [s].
 
     Raises:
         UnknownName: the robot has no such part.
@@ -188,7 +188,7 @@ def refuse_number(fault: Fault, value: Any, lower_bound: float, upper_bound: flo
         lower_bound: least allowed.
         upper_bound: greatest allowed.
         verb: verb phrase before the number, as "moves at" in "moves at 9 rad/s".
-        unit: of the number.
+        unit: unit of the number.
 
     Raises:
         InvalidDesign: it is outside, or no finite number.

@@ -23,7 +23,7 @@ def azimuth(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " frame"
 
 def elevation(tracks: Tracks, front: str, rear: str) -> Float[np.ndarray, " frame"]:
     """Return the angle of a segment above the ground plane [rad]; NaN without heights."""
-    if not tracks.upright:
+    if not tracks.has_heights:
         return np.full(len(tracks.time), np.nan)
     d = tracks.at(front) - tracks.at(rear)
     return np.arctan2(d[:, 2], np.hypot(d[:, 0], d[:, 1]))
@@ -108,8 +108,8 @@ def standing_index(amplitude: ArrayLike, phase: ArrayLike) -> float:
     tell the two waves apart: half a turn at a node resembles a lag.
 
     Args:
-        amplitude: of the bend at each joint, of any one unit.
-        phase: of the bend at each joint [rad].
+        amplitude: amplitude of the bend at each joint, of any one unit.
+        phase: phase of the bend at each joint [rad].
 
     Returns:
         NaN if nothing bends.

@@ -73,9 +73,9 @@ def film_animal(animal: SyntheticAnimal, camera: Camera, *, cycles: float, pace:
     """Return the tracks of an animal.
 
     Args:
-        animal: who walks.
+        animal: animal that walks.
         camera: how it is seen.
-        cycles: how many are filmed [-].
+        cycles: number of cycles that are filmed [-].
         pace: how long one cycle after another lasts, in periods of the animal; the last one's pace goes on.
     """
     lasts = np.asarray(pace, dtype=float)

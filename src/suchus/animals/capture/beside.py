@@ -28,7 +28,7 @@ def compare_joints(walk: Walk, robot: Robot, gait: Gait) -> xr.Dataset:
     Args:
         walk: the measured walk, with all keypoints.
         robot: the robot.
-        gait: for the robot, as ``to_gait`` read it from the walk.
+        gait: gait for the robot, as ``to_gait`` read it from the walk.
 
     Returns:
         Over ``joint``: ``animal``, the root mean square of the animal's angle about its mean; ``residual``, that of the
@@ -53,7 +53,7 @@ def comparison_lines(data: xr.Dataset, robot: str) -> list[str]:
     """Return the comparison as text, a line for each joint: amplitude, residual and reason.
 
     Args:
-        data: as ``compare_joints`` returns it.
+        data: data as ``compare_joints`` returns it.
         robot: its name.
     """
     name_width = max(len(str(name)) for name in data.joint.values)

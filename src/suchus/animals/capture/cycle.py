@@ -10,8 +10,8 @@ from suchus.animals.capture.tracks import UnusableTracks
 
 MIN_CYCLES = 1.2
 """Least duration of tracks: the beginning of a cycle must appear twice [cycle]."""
-MIN_FRAMES = 12
-"""Least frames in one cycle: with fewer, steps cannot be separated [-]."""
+MIN_FRAMES_PER_CYCLE = 12
+"""Least number of frames in one cycle; with fewer, steps cannot be separated [-]."""
 _FASTEST = 12.0  # [1/s]; the stride frequency of the fastest small lizards
 _REPEATS = 0.15  # least fraction of variance that one harmonic explains; in noise it explains less
 _PIECE = 6.0  # [cycle]; duration over which a pace that varies by a tenth stays coherent
@@ -77,7 +77,7 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
     Args:
         time: shape (frame,) [s].
         values: shape (frame,), NaN where the quantity was not seen.
-        period: of one cycle [s].
+        period: period of one cycle [s].
         harmonics: how many.
         drift: highest power of time that is fitted, 0 to 2.
     """
@@ -131,8 +131,8 @@ def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], so
 
     Args:
         time: shape (frame,) [s].
-        signals: that swing once a cycle, NaN where not seen.
-        source: for messages.
+        signals: signals that swing once a cycle, NaN where not seen.
+        source: name of the source, for messages.
 
     Raises:
         UnusableTracks: nothing repeats, or less than one cycle or too few frames of it were seen.
@@ -166,28 +166,29 @@ def find_period(time: np.ndarray, signals: Float[np.ndarray, "signal frame"], so
         options={"xatol": 1e-5},
     )
     period = 1.0 / float(refined.x)
-    _check_period(period, duration, rate, source)
+    _check_recording(period, duration, rate, source)
     return period
 
 
-def _check_period(period: float, duration: float, rate: float, source: str) -> None:
+def _check_recording(period: float, duration: float, frame_rate: float, source: str) -> None:
     """Refuse tracks that show too little of a cycle, or too few frames in a cycle.
 
     Args:
-        period: of the cycle [s].
-        duration: of the tracks [s].
-        rate: frames per second [1/s].
+        period: period of the gait [s].
+        duration: duration of the tracks [s].
+        frame_rate: frames per second [1/s].
         source: name of the tracks, for messages.
     """
     if duration < MIN_CYCLES * period:
         raise UnusableTracks(
             f"{source} lasts {duration:.2f} s, {duration / period:.1f} cycles of about {period:.2f} s; at least "
-            f"{MIN_CYCLES} cycles are needed, {MIN_CYCLES - duration / period:.1f} more, two or more for a spread."
+            f"{MIN_CYCLES} cycles are needed, {MIN_CYCLES - duration / period:.1f} more; a spread needs two whole "
+            "cycles."
         )
-    if rate * period < MIN_FRAMES:
+    if frame_rate * period < MIN_FRAMES_PER_CYCLE:
         raise UnusableTracks(
-            f"{source} shows {rate * period:.0f} frames in a cycle of {period:.2f} s; at least {MIN_FRAMES} are "
-            "needed: film faster."
+            f"{source} shows {frame_rate * period:.0f} frames in a cycle of {period:.2f} s; at least "
+            f"{MIN_FRAMES_PER_CYCLE} are needed: film faster."
         )
 
 

@@ -58,7 +58,7 @@ def find_exchange(tracks: Tracks, noise: Mapping[str, float], scale: float, walk
 
     Args:
         tracks: without jumps.
-        noise: of each keypoint from frame to frame [m or px].
+        noise: noise of each keypoint from frame to frame [m or px].
         scale: an estimate of the trunk's length [m or px].
         walking: frames in which the animal moves.
     """

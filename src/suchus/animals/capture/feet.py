@@ -24,7 +24,7 @@ class FootContact(NamedTuple):
     """One foot over its mean cycle; phases count from time zero of the tracks [cycle]."""
 
     speed: Float[np.ndarray, " grid"]
-    """Over the ground in the mean cycle [m/s or px/s]."""
+    """Speed over the ground in the mean cycle [m/s or px/s]."""
     stance: Bool[np.ndarray, " grid"]
     """Whether it stands."""
     lift_off: float
@@ -88,8 +88,8 @@ def contact(tracks: Tracks, leg: str, period: float) -> FootContact | None:
 
     Args:
         tracks: the keypoints, by a clock that follows the animal's pace.
-        leg: of ``LEGS``.
-        period: of the cycle [s].
+        leg: one of ``LEGS``.
+        period: period of the cycle [s].
     """
     swings = swing(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
     if swings is None:
@@ -143,8 +143,8 @@ def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
 
     Args:
         tracks: the keypoints.
-        leg: of ``LEGS``.
-        period: of the cycle [s].
+        leg: one of ``LEGS``.
+        period: period of the cycle [s].
     """
     girdle = tracks.thorax if leg.endswith("F") else tracks.pelvis
     if girdle is None or tracks.view == "side":
@@ -159,7 +159,7 @@ def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
     count = _harmonics(tracks, leg, period, 8)
     path = fit(tracks.time, forward, period, harmonics=count)
     lift = float("nan")
-    if tracks.upright:
+    if tracks.has_heights:
         lift = float(np.ptp(fit(tracks.time, tracks.at(leg)[:, 2], period, harmonics=count).swing(grid() * period)))
     course = path.mean + path.swing(grid() * period)
     return FootSweep(course, float(np.nanmean(outward)), lift, *_fitting_path(course))

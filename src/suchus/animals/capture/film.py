@@ -51,10 +51,10 @@ def film(robot: Robot, record: xr.Dataset, camera: Camera, *, start: float = STA
     """Return the keypoints of a robot as a camera would have tracked them.
 
     Args:
-        robot: whose record it is.
-        record: of one run, without the dimension ``run``.
+        robot: robot whose record it is.
+        record: record of one run, without the dimension ``run``.
         camera: how it is seen.
-        start: of the film [s].
+        start: start of the film [s].
     """
     times = np.arange(start, float(record.time[-1]) + 1e-9, 1.0 / camera.rate)
     film_record = record[["position", "orientation", "joint_angle"]].sel(time=times, method="nearest")
@@ -65,7 +65,7 @@ def tracked(points: Mapping[str, np.ndarray], time: np.ndarray, camera: Camera, 
     """Return points of the world as a camera and its tracker see them.
 
     Args:
-        points: by name, each of shape (time, 3) [m].
+        points: points by name, each of shape (time, 3) [m].
         time: [s].
         camera: how they are seen.
         source: what is filmed.
@@ -89,8 +89,8 @@ def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return the positions of a robot's keypoints in the world, each of shape (time, 3) [m].
 
     Args:
-        robot: whose record it is.
-        record: of one run, without the dimension ``run``.
+        robot: robot whose record it is.
+        record: record of one run, without the dimension ``run``.
 
     Raises:
         UnsuitedRobot: it has not the trunk and the tail that ``Tracks`` are of, or limbs, but not four.
@@ -117,7 +117,7 @@ def _midline_point(body_frames: BodyFrames, place: Layout, segment: str, forward
     """Return the position of a point on the midline of a segment, in the frame of the root, shape (frame, 3) [m].
 
     Args:
-        body_frames: of all bodies of the robot.
+        body_frames: frames of all bodies of the robot.
         place: layout of the robot.
         segment: name of the body that carries the point.
         forward_offset: distance of the point ahead of the segment's origin [m].

@@ -46,7 +46,7 @@ def find_late_keypoints(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " 
     Args:
         tracks: the keypoints, by the clock.
         clock: on which strides last equally long.
-        time: of the film, in each frame [s].
+        time: time of the film, in each frame [s].
     """
     chain, reasons = list(tracks.midline), dict[str, str]()
     if tracks.view == "side":  # bends to the sides shorten what is seen of a link
@@ -120,7 +120,7 @@ class _Paced(NamedTuple):
     """Lag of a point behind its neighbours, estimated from the variation of their distance with the pace."""
 
     lag: float
-    """By its links together [s]."""
+    """Lag of the keypoint by its links together [s]."""
     error: float
     """Standard error of that [s]."""
     z_score: float
@@ -138,7 +138,7 @@ class _Lags:
         Args:
             tracks: the keypoints, by the clock.
             clock: on which all strides have the same duration.
-            time: of the film, in each frame [s].
+            time: time of the film, in each frame [s].
         """
         self._tracks, period = tracks, clock.period
         cycles = (tracks.time[-1] - tracks.time[0]) / period

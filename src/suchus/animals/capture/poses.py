@@ -31,7 +31,7 @@ class PoseTracks(NamedTuple):
     position: np.ndarray
     """Shape (frame, point, axis), NaN where a point was lost [px, or the unit of a calibration]."""
     confidence: np.ndarray
-    """Of each point, shape (frame, point), NaN where none is given [-]."""
+    """Confidence of each point, shape (frame, point), NaN where none is given [-]."""
 
 
 def software_of(path: Path) -> str | None:
@@ -54,7 +54,7 @@ def read_pose_table(path: Path, software: str, individual: str | None) -> tuple[
     Args:
         path: the file.
         software: DeepLabCut, LightningPose, SLEAP or Anipose.
-        individual: whose keypoints, where the table holds several.
+        individual: individual whose keypoints are read, where the table holds several.
 
     Raises:
         UnreadableFile: the table is broken, or not of this software.
@@ -222,7 +222,7 @@ def _poses(
         body: the table without its header.
         columns: index of the column of each keypoint and axis.
         confidence_axis: how the column of the confidence is called.
-        name: of the file, for messages.
+        name: name of the file, for messages.
     """
     points = tuple(dict.fromkeys(point for point, axis in columns if axis in ("x", "y", "z")))
     if not points:

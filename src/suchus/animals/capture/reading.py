@@ -53,7 +53,7 @@ def read_poses(
         path: the file.
         software: one of ``SOFTWARE``; guessed from the file if None.
         rate: frames per second, which most of these files do not hold [1/s].
-        individual: whose tracks, where the file holds several.
+        individual: individual whose tracks are read, where the file holds several.
         names: our name of a keypoint by the file's, where they differ.
         confidence: points with less are lost.
         y_down: whether y points to the right of x, seen from above; None: it does, unless there are three axes.
@@ -190,7 +190,7 @@ class ReadingOptions:
     software: str | None = None
     """What wrote the file, of ``SOFTWARE``; guessed if None."""
     individual: str | None = None
-    """Whose tracks, where the file holds several."""
+    """Individual whose tracks are read, where the file holds several."""
     confidence: float = 0.6
     """Points with less are lost [-]; what DeepLabCut and movement use."""
     y_down: bool | None = None
@@ -223,7 +223,7 @@ def read_tracks(path: str | Path, options: ReadingOptions | None = None) -> Trac
     if options.rate is not None and not 0.0 < options.rate < np.inf:
         raise UnusableTracks(f"the frame rate is {options.rate:g}; a number above 0 is needed, in frames per second.")
     tracks = _read_by_format(path, options)
-    if options.view == "side" and tracks.upright:
+    if options.view == "side" and tracks.has_heights:
         raise UnusableTracks(f"{path.name} holds heights, so that it needs no view from the side; leave --view out.")
     return replace(tracks, view=options.view)
 

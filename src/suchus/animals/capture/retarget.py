@@ -65,13 +65,17 @@ class Captured:
     changed."""
 
 
-class _Feet(NamedTuple):
-    """Where the feet of a girdle go, in its frame [m]."""
+class _FootPathLengths(NamedTuple):
+    """The path of a girdle's feet in lengths, from the hip; fields are named as those of ``FootPath``."""
 
     stroke: float
+    """Half of the path's length [m]."""
     lift: float
+    """Height of the swing [m]."""
     outward: float
+    """Distance of the path outside the hip [m]."""
     ahead: float
+    """Distance of the middle of the path ahead of the hip [m]."""
 
 
 def to_gait(
@@ -206,7 +210,7 @@ def _with_timing(walk: Walk, gait: Gait, duty: Duty, factor: float, notes: list[
 
     Args:
         walk: the measured walk.
-        gait: whose other fields are kept.
+        gait: gait whose other fields are kept.
         duty: fraction that becomes the duty factor, see ``Duty``.
         factor: period of the robot over that of the animal [-].
         notes: sentences for the user, to which this function appends.
@@ -272,15 +276,15 @@ def _bend_limits(robot: Robot, region: Literal["trunk", "tail"]) -> list[float]:
     return [cables.get(hinges.servos[k], float(ranges[hinges.servos[k]])) for k in hinges.indices_in(region)]
 
 
-def _with_steps(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]) -> Gait:
+def _with_steps(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdle_mode: Girdles, notes: list[str]) -> Gait:
     """Return the gait with the measured foot paths, scaled by the length of the trunk.
 
     Paths that the limbs cannot follow are replaced by those of the base gait, with strokes as long as possible.
     """
     reaches = [girdle.limb.reach for girdle in robot.girdles]
-    base_feet = [_feet_of(limb, reach) for limb, reach in zip(base.limbs, reaches, strict=True)]
-    feet = _feet(walk, robot, base_feet, girdles, notes)
-    if walk.upright:
+    base_paths = [_foot_path_lengths(limb, reach) for limb, reach in zip(base.limbs, reaches, strict=True)]
+    foot_paths = _scaled_foot_paths(walk, robot, base_paths, girdle_mode, notes)
+    if walk.has_heights:
         notes.append(f"markers lie on the skin, so that height is that of {base.name}")
         if layout(robot).tail_pitch:
             lower_bound, upper_bound = np.sum(
@@ -290,58 +294,75 @@ def _with_steps(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdl
             gait = gait.with_numbers(tail_pitch=pitch)
     else:
         notes.append(f"heights were not seen: lift, height and tail_pitch are those of {base.name}")
-    full_gait = _with_feet(robot, gait, feet)
+    full_gait = _with_feet(robot, gait, foot_paths)
     if full_gait is not None:
         return full_gait
     notes.append(f"the limbs of {robot.name} do not reach the feet's places: those and the lift are {base.name}'s")
-    strokes = [foot.stroke for foot in feet]
+    half_strokes = [foot.stroke for foot in foot_paths]
     for fraction in np.linspace(1.0, 0.1, 19):
-        shorter = [foot._replace(stroke=fraction * stroke) for foot, stroke in zip(base_feet, strokes, strict=True)]
+        shorter = [
+            foot._replace(stroke=fraction * stroke) for foot, stroke in zip(base_paths, half_strokes, strict=True)
+        ]
         shorter_gait = _with_feet(robot, gait, shorter)
         if shorter_gait is not None:
             if fraction < 1.0:
-                requested_text = " and ".join(f"{1000 * stroke:.0f} mm" for stroke in dict.fromkeys(strokes))
-                applied_text = " and ".join(f"{1000 * fraction * stroke:.0f} mm" for stroke in dict.fromkeys(strokes))
+                requested_text = " and ".join(f"{1000 * stroke:.0f} mm" for stroke in dict.fromkeys(half_strokes))
+                applied_text = " and ".join(
+                    f"{1000 * fraction * stroke:.0f} mm" for stroke in dict.fromkeys(half_strokes)
+                )
                 notes.append(f"half strokes of {requested_text} are beyond the limbs; {applied_text} was taken")
             return shorter_gait
     standing_gait = replace(gait, limbs=base.limbs)
     check_limits(robot, standing_gait)
     raise OutsideLimits(
-        f"robot {robot.name!r} cannot follow a tenth of the strokes that were seen, {1000 * max(strokes):.0f} mm at "
-        f"its size, in the posture of gait {base.name!r}: name another one with --base."
+        f"robot {robot.name!r} cannot follow a tenth of the strokes that were seen, {1000 * max(half_strokes):.0f} mm "
+        f"at its size, in the posture of gait {base.name!r}: name another one with --base."
     )
 
 
-def _feet(walk: Walk, robot: Robot, base_feet: Sequence[_Feet], girdles: Girdles, notes: list[str]) -> list[_Feet]:
-    """Return the measured foot paths, scaled to the robot [m]."""
-    trunk, sides = hips_ahead(robot, 0), [girdle.aside for girdle in robot.girdles]
-    strokes, stroke = [trunk * mean_of(walk, "stroke", legs) for legs in _PAIRS], trunk * mean_of(walk, "stroke")
-    if girdles == "alike" and abs(strokes[0] - strokes[1]) > 0.1 * stroke:
+def _scaled_foot_paths(
+    walk: Walk, robot: Robot, base_paths: Sequence[_FootPathLengths], girdle_mode: Girdles, notes: list[str]
+) -> list[_FootPathLengths]:
+    """Return the measured foot paths of front and hind feet, scaled to the robot by the length of its trunk [m].
+
+    Args:
+        walk: the measured walk.
+        robot: the robot that shall walk, with two girdles.
+        base_paths: paths of the base gait, whose lift is taken if no heights were measured.
+        girdle_mode: ``alike`` for the mean stroke and lift of all feet, ``apart`` for those of each girdle.
+        notes: sentences for the user, to which this function appends.
+    """
+    trunk_length, hip_offsets = hips_ahead(robot, 0), [girdle.aside for girdle in robot.girdles]
+    half_strokes, mean_half_stroke = (
+        [trunk_length * mean_of(walk, "stroke", legs) for legs in _PAIRS],
+        trunk_length * mean_of(walk, "stroke"),
+    )
+    if girdle_mode == "alike" and abs(half_strokes[0] - half_strokes[1]) > 0.1 * mean_half_stroke:
         notes.append(
-            f"the feet's half strokes differ, front {1000 * strokes[0]:.0f} mm and hind {1000 * strokes[1]:.0f} mm at "
-            "the robot's size; the gait holds their mean"
+            f"the feet's half strokes differ, front {1000 * half_strokes[0]:.0f} mm and hind "
+            f"{1000 * half_strokes[1]:.0f} mm at the robot's size; the gait holds their mean"
         )
-    feet = []
+    foot_paths = []
     for i, legs in enumerate(_PAIRS):
-        pooled_legs = LEGS if girdles == "alike" else legs
-        feet.append(
-            _Feet(
-                stroke=stroke if girdles == "alike" else strokes[i],
-                lift=abs(trunk * mean_of(walk, "lift", pooled_legs)) if walk.upright else base_feet[i].lift,
-                outward=trunk * mean_of(walk, "outward", legs) - sides[i],
-                ahead=trunk * mean_of(walk, "ahead", legs),
+        pooled_legs = LEGS if girdle_mode == "alike" else legs
+        foot_paths.append(
+            _FootPathLengths(
+                stroke=mean_half_stroke if girdle_mode == "alike" else half_strokes[i],
+                lift=abs(trunk_length * mean_of(walk, "lift", pooled_legs)) if walk.has_heights else base_paths[i].lift,
+                outward=trunk_length * mean_of(walk, "outward", legs) - hip_offsets[i],
+                ahead=trunk_length * mean_of(walk, "ahead", legs),
             )
         )
-    return feet
+    return foot_paths
 
 
-def _feet_of(limb: object, reach: float) -> _Feet:
+def _foot_path_lengths(limb: object, reach: float) -> _FootPathLengths:
     """Return the foot path of a gait for a limb of some length [m]."""
     assert isinstance(limb, FootPath)
-    return _Feet(*(reach * getattr(limb, field) for field in _Feet._fields))
+    return _FootPathLengths(*(reach * getattr(limb, field) for field in _FootPathLengths._fields))
 
 
-def _with_feet(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
+def _with_feet(robot: Robot, gait: Gait, feet: Sequence[_FootPathLengths]) -> Gait | None:
     """Return the gait with these foot paths, or None where the robot cannot follow it."""
     reaches = [girdle.limb.reach for girdle in robot.girdles]
     try:
@@ -407,9 +428,9 @@ def to_curves(cycle: AngleCycle, robot: Robot, *, name: str, period: float) -> G
 
     Args:
         cycle: the angles, as ``read_angles`` returns them.
-        robot: who plays them.
-        name: of the gait.
-        period: of its cycle [s].
+        robot: robot that plays them.
+        name: name of the gait.
+        period: period of its cycle [s].
 
     Raises:
         UnknownName: a column belongs to no servo of the robot.

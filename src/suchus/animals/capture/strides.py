@@ -38,21 +38,21 @@ def times(n: int) -> float:
     return float(student.ppf(0.975, n - 1)) if n > 1 else float("nan")
 
 
-def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
+def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], start_phase: float) -> xr.Dataset:
     """Return the measurements of every complete stride, over ``stride`` and ``leg``, with intervals.
 
     Args:
         tracks: the keypoints, by the clock.
         clock: on which strides last equally long.
-        feet: that were seen.
-        zero: phase at which strides begin [cycle].
+        feet: feet that were seen.
+        start_phase: phase at which strides begin [cycle].
     """
     period = clock.period
-    first_stride = int(np.ceil(tracks.time[0] / period - zero - 1e-6))
-    last_stride = int(np.floor(tracks.time[-1] / period - zero + 1e-6))
+    first_stride = int(np.ceil(tracks.time[0] / period - start_phase - 1e-6))
+    last_stride = int(np.floor(tracks.time[-1] / period - start_phase + 1e-6))
     numbers = np.arange(first_stride, last_stride)
-    ends = clock.seconds(np.arange(first_stride, last_stride + 1) + zero)
-    stride_list = [tracks.between((k + zero) * period, (k + zero + 1) * period) for k in numbers]
+    ends = clock.seconds(np.arange(first_stride, last_stride + 1) + start_phase)
+    stride_list = [tracks.between((k + start_phase) * period, (k + start_phase + 1) * period) for k in numbers]
     lasts, jitter = np.diff(ends), _jitter(feet)
     rows = [_body(stride_tracks, period) for stride_tracks in stride_list]
     data = xr.Dataset(coords={"stride": ("stride", np.arange(1, len(numbers) + 1), {"units": "1"})})
@@ -78,7 +78,7 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], ze
                 speed, error = (pairs / lasts[:, None]).T
                 _add_with_interval(data, "speed", ("stride",), speed, error, f"{unit}/s", "mean speed of the trunk")
     if feet:
-        _put_feet(data, clock, feet, zero, numbers, unit)
+        _put_feet(data, clock, feet, start_phase, numbers, unit)
     return data
 
 
@@ -169,7 +169,7 @@ def _amplitude_row(
 
 
 def _put_feet(
-    data: xr.Dataset, clock: Clock, feet: Mapping[str, FootContact], zero: float, numbers: np.ndarray, unit: str
+    data: xr.Dataset, clock: Clock, feet: Mapping[str, FootContact], start_phase: float, numbers: np.ndarray, unit: str
 ) -> None:
     """Add times of lift-off and touchdown, duty factors, phases and step lengths of each foot to the strides."""
     data.coords["leg"] = ("leg", list(feet))
@@ -180,7 +180,7 @@ def _put_feet(
     for j, foot in enumerate(feet.values()):
         swings = foot.swings
         for i, phase in enumerate(swings.phase):
-            row = int(np.floor(phase - zero + 1e-9)) - (int(numbers[0]) if len(numbers) else 0)
+            row = int(np.floor(phase - start_phase + 1e-9)) - (int(numbers[0]) if len(numbers) else 0)
             if not 0 <= row < len(numbers):
                 continue
             half, edge = swings.shares[i] / 2, np.hypot(swings.phases_error[i], swings.shares_error[i] / 2)
@@ -218,22 +218,22 @@ def over_phase(
     sweeps: Mapping[str, FootSweep],
     cycle_fits: Sequence[tuple[Mapping[str, PeriodicFit], Mapping[str, FootSweep]]],
     period: float,
-    zero: float,
-    unsure: float,
+    start_phase: float,
+    start_error: float,
 ) -> xr.Dataset:
     """Return angles and curvature over the phase of the mean cycle, with intervals from the variation of cycles.
 
     Args:
         tracks: the keypoints, by the clock.
-        angles: of trunk and tail over all cycles.
-        sweeps: of the feet over all cycles.
+        angles: angles of trunk and tail over all cycles.
+        sweeps: sweeps of the feet over all cycles.
         cycle_fits: the same of every cycle by itself.
-        period: of a cycle [s].
-        zero: phase at which the cycle begins [cycle].
-        unsure: half the width of the interval of that [cycle].
+        period: period of a cycle [s].
+        start_phase: phase at which the cycle begins [cycle].
+        start_error: half the width of the interval of that [cycle].
     """
     phase = np.arange(PHASES) / PHASES
-    time = (phase + zero) * period
+    time = (phase + start_phase) * period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"})})
     for name, angle in angles.items():
         angle_fits = [cycle_angles[name] for cycle_angles, _ in cycle_fits if name in cycle_angles]
@@ -241,49 +241,51 @@ def over_phase(
         value = angle.mean + angle.swing(time)
         side = "right" if name.endswith("lateral") else "down"
         meaning = f"{name.replace('_', ' ')} angle, {side} positive"
-        _add_with_interval(data, name, ("phase",), value, half_width(value, curves, unsure), "rad", meaning)
+        _add_with_interval(data, name, ("phase",), value, half_width(value, curves, start_error), "rad", meaning)
     if sweeps:
         data.coords["leg"] = ("leg", list(sweeps))
-        value = np.array([_forward_offset(foot_sweep, zero) for foot_sweep in sweeps.values()])
+        value = np.array([_forward_offset(foot_sweep, start_phase) for foot_sweep in sweeps.values()])
         curves = np.array(
             [
-                [_forward_offset(cycle_sweeps[leg], zero) for leg in sweeps]
+                [_forward_offset(cycle_sweeps[leg], start_phase) for leg in sweeps]
                 for _, cycle_sweeps in cycle_fits
                 if set(sweeps) <= set(cycle_sweeps)
             ]
         )
-        error = half_width(value, curves.reshape(-1, *value.shape), unsure)
+        error = half_width(value, curves.reshape(-1, *value.shape), start_error)
         _add_with_interval(
             data, "foot_ahead", ("leg", "phase"), value, error, tracks.unit, "distance of the foot ahead of its girdle"
         )
-        value = np.array([_protraction(foot_sweep, zero) for foot_sweep in sweeps.values()])
+        value = np.array([_protraction(foot_sweep, start_phase) for foot_sweep in sweeps.values()])
         curves = np.array(
             [
-                [_protraction(cycle_sweeps[leg], zero) for leg in sweeps]
+                [_protraction(cycle_sweeps[leg], start_phase) for leg in sweeps]
                 for _, cycle_sweeps in cycle_fits
                 if set(sweeps) <= set(cycle_sweeps)
             ]
         )
-        error = half_width(value, curves.reshape(-1, *value.shape), unsure)
+        error = half_width(value, curves.reshape(-1, *value.shape), start_error)
         _add_with_interval(
             data, "protraction", ("leg", "phase"), value, error, "rad", "angle of the foot ahead of abreast its girdle"
         )
-    _put_curvature(data, tracks, period, zero, unsure, len(cycle_fits))
+    _put_curvature(data, tracks, period, start_phase, start_error, len(cycle_fits))
     return data
 
 
-def _protraction(path: FootSweep, zero: float) -> Float[np.ndarray, " phase"]:
+def _protraction(path: FootSweep, start_phase: float) -> Float[np.ndarray, " phase"]:
     """Return the angle of a foot ahead of the direction abreast of its girdle, over the phase of tables [rad]."""
-    return np.arctan2(_forward_offset(path, zero), path.outward)
+    return np.arctan2(_forward_offset(path, start_phase), path.outward)
 
 
-def _forward_offset(path: FootSweep, zero: float) -> Float[np.ndarray, " phase"]:
+def _forward_offset(path: FootSweep, start_phase: float) -> Float[np.ndarray, " phase"]:
     """Return the position of a foot ahead of its girdle, over the phase of tables [m or px]."""
     grid = np.arange(len(path.forward)) / len(path.forward)
-    return np.interp(np.arange(PHASES) / PHASES + zero, grid, path.forward, period=1.0)
+    return np.interp(np.arange(PHASES) / PHASES + start_phase, grid, path.forward, period=1.0)
 
 
-def _put_curvature(data: xr.Dataset, tracks: Tracks, period: float, zero: float, unsure: float, count: int) -> None:
+def _put_curvature(
+    data: xr.Dataset, tracks: Tracks, period: float, start_phase: float, start_error: float, count: int
+) -> None:
     """Add the curvature at each point between two segments of the midline, positive to the right or down."""
     chain = tracks.midline
     if len(chain) < 3:
@@ -293,7 +295,7 @@ def _put_curvature(data: xr.Dataset, tracks: Tracks, period: float, zero: float,
     )
     positions = np.cumsum(links)[:-1] / links.sum()
     bends = -joint_bends(tracks, chain) / ((links[1:] + links[:-1]) / 2)[:, None]
-    time = (np.arange(PHASES) / PHASES + zero) * period
+    time = (np.arange(PHASES) / PHASES + start_phase) * period
     value, error = np.full((2, len(bends), PHASES), np.nan)
     size, size_error = np.full((2, len(bends)), np.nan)
     for i, series in enumerate(bends):
@@ -318,7 +320,7 @@ def _put_curvature(data: xr.Dataset, tracks: Tracks, period: float, zero: float,
         error[i] = half_width(
             value[i],
             np.array([cycle_fit.mean + cycle_fit.swing(time) for cycle_fit in cycle_fits]).reshape(-1, PHASES),
-            unsure,
+            start_error,
         )
         size[i] = abs(mean_fit.harmonics[0])
         size_error[i] = half_width(size[i], np.array([abs(cycle_fit.harmonics[0]) for cycle_fit in cycle_fits]), 0.0)
@@ -341,24 +343,24 @@ def _put_curvature(data: xr.Dataset, tracks: Tracks, period: float, zero: float,
     )
 
 
-def half_width(value: np.ndarray | float, cycle_values: np.ndarray, unsure: float) -> np.ndarray:
+def half_width(value: np.ndarray | float, cycle_values: np.ndarray, start_error: float) -> np.ndarray:
     """Return the half width of a mean's 95 % interval, from the variation of single cycles.
 
     It contains the difference between the fit to all cycles and the mean of single cycles, and the uncertainty of the
     phase at which the cycle begins.
 
     Args:
-        value: over all cycles, any shape; where ``unsure`` is given, phases are the last axis.
-        cycle_values: of single cycles, their number first.
-        unsure: half the width of the interval of the cycle's beginning [cycle].
+        value: value over all cycles, any shape; where ``start_error`` is given, phases are the last axis.
+        cycle_values: values of single cycles, their number first.
+        start_error: half the width of the interval of the cycle's beginning [cycle].
     """
     n = len(cycle_values)
     if n < 2:
         return np.full(np.shape(value), np.nan)
     spread = times(n) * np.std(cycle_values, axis=0, ddof=1) / np.sqrt(n / _SHARED)
     bias = np.mean(cycle_values, axis=0) - value
-    slope = 0.0 if np.ndim(value) == 0 or not unsure else np.gradient(value, axis=-1) * np.shape(value)[-1]
-    return np.asarray(np.sqrt(spread**2 + bias**2 + (slope * unsure) ** 2))
+    slope = 0.0 if np.ndim(value) == 0 or not start_error else np.gradient(value, axis=-1) * np.shape(value)[-1]
+    return np.asarray(np.sqrt(spread**2 + bias**2 + (slope * start_error) ** 2))
 
 
 def _attributes(unit: str, meaning: str) -> dict[str, str]:

@@ -89,9 +89,9 @@ def swing_midpoints(time: np.ndarray, place: np.ndarray, forward: np.ndarray, pe
 
     Args:
         time: shape (frame,) [s].
-        place: of the foot over the ground, shape (frame, 2), NaN where it was not seen [m or px].
+        place: position of the foot over the ground, shape (frame, 2), NaN where it was not seen [m or px].
         forward: how far it is ahead of its body, shape (frame,); it tells the swings from each other.
-        period: of the cycle, roughly [s].
+        period: period of the cycle, roughly [s].
     """
     frames, parameters = _swing_frames(time / period, place, _turns(time / period, forward))
     if not len(parameters):
@@ -107,7 +107,7 @@ def swing(time: np.ndarray, place: np.ndarray, forward: np.ndarray, period: floa
         time: by a clock on which every stride lasts about a period, shape (frame,) [s].
         place: see ``swing_midpoints``.
         forward: see ``swing_midpoints``.
-        period: of the cycle [s].
+        period: period of the cycle [s].
     """
     frames, parameters = _swing_frames(time / period, place, _turns(time / period, forward))
     if not len(parameters):
@@ -437,7 +437,7 @@ def walk_clock(feet: Mapping[str, SwingMidpoints], period: float) -> Clock:
 
     Args:
         feet: the middles of their swings.
-        period: of a cycle, roughly [s].
+        period: period of a cycle, roughly [s].
     """
     rows = [foot for foot in feet.values() if len(foot.time) >= 2]
     if sum(len(foot.time) for foot in rows) < _MIN_SWINGS:

@@ -240,7 +240,7 @@ def read_angles(path: str | Path, *, harmonics: int = MAX_HARMONICS) -> AngleCyc
     """Read a table of one cycle: ``time`` as a share of it, then an angle in degrees for every joint.
 
     Args:
-        path: of the CSV file.
+        path: path of the CSV file.
         harmonics: how many are kept, 4 to 6.
 
     Raises:

@@ -75,7 +75,7 @@ def angle_tables(cycle: AngleCycle) -> xr.Dataset:
     """Return a table of joint angles as what it shows of each joint, over ``joint`` and ``phase``.
 
     Args:
-        cycle: as ``read_angles`` returns it.
+        cycle: cycle as ``read_angles`` returns it.
     """
     phase, first_harmonic = np.arange(PHASES) / PHASES, cycle.harmonics[:, 1]
     data = xr.Dataset(coords={"joint": ("joint", list(cycle.joints)), "phase": ("phase", phase, {"units": "1"})})

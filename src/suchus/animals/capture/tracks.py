@@ -78,7 +78,7 @@ class Tracks:
         return float(1.0 / np.median(np.diff(self.time)))
 
     @property
-    def upright(self) -> bool:
+    def has_heights(self) -> bool:
         """Whether heights were seen."""
         return self.position.shape[-1] == 3
 
@@ -200,9 +200,9 @@ def map_keypoint_names(points: tuple[str, ...], names: Mapping[str, str], source
     """Return our names of a file's keypoints.
 
     Args:
-        points: as the file calls them.
+        points: points as the file calls them.
         names: our name of some, by the file's name.
-        source: for messages.
+        source: name of the source, for messages.
 
     Raises:
         UnusableTracks: a name that the file does not hold, or two keypoints of one name.

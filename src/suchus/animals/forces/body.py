@@ -33,10 +33,10 @@ class Unknown:
     """What a film does not show, each as the ends of its range; a choice is drawn evenly from it."""
 
     mass: tuple[float, float] | None = None
-    """Of the animal [kg]; None: 0.7 to 1.4 times what the named body weighs at the animal's length."""
+    """Mass of the animal [kg]; None: 0.7 to 1.4 times what the named body weighs at the animal's length."""
     friction: tuple[float, float] = (0.4, 1.0)
-    """Between feet and ground [-]: rubber or claws on wood, stone and soil; a film whose feet do not slip says only
-    that there was enough of it."""
+    """Coefficient of friction between feet and ground [-]: rubber or claws on wood, stone and soil. A film whose
+    feet do not slip shows only that there was enough of it."""
     lift: tuple[float, float] = (0.5, 1.5)
     """How high feet are lifted where no heights were seen, over what the gait does that lends it [-]."""
     height: tuple[float, float] = (0.95, 1.05)
@@ -51,7 +51,7 @@ class Unknown:
     shedding: tuple[float, float] = (0.3, 1.2)
     """Share of Lighthill's momentum that is shed at the end of the tail [-]."""
     viscosity: tuple[float, float] = (0.9e-6, 1.15e-6)
-    """Of fresh water at 15 to 25 C [m2/s]."""
+    """Kinematic viscosity of fresh water at 15 to 25 C [m2/s]."""
     draws: int = DRAWS
     """Choices beside the most likely one [-]; see ``DRAWS``."""
 
@@ -90,7 +90,7 @@ def choices(names: Sequence[str], count: int) -> list[dict[str, float]]:
     """Return choices of what is not known, each number a share of its distribution, by a Latin hypercube.
 
     Args:
-        names: of what is not known.
+        names: names of what is not known.
         count: choices.
     """
     shares = qmc.LatinHypercube(d=len(names), rng=np.random.default_rng(_SEED)).random(count)
@@ -102,31 +102,33 @@ def errors(share: float) -> float:
     return float(norm.ppf(np.clip(share, 1e-6, 1 - 1e-6))) / _Z_95
 
 
-def unsure(walk: Walk) -> tuple[str, ...]:
-    """Return the numbers of a walk that have an interval.
+def names_with_interval(walk: Walk) -> tuple[str, ...]:
+    """Return the names of the numbers of a walk that have an interval, and refuse a walk without the required ones.
+
+    Names of quantities of a leg end in that leg, as in ``duty_LF``.
 
     Raises:
-        UnusableTracks: one that forces rest on has none, since too few cycles were seen.
+        UnusableTracks: a number that the forces depend on has no interval, because too few cycles were seen.
     """
-    names = tuple(name for name, measurement in walk.numbers.items() if np.isfinite(measurement.error))
+    with_interval = tuple(name for name, measurement in walk.numbers.items() if np.isfinite(measurement.error))
     required = [
         name for name in walk.numbers if name in _REQUIRED_NUMBERS or name.partition("_")[0] in _REQUIRED_FOOT_NUMBERS
     ]
-    lacking = [name for name in required if name not in names]
+    lacking = [name for name in required if name not in with_interval]
     if lacking:
         raise UnusableTracks(
             f"{walk.source} shows {walk.cycles:.1f} cycles, by which {' and '.join(lacking)} "
             f"ha{'ve' if len(lacking) > 1 else 's'} no interval, and so no force has one: film one more cycle."
         )
-    return names
+    return with_interval
 
 
 def sample_walk(walk: Walk, shares: Mapping[str, float]) -> Walk:
     """Return a possible walk: each number is at a quantile of its distribution.
 
     Args:
-        walk: the measured one.
-        shares: of the distribution of each of ``unsure(walk)``.
+        walk: the measured walk.
+        shares: quantile of each of ``names_with_interval(walk)`` in its distribution, 0 to 1 [-].
     """
     numbers = dict(walk.numbers)
     for name, measurement in walk.numbers.items():
@@ -148,12 +150,14 @@ def _change(walk: Walk, numbers: Mapping[str, Measurement], name: str) -> float:
 
 
 def _deviate(name: str, measurement: Measurement, deviation: float) -> float:
-    """Return a number at some standard errors from its mean, within the range that is possible for it.
+    """Return a possible value of a measured number, within the range that its quantity allows.
+
+    Fractions of the cycle stay within 0.05 and 0.95. Positive quantities stay above 2 % of the measured value.
 
     Args:
-        name: of the number.
-        measurement: the measured number.
-        deviation: from the mean [standard error].
+        name: name of the number, as in ``Walk.numbers``.
+        measurement: measured value with the half width of its 95 % interval.
+        deviation: deviation from the measured value [half width of the interval].
     """
     value, stem = measurement.value + deviation * measurement.error, name.partition("_")[0]
     if stem in _SHARES:
@@ -169,7 +173,7 @@ def resize_body(robot: Robot, length: float, mass: float | None = None) -> Robot
     Args:
         robot: the body.
         length: factor on its lengths [-].
-        mass: of the whole body [kg]; in proportion to the cube of the length if None.
+        mass: mass of the whole body [kg]; in proportion to the cube of the length if None.
     """
     is_unchanged = abs(length - 1.0) < 1e-12 and mass is None
     return robot if is_unchanged else rescale(robot, length_factor=length, mass_factor=mass and mass / robot.mass)
@@ -180,7 +184,7 @@ def widen_body(robot: Robot, volume: float) -> Robot:
 
     Args:
         robot: the body.
-        volume: of the whole body [m3].
+        volume: volume of the whole body [m3].
     """
     for _ in range(30):
         current_volume = sum(volumes(robot).values())
@@ -222,8 +226,8 @@ def add_with_interval(
 
     Args:
         data: the dataset.
-        name: of the variable.
-        dims: of a value.
+        name: name of the variable.
+        dims: dimensions of a value.
         answers: each as ``dims`` say, the most likely one first.
         description: its unit and what it is.
     """

@@ -23,9 +23,9 @@ from suchus.animals.forces.body import (
     errors,
     interpolate_bounds,
     middle,
+    names_with_interval,
     resize_body,
     sample_walk,
-    unsure,
 )
 from suchus.article.paper.walking_salamanders import ANIMAL
 from suchus.core.errors import OutsideLimits
@@ -38,7 +38,7 @@ from suchus.robot.gaits import default_gait
 from suchus.robot.motion import START, Curve, Gait, suits
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import mean_cycle, require_complete
-from suchus.sim.metrics.foot_forces import PARTS, FootStep, Window, advance, stance_forces, step, weight
+from suchus.sim.metrics.foot_forces import PARTS, FootStep, Window, displacement_per_cycle, stance_forces, step, weight
 
 SETTLE, CYCLES = 1, 3
 """Cycles that are walked before anything is measured, and that are [-]."""
@@ -91,7 +91,7 @@ def walked_forces(
 
     Args:
         walk: the measured walk, with all keypoints.
-        robot: whose body it is, four limbs with feet that can be put on a path.
+        robot: robot whose body it is, four limbs with feet that can be put on a path.
         base: gait from which what was not measured is taken; the robot's own if None.
         unknown: the ranges of what the film does not show.
         duty: which share of the cycle is the duty factor of the most likely choice.
@@ -111,7 +111,7 @@ def walked_forces(
         OutsideLimits: the body cannot follow.
     """
     check_needs(robot, ROBOT_NEEDS, "forces of a filmed walk")
-    names, unknown = unsure(walk), unknown or Unknown()
+    names, unknown = names_with_interval(walk), unknown or Unknown()
     trunk_length = trunk if trunk is not None else _trunk(walk)
     body = resize_body(robot, trunk_length / hips_ahead(robot, 0))
     base_gait = base or default_gait(robot)
@@ -213,7 +213,7 @@ def _try(walk: Walk, body: Robot, base: Gait, unknown: Unknown, shares: Mapping[
         )
     sample = replace(sample, numbers=numbers)
     gait = to_gait(sample, body, base, name="filmed", girdles="apart", time="own", trunk=trunk).gait
-    if not walk.upright:
+    if not walk.has_heights:
         gait = _scale_parameter(body, gait, "lift", interpolate_bounds(unknown.lift, shares["lift"]))
     gait = _scale_parameter(body, gait, "height", interpolate_bounds(unknown.height, shares["height"]))
     phase_lag = (gait.duty_factor - mean_of(walk, "duty")) / 2  # both have LF's mid-stance in common
@@ -246,8 +246,8 @@ def played_forces(
 
     Args:
         cycle: the table.
-        robot: whose joints it is of.
-        period: of the cycle [s].
+        robot: robot of the joints.
+        period: period of the cycle [s].
         unknown: the ranges of what the table does not show.
         progress: told the share that is done.
 
@@ -329,7 +329,7 @@ def _ground_response(record: xr.Dataset, trial: _Try) -> _GroundResponse:
         belly=resample(carried_load["belly"].values / weight(record)),
         tail=resample(carried_load["tail"].values / weight(record)),
         steps=tuple(step(force.sel(leg=leg), LOADED) for leg in force.leg.values),
-        speed=float(np.hypot(*advance(record, window))) / period,
+        speed=float(np.hypot(*displacement_per_cycle(record, window))) / period,
         joint_error=float(np.sqrt(np.mean(joint_errors[is_in_window] ** 2))),
     )
 
@@ -440,7 +440,7 @@ def _left_open(walk: Walk, unknown: Unknown) -> list[str]:
     notes.append(f"friction is somewhere from {unknown.friction[0]:g} to {unknown.friction[1]:g}")
     if unknown.mass is None:
         notes.append("mass: 0.7 to 1.4 times the named body's at this length; forces in body weights do not need it")
-    if not walk.upright:
+    if not walk.has_heights:
         (min_lift, max_lift), (min_height, max_height) = unknown.lift, unknown.height
         notes.append(
             f"heights were not seen: feet are lifted {min_lift:g} to {max_lift:g} times as high, and hips are "

@@ -26,8 +26,8 @@ from suchus.animals.forces.body import (
     errors,
     interpolate_bounds,
     middle,
+    names_with_interval,
     resize_body,
-    unsure,
     widen_body,
 )
 from suchus.core.errors import UnknownName
@@ -83,7 +83,7 @@ def swum_forces(
 
     Args:
         walk: what was measured of the swim: bends along the midline.
-        robot: whose body it is, with an axis that bends.
+        robot: robot whose body it is, with an axis that bends.
         rungs: which models of the water are asked.
         unknown: the ranges of what the film does not show; with a mass the body gets the volume of so much water.
         length: the animal's, where the film does not show it [m].
@@ -106,13 +106,13 @@ def swum_forces(
     for rung in rungs:
         if rung not in RUNGS:
             raise UnknownName("rung of the water", rung, RUNGS)
-    unsure(walk)
+    names_with_interval(walk)
     unknown = unknown or Unknown()
     _check_bends(walk)
     body = resize_body(robot, _body_length(walk, length) / robot.length)
     body = body if unknown.mass is None else widen_body(body, middle(unknown.mass) / WATER_DENSITY)
     bends = _Bends(walk, body)
-    names = (*bends.unsure, "cross_drag", "thickening", "added_mass", "shedding", "viscosity")
+    names = (*bends.uncertain_names, "cross_drag", "thickening", "added_mass", "shedding", "viscosity")
     likely = dict.fromkeys(names, 0.5)
     all_shares = [likely, *choices(names, unknown.draws)]
     gaits = [bends.gait(shares) for shares in all_shares]
@@ -148,13 +148,13 @@ def swim_gait(walk: Walk, robot: Robot) -> Gait:
 
     Args:
         walk: what was measured.
-        robot: who is to swim so.
+        robot: robot that is to swim so.
 
     Raises:
         UnusableTracks: too few bends were seen.
     """
     bends = _Bends(walk, robot)
-    return bends.gait(dict.fromkeys(bends.unsure, 0.5))
+    return bends.gait(dict.fromkeys(bends.uncertain_names, 0.5))
 
 
 def _body_length(walk: Walk, length: float | None) -> float:
@@ -215,7 +215,10 @@ class _Bends:
         curvature_error = np.nan_to_num(phases.curvature_high.values - phases.curvature_low.values) / 2
         self._error = np.sqrt(np.mean(curvature_error**2, axis=1)) * np.nan_to_num(_arms(walk))
         self._places, self._names = phases.place.values, [str(name) for name in phases.keypoint.values]
-        self.unsure = ("period", *(f"{component} {name}" for name in self._names for component in ("cosine", "sine")))
+        self.uncertain_names = (
+            "period",
+            *(f"{component} {name}" for name in self._names for component in ("cosine", "sine")),
+        )
         residual = bend + (self._first_harmonic[:, None] * np.conj(turn)).real
         overtone_ratio = float(
             np.sqrt((residual - residual.mean(axis=1, keepdims=True)).var() / max(bend.var(), 1e-300))
@@ -257,7 +260,7 @@ def _hinge_harmonics(
 
     Args:
         harmonics: harmonics of the bends at keypoints [rad].
-        places: of the keypoints along the midline, 0 to 1 [-].
+        places: positions of the keypoints along the midline, 0 to 1 [-].
         hinges: places of the hinges along the body, 0 to 1 [-].
     """
     ends = np.concatenate([[0.0], places, [1.0]])
@@ -341,7 +344,7 @@ def _spread(swims: Sequence[_SwimCycle], sections: Sequence[_SwimCycle]) -> list
     A model that was run once gets the relative interval of the section model, scaled by the size of its forces.
 
     Args:
-        swims: of the model, one or one for each choice.
+        swims: swims of the model, one or one for each choice.
         sections: the same choices by the section model.
     """
     if len(swims) > 1:

@@ -15,7 +15,7 @@ def summary_lines(data: xr.Dataset) -> list[str]:
     """Return the main results of forces from a film, a line for each.
 
     Args:
-        data: as ``walked_forces``, ``played_forces`` or ``swum_forces`` return it.
+        data: data as ``walked_forces``, ``played_forces`` or ``swum_forces`` return it.
     """
     return _on_land(data) if data.attrs["medium"] == "land" else _in_water(data)
 

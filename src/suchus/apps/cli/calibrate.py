@@ -106,7 +106,7 @@ def _ask_joint(robot: Robot, bus: int, number: int) -> tuple[str, int]:
     """Ask a person which joint moved, until the answer names one, and return the joint and the sign of its motion.
 
     Args:
-        robot: whose servos are calibrated.
+        robot: robot whose servos are calibrated.
         bus: index of the servo's bus.
         number: id of the servo on its bus.
     """

@@ -207,7 +207,7 @@ def _forces(walk: Walk, body: Robot, options: CaptureOptions, unknown: Unknown, 
     Args:
         walk: the measured walk or swim.
         body: robot whose body stands for the animal's.
-        options: of the command.
+        options: options of the command.
         unknown: ranges of mass and friction that the film does not show.
         progress: called with the fraction that is done, 0 to 1.
     """
@@ -245,7 +245,7 @@ def _write_measurements(walk: Walk, tracks: Tracks, folder: Path, video: Path | 
     Args:
         walk: the measured walk.
         tracks: its keypoints.
-        folder: for the files.
+        folder: folder for the files.
         video: the film, on which skeleton and contacts are drawn; None: no overlay.
     """
     data = tables(walk)
@@ -277,7 +277,7 @@ def _write_played_gait(options: CaptureOptions, output: Path | None, robot_word:
     """Write the gait that plays a table of joint angles, and its tables, print what they are, and return 0.
 
     Args:
-        options: of the command.
+        options: options of the command.
         output: the gait file; None: no gait is written.
         robot_word: the robot as the user named it; empty if not named.
         unknown: ranges of mass and friction that the film does not show.
@@ -333,7 +333,7 @@ def _draw(walk: Walk, folder: Path, stem: str) -> Path:
 
     Args:
         walk: the measured walk.
-        folder: for the figure.
+        folder: folder for the figure.
         stem: name of the file without its ending.
     """
     cycle = walk.cycle

@@ -64,7 +64,7 @@ def help_lines(reserved: Iterable[str], width: int) -> Iterator[str]:
 
     Args:
         reserved: names that no such command may have, since suchus itself has it.
-        width: of the column of names [characters].
+        width: width of the column of names [characters].
     """
     try:
         sources = own_commands()
@@ -85,7 +85,7 @@ def carry_out(name: str, words: Sequence[str]) -> int:
     """Carry out a command of a project folder or of another package and return the exit code.
 
     Args:
-        name: of the command.
+        name: name of the command.
         words: what follows it.
 
     Raises:

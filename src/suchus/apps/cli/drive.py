@@ -126,10 +126,10 @@ def _drive(
     """Drive a robot, save its log, and return 0.
 
     Args:
-        options: of the command.
+        options: options of the command.
         gait: the gait.
         control: the controller.
-        folder: of the log.
+        folder: folder of the log.
         words: words of the command line, for the log.
         open_rig: opens the robot and returns it with its clock.
     """
@@ -211,7 +211,7 @@ def _open_rig(options: DriveOptions, wiring: Wiring, gait: Gait, control: Contro
     """Yield the opened robot and its clock; a dry run emulates the robot in this process.
 
     Args:
-        options: of the command.
+        options: options of the command.
         wiring: buses and servos of the robot.
         gait: gait in whose first posture an emulated robot starts.
         control: the controller, which says which readings it needs.
@@ -242,7 +242,7 @@ def _save_log(
     Args:
         experiment: the question that the log answers.
         record: the log; None or empty: nothing is written.
-        folder: of the log.
+        folder: folder of the log.
         words: words of the command line.
         seconds: duration of the drive [s].
     """

@@ -234,8 +234,8 @@ def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] | No
 
     Args:
         words: what follows ``suchus``; by default those of this process.
-        commands: that the first word may name; programs of ``evidence`` have commands of their own. By default those
-            of suchus, of the project folder and of other packages.
+        commands: commands that the first word may name; programs of ``evidence`` have commands of their own. By default
+            those of suchus, of the project folder and of other packages.
     """
     of_this_process = words is None
     words = list(sys.argv[1:] if words is None else words)
@@ -371,7 +371,8 @@ def _dispatch(words: list[str], commands: Sequence[Subcommand] | None) -> int:
 
     Args:
         words: what follows ``suchus``.
-        commands: that the first word may name; None for those of suchus, of the project folder and of other packages.
+        commands: commands that the first word may name; None for those of suchus, of the project folder and of other
+            packages.
 
     Raises:
         UnknownName: there is no such command.

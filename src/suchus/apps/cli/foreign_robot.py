@@ -49,7 +49,7 @@ def _draft(absolute_path: str, word: str, stamp: int) -> Any:
     """Return the draft of a file as it was at a time.
 
     Args:
-        absolute_path: of the file.
+        absolute_path: path of the file.
         word: path as the user gave it.
         stamp: when it was changed [ns].
     """

@@ -132,7 +132,7 @@ def parse(
         words: what follows it.
         description: the head of the help.
         names: what can be set, for the message about an option that cannot; by default the fields.
-        robot: for which gait files are read where the words name none; the caiman if None.
+        robot: robot for which gait files are read where the words name none; the caiman if None.
 
     Raises:
         UnknownName: there is no such option.

@@ -114,7 +114,7 @@ def failed(name: str, sentence: str, trace: str = "") -> TaskResult:
     """Return the result of an experiment that failed.
 
     Args:
-        name: of the experiment.
+        name: name of the experiment.
         sentence: what went wrong.
         trace: where in the code, if it was none of our own errors.
     """

@@ -115,9 +115,9 @@ def _write_answers(record: xr.Dataset | None, varied_results: Mapping[str, xr.Da
     """Write the verdicts on the claims, print where they are, and return 0.
 
     Args:
-        record: of the study of walks; None: only rows of single experiments are renewed.
+        record: record of the study of walks; None: only rows of single experiments are renewed.
         varied_results: results of the varied experiments, by name.
-        folder: of the study.
+        folder: folder of the study.
 
     Raises:
         UnreadableFile: there is nothing to answer from.

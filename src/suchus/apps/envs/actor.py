@@ -12,7 +12,7 @@ class Actor:
     Args:
         initial_target: angles in which the robots begin, shape (run, servo) [rad]; written by ``aim``.
         periods: control periods from one action to the next.
-        limbs: of a robot.
+        limbs: limbs of a robot.
     """
 
     def __init__(self, initial_target: Float[np.ndarray, "run servo"], periods: int, limbs: int) -> None:

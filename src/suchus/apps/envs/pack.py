@@ -186,7 +186,7 @@ class EpisodeHistory:
         """Note a step.
 
         Args:
-            actions: of all robots, shape (run, servo) [-].
+            actions: actions of all robots, shape (run, servo) [-].
             active_mask: which of them act, shape (run,).
         """
         self._steps.append((actions.copy(), active_mask.copy()))
@@ -285,7 +285,7 @@ class Pack:
 
         Args:
             robots: indices of the robots.
-            chances: for each of them the random generator of its episode.
+            chances: random generators of the episodes, one for each of them.
         """
         for i, random in zip(robots, chances, strict=True):
             self._history.begin(i, random)

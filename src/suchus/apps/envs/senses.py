@@ -116,8 +116,8 @@ def reading_columns(
     """Return the columns of one reading of ``senses``.
 
     Args:
-        observations: as an environment returns them.
-        name: of the reading, as ``clock``.
+        observations: observations as an environment returns them.
+        name: name of the reading, as ``clock``.
         robot: the robot that they belong to, or its name in the catalog.
 
     Raises:
@@ -182,7 +182,7 @@ class Observer:
 
         Args:
             sensed: the readings of its sensors.
-            phase: of the clock [cycle].
+            phase: phase of the clock [cycle].
             commanded: angles of the servos relative to their centres, over the span [-].
             goal: vector in the world from each centre of mass to its goal, and the distance that remains [m]; None if
                 the task has none.

@@ -92,7 +92,7 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
         """Begin an episode; equal seeds give equal episodes.
 
         Args:
-            seed: of everything that is left to chance; None goes on with the last one.
+            seed: seed of everything that is left to chance; None goes on with the last one.
             options: none are known.
 
         Returns:
@@ -186,8 +186,8 @@ def picture(
     picture points to one that is beyond it. The view from the side rises with a robot that floats far above the ground.
 
     Args:
-        robot: whose record it is.
-        record: of one run, one sample.
+        robot: robot whose record it is.
+        record: record of one run, one sample.
         text: what is written above.
         surroundings: gravity and the goal.
     """
@@ -232,7 +232,7 @@ def draw_water(top_axes: Axes, side_axes: Axes, level: float, upward: Float[np.n
     Args:
         top_axes: view from above; water is where there is some over the ground.
         side_axes: view from the side.
-        level: of the surface above the world's origin, against gravity [m].
+        level: level of the surface above the world's origin, against gravity [m].
         upward: unit vector against gravity.
         section_y: where the view from the side cuts the water [m].
     """

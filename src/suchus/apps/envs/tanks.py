@@ -27,10 +27,10 @@ class Tanks:
     """The flows of a pack.
 
     Args:
-        run: in a flow, of which each robot has one of its own.
-        batch: of the pack, in which each robot is shown as its own simulation has it.
+        run: run in a flow, of which each robot has one of its own.
+        batch: batch of the pack, in which each robot is shown as its own simulation has it.
         periods: control periods from one action to the next.
-        period: of control [s].
+        period: control period [s].
     """
 
     def __init__(self, run: Run, batch: SimulationBatch, periods: int, period: float) -> None:

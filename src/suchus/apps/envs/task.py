@@ -125,8 +125,8 @@ class Landing:
         Args:
             begin: the centre of mass at the beginning [m].
             bearing: not looked at.
-            ground: whose slope is the shore.
-            lake: whose level at the beginning makes the water line.
+            ground: ground whose slope is the shore.
+            lake: lake whose level at the beginning makes the water line.
         """
         del bearing
         assert lake is not None  # see ``check``
@@ -148,7 +148,7 @@ def remaining(goal: AnyGoal, offset: Float[np.ndarray, "run 2"]) -> Float[np.nda
 
     Args:
         goal: the goal.
-        offset: from the centres of mass to it [m].
+        offset: offset from the centres of mass to it [m].
     """
     return np.asarray(np.maximum(np.hypot(offset[:, 0], offset[:, 1]) - goal.within, 0.0))
 

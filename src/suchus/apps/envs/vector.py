@@ -74,7 +74,8 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         """Begin the episodes of all robots, or of those in ``options["reset_mask"]``.
 
         Args:
-            seed: of the first robot, the others following by one; or one for each; None goes on with the last ones.
+            seed: seed of the first robot, the others following by one; or one for each; None goes on with the last
+                ones.
             options: ``reset_mask``, booleans of shape (num_envs,).
 
         Raises:

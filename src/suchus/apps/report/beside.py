@@ -38,7 +38,7 @@ def compare_with_animals(robot: Robot, results: Results) -> tuple[ComparisonRow,
 
     Args:
         robot: the robot of the page.
-        results: by experiment.
+        results: results by experiment.
     """
     rows = (_row(animal, robot, results) for animal in ANIMALS)
     return tuple(row for row in rows if row is not None)

@@ -24,8 +24,8 @@ def write_parts(sheet: Sheet, folder: Path, *, gait: Gait, samples: Commands, ou
 
     Args:
         sheet: what the robot is built of.
-        folder: where to.
-        gait: whose trajectory is written.
+        folder: folder to write to.
+        gait: gait whose trajectory is written.
         samples: its commands.
         outlines: whether STL and DXF are written, which need the extra ``parts``.
 
@@ -73,7 +73,7 @@ def tables(sheet: Sheet) -> dict[str, str]:
     texts = {
         "parts.csv": _csv(
             ("body", "part", "kind", "what", "length_m", "width_m", "height_m", "mass_kg", "x_m", "y_m", "z_m"),
-            [(p.body, p.name, p.kind, p.about, *p.size, p.mass, *p.centre) for p in sheet.parts],
+            [(p.body, p.name, p.kind, p.description, *p.size, p.mass, *p.centre) for p in sheet.parts],
         ),
         "bodies.csv": _csv(
             ("body", "simulated_kg", "servos_kg", "printed_and_foam_kg", "rest_kg"),

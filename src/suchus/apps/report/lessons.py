@@ -62,7 +62,7 @@ def write_lessons(folder: Path, selection: Sequence[Lesson] = (), progress: Prog
     """Write lessons and a page that lists them, and return the paths, the list first.
 
     Args:
-        folder: for the pages; made where it is not there.
+        folder: folder for the pages; made where it is not there.
         selection: the lessons; all if empty.
         progress: called with the share that is done, 0 to 1.
 

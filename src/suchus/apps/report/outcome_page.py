@@ -46,7 +46,7 @@ def write_outcome_page(folder: str | Path) -> Path:
     """Write the page of an outcome into its folder and return its path.
 
     Args:
-        folder: that ``save_outcome`` wrote.
+        folder: folder that ``save_outcome`` wrote.
 
     Raises:
         SuchusError: there is no outcome in it, or the place cannot be written to.

@@ -64,7 +64,7 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure], page_fol
     """Return the page as text.
 
     Args:
-        results: in the order of the page.
+        results: results in the order of the page.
         failures: what did not.
         page_folder: the folder of the page, from which it links films and replays; None: the folder of the results.
     """

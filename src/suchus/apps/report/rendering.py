@@ -28,7 +28,7 @@ def quantity(value: float | None, unit: str, digits: int = 4) -> str:
     """Return a number with its unit; angles in degrees too. Nothing where there is no number.
 
     Args:
-        value: in ``unit``; None where it is not known.
+        value: value in ``unit``; None where it is not known.
         unit: as measures name it; ``-`` for none.
         digits: significant digits.
     """
@@ -115,7 +115,7 @@ def render(template: str, page_folder: Path | None, content: dict[str, Any], **f
         template: name of its file.
         page_folder: the folder of the page, from which it links files; None: the one that holds their folders.
         content: what the template names.
-        filters: of the template, beside ``quantity``, ``number`` and ``link``.
+        filters: filters of the template, beside ``quantity``, ``number`` and ``link``.
     """
     environment = _environment(tuple(filters.items()))
     style = Markup(environment.get_template("style.css").render())

@@ -34,7 +34,7 @@ def save_outcome(
     """Write an outcome as a folder, which appears complete or not at all, and return its path.
 
     Args:
-        outcome: of the experiment.
+        outcome: outcome of the experiment.
         figures: its figures by name.
         experiment: the question.
         folder: where; an earlier result there is replaced, with what nobody changed of it.

@@ -48,11 +48,11 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
 
     Args:
         sizing: what was found.
-        folder: where to.
+        folder: folder to write to.
         hours: for which the battery is asked [h].
     """
-    write(folder / SERVOS, servos_text(sizing))
-    write(folder / FAMILIES, families_text(sizing, hours))
+    write(folder / SERVOS, servos_csv(sizing))
+    write(folder / FAMILIES, families_csv(sizing, hours))
     best = sizing.best
     pictures = []
     if best is not None:
@@ -74,19 +74,26 @@ def uses(family: ServoFamily) -> list[ServoUse]:
     return servo_uses
 
 
-def servos_text(sizing: Sizing) -> str:
-    """Return a table of every servo in every case: those of the design first, then those of each family tried."""
+def servos_csv(sizing: Sizing) -> str:
+    """Return a CSV table with a row for each servo in each load case.
+
+    The servos of the design come first. Then those of each family that was tried follow, in each case by falling use,
+    with the period of the gait that the family needs.
+    """
     rows = [
-        _row("as designed", None, name, case, load, sizing.cases[i].gait.period)
-        for i, (case, loads) in enumerate(sizing.own.items())
-        for name, load in loads.items()
+        _row("as designed", None, servo_name, case, load, sizing.cases[case_index].gait.period)
+        for case_index, (case, loads) in enumerate(sizing.designed_loads.items())
+        for servo_name, load in loads.items()
     ]
     for family in sizing.families:
-        for i, (case, loads) in enumerate(family.loads.items()):
-            gait = sizing.cases[i].gait
+        for case_index, (case, loads) in enumerate(family.loads.items()):
+            gait = sizing.cases[case_index].gait
             period = gait.period * family.factors[gait.name]
-            ordered = sorted(loads, key=lambda name: -use(family.chosen[name], loads[name]))
-            rows += [_row(family.name, family.chosen[name], name, case, loads[name], period) for name in ordered]
+            names_by_use = sorted(loads, key=lambda servo_name: -use(family.chosen[servo_name], loads[servo_name]))
+            rows += [
+                _row(family.name, family.chosen[servo_name], servo_name, case, loads[servo_name], period)
+                for servo_name in names_by_use
+            ]
     return _csv(_COLUMNS, rows)
 
 
@@ -112,8 +119,8 @@ def _row(family: str, motor: Motor | None, servo: str, case: str, load: ServoLoa
     ]  # fmt: skip
 
 
-def families_text(sizing: Sizing, hours: float) -> str:
-    """Return a table of the families: whether they do, with which periods, for how much."""
+def families_csv(sizing: Sizing, hours: float) -> str:
+    """Return a CSV table of the families: whether they are sufficient, with which periods, and at which price."""
     head = ["family", "volts", "does", "as_asked", *(f"period_s {gait}" for gait in _periods(sizing, None))]
     head += ["price_low_EUR", "price_high_EUR", "servos_kg", f"battery_Ah_for_{hours:g}_h", "servos", "lacking"]
     rows: list[list[object]] = []
@@ -176,7 +183,7 @@ def _overheating(sizing: Sizing) -> list[str]:
     """Return in a sentence which servo of the design would get too warm the soonest; nothing if none would."""
     overheated = [
         (load.warm_after, name, case, load)
-        for case, loads in sizing.own.items()
+        for case, loads in sizing.designed_loads.items()
         for name, load in loads.items()
         if isfinite(load.warm_after)
     ]
@@ -216,7 +223,7 @@ def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float
     best = sizing.best
     overloaded = [
         {"servo": name, "case": case, "load": load}
-        for case, loads in sizing.own.items()
+        for case, loads in sizing.designed_loads.items()
         for name, load in loads.items()
         if load.at_limit > AT_LIMIT
     ]

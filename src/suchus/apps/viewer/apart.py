@@ -28,7 +28,7 @@ class WatchProcess:
         robot: the robot.
         picture: returns what is seen now; called by ``send_state`` only.
         port: to listen on; 0 for any that is free.
-        title: of the page.
+        title: title of the page.
 
     Raises:
         CannotServe: the port is taken, or the process ended before it served.

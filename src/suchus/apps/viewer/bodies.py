@@ -22,7 +22,7 @@ class BodyPoses:
     """The bodies of a robot, set by an instant of a record.
 
     Args:
-        robot: whose bodies.
+        robot: robot whose bodies are shown.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -99,8 +99,8 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
     """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one.
 
     Args:
-        robot: whose skin.
-        count: of colours.
+        robot: robot whose skin is meant.
+        count: number of colours.
     """
     surface = skin_with_ankles(robot)
     face_colours = surface.colours[surface.faces].astype(float).mean(axis=1)

@@ -30,7 +30,7 @@ class DrawnRobot:
     Args:
         scene: viser's scene of that browser.
         root: the node under which it stands.
-        robot: who.
+        robot: the robot.
         ghost: whether it is there for comparison: pale, one colour.
     """
 

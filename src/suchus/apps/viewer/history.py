@@ -55,7 +55,7 @@ def table_of(record: xr.Dataset, origin: np.ndarray) -> dict[str, np.ndarray]:
     """Return the same columns of a whole record of one run.
 
     Args:
-        record: of one run.
+        record: record of one run.
         origin: from where the displacement is counted, (3,) [m].
     """
     com, feet = record.centre_of_mass.values, record.foot_force.sel(xyz="z").values

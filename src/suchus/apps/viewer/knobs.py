@@ -207,9 +207,9 @@ def tune_gait(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait,
     """Return a gait with one parameter changed as far as the joints allow, and a sentence if that is not as asked for.
 
     Args:
-        robot: who walks.
+        robot: robot that walks.
         gait: which the robot can walk.
-        name: of the knob.
+        name: name of the knob.
         value: asked for, in the knob's unit; anything.
     """
     knob, current = knobs_of(robot, gait)[name], displayed_value(gait, name)
@@ -236,10 +236,10 @@ def _gait_with(robot: Robot, gait: Gait, name: str, value: float) -> tuple[Gait,
     """Return a gait with one field changed, and why the robot cannot follow it; empty if it can.
 
     Args:
-        robot: who walks.
+        robot: robot that walks.
         gait: the gait before the change.
-        name: of the field.
-        value: of the field, in SI units.
+        name: name of the field.
+        value: value of the field, in SI units.
     """
     try:
         gait_variant = gait.with_numbers(**{name: value})

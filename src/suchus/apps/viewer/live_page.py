@@ -193,7 +193,7 @@ class Controls:
         """Add a slider that shows the value that the session accepted.
 
         Args:
-            name: of the number.
+            name: name of the number.
             knob: its label, range and step.
             value: returns the number as it is now, in the knob's unit.
             turn: asks for another value; returns a sentence if that is not as asked.

@@ -152,7 +152,7 @@ def gait_bars(robot: Robot, table: Mapping[str, np.ndarray], *, cursor: float | 
     """Return the gait as an SVG picture: a bar for every stance of every foot; empty for a robot without limbs.
 
     Args:
-        robot: who walks.
+        robot: robot that walks.
         table: columns by name, see ``history.columns``.
         cursor: where to draw a cursor [s]; None for none.
     """
@@ -202,7 +202,7 @@ class Plots:
     Args:
         gui: viser's interface of one browser.
         uplot: viser's module of chart settings.
-        robot: who walks.
+        robot: robot that walks.
         has_ghost: whether there is a second run, drawn pale.
     """
 

@@ -74,8 +74,8 @@ def takes(path: Path, robot: Robot | None = None) -> tuple[Take, ...]:
     """Return the runs of a record on land.
 
     Args:
-        path: of the file.
-        robot: who walks in it; by default the robot of the catalog that the record names.
+        path: path of the file.
+        robot: robot that walks in it; by default the robot of the catalog that the record names.
 
     Raises:
         UnreadableFile: there is no such file.
@@ -234,7 +234,7 @@ def place_animal(tracks: Tracks, take: Take) -> FilmedAnimal:
     links = np.linalg.norm(np.diff(positions[:, : len(chain), :2], axis=1), axis=-1)
     scale = take.robot.length / float(np.median(links.sum(axis=1)))
     positions = scale * positions
-    if not tracks.upright:
+    if not tracks.has_heights:
         heights = np.where(np.arange(len(points)) < len(chain), _MIDLINE_HEIGHT * take.robot.length, 0.0)
         positions = np.concatenate([positions, np.broadcast_to(heights, positions.shape[:2])[..., None]], axis=-1)
     hip, ground = chain.index("hip"), float(np.percentile(positions[:, len(chain) :, 2], 5))

@@ -190,7 +190,7 @@ class BrowserPage(ABC):
 
         Args:
             clock: by a clock that never goes back [s].
-            elapsed: since the picture before [s].
+            elapsed: time since the picture before [s].
         """
 
     def run(self) -> None:
@@ -228,7 +228,7 @@ class Viewer:
         host: name or address to listen on.
         port: to listen on; 0 for any that is free.
         max_browsers: how many browsers are served at once.
-        title: of the panel of controls.
+        title: title of the panel of controls.
         camera: where the camera is at first and where it looks [m].
 
     Raises:

@@ -210,7 +210,7 @@ class Session:
 
         Args:
             name: a field of ``Settings`` that is a number.
-            value: in the unit of its knob; anything.
+            value: value in the unit of its knob; anything.
         """
         knob = plain_knobs(self.robot)[name]
         with self._lock:

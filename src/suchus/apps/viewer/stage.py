@@ -85,7 +85,7 @@ class DrawnRod:
 
     Args:
         scene: viser's scene of that browser.
-        name: of its node.
+        name: name of its node.
         shape: how thick.
         colour: red, green, blue of 255.
     """
@@ -166,7 +166,7 @@ class WalkScene:
 
     Args:
         scene: viser's scene of that browser.
-        robot: who walks.
+        robot: robot that walks.
     """
 
     def __init__(self, scene: Any, robot: Robot) -> None:

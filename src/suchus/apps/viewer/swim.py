@@ -77,7 +77,7 @@ def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:
     """Return the swims and the measured curves of a record of swimming.
 
     Args:
-        path: of the file.
+        path: path of the file.
 
     Raises:
         UnreadableFile: there is no such file.
@@ -201,7 +201,8 @@ class VortexFilm:
     """The last cycle of a swim in three dimensions, frame by frame.
 
     Args:
-        record: of the experiment ``swim_3d``, or of ``water.resolved`` in space with frames; see ``figures.vortices``.
+        record: record of the experiment ``swim_3d``, or of ``water.resolved`` in space with frames; see
+            ``figures.vortices``.
         subject: how a sentence about it begins.
 
     Raises:
@@ -301,7 +302,7 @@ def vortex_film(path: Path) -> VortexFilm | None:
     """Return the last cycle of a swim in three dimensions; None if the record knows nothing of vortices in space.
 
     Args:
-        path: of the file.
+        path: path of the file.
 
     Raises:
         UnreadableFile: there is no such file.

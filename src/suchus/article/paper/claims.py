@@ -14,9 +14,9 @@ def _constant(key: str, name: str, value: float, digit: float) -> Claim:
     """Return the claim about a constant of the body wave (20).
 
     Args:
-        key: of the claim.
-        name: of the constant.
-        value: as printed.
+        key: key of the claim.
+        name: name of the constant.
+        value: value as printed.
         digit: unit of the last printed digit.
     """
     return Claim(

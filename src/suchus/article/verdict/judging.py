@@ -111,7 +111,7 @@ def digest(claims: Mapping[str, Mapping[str, object]]) -> str:
 SHARES: Mapping[str, Share] = MappingProxyType(
     {key: Share(claim=key, **row) for key, row in _shipped().items() if "share" in row}
 )
-"""By claim."""
+"""Fractions of plausible designs by claim."""
 SPARSE_SHARES: Mapping[str, SparseShare] = MappingProxyType(
     {key: SparseShare(claim=key, **row) for key, row in _shipped().items() if "share" not in row}
 )
@@ -176,7 +176,7 @@ def fragile(rule: Rule, word: str, designs: Share | SparseShare | None) -> bool:
 
     Args:
         rule: the claim's.
-        word: of its verdict.
+        word: word of its verdict.
         designs: in how many the statement holds, or what few of them say; None where that is not known.
     """
     if rule.kind not in ("measured", "animals") or designs is None or designs.rule not in ("", rule.asked):
@@ -196,8 +196,8 @@ def judge(
 
     Args:
         rule: the claim's.
-        measures: of its experiment, by name, in SI units.
-        shares: in how many plausible designs each claim holds, by claim.
+        measures: measures of its experiment, by name, in SI units.
+        shares: fraction of plausible designs for which each claim holds, by claim.
         unable: why models of the rule could not be run, in a sentence, by the names of its rungs.
         claims: those that rules may judge, by key: the article's, or with them an experiment's own, see
             ``suchus.experiments.claims.known_claims``.

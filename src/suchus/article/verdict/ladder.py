@@ -52,7 +52,7 @@ def voices(rule: Rule, measures: Mapping[str, float], unable: Mapping[str, str] 
 
     Args:
         rule: the claim's.
-        measures: of its experiment.
+        measures: measures of its experiment.
         unable: why rungs could not be run, in a sentence, by name.
     """
     return tuple(_voice(rule, rung, measures, unable.get(rung.name, "")) for rung in rule.rungs)

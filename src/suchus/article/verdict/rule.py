@@ -96,7 +96,7 @@ class Clause:
         A number that is not finite makes it false.
 
         Args:
-            measures: by name; those of ``spread`` with their intervals.
+            measures: measures by name; those of ``spread`` with their intervals.
             spread: names of the measures that have an interval.
         """
         value = interval(self.measure, measures, spread)

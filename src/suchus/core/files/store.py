@@ -123,7 +123,7 @@ def load(path: str | Path, *, require_seal: bool = False) -> xr.Dataset:
     """Read a record into memory.
 
     Args:
-        path: of the file.
+        path: path of the file.
         require_seal: whether a file without a seal is refused too, as one that something else has changed.
 
     Raises:

@@ -123,7 +123,7 @@ class Tally:
         """Count a finished piece.
 
         Args:
-            number: of the piece.
+            number: number of the piece.
             units: all that it has [-].
             failed: how many of them failed [-].
             fresh: whether this start computed it; pieces of earlier starts do not count in the rate.

@@ -53,7 +53,7 @@ class PieceCrash(NamedTuple):
     """The outcome of a piece whose processes ended before the piece was finished."""
 
     exit_code: int | None
-    """Of the last of them; negative for the signal that killed it."""
+    """Exit code of the last of them; negative for the signal that killed it."""
 
 
 class ResultStore(Protocol[Result]):

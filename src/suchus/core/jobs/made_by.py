@@ -12,21 +12,21 @@ LAND_SOURCES = (
     "core/rotation.py", "core/sources.py", "robot", "sim",
     *(f"experiments/study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
 )  # fmt: skip
-"""Whose code decides the numbers of a run on land."""
+"""Paths whose code decides the numbers of a run on land."""
 FLOW_SOURCES = (
     "article/paper", "core/catalog.py", "core/checks.py", "core/files", "core/fingerprint.py", "core/isosurface.py",
     "core/kinds.py", "core/reading.py", "core/rotation.py", "core/sources.py", "flow", "robot/blueprint",
     "robot/design", "robot/kinematics", "robot/motion", "robot/motors", "robot/robots", "sim/hydro", "sim/metrics",
     "sim/record", "swimming/water",
 )  # fmt: skip
-"""Whose code decides the numbers of a swim by CFD."""
+"""Paths whose code decides the numbers of a swim by CFD."""
 
 
 def source_versions(paths: Sequence[str] = LAND_SOURCES, libraries: Sequence[str] = ()) -> dict[str, str]:
     """Return the versions of what makes the bytes of a result, the files of the user's project among them.
 
     Args:
-        paths: whose source decides, see ``record.code_digest``.
+        paths: paths whose source decides, see ``record.code_digest``.
         libraries: further packages whose versions decide.
     """
     package_versions = versions()

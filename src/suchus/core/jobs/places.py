@@ -37,7 +37,7 @@ class Place(Protocol):
 
         Args:
             job: the work and its settings.
-            items: one for each piece.
+            items: item of each piece.
             start_piece: called with the index of an item when its piece starts.
 
         Raises:
@@ -160,7 +160,7 @@ class _News(NamedTuple):
     """A message of a thread about its piece."""
 
     number: int
-    """Of the piece."""
+    """Number of the piece."""
     kind: str
     """``begun``, ``far``, ``done`` or ``raised``."""
     value: Any = None
@@ -209,7 +209,7 @@ def _work(
 
     Args:
         work: computes the result of an item.
-        items: of all pieces.
+        items: items of all pieces.
         numbers: yields the number of the next piece; all threads share it.
         news: queue for messages to the calling thread.
         stop: set where the pieces shall stop.

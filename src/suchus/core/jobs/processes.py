@@ -34,7 +34,7 @@ class PieceProgress(NamedTuple):
     stage: str
     """What it is at."""
     share: float
-    """Of the stage [-]."""
+    """Finished fraction of the stage [-]."""
 
 
 class PieceResult(NamedTuple):
@@ -65,7 +65,7 @@ class Worker:
     process: BaseProcess
     """The process."""
     pipe: Connection
-    """To talk with it."""
+    """Pipe to the process."""
     piece: int | None = None
     """The number of the piece that it is at; None: it waits for one."""
 

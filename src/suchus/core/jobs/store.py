@@ -43,7 +43,7 @@ class Store:
 
     Args:
         folder: where they are, or shall be.
-        study: whose they are, a dataclass.
+        study: study of the stored batches, a dataclass.
         kind: what it is called in messages; also the name of the file that says what the store holds.
         versions: returns what decides the bytes here, see ``made_by.source_versions``.
     """

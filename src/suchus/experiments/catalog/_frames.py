@@ -44,8 +44,8 @@ def draw_frames(record: xr.Dataset, names: Sequence[str], said: str) -> Figure:
     """Draw the frames of a record with their axes X and Z, and Y of frame 0.
 
     Args:
-        record: with what ``frames_of`` returns.
-        names: of the joint or point at each frame.
+        record: record with what ``frames_of`` returns.
+        names: names of the joint or point at each frame.
         said: what the chain is, for the caption.
     """
     across = np.array([-sin(_AZIMUTH), cos(_AZIMUTH), 0.0])

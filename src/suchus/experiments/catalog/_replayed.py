@@ -16,8 +16,8 @@ def replayed(file: str, record: xr.Dataset, robot: Robot, *, caption: str, **pag
 
     Args:
         file: its name, ending in ``_replay.html``.
-        record: of one run.
-        robot: whose it is.
+        record: record of one run.
+        robot: robot of the record.
         caption: what the replay shows.
         **page: what else the page takes, such as ``ghost`` and ``labels``; see ``suchus.visual.replay.replay``.
     """

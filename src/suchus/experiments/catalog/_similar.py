@@ -8,8 +8,8 @@ def similar(numbers: SwimNumbers, ending: str = "", *, but: tuple[str, ...] = ()
     """Return Reynolds, Froude, Strouhal and swimming number of a swim, see ``metrics.SwimNumbers``.
 
     Args:
-        numbers: of the swim.
-        ending: of the names of the measures, which says whose they are.
+        numbers: parameters of the swim.
+        ending: ending of the names of the measures, which says whose they are.
         but: those that the experiment calls otherwise, or measures for itself.
     """
     return Measures(

@@ -41,9 +41,9 @@ def swum_in_sections(robot: Robot, motions: Sequence[Gait], cycles: int, progres
     """Return the record of swims at the surface in six degrees of freedom, one run for each motion.
 
     Args:
-        robot: who swims; if it has no hull and would sink it gets one with which it floats.
-        motions: that are commanded; the limbs are held up.
-        cycles: that are swum [-].
+        robot: robot that swims; if it has no hull and would sink it gets one with which it floats.
+        motions: motions that are commanded; the limbs are held up.
+        cycles: number of cycles that are swum [-].
         progress: told the share that is done.
     """
     lake = Lake(level=2.0)
@@ -60,9 +60,9 @@ def midlines(robot: Robot, motion: Gait, stations: int) -> list[TakenMidline]:
     """Return the midlines of trunk and tail, and of the tail alone, as the joints take them at the surface.
 
     Args:
-        robot: who swims; without a hull it gets one with which it floats.
-        motion: that is commanded.
-        stations: of the midline [-].
+        robot: robot that swims; without a hull it gets one with which it floats.
+        motion: motion that is commanded.
+        stations: stations of the midline [-].
     """
     meant = (motion, motion.straightened("trunk"))
     record = swum_in_sections(robot, meant, _SETTLE + _AVERAGED)

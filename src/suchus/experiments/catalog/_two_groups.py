@@ -65,8 +65,8 @@ class TwoGroups(Experiment):
         Args:
             runs: the conditions, each with its label; the i-th robot of each has the same errors.
             numbers: returns each number by name, over the runs of a record.
-            units: of the numbers, by name.
-            duration: of each run [s].
+            units: units of the numbers, by name.
+            duration: duration of each run [s].
             progress: told the share that is done.
         """
         built = self.tolerances.repeats(runs, self.repeats, self.seed)
@@ -89,8 +89,8 @@ def of_repeats(record: xr.Dataset, units: Mapping[str, str]) -> Measures:
     """Return the middle and the interval of repeated numbers in every condition, as ``NAME_CONDITION``.
 
     Args:
-        record: with ``repeated_NAME`` over ``condition`` and ``repeat``.
-        units: of the numbers, by name.
+        record: record with ``repeated_NAME`` over ``condition`` and ``repeat``.
+        units: units of the numbers, by name.
     """
     measures = Measures()
     for condition in record.condition.values:

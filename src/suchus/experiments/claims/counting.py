@@ -73,7 +73,7 @@ def count_evidence(
     Args:
         verdicts: the word of each claim, none of which is an experiment's own.
         fragile: claims whose word other plausible designs reverse.
-        rules: by claim; a claim without one counts as measured.
+        rules: rules by claim; a claim without one counts as measured.
     """
     published = {claim: word for claim, word in verdicts.items() if claim in CLAIMS and CLAIMS[claim].of}
     verdicts = {claim: word for claim, word in verdicts.items() if claim not in published}
@@ -112,7 +112,7 @@ def standings(verdicts: Mapping[str, str], rules: Mapping[str, Rule] = RULES) ->
 
     Args:
         verdicts: the word of each claim.
-        rules: by claim; a claim without one counts as measured.
+        rules: rules by claim; a claim without one counts as measured.
     """
     standing_of_claim: dict[str, Standing] = {}
     for claim, word in verdicts.items():

@@ -27,8 +27,8 @@ def clearance(robot: Robot, record: xr.Dataset, *, sample_interval: int = 1) -> 
     between the hips. Parts of the axis are not compared with each other.
 
     Args:
-        robot: of the record.
-        record: of one run or of several runs of robots with these lengths.
+        robot: robot of the record.
+        record: record of one run or of several runs of robots with these lengths.
         sample_interval: number of samples of which one is evaluated.
     """
     angles = record.joint_angle.isel(time=slice(None, None, sample_interval)).transpose(..., "time", "joint")
@@ -43,7 +43,7 @@ def part_distance(robot: Robot, angles: np.ndarray) -> np.ndarray:
 
     Args:
         robot: the robot.
-        angles: of every hinge in the order of ``joint_names(robot)``, shape (..., joint) [rad].
+        angles: angles of every hinge in the order of ``joint_names(robot)``, shape (..., joint) [rad].
     """
     check_needs(robot, ("limbs",), "the distance between limbs and body")
     parts = _parts(robot, angles)
@@ -90,7 +90,7 @@ def _segment(robot: Robot, segment: Segment, body_frames: BodyFrames) -> list[_C
 
     Args:
         robot: the robot.
-        segment: of the axis.
+        segment: segment of the axis.
         body_frames: frames of all bodies.
     """
     bodies = layout(robot).bodies

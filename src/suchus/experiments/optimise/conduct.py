@@ -53,7 +53,7 @@ def optimise(
 
     Args:
         spec: the search; with more evaluations than before, an earlier one is continued.
-        folder: for its results and, below it, the store of each condition.
+        folder: folder for its results and, below it, the store of each condition.
         progress: called with the condition, the number of evaluated candidates, and the best value.
         client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
             bytes are the same.
@@ -81,7 +81,7 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> 
 
     Args:
         spec: the search, of one condition.
-        folder: for its results and its store.
+        folder: folder for its results and its store.
         progress: called with the stage and the fraction that is done.
         place: where candidates are evaluated.
     """
@@ -144,8 +144,8 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
 
     Args:
         spec: the search, of one condition.
-        store: of the generations.
-        folder: for the best gait so far.
+        store: store of the generations.
+        folder: folder for the best gait so far.
         progress: called with the stage and the fraction that is done.
         place: where candidates are evaluated.
     """
@@ -189,8 +189,8 @@ def _generation(
     """Return one generation, from the store if it is there.
 
     Args:
-        store: of the generations.
-        number: of the generation.
+        store: store of the generations.
+        number: number of the generation.
         candidates: fractions of the ranges, shape (candidate, field).
         make: evaluates the candidates.
     """

@@ -29,7 +29,7 @@ def evaluate(
         spec: the search, of one condition.
         shares: fractions of the ranges, from 0 to 1, shape (candidate, field).
         progress: called with the fraction that is done.
-        timestep: of the physics [s]; that of the search if None.
+        timestep: time step of the physics [s]; that of the search if None.
 
     Returns:
         A table along ``candidate``: ``share`` over ``field``; ``aim_...`` and ``limit_...``, NaN where it did not walk;
@@ -84,9 +84,9 @@ def _walk_candidates(
 
     Args:
         spec: the search, of one condition.
-        runs: by number of the candidate.
+        runs: runs by number of the candidate.
         progress: called with the fraction that is done.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
     """
     if not runs:
         return {}
@@ -126,8 +126,8 @@ def _joined(name: str, values: np.ndarray) -> float:
     """Return the value of a candidate over all grounds: the mean of an aim, the worst of a limit.
 
     Args:
-        name: of the column.
-        values: on each ground.
+        name: name of the column.
+        values: values on each ground.
     """
     if name.startswith("aim_"):
         return float(values.mean())
@@ -150,7 +150,7 @@ def excesses(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
 
     Args:
         spec: the search.
-        table: of ``evaluate``.
+        table: table of ``evaluate``.
     """
     rows = [relative_excess(limit, table[f"limit_{limit.name}"].values) for limit in spec.limits]
     return np.array(rows).T if rows else np.zeros((table.sizes["candidate"], 0))
@@ -161,7 +161,7 @@ def relative_excess(limit: Limit, values: np.ndarray) -> np.ndarray:
 
     Args:
         limit: the limit.
-        values: of the limited quantity, in its unit.
+        values: values of the limited quantity, in its unit.
     """
     kind = LIMITS[limit.name]
     sign = 1.0 if kind.good == "less" else -1.0
@@ -187,7 +187,7 @@ def losses(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarr
 
     Args:
         spec: the search.
-        table: of ``evaluate``.
+        table: table of ``evaluate``.
         parts: unit of each aim, of ``units``.
     """
     signs = np.array([-1.0 if AIMS[aim.name].good == "more" else 1.0 for aim in spec.aims])

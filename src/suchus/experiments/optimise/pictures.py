@@ -122,7 +122,7 @@ def draw_gaits(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) ->
 
     Args:
         runs: the start, and the best.
-        record: of them.
+        record: record of the runs.
         texts: what is written beside each.
     """
     if all(isinstance(run.control, Standing) for run in runs):
@@ -170,8 +170,8 @@ def _draw_standing(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]
     """Draw every run from its right side, in the middle of the time in which it should stand.
 
     Args:
-        runs: with a control that stands up.
-        record: of the runs.
+        runs: runs with a control that stands up.
+        record: record of the runs.
         texts: written under each.
     """
     with styled():

@@ -31,8 +31,8 @@ def write_results(spec: Optimisation, searches: Sequence[SearchResult], folder: 
 
     Args:
         spec: the search.
-        searches: of each condition.
-        folder: of the search.
+        searches: searches of each condition.
+        folder: folder of the search.
 
     Raises:
         Unwritable: the place cannot be written to.
@@ -137,8 +137,8 @@ def sentence(search: SearchResult, index: int) -> str:
     """Return which fields of a chosen gait differ most from the start, and which limits and ranges stop it.
 
     Args:
-        search: of one condition.
-        index: of the chosen candidate.
+        search: search of one condition.
+        index: index of the chosen candidate.
     """
     ranges = {
         v.field: (float(v.low), float(v.high)) for v in search.spec.vary if v.low is not None and v.high is not None

@@ -174,7 +174,7 @@ class Optimisation(Search):
         """Return the run whose fields lie at these shares of their ranges.
 
         Args:
-            shares: by field, 0 to 1.
+            shares: shares by field, 0 to 1.
 
         Raises:
             InvalidDesign: the values cannot be together.

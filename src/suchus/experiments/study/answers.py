@@ -42,7 +42,8 @@ def answer_claims(results: Mapping[str, tuple[np.ndarray, np.ndarray]], paramete
     """Return number and truth of each claim in every sample, and the parameters that decide them.
 
     Args:
-        results: by claim its number in every sample, NaN where it cannot be judged, and whether its statement holds.
+        results: for each claim its number in every sample, NaN where it cannot be judged, and whether its statement
+            holds.
         parameters: values of what varies, shape (sample, parameter).
     """
     numbers, holds = (np.array(values) for values in zip(*results.values(), strict=True))
@@ -88,7 +89,7 @@ def first_order(parameters: np.ndarray, quantity: np.ndarray) -> Index:
     resampled_counts = np.random.default_rng(0).multinomial(count, np.full(count, 1 / count), size=_RESAMPLED)
     weights = np.vstack([np.ones(count), resampled_counts.astype(float)])
     indices = np.array(
-        [_between_bins_fraction(column, ranks, weights) for column in parameters[is_finite].T]
+        [_explained_fraction(column, ranks, weights) for column in parameters[is_finite].T]
     )  # (parameter, resampled)
     spread = np.quantile(indices[:, 1:], ((1 - _CONFIDENCE) / 2, (1 + _CONFIDENCE) / 2), axis=1)
     # a resampled sample holds some points twice, which looks like more variance between bins: take that bias away
@@ -96,29 +97,32 @@ def first_order(parameters: np.ndarray, quantity: np.ndarray) -> Index:
     return Index(indices[:, 0], spread[0] - shift, spread[1] - shift)
 
 
-def _between_bins_fraction(column: np.ndarray, values: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return the fraction of the variance between bins of a parameter, adjusted for chance, for every resample.
+def _explained_fraction(parameter: np.ndarray, ranks: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Return the fraction of a quantity's variance that bins of a parameter explain, for every resample [-].
+
+    It is the correlation ratio of the ranks, adjusted for the number of bins as an adjusted R2 is, so that it can be
+    a little below zero. Shape (resample,).
 
     Args:
-        column: values of the parameter, shape (sample,).
-        values: ranks of the quantity, shape (sample,).
-        weights: of the samples, shape (resample, sample).
+        parameter: values of the parameter, shape (sample,).
+        ranks: ranks of the quantity, shape (sample,).
+        weights: weights of the samples in each resample, shape (resample, sample).
     """
-    count = len(values)
-    bins = (stats.rankdata(column, method="ordinal") - 1).astype(int) * _BINS // count
-    member = np.eye(_BINS)[bins]
-    bin_weights = weights @ member
-    sums = weights @ (member * values[:, None])
-    total = weights.sum(axis=1)
-    mean = weights @ values / total
-    total_variance = weights @ values**2 / total - mean**2
+    sample_count = len(ranks)
+    bin_index = (stats.rankdata(parameter, method="ordinal") - 1).astype(int) * _BINS // sample_count
+    membership = np.eye(_BINS)[bin_index]
+    bin_weights = weights @ membership
+    sums = weights @ (membership * ranks[:, None])
+    total_weight = weights.sum(axis=1)
+    mean = weights @ ranks / total_weight
+    total_variance = weights @ ranks**2 / total_weight - mean**2
     between_variance = (np.where(bin_weights > 0, sums**2 / np.maximum(bin_weights, 1e-12), 0.0)).sum(
         axis=1
-    ) / total - mean**2
-    share = np.divide(
+    ) / total_weight - mean**2
+    fraction = np.divide(
         between_variance, total_variance, out=np.zeros_like(total_variance), where=total_variance > 0
     )  # a resampled quantity may be constant
-    return np.asarray(1.0 - (1.0 - share) * (count - 1) / (count - _BINS))
+    return np.asarray(1.0 - (1.0 - fraction) * (sample_count - 1) / (sample_count - _BINS))
 
 
 def share_interval(true: int, count: int) -> tuple[float, float]:
@@ -153,7 +157,7 @@ def agreement(record: xr.Dataset, reference: xr.Dataset) -> Agreement:
     among the claims times their number (Bonferroni).
 
     Args:
-        record: of ``answers``, merged with its record.
+        record: record of ``answers``, merged with its record.
         reference: the same, made otherwise.
     """
     is_comparable = np.isfinite(record.number.values) & np.isfinite(reference.number.values)

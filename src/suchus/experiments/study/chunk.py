@@ -23,7 +23,7 @@ def run_chunk(study: Study, number: int, progress: Progress = silent) -> xr.Data
 
     Args:
         study: the study.
-        number: of the batch.
+        number: number of the batch.
         progress: told the share that is done.
 
     Returns:
@@ -53,7 +53,7 @@ def _walk(
 
     Args:
         study: the study.
-        runs: by sample.
+        runs: runs by sample.
         rows: measured numbers by sample; filled in.
         errors: why a sample has no numbers; filled in.
         progress: called with the fraction that is done.
@@ -119,7 +119,7 @@ def _table(
 
     Args:
         study: the study.
-        points: of ``Plan``, one for each sample.
+        points: points of ``Plan``, one for each sample.
         samples: numbers of the samples.
         rows: measured numbers by sample and column; a missing one becomes NaN.
         errors: why a sample has no numbers, by sample.

@@ -126,7 +126,7 @@ def select_measures(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str,
 
     Args:
         rule: the claim's.
-        measures: of all samples, see ``measures_of``.
+        measures: measures of all samples, see ``measures_of``.
 
     Raises:
         IncompatibleRecord: a measure is missing.
@@ -151,7 +151,7 @@ def judge_samples(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.nd
 
     Args:
         rule: the claim's.
-        measures: of all samples, see ``measures_of``.
+        measures: measures of all samples, see ``measures_of``.
     """
     rule_measures, rows = select_measures(rule, measures), _rows(rule, measures)
     if rule.rungs:
@@ -170,7 +170,7 @@ def words(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[Word]:
 
     Args:
         rule: the claim's.
-        measures: of all samples, see ``measures_of``.
+        measures: measures of all samples, see ``measures_of``.
     """
     return [word_of(rule, row) for row in _rows(rule, measures)]
 

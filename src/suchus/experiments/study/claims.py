@@ -80,7 +80,7 @@ class Claims:
 
         Args:
             samples: number of designs [-].
-            timestep: of the physics [s].
+            timestep: time step of the physics [s].
         """
         rows = [(f"robot.{choice.field}", choice) for choice in ROBOTS.beside("caiman", "chosen", ())]
         rows += [(f"gait.{choice.field}", choice) for choice in GAITS.beside("belly_crawl", "chosen", ())]
@@ -123,8 +123,8 @@ class Claims:
         """Return the results by sample and run, with number and truth of each claim.
 
         Args:
-            study: of ``Claims.study``.
-            results: of all runs, as ``run_chunk`` describes them.
+            study: study of ``Claims.study``.
+            results: results of all runs, as ``run_chunk`` describes them.
         """
         names = [v.field for v in study.vary]
         shape = results.sizes["sample"] // len(RUNS), len(RUNS)
@@ -164,7 +164,7 @@ def conduct_claims(
 
     Args:
         claims_study: the study.
-        folder: for its stores, one below it for each time step that is compared and one for the runs.
+        folder: folder for its stores, one below it for each time step that is compared and one for the runs.
         progress: told which study runs, and how many of its runs are done.
         client: a ``distributed.Client``, whose workers then run the batches; this process if None.
         jobs: number of processes of this machine, see ``conduct``.
@@ -209,7 +209,7 @@ def answer_finished(claims_study: Claims, folder: str | Path) -> xr.Dataset:
 
     Args:
         claims_study: the study.
-        folder: of its stores.
+        folder: folder of its stores.
 
     Returns:
         As of ``conduct_claims``, of as many finished samples as make a power of two.

@@ -33,9 +33,9 @@ def write_claims(
     """Write table, numbers, shares, records and page into a folder, complete or not at all, and return it.
 
     Args:
-        record: of ``claims.conduct_claims``.
+        record: record of ``claims.conduct_claims``.
         folder: where.
-        sweep_records: of ``varied.conduct_varied``, by experiment.
+        sweep_records: records of ``varied.conduct_varied``, by experiment.
 
     Raises:
         Unwritable: the place cannot be written to, or is taken.
@@ -67,7 +67,7 @@ def write_renewed(sweep_records: Mapping[str, xr.Dataset], folder: Path) -> Path
     """Write the table of shares that ships with the rows of some experiments anew, and their records, and return where.
 
     Args:
-        sweep_records: of ``varied.conduct_varied``, by experiment.
+        sweep_records: records of ``varied.conduct_varied``, by experiment.
         folder: where, complete or not at all.
 
     Raises:
@@ -93,9 +93,9 @@ def outcome(
     """Return the numbers of the study as JSON holds them; what is not finite becomes null.
 
     Args:
-        record: of ``claims.conduct_claims``.
-        rows: of ``claims_table.claim_row``.
-        sweep_records: of ``varied.conduct_varied``, by experiment.
+        record: record of ``claims.conduct_claims``.
+        rows: rows of ``claims_table.claim_row``.
+        sweep_records: records of ``varied.conduct_varied``, by experiment.
     """
     return {
         "study": "claims",

@@ -34,7 +34,7 @@ def claim_row(record: xr.Dataset, claim: str) -> dict[str, Any]:
     """Return the result of one claim: fraction of designs, deciding parameters with intervals, border.
 
     Args:
-        record: of ``claims.conduct_claims``.
+        record: record of ``claims.conduct_claims``.
         claim: its key.
     """
     claim_record = record.sel(claim=claim)
@@ -83,7 +83,7 @@ def deciders(parameters: np.ndarray, index: Index) -> list[int]:
 
     Args:
         parameters: shape (sample, parameter).
-        index: of each parameter, see ``answers.first_order``.
+        index: index of each parameter, see ``answers.first_order``.
     """
     indices: list[int] = []
     for i in np.argsort(-index.variance_fraction):
@@ -133,8 +133,8 @@ def shares(rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dat
     """Return the rows by claim, as ``verdict.Share``, or as ``verdict.SparseShare`` where few designs could be judged.
 
     Args:
-        rows: of ``claim_row``.
-        sweep_records: of ``varied.conduct_varied``, by experiment.
+        rows: rows of ``claim_row``.
+        sweep_records: records of ``varied.conduct_varied``, by experiment.
     """
     experiment_of_claim = {
         str(claim): name for name, claim_record in sweep_records.items() for claim in claim_record.claim.values
@@ -176,9 +176,9 @@ def shipped_table(
     """Return the table of shares that ``suchus.article.verdict`` ships: JSON, with its rows' digest and what made it.
 
     Args:
-        record: of ``claims.conduct_claims``.
-        rows: of ``claim_row``, of this record and of those that follow.
-        sweep_records: of ``varied.conduct_varied``, by experiment.
+        record: record of ``claims.conduct_claims``.
+        rows: rows of ``claim_row``, of this record and of those that follow.
+        sweep_records: records of ``varied.conduct_varied``, by experiment.
     """
     claims = shares(rows, sweep_records)
     provenance = json.loads(record.attrs["made_by"])
@@ -202,8 +202,8 @@ def renewed_table(shipped_text: str, rows: Sequence[Mapping[str, Any]], sweep_re
 
     Args:
         shipped_text: the table, of ``shipped_table``.
-        rows: of ``claim_row``, of the experiments.
-        sweep_records: of ``varied.conduct_varied``, by experiment.
+        rows: rows of ``claim_row``, of the experiments.
+        sweep_records: records of ``varied.conduct_varied``, by experiment.
     """
     content = json.loads(shipped_text)
     claims = {key: row for key, row in content["claims"].items() if key in RULES and row["rule"] == RULES[key].asked}

@@ -101,7 +101,7 @@ def finished(study: Study, folder: Path) -> xr.Dataset:
     """Return the results of the first batches of a store, up to the first that is not finished; nothing is checked.
 
     Args:
-        study: whose batches they are.
+        study: study whose batches they are.
         folder: its store.
 
     Raises:

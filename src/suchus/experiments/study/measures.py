@@ -20,8 +20,8 @@ def measured(record: xr.Dataset, names: tuple[str, ...]) -> list[dict[str, float
     """Return the numbers of each run by column: ``slip``, ``displacement_x``, ``peak_torque_LF_yaw``.
 
     Args:
-        record: of runs that came to their end.
-        names: of ``MEASURES``.
+        record: record of runs that came to their end.
+        names: names of ``MEASURES``.
 
     Raises:
         IncompatibleRecord: the record is too short to be measured.

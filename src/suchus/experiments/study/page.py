@@ -121,7 +121,7 @@ def resolved_arm(arm: Arm, place: Path, robot: Robot) -> Arm:
     Args:
         arm: as a file says it.
         place: the folder of that file.
-        robot: of the study, for which gaits are read.
+        robot: robot of the study, for which gaits are read.
 
     Raises:
         SuchusError: it names nothing that is there.

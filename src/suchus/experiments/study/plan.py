@@ -24,11 +24,11 @@ class Point(NamedTuple):
     """One run of a study."""
 
     values: Mapping[str, Any]
-    """By field."""
+    """Values by field."""
     seed: int
     """Seed of the run."""
     arm: Arm | None = None
-    """Of the comparison, where there is one."""
+    """Arm of the comparison, where there is one."""
 
 
 class Plan(Sequence[Point]):
@@ -185,7 +185,7 @@ def vary_assumption(path: str, choice: Assumption) -> Vary:
     """Return the variation of a field over its plausible range.
 
     Args:
-        path: of the field, from what varies: the path in ``choice`` with the way to its design before it.
+        path: path of the field, from what varies: the path in ``choice`` with the way to its design before it.
         choice: plausible range of the field.
     """
     above = None
@@ -218,6 +218,6 @@ def only_forbids(path: str) -> bool:
     """Return whether a field is a limit of a joint: it changes no motion, and whether it forbids one is counted apart.
 
     Args:
-        path: of the field, from the run or the experiment.
+        path: path of the field, from the run or the experiment.
     """
     return "range[" in path

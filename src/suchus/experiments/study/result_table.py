@@ -54,10 +54,10 @@ def write_tables(
 
     Args:
         folder: which exists.
-        title: of the page.
+        title: title of the page.
         lead: its first sentence or two.
         sections: what follows.
-        pictures: by name; each is written as SVG and PNG beside the page, which holds a copy.
+        pictures: pictures by name; each is written as SVG and PNG beside the page, which holds a copy.
     """
     sources = {}
     for name, figure in pictures.items():

@@ -123,7 +123,7 @@ def conduct_varied(
 
     Args:
         study: the experiment and its points.
-        folder: of the stores, one below it for each experiment; each point is kept as it is finished.
+        folder: folder of the stores, one below it for each experiment; each point is kept as it is finished.
         progress: told how many points are done.
         client: a ``distributed.Client``, whose workers then ask; this machine if None.
         jobs: number of processes of this machine.
@@ -155,7 +155,7 @@ def varied_finished(study: VariedStudy, folder: Path) -> xr.Dataset | None:
 
     Args:
         study: the experiment and its points.
-        folder: of the stores.
+        folder: folder of the stores.
 
     Raises:
         IncompatibleRecord: they are points of another plan, so that nobody knows any more what varied.
@@ -202,7 +202,7 @@ def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
 
     Args:
         study: what was asked.
-        results: of ``ask``, one or more points.
+        results: results of ``ask``, one or more points.
     """
     points = [study.point(int(sample)) for sample in results.sample.values]
     measures = {str(name): results[name].values for name in results.data_vars if name != "error"}

@@ -88,8 +88,8 @@ class Bus:
 
         Args:
             request: the bytes.
-            servo: whose reply it is.
-            length: of the data in it; None for any [byte].
+            servo: servo whose reply it is.
+            length: length of the data in it; None for any [byte].
             wait: for it; that of the bus if None [s].
 
         Raises:
@@ -117,8 +117,8 @@ class Bus:
         A missing reply is replaced by a late reply to the same question, if there is one.
 
         Args:
-            servos: that were asked.
-            length: of what they were asked for [byte].
+            servos: servos that were asked.
+            length: length of what they were asked for [byte].
             wait: for them; that of the bus if None [s].
         """
         wait = self.wait if wait is None else wait
@@ -140,8 +140,8 @@ class Bus:
         """Return replies by servo, until all have come, the deadline, or the end marker.
 
         Args:
-            servos: that were asked.
-            length: of the data in each reply; None for any [byte].
+            servos: servos that were asked.
+            length: length of the data in each reply; None for any [byte].
             wait: time until the deadline [s].
             has_end_marker: whether the clock of an emulator marks the end of the replies.
         """

@@ -39,9 +39,9 @@ class Packet(NamedTuple):
     """A request or a reply without its frame."""
 
     id: int
-    """Of the servo that is asked, or that answers [-]."""
+    """Number of the servo that is asked, or that answers [-]."""
     code: int
-    """Of a request the instruction; of a reply the error, 0 for none [-]."""
+    """Instruction of a request, or error of a reply, 0 for none [-]."""
     data: bytes = b""
     """What follows."""
 

@@ -58,8 +58,8 @@ class FilePort:
     """A port over a file descriptor that does not block.
 
     Args:
-        name: of the port, for messages.
-        descriptor: that is read and written; it stays the owner's.
+        name: name of the port, for messages.
+        descriptor: descriptor that is read and written; it stays the owner's.
         owner: what is closed at the end.
     """
 
@@ -118,7 +118,7 @@ def open_port(name: str, baud: int) -> Port:
     """Open a port: the path of a serial port, or ``socket://127.0.0.1:PORT`` of an emulator.
 
     Args:
-        name: of the port.
+        name: name of the port.
         baud: bit rate of a serial port [1/s].
 
     Raises:

@@ -169,7 +169,7 @@ class ChannelProtocol(ServoProtocol, ABC):
         Args:
             port: to them.
             boards: their numbers, from 0.
-            rate: of pulses [Hz].
+            rate: rate of pulses [Hz].
 
         Raises:
             BusFailure: there is no such port, or a board does not answer.
@@ -183,7 +183,7 @@ class ChannelProtocol(ServoProtocol, ABC):
         Args:
             say: takes a line of text.
             boards: their numbers, from 0.
-            rate: of pulses [Hz].
+            rate: rate of pulses [Hz].
 
         Raises:
             InvalidDesign: a rate that the boards cannot give.

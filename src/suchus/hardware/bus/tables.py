@@ -36,7 +36,7 @@ class Register:
     name: str
     """As ``present_position``."""
     address: int
-    """Of its first byte."""
+    """Address of its first byte."""
     size: int
     """Width [byte]."""
     unit: float = 1.0
@@ -81,7 +81,7 @@ class Table:
     protocol: str
     """What it speaks: a name of ``suchus.hardware.protocols``."""
     registers: tuple[Register, ...]
-    """In the order of their addresses."""
+    """Registers in the order of their addresses."""
     motor: Motor | None = None
     """What is bought; None for a board."""
     felt: tuple[str, str]
@@ -233,7 +233,7 @@ def load_board(protocol: str, kind: str, places: int, unit: float) -> Table:
     """Return the table of a board that measures the normal force at several positions.
 
     Args:
-        protocol: that it speaks.
+        protocol: protocol that it speaks.
         kind: ``feet``, ``belly`` or ``tail``.
         places: how many.
         unit: force of a step [N].

@@ -120,7 +120,7 @@ class Wiring:
     robot: str
     """Name of the robot that it was made for."""
     fingerprint: str
-    """Of that robot's servos and their ranges: another robot is refused."""
+    """Fingerprint of that robot's servos and their ranges: another robot is refused."""
     bus: tuple[BusPlace, ...]
     """The buses."""
     servo: tuple[ServoPlace, ...]
@@ -196,9 +196,9 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
     Several buses get equal shares of the servos, one after the other.
 
     Args:
-        robot: that is wired.
+        robot: robot that is wired.
         bus: the buses; at least one.
-        model: of all servos.
+        model: model of all servos.
         boards: whether it has a board for each kind of sensor, on the first bus.
 
     Raises:
@@ -268,8 +268,8 @@ def check_names(owner: str, names: Sequence[str], robot: Robot) -> None:
 
     Args:
         owner: what names them, for the message.
-        names: in any order.
-        robot: whose servos they are to be.
+        names: names in any order.
+        robot: robot whose servos they are to be.
 
     Raises:
         InvalidDesign: one is missing, stands there twice, or is none of the robot's.
@@ -298,7 +298,7 @@ class Steps:
     """Turns angles of a robot's joints into steps of its servos and back, for all of them at once.
 
     Args:
-        servos: in the order of the robot's layout.
+        servos: servos in the order of the robot's layout.
     """
 
     def __init__(self, servos: Sequence[ServoPlace]) -> None:

@@ -64,12 +64,12 @@ class EmulatedBody:
 
     Args:
         robot: the robot.
-        gait: in whose first posture it begins.
-        ground: that it stands on; level if None.
+        gait: gait in whose first posture it begins.
+        ground: ground that it stands on; level if None.
         lake: the water around it; dry land if None.
-        faults: of its servos, each at its time.
+        faults: faults of its servos, each at its time.
         latency: how long a goal is on its way before it acts [s]; it is rounded to physics steps.
-        timestep: of the physics [s]; that of the robot's size if None.
+        timestep: time step of the physics [s]; that of the robot's size if None.
 
     Raises:
         InvalidDesign: a time step, a lake or a fault that cannot be.

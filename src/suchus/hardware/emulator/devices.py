@@ -135,12 +135,12 @@ class EmulatedServo(Device):
         return Refusal.NONE
 
     def feel(self, angle: float, speed: float, torque: float) -> None:
-        """Tell what the joint does.
+        """Write angle, speed and torque of the joint to the registers that report them.
 
         Args:
-            angle: of the joint [rad].
-            speed: of it [rad/s].
-            torque: of the servo on it [N m].
+            angle: angle of the joint [rad].
+            speed: speed of the joint [rad/s].
+            torque: torque of the servo on it [N m].
         """
         sign, table = self.place.sign, self.table
         self.put("present_position", self.place.zero + round(sign * angle / table.step))
@@ -157,7 +157,7 @@ class EmulatedServo(Device):
         Args:
             seconds: how much [s].
             heating: beside what its load does [K/s].
-            voltage: at its plug [V].
+            voltage: voltage at its plug [V].
             time: by the emulator's clock [s].
         """
         motor = self.place.table.motor
@@ -213,7 +213,7 @@ class Board(Device):
     """One board for sensors."""
 
     def feel(self, kind: str, sensed: Sensed) -> None:
-        """Tell what it feels of the one robot of a batch."""
+        """Write the readings of the first robot of a batch to the registers of the board's sensor."""
         values: dict[str, np.ndarray] = {
             "feet": sensed.foot_pressure,
             "belly": sensed.belly_pressure,

@@ -85,7 +85,7 @@ class Emulator:
         """Process bytes from a bus, and return the replies, each with its delay [s].
 
         Args:
-            number: of the bus.
+            number: number of the bus.
             data: the bytes.
             baud: bit rate at which they were sent, where that can be known: servos hear nothing else [1/s].
         """
@@ -265,8 +265,8 @@ class MemoryPort:
     """A port to an emulator in the same process, without delays.
 
     Args:
-        emulator: with a clock of its own.
-        number: of the bus.
+        emulator: emulator with a clock of its own.
+        number: number of the bus.
     """
 
     def __init__(self, emulator: Emulator, number: int = 0) -> None:

@@ -13,7 +13,7 @@ from suchus.hardware.bus.protocol import ChannelProtocol
 MODE, PRESCALE, FIRST_CHANNEL, ALL_CHANNELS_OFF = 0x00, 0xFE, 0x06, 0xFD
 """Addresses: mode, prescaler, the first channel, and the byte that switches all channels off."""
 ADDRESS = 0x40
-"""Of the first board; the next ones follow."""
+"""Address of the first board; the next ones follow."""
 _SLEEP, _INCREMENT, _FULL_OFF = 0x10, 0x20, 0x10
 _CLOCK, _STEPS = 25e6, 4096  # [Hz] of its oscillator; steps of a period
 _BLOCK = 8  # channels of a write of 32 bytes, the most that SMBus carries
@@ -65,7 +65,7 @@ class Pulses:
     Args:
         wires: the bus.
         boards: their numbers, from 0.
-        rate: of pulses [Hz].
+        rate: rate of pulses [Hz].
 
     Raises:
         InvalidDesign: a rate that the boards cannot give.

@@ -34,7 +34,7 @@ def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait
 
     Args:
         path: the file.
-        robot: for whose limbs metres are, and in whose hinges places.
+        robot: robot for whose limbs metres are, and in whose hinges places.
         shelf: what ``base`` may name.
 
     Raises:
@@ -80,7 +80,7 @@ def _with_parts(data: dict[str, Any], robot: Robot) -> dict[str, Any]:
 
     Args:
         data: the table of a gait.
-        robot: whose servos the curves move.
+        robot: robot whose servos the curves move.
     """
     if not isinstance(data.get("curves"), list):
         return data
@@ -104,10 +104,10 @@ def _in_metres(
 
     Args:
         data: the table.
-        robot: for whose limbs the metres are.
+        robot: robot for whose limbs the metres are.
         base: gait that the table changes; None if the table gives every number.
         shelf: gaits by name; one of them supplies values to go on with after a mistake.
-        name: of the file.
+        name: name of the file.
         mistakes: those that are known already, by place.
     """
     reaches, keys = limb_reaches(robot), frozenset(data)

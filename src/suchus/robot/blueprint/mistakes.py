@@ -41,7 +41,7 @@ class MistakenFile(UnreadableFile, InvalidDesign):
         """Join the mistakes of a file to one message.
 
         Args:
-            name: of the file.
+            name: name of the file.
             mistakes: what is wrong, by place.
         """
         self.mistakes = {dotted(place): text for place, text in mistakes.items()}
@@ -67,7 +67,7 @@ def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]
 
     Args:
         error: as pydantic tells it.
-        kind: of the whole.
+        kind: kind of the whole.
         data: what was validated.
     """
     location = _locate(tuple(error["loc"]), kind, data)
@@ -89,7 +89,7 @@ def _locate(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
 
     Args:
         loc: place of the error as pydantic gives it, names of kinds included.
-        kind: of the whole file.
+        kind: kind of the whole file.
         data: what was validated.
     """
     place: list[str | int] = []
@@ -150,9 +150,9 @@ def _unknown(place: Place, owner: Any, kind: type) -> str:
     """Return what to say of a field that its table does not have: where it belongs, or which name is similar.
 
     Args:
-        place: of the field in the file.
+        place: position of the field in the file.
         owner: kind of the table that the field stands in.
-        kind: of the whole file.
+        kind: kind of the whole file.
     """
     field_names = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
     homes = list(islice(_homes(str(place[-1]), kind), _HOMES + 1))
@@ -168,9 +168,9 @@ def _homes(name: str, kind: Any, place: str = "") -> Iterator[str]:
     """Yield the places where a design has a field of a name; elements of lists, as segments, are left out.
 
     Args:
-        name: of the field.
-        kind: of the design.
-        place: of the design in the file, with a dot at its end.
+        name: name of the field.
+        kind: kind of the design.
+        place: position of the design in the file, with a dot at its end.
     """
     if not is_dataclass(kind):
         return

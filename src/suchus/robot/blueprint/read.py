@@ -81,7 +81,7 @@ def parse_robot(values: Mapping[str, Any]) -> Robot:
     """Return the robot that the plain values of a result's settings describe.
 
     Args:
-        values: of a robot, or of the tables that it was made of, as ``dataclasses.asdict`` gives them.
+        values: values of a robot, or of the tables that it was made of, as ``dataclasses.asdict`` gives them.
 
     Raises:
         ValidationError: they describe none.
@@ -120,43 +120,46 @@ def plain(value: Any) -> Any:
 
 
 def validated(
-    data: dict[str, Any], kind: type[T], fallback: Mapping[str, Any], name: str, mistakes: dict[Place, str]
+    data: dict[str, Any], value_type: type[T], fallback: Mapping[str, Any], file_name: str, mistakes: dict[Place, str]
 ) -> T:
-    """Return the value that a table describes; where it does not, mend it with spare values until nothing new is found.
+    """Return the value that a table describes, or refuse the table with all of its mistakes at once.
+
+    A mistaken entry may hide others. It is therefore replaced by its value in ``fallback``, or removed, and the table
+    is validated again, until no new mistake appears.
 
     Args:
-        data: the table; what is wrong with it is mended in place.
-        kind: of the value.
-        fallback: values that are right, to look on with.
-        name: of the file.
-        mistakes: those that are known already, by place.
+        data: the table; mistaken entries are replaced in place.
+        value_type: type of the value.
+        fallback: a table without mistakes.
+        file_name: name of the file, for messages.
+        mistakes: mistakes that are known already, by their place in the table; new ones are added in place.
 
     Raises:
-        MistakenFile: it describes none; all mistakes are named.
+        MistakenFile: the table describes no value; all mistakes are named.
     """
-    adapter = TypeAdapter(kind)
-    repaired: set[Place] = set()
+    adapter = TypeAdapter(value_type)
+    mended_places: set[Place] = set()
     while True:
         try:
             value = adapter.validate_json(json.dumps(data, default=str), strict=True, extra="forbid")
         except ValidationError as error:
-            complaints: dict[Place, str] = {}
+            found_mistakes: dict[Place, str] = {}
             for detail in error.errors(include_url=False):
-                complaints |= explain(detail, kind, data)
+                found_mistakes |= explain(detail, value_type, data)
         else:
             break
-        fresh = {
-            p: text
-            for p, text in complaints.items()
-            if _container_place(p) not in repaired and not _follows(p, repaired)
+        new_mistakes = {
+            place: text
+            for place, text in found_mistakes.items()
+            if _container_place(place) not in mended_places and not _contains_mended(place, mended_places)
         }
-        mistakes |= fresh
-        mendable = [_mend(data, _container_place(place), fallback) for place in fresh]
-        if not mendable or not all(mendable):
+        mistakes |= new_mistakes
+        is_mended = [_mend(data, _container_place(place), fallback) for place in new_mistakes]
+        if not is_mended or not all(is_mended):
             break
-        repaired |= {_container_place(place) for place in fresh}
+        mended_places |= {_container_place(place) for place in new_mistakes}
     if mistakes:
-        raise MistakenFile(name, mistakes)
+        raise MistakenFile(file_name, mistakes)
     return value
 
 
@@ -167,9 +170,9 @@ def _container_place(place: Place) -> Place:
     return place
 
 
-def _follows(place: Place, repaired: set[Place]) -> bool:
+def _contains_mended(place: Place, mended_places: set[Place]) -> bool:
     """Return whether a complaint about a whole table may stem from a fallback value that was put into it."""
-    return any(m[: len(place)] == place for m in repaired)
+    return any(mended_place[: len(place)] == place for mended_place in mended_places)
 
 
 def _mend(data: Any, place: Place, fallback: Any) -> bool:

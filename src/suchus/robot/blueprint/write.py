@@ -44,7 +44,7 @@ def _table(
         value: the frozen value.
         path: keys from the top of the file down to the table.
         notes: remarks by the place of a value.
-        place: of the table, with a dot at its end, as the notes name it.
+        place: position of the table, with a dot at its end, as the notes name it.
         row: whether the table is an element of a list, which has double brackets.
     """
     field_meanings = meanings(type(value))

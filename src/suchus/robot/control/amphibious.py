@@ -144,11 +144,11 @@ class Amphibian:
 
         Args:
             controls: settings, one for each run.
-            robots: one for each run.
-            gaits: of the walk on land, one for each run.
+            robots: robot of each run.
+            gaits: gaits of the walk on land, one for each run.
             wades: gaits of the walk while a robot lands, one for each run.
             swims: controller of the swims of the whole batch.
-            period: of control [s].
+            period: control period [s].
         """
         self._period, self._swims = period, swims
         self._touch, self._afloat_load, self._aground, self._change, self._patience, self._air_released, self._pump = (

@@ -37,7 +37,7 @@ class AttitudeRule:
     memory: float = 0.04
     """Time constant of the low pass on both rates [s]; 0 for none."""
     washout: float = 3.0
-    """Over which roll and pitch are compared with their own means [s]: a slope is no stumble."""
+    """Time over which roll and pitch are compared with their own means [s]: a slope is no stumble."""
     most: float = 0.03
     """Most that a foot is raised or lowered [m], with limbs as long as those of the article's robot; a leg gives little
     more. Other limbs as much of their reach."""
@@ -58,9 +58,9 @@ class Attitude:
         """Gather gains and hip positions of the batch.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            period: of control [s].
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
+            period: control period [s].
         """
         active_rules = [rule if rule is not None else _INACTIVE_RULE for rule in rules]
         time_scale = np.array([_time_scale(robot) for robot in robots])

@@ -87,6 +87,6 @@ class Control(Protocol):
         """Start the controller of some runs.
 
         Args:
-            runs: whose controls are of this class, different as they may be.
-            period: of control [s].
+            runs: runs whose controls are of this class, different as they may be.
+            period: control period [s].
         """

@@ -108,7 +108,7 @@ class Coordinator:
 
         Args:
             runs: controls, robots, gaits and seeds.
-            period: of control [s].
+            period: control period [s].
 
         Raises:
             InvalidDesign: a kick has not one phase for each limb.

@@ -31,7 +31,7 @@ class HeadingEstimator:
     nothing swings yet. For a robot that walks already it is the mean over the first whole cycle, which must pass first.
 
     Args:
-        robots: of a batch; they share a layout.
+        robots: robots of a batch; they share a layout.
         cycle: length of each robot's cycle in control periods.
     """
 

@@ -32,13 +32,13 @@ class HeadingRule:
     """
 
     direction: float = 0.0
-    """Asked direction against the one at the beginning of the walk, left positive [rad]."""
+    """Target heading, from the heading at the beginning of the walk, left positive [rad]."""
     gain: float = 3.0
     """Answer to the error [1/rad]; a unit of u turns the crawl by 0.3 to 0.5 rad a cycle, so 3 mends in one."""
     integral_gain: float = 1.0
     """Answer to the error that stays, per cycle [1/rad]; a limp leg needs a constant u of almost 2."""
     most: float = 2.0
-    """Most that u becomes [-]; beyond 1 the shorter side strides backward. A leg's reach may allow less."""
+    """Greatest size of u [-]; beyond 1 the shorter side strides backward. A leg's reach may allow less."""
     trunk: float | None = None
     """Lasting bend of the trunk per u, left positive [rad]; it helps where strokes have little effect. None:
     ``TRUNK_PER_STEERING`` toward the side to which a bend turns this robot in this gait, and 0 where that is not
@@ -89,73 +89,78 @@ class Heading:
         gaits: Sequence[Gait],
         period: float,
     ) -> None:
-        """Gather the gains of the batch, and the greatest steering that each robot's limbs allow.
+        """Gather the gains of the batch, and the greatest steering u that limbs and trunk of each robot can follow.
+
+        The steering u [-] makes strokes longer on one side and shorter on the other, and bends the trunk; see
+        ``HeadingRule``.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            gaits: one for each run.
-            period: of control [s].
+            rules: heading rule of each run; None for a run without one.
+            robots: robot of each run; all have the same layout.
+            gaits: gait of each run.
+            period: control period [s].
         """
         neutral_rule = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
-        settings = [rule or neutral_rule for rule in rules]
-        self._direction, self._gain, self._integral_gain = (
-            np.array([getattr(rule, name) for rule in settings]) for name in ("direction", "gain", "integral_gain")
+        filled_rules = [rule or neutral_rule for rule in rules]
+        self._target_heading, self._gain, self._integral_gain = (
+            np.array([getattr(rule, name) for rule in filled_rules]) for name in ("direction", "gain", "integral_gain")
         )
         self._runs = np.arange(len(gaits))
-        self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
-        setups = list(zip(settings, robots, gaits, strict=True))
-        self._trunk = np.array([_trunk_per_steering(*setup) for setup in setups])
-        self._max_stroke = np.array([_stroke_limit(*setup) for setup in setups])
-        self._max_bend = np.array([_bend_limit(robot, gait) for _, robot, gait in setups])
+        self._steps_per_cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
+        setups = list(zip(filled_rules, robots, gaits, strict=True))
+        self._bend_per_steering = np.array([_bend_per_steering(*setup) for setup in setups])
+        self._max_stroke_steering = np.array([_max_stroke_steering(*setup) for setup in setups])
+        self._max_bend = np.array([_max_steady_bend(robot, gait) for _, robot, gait in setups])
         # beyond both limits more steering changes nothing, and would only wind up the integral
-        bend_steering = self._max_bend / np.where(self._trunk != 0.0, np.abs(self._trunk), np.inf)
-        self._max_steering = np.minimum(
-            np.array([rule.most for rule in settings]), np.maximum(self._max_stroke, bend_steering)
+        max_bend_steering = self._max_bend / np.where(
+            self._bend_per_steering != 0.0, np.abs(self._bend_per_steering), np.inf
         )
-        self._max_change = np.array([rule.rate for rule in settings]) / self._cycle
-        self._facing = HeadingEstimator(robots, [int(cycle) for cycle in self._cycle])
+        self._max_steering = np.minimum(
+            np.array([rule.most for rule in filled_rules]), np.maximum(self._max_stroke_steering, max_bend_steering)
+        )
+        self._max_change_per_step = np.array([rule.rate for rule in filled_rules]) / self._steps_per_cycle
+        self._heading_estimator = HeadingEstimator(robots, [int(cycle) for cycle in self._steps_per_cycle])
         self._limb_sides = np.array([limb.side for limb in layout(robots[0]).limbs])
-        self._offset, self._steer = np.zeros(len(gaits)), np.zeros(len(gaits))
+        self._error_integral, self._steering = np.zeros(len(gaits)), np.zeros(len(gaits))
 
     def begin_in_motion(self) -> None:
         """Count the direction from the mean heading of the coming cycle, for robots that walk already."""
-        self._facing.begin_in_motion()
+        self._heading_estimator.begin_in_motion()
 
     def step(self, sensed: Sensed, *, walking: bool | Bool[np.ndarray, " run"]) -> Steering:
         """Return the steering that the present heading error demands.
 
         Args:
-            sensed: what is felt.
+            sensed: sensor readings.
             walking: which runs walk; the others are not steered, and begin anew with what stays. False: nothing is felt
                 either.
         """
         if walking is False:
             return Steering.straight(len(self._runs), len(self._limb_sides))
-        error = self._facing.feel(sensed) - self._direction
-        is_steered = walking & self._facing.has_reference
-        step = -self._integral_gain * error / self._cycle
-        demand = self._offset + step - self._gain * error
+        error = self._heading_estimator.feel(sensed) - self._target_heading
+        is_steered = walking & self._heading_estimator.has_reference
+        step = -self._integral_gain * error / self._steps_per_cycle
+        demand = self._error_integral + step - self._gain * error
         # anti-windup: integrate toward a limit only up to it
         is_answerable = (np.abs(demand) <= self._max_steering) | (demand * step < 0.0)
-        self._offset = np.where(is_steered, self._offset + is_answerable * step, 0.0)
-        target = np.clip(self._offset - self._gain * error, -self._max_steering, self._max_steering)
-        change = np.clip(target - self._steer, -self._max_change, self._max_change)
-        self._steer = np.where(is_steered, self._steer + change, 0.0)
-        stroke = np.clip(self._steer, -self._max_stroke, self._max_stroke)
-        bend = np.clip(self._trunk * self._steer, -self._max_bend, self._max_bend)
+        self._error_integral = np.where(is_steered, self._error_integral + is_answerable * step, 0.0)
+        target = np.clip(self._error_integral - self._gain * error, -self._max_steering, self._max_steering)
+        change = np.clip(target - self._steering, -self._max_change_per_step, self._max_change_per_step)
+        self._steering = np.where(is_steered, self._steering + change, 0.0)
+        stroke = np.clip(self._steering, -self._max_stroke_steering, self._max_stroke_steering)
+        bend = np.clip(self._bend_per_steering * self._steering, -self._max_bend, self._max_bend)
         return Steering(-self._limb_sides * stroke[:, None], bend)
 
     def take_over(self, predecessor: "Heading") -> None:
         """Continue from the loops of the same runs."""
-        self._facing.take_over(predecessor._facing)
-        self._offset, self._steer = (
+        self._heading_estimator.take_over(predecessor._heading_estimator)
+        self._error_integral, self._steering = (
             np.clip(state, -self._max_steering, self._max_steering)
-            for state in (predecessor._offset, predecessor._steer)
+            for state in (predecessor._error_integral, predecessor._steering)
         )
 
 
-def _stroke_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
+def _max_stroke_steering(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
     """Return the greatest steering command u that the limbs and their servos can follow [-]; 0 without strokes."""
     if not gait.has("strokes"):
         return 0.0
@@ -164,14 +169,14 @@ def _stroke_limit(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
     return min(rule.most, max(max_stroke_factor(robot, gait, limit_speed=True) - 1.0, 0.0))
 
 
-def _bend_limit(robot: Robot, gait: Gait) -> float:
+def _max_steady_bend(robot: Robot, gait: Gait) -> float:
     """Return the curvature offset of the trunk that its servos allow beyond the swing of the gait [rad]."""
     yaw = list(layout(robot).trunk_yaw)
     max_bend = float(np.abs(servo_ranges(robot)[yaw]).min(axis=1, initial=np.inf).sum())
     return max(max_bend - trunk_amplitude(robot, gait), 0.0)
 
 
-def _trunk_per_steering(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
+def _bend_per_steering(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
     """Return the curvature offset of the trunk per u, left positive [rad].
 
     Raises:

@@ -19,21 +19,21 @@ from suchus.robot.kinematics.trim import spare_volume
 class HeadingHold:
     """Keeps the direction of a swim by the mean bend of tail and trunk.
 
-    With psi the error of the direction, averaged over the last cycle, tail and trunk bend by a share u of ``turn`` and
-    ``trunk_turn``, and u = -(gain psi + integral_gain sum(psi dt)), within -1 and 1. A robot that has rolled onto its
-    back bends to its other side, and one that lies on its side does not bend.
+    With psi the error of the direction, averaged over the last cycle, tail and trunk bend by a fraction u of ``turn``
+    and ``trunk_turn``, their greatest mean bends, and u = -(gain psi + integral_gain sum(psi dt)), within -1 and 1. A
+    robot that has rolled onto its back bends to its other side, and one that lies on its side does not bend.
     """
 
     direction: float = 0.0
-    """Asked direction against the one at the beginning, left positive [rad]."""
+    """Heading to hold, from the heading at the beginning, left positive [rad]."""
     gain: float = 2.0
     """Answer to the error [1/rad]; u = 1 turns the swim by some 0.2 rad/s, so 2 mends an error within 3 s."""
     integral_gain: float = 0.05
     """Answer to the error that stays [1/(rad s)]."""
     turn: float = 0.6
-    """Mean bend of the tail at u = 1, tip to the left [rad]."""
+    """Greatest mean bend of the tail, that at u = 1, tip to the left [rad]."""
     trunk_turn: float = 0.3
-    """Mean bend of the trunk at u = 1, front end to the left [rad]."""
+    """Greatest mean bend of the trunk, that at u = 1, front end to the left [rad]."""
 
     def __post_init__(self) -> None:
         with Checks("heading_hold", self) as check:
@@ -94,10 +94,10 @@ class HeadingHolds:
         """Gather the gains of the batch.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
             cycle: length of each gait's cycle in control periods.
-            period: of control [s].
+            period: control period [s].
         """
         neutral_rule = HeadingHold(gain=0.0, integral_gain=0.0, turn=0.0, trunk_turn=0.0)
         active_rules = [rule or neutral_rule for rule in rules]
@@ -124,9 +124,9 @@ class DepthHolds:
         """Gather the gains of the batch, and the air with which each robot is neutrally buoyant.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            period: of control [s].
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
+            period: control period [s].
         """
         self._is_active = np.array([rule is not None for rule in rules])
         neutral_rule = DepthHold(depth=0.0)

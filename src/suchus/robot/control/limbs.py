@@ -96,10 +96,10 @@ class Loads:
     """The filtered loads of feet and trunk of a batch, and their effect on the limbs' clocks.
 
     Args:
-        laws: one for each run.
-        robots: one for each run.
-        gaits: one for each run.
-        period: of control [s].
+        laws: law of each run.
+        robots: robot of each run.
+        gaits: gait of each run.
+        period: control period [s].
     """
 
     def __init__(self, laws: Sequence[LimbLaw], robots: Sequence[Robot], gaits: Sequence[Gait], period: float) -> None:
@@ -133,7 +133,7 @@ class Loads:
         """Return the fraction by which each limb's clock is slowed [-]; 0 before the first reading.
 
         Args:
-            phase: of the limbs [cycle].
+            phase: phase of the limbs [cycle].
         """
         if self._load is None or self._twist is None:
             return np.zeros_like(phase)
@@ -158,11 +158,11 @@ class Limbs:
         """Start the oscillators at a phase lead over the clock of the gait.
 
         Args:
-            laws: one for each run.
-            robots: one for each run.
-            gaits: one for each run.
-            phase_lead: of each limb over the clock [cycle].
-            period: of control [s].
+            laws: law of each run.
+            robots: robot of each run.
+            gaits: gait of each run.
+            phase_lead: phase lead of each limb over the clock [cycle].
+            period: control period [s].
 
         Raises:
             OutsideLimits: a law makes diagonal pairs, and the gait has others.
@@ -181,7 +181,7 @@ class Limbs:
 
         Args:
             shared: what the others say.
-            sensed: what the robots feel.
+            sensed: sensor readings of the robots.
             clock: phase of each limb by the gait's clock [cycle].
             walking: whether the walk has begun; before, the phases stand still.
         """

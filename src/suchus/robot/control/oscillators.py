@@ -100,7 +100,7 @@ class Couplings(NamedTuple):
     sender: Int[np.ndarray, " edge"]
     """Number of the oscillator that drives it."""
     weight: Float[np.ndarray, " edge"]
-    """[1/s]."""
+    """Strength of the coupling [1/s]."""
     bias: Float[np.ndarray, " edge"]
     """Phase lead of the sender at which the coupling vanishes [rad]."""
 
@@ -126,11 +126,11 @@ def couple(
     of oscillators does.
 
     Args:
-        numbers: of the oscillators.
+        numbers: parameters of the oscillators.
         axis: its segments, from head to tail.
         limbs: names of the limbs, girdle by girdle from the front, left before right.
-        phases: of the limbs in the gait [cycle].
-        lag: of each segment behind the one ahead of it [cycle].
+        phases: phases of the limbs in the gait [cycle].
+        lag: phase lag of each segment behind the one ahead of it [cycle].
     """
     n = len(axis)
     stiff = max(1.0, (n / PUBLISHED_SEGMENTS) ** 2)
@@ -209,9 +209,9 @@ class Rhythm:
         couplings: one for each run; they may differ in weights and biases.
         numbers: one for each run.
         pace: how many times faster than published everything goes, one for each run [-].
-        phase: in which they begin [rad].
-        amplitude: with which they begin [-].
-        period: over which they advance at a time [s].
+        phase: phase in which they begin [rad].
+        amplitude: amplitude with which they begin [-].
+        period: period over which they advance at a time [s].
     """
 
     def __init__(
@@ -285,8 +285,8 @@ def steps_needed(couplings: Couplings, numbers: Oscillators, pace: float, period
     """Return the number of integration steps of a period, from the fastest rate of the network.
 
     Args:
-        couplings: of the network.
-        numbers: of its oscillators.
+        couplings: couplings of the network.
+        numbers: parameters of its oscillators.
         pace: how many times faster than published it goes [-].
         period: [s].
     """

@@ -66,43 +66,55 @@ class Rules:
         Args:
             spines: rule of the spine, one for each run; None for a run without one.
             tails: rule of the tail, one for each run; None for a run without one.
-            robots: one for each run.
-            gaits: one for each run.
-            period: of control [s].
+            robots: robot of each run.
+            gaits: gait of each run.
+            period: control period [s].
 
         Raises:
             UnsuitedRobot: a robot lacks the servos that its rule needs.
         """
-        self._yaw = list(layout(robots[0]).trunk_yaw)
-        self._spined = [i for i, rule in enumerate(spines) if rule is not None]
-        self._tailed = [i for i, rule in enumerate(tails) if rule is not None]
+        self._trunk_yaw_servos = list(layout(robots[0]).trunk_yaw)
+        self._spine_runs = [i for i, rule in enumerate(spines) if rule is not None]
+        self._tail_runs = [i for i, rule in enumerate(tails) if rule is not None]
         self._spine: SpineController | None = None
         self._tail: TailController | None = None
-        if self._spined:
-            if not self._yaw:
+        if self._spine_runs:
+            if not self._trunk_yaw_servos:
                 raise UnsuitedRobot(
                     f"the rule spine to spine needs servos that bend the trunk sideways; robot {robots[0].name!r} "
                     "lacks them: leave spine out."
                 )
-            self._spine = SpineController([spines[i] for i in self._spined], [robots[i] for i in self._spined], period)
-        if self._tailed:
+            self._spine = SpineController(
+                [spines[i] for i in self._spine_runs], [robots[i] for i in self._spine_runs], period
+            )
+        if self._tail_runs:
             self._tail = TailController(
-                [tails[i] for i in self._tailed],
-                [robots[i] for i in self._tailed],
-                [_with_tail(robots[i], gaits[i]) for i in self._tailed],
+                [tails[i] for i in self._tail_runs],
+                [robots[i] for i in self._tail_runs],
+                [_with_tail(robots[i], gaits[i]) for i in self._tail_runs],
                 period,
             )
 
     def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
-        """Return the targets as the rules change them."""
+        """Correct the servo targets by the rules of spine and tail, in place, and return them [rad].
+
+        The rule of the spine changes the bend of the trunk by the bend that the servos reached (``SpineController``).
+        The rule of the tail changes its pitch by the load on its servo (``TailController``).
+
+        Args:
+            targets: servo angles of all runs; those of runs with a rule are changed in place.
+            sensed: readings of all runs.
+        """
         if self._spine is not None:
-            spine_targets = targets[self._spined]
-            target_bend = spine_targets[:, self._yaw].sum(axis=1)
-            targets[self._spined] = self._spine.correct(
-                spine_targets, target_bend, _sensed_of_runs(sensed, self._spined)
+            targets_of_spine_runs = targets[self._spine_runs]
+            target_bend = targets_of_spine_runs[:, self._trunk_yaw_servos].sum(axis=1)
+            targets[self._spine_runs] = self._spine.correct(
+                targets_of_spine_runs, target_bend, _sensed_of_runs(sensed, self._spine_runs)
             )
         if self._tail is not None:
-            targets[self._tailed] = self._tail.correct(targets[self._tailed], _sensed_of_runs(sensed, self._tailed))
+            targets[self._tail_runs] = self._tail.correct(
+                targets[self._tail_runs], _sensed_of_runs(sensed, self._tail_runs)
+            )
         return targets
 
 
@@ -236,10 +248,10 @@ class Generator:
 
         Args:
             controls: settings, one for each run.
-            robots: one for each run, all with the same layout.
-            gaits: one for each run.
-            seeds: of random first phases, one for each run.
-            period: of control [s].
+            robots: robot of each run, all with the same layout.
+            gaits: gait of each run.
+            seeds: seeds of random first phases, one for each run.
+            period: control period [s].
         """
         self._period = period
         self._groups = _grouped(controls, robots, gaits)
@@ -274,7 +286,7 @@ class Generator:
         max_bend = np.abs(self._gain).max(axis=1, keepdims=True, initial=_AMPLITUDE_TOLERANCE)
         self._max_steering_change = self._max_steering_change / max_bend
         self.couplings = []
-        """Of each run; see ``oscillators.Couplings``."""
+        """Couplings of each run; see ``oscillators.Couplings``."""
         phases = []
         self._sensed_drive = LoadDrive([control.load for control in controls], robots, period)
         _, amplitude = self._natural_rhythm(START)
@@ -484,7 +496,7 @@ def _initial(
         control: its settings.
         robot: the design.
         gait: its gait.
-        seed: of random phases.
+        seed: seed of random phases.
         posture: segments of the axis, and the phase shift between limbs and oscillators.
         lag: phase lag of each segment behind the one ahead of it [cycle].
         has_active_limbs: whether the drive moves the limbs.
@@ -510,7 +522,7 @@ class OscillatorStates(NamedTuple):
     """Phases and amplitudes of oscillators that are integrated without a body."""
 
     time: Float[np.ndarray, " time"]
-    """Since the beginning of the run [s]."""
+    """Time since the beginning of the run [s]."""
     phase: Float[np.ndarray, "run time oscillator"]
     """Phase of the oscillators, not wrapped [cycle]."""
     amplitude: Float[np.ndarray, "run time oscillator"]
@@ -534,11 +546,11 @@ def oscillate(
     """Let pattern generators turn without a body, from the time at which a walk begins.
 
     Args:
-        controls: of the runs.
-        robot: whose oscillators they are.
+        controls: controls of the runs.
+        robot: robot whose oscillators they are.
         gait: which they drive.
-        duration: of the oscillation [s].
-        seeds: one for each run; all 0 if None.
+        duration: duration of the oscillation [s].
+        seeds: seed of each run; all 0 if None.
         sample_interval: keep one sample of so many control periods.
         progress: told the share that is done.
     """

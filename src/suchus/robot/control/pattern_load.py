@@ -43,9 +43,9 @@ class LoadDrive:
         """Gather the rules of the batch; a run without one gets no drive from its load.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            period: of control [s].
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
+            period: control period [s].
         """
         self.has_feedback = any(rule is not None for rule in rules)
         """Whether any run has such a rule."""

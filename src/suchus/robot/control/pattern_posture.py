@@ -83,7 +83,7 @@ class PatternPosture:
 
     Args:
         robot: the design.
-        gait: whose bends and foot paths are followed.
+        gait: gait whose bends and foot paths are followed.
         standing: whether silent limbs stand in the middle of their path; else they fold back along the body.
     """
 
@@ -125,7 +125,7 @@ class PatternPosture:
         """Return the servo angles, those of the axis within their ranges [rad].
 
         Args:
-            phase: of the limbs in the gait, not wrapped [cycle].
+            phase: phase of the limbs in the gait, not wrapped [cycle].
             fraction: how far each limb follows its path; 0 at rest, 1 in full [-].
             wave: of each segment, 1 where it bends to the left by the gait's amplitude [-].
             offset: steady bend of each segment to the left [rad].
@@ -151,7 +151,7 @@ def _lag(gait: Gait, swing: complex, girdle: int) -> float:
     """Return the phase lag of a hinge behind the limbs of a girdle, -1/2 to 1/2; 0 where nothing drives it [cycle].
 
     Args:
-        gait: whose limb phases count.
+        gait: gait whose limb phases count.
         swing: complex amplitude of the hinge's bend [rad].
         girdle: number of the girdle that drives the hinge; -1 for none.
     """
@@ -168,7 +168,7 @@ def _folded(place: Layout, gait: Gait, center: np.ndarray) -> np.ndarray:
 
     Args:
         place: layout of the robot.
-        gait: that says which limbs are held.
+        gait: gait that says which limbs are held.
         center: servo angles in the middle of the stance, shape (servo,) [rad].
     """
     folded, ranges = center.copy(), servo_ranges(place.robot)
@@ -208,9 +208,9 @@ def initial_phases(
     """Return first phases near equilibrium: the axis in phase with its limbs, or a wave along the axis [rad].
 
     Args:
-        segments: of the axis.
+        segments: segments of the axis.
         limbs: phases of the limbs' oscillators [cycle].
-        lag: of each segment behind the one ahead of it [cycle].
+        lag: phase lag of each segment behind the one ahead of it [cycle].
         has_active_limbs: whether the limbs are active.
     """
     if has_active_limbs and limbs:

@@ -12,7 +12,7 @@ class Sensed:
     """Sensor readings; nothing else reaches a controller."""
 
     time: float
-    """Since the beginning of the run [s]."""
+    """Time since the beginning of the run [s]."""
     servo_position: Float[np.ndarray, "run servo"]
     """Servo angles [rad]."""
     servo_velocity: Float[np.ndarray, "run servo"]
@@ -45,6 +45,6 @@ def decay_factor(delay: float, period: float) -> float:
 
     Args:
         delay: time constant of the filter [s]; 0 for none.
-        period: of control [s].
+        period: control period [s].
     """
     return exp(-period / delay) if delay > 0.0 else 0.0

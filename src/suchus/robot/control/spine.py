@@ -45,9 +45,9 @@ class SpineController:
         """Gather the gains of the batch and the ranges of the trunk's servos.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            period: of control [s].
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
+            period: control period [s].
         """
         self._is_active = np.array([rule is not None for rule in rules])
         self._share = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
@@ -63,7 +63,7 @@ class SpineController:
 
         Args:
             shared: what the limbs say.
-            gaits: of the runs.
+            gaits: gaits of the runs.
             clock: since the walk began, for bodies without limbs [cycle].
         """
         axis = gaits.axis_phase(shared.limb_phase, clock)
@@ -82,7 +82,7 @@ class SpineController:
         Args:
             targets: servo angles [rad].
             target_bend: bend of the trunk [rad].
-            sensed: what the robots feel.
+            sensed: sensor readings of the robots.
         """
         if not self._is_active.any():
             return targets

@@ -15,7 +15,7 @@ from suchus.robot.design import Layout, Robot, layout
 from suchus.robot.design.measures import LegMeasures
 from suchus.robot.design.skeleton import skeleton
 from suchus.robot.motion import Gait, intended
-from suchus.robot.motion.posture import Keyed, hind_leg, plan, upright
+from suchus.robot.motion.posture import Keyed, hind_leg, sample_postures, upright
 from suchus.robot.motion.rising import stand_up
 
 
@@ -155,13 +155,13 @@ class Standing:
 
         Args:
             robot: the design.
-            gait: of the crawl before and after.
-            time: since the beginning of the run, shape (tick,) [s].
+            gait: gait that is walked before and after.
+            time: time since the beginning of the run, shape (tick,) [s].
         """
         rise, leave, end = self._rise(robot), self.upright_until(robot), self.down_from(robot)
         rise_time = np.minimum(time - self.at - self.blend, rise.duration)
         descent_time = rise.duration - (time - leave) / self.slower_down
-        planned = plan(robot, rise, np.where(time < leave, rise_time, descent_time))
+        planned = sample_postures(robot, rise, np.where(time < leave, rise_time, descent_time))
         blend_progress = np.clip(np.minimum(time - self.at, end - time) / self.blend, 0.0, 1.0)
         fraction = (1.0 - np.cos(np.pi * blend_progress)) / 2.0
         phase, crawling = intended(robot, gait, np.where(time < end, np.minimum(time, self.at), time - (end - self.at)))
@@ -207,10 +207,10 @@ class Stander:
         Args:
             balances: rule of each run; None for a run that follows its course without feedback.
             course: intended motion of every distinct robot, gait and control.
-            row: of the course, one for each run.
+            row: row of the course, one for each run.
             legs: hind leg of each run's robot.
             place: layout that all robots share.
-            period: of control [s].
+            period: control period [s].
         """
         self._gains = {f.name: np.array([getattr(b or BALANCE, f.name) for b in balances]) for f in fields(Balance)}
         self._answers = np.array([b is not None for b in balances])

@@ -87,9 +87,9 @@ class SwimmingController:
 
         Args:
             controls: settings, one for each run.
-            robots: one for each run.
-            gaits: one for each run.
-            period: of control [s].
+            robots: robot of each run.
+            gaits: gait of each run.
+            period: control period [s].
         """
         self._gaits, self._period = Batch(robots, gaits), period
         self._ramp = np.array([control.ramp for control in controls])
@@ -123,7 +123,7 @@ class SwimmingController:
         """Return servo angles [rad] and phases of the limbs [cycle] at a time [s].
 
         Args:
-            time: since the beginning of the run [s].
+            time: time since the beginning of the run [s].
             tail: steady bend of the tail of each run, left positive [rad].
             trunk: steady bend of the trunk of each run, left positive [rad].
         """

@@ -68,10 +68,10 @@ class Switcher:
         """Check the ladders and start with nothing felt.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            gaits: in which the runs begin.
-            period: of control [s].
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
+            gaits: gaits in which the runs begin.
+            period: control period [s].
 
         Raises:
             UnknownName: a run's gait is not on its ladder.
@@ -95,7 +95,7 @@ class Switcher:
 
         Args:
             sensed: readings.
-            phase: of the limbs [cycle].
+            phase: phase of the limbs [cycle].
             gaits: present gait of each run.
             busy: runs that are changing their gait; their readings do not count.
         """
@@ -135,8 +135,8 @@ class Switcher:
         """Update the filtered belly load, foot contradiction and tilt of those runs that are free.
 
         Args:
-            sensed: what the robots feel.
-            phase: of the limbs, shape (run, limb) [cycle].
+            sensed: sensor readings of the robots.
+            phase: phase of the limbs, shape (run, limb) [cycle].
             gaits: present gait of each run.
             free: which runs are not changing their gait.
         """

@@ -50,10 +50,10 @@ class TailController:
         """Gather the rates of the batch, and the range within which each tail may pitch.
 
         Args:
-            rules: one for each run; None for a run without one.
-            robots: one for each run.
-            gaits: one for each run.
-            period: of control [s].
+            rules: rule of each run; None for a run without one.
+            robots: robot of each run.
+            gaits: gait of each run.
+            period: control period [s].
         """
         joint_count = max(len(layout(robots[0]).tail_pitch), 1)
         self._target_pitch = np.array([gait.number("tail_pitch") / joint_count for gait in gaits])
@@ -76,7 +76,7 @@ class TailController:
 
         Args:
             shared: what spine and limbs say.
-            gaits: of the runs.
+            gaits: gaits of the runs.
             clock: since the walk began, for bodies without limbs [cycle].
         """
         (trunk, trunk_steady), (tail, steady) = gaits.swing_and_offset("trunk"), gaits.swing_and_offset("tail")

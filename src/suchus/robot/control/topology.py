@@ -73,19 +73,26 @@ def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tu
     return tuple(_observe_step(name, step, place) for name, step in steps.items())
 
 
-def _observe_step(name: str, step: Callable[[Any, Any], Shared | None], place: Layout) -> ControlPart:
-    """Return the sensors and shared variables that one step of a controller read and wrote.
+def _observe_step(name: str, run_step: Callable[[Any, Any], Shared | None], robot_layout: Layout) -> ControlPart:
+    """Return the sensors and shared variables that one step of a controller reads and replaces.
+
+    The step runs once, for a robot at rest: branches that are not taken then, and arrays that are changed in place, are
+    not seen.
 
     Args:
-        name: of the controller.
-        step: takes the shared variables and the readings.
-        place: layout of the robot.
+        name: name of the controller.
+        run_step: one step of the controller, a function of the shared variables and the readings.
+        robot_layout: layout of the robot.
     """
-    shared, shared_names, sensed_names = initial_shared(1, len(place.limbs)), set[str](), set[str]()
-    result = step(_watching(shared, shared_names), _watching(_quiet(place), sensed_names))
-    written_names = [] if result is None else [v for v in OWNERS if getattr(result, v) is not getattr(shared, v)]
+    shared, read_names, sensed_names = initial_shared(1, len(robot_layout.limbs)), set[str](), set[str]()
+    new_shared = run_step(_watching(shared, read_names), _watching(_readings_at_rest(robot_layout), sensed_names))
+    replaced_names = (
+        []
+        if new_shared is None
+        else [variable for variable in OWNERS if getattr(new_shared, variable) is not getattr(shared, variable)]
+    )
     return ControlPart(
-        name, frozenset(sensed_names) - {"time"}, frozenset(shared_names) & frozenset(OWNERS), frozenset(written_names)
+        name, frozenset(sensed_names) - {"time"}, frozenset(read_names) & frozenset(OWNERS), frozenset(replaced_names)
     )
 
 
@@ -104,16 +111,16 @@ def _watching(value: object, read_names: set[str]) -> Any:
     return object.__new__(type("Watched", (type(value),), {"__getattribute__": noted}))
 
 
-def _quiet(place: Layout) -> Sensed:
+def _readings_at_rest(robot_layout: Layout) -> Sensed:
     """Return the readings of one robot at rest."""
-    servos, zeros = np.zeros((1, len(place.servos))), np.zeros(1)
+    servo_zeros, zeros = np.zeros((1, len(robot_layout.servos))), np.zeros(1)
     return Sensed(
         time=1.0,
-        servo_position=servos,
-        servo_velocity=servos,
-        servo_torque=servos,
-        foot_pressure=np.ones((1, len(place.limbs))),
-        belly_pressure=np.zeros((1, len(place.trunk))),
+        servo_position=servo_zeros,
+        servo_velocity=servo_zeros,
+        servo_torque=servo_zeros,
+        foot_pressure=np.ones((1, len(robot_layout.limbs))),
+        belly_pressure=np.zeros((1, len(robot_layout.trunk))),
         tail_pressure=zeros,
         orientation=np.array([[1.0, 0.0, 0.0, 0.0]]),
         angular_velocity=np.zeros((1, 3)),

@@ -59,10 +59,10 @@ class PitchHolds:
     """The pitch holds of a batch.
 
     Args:
-        rules: one for each run, None for none.
-        depths: that the runs hold, NaN for none [m].
-        robots: one for each run.
-        period: of control [s].
+        rules: rule of each run, None for none.
+        depths: depths that the runs hold, NaN for none [m].
+        robots: robot of each run.
+        period: control period [s].
 
     Raises:
         InvalidDesign: a robot whose pitch is held has no front or no rear chamber.
@@ -96,7 +96,7 @@ class PitchHolds:
 
         Args:
             air_fraction: share of the whole air that is kept, NaN where it is not commanded [-].
-            sensed: what the robots feel.
+            sensed: sensor readings of the robots.
         """
         rule, (front, rear) = self._rule, self._share.T
         error = rotation.pitch(finite(sensed.orientation)) - self._target_pitch(sensed)

@@ -47,8 +47,8 @@ def turn(curve: TurningCurve, radius: float, *, attitude: AttitudeRule | None = 
     Nothing is fed back: on other friction the radius is another one.
 
     Args:
-        curve: of the gait.
-        radius: of the circle, to the left positive, to the right negative [m].
+        curve: curve of the gait.
+        radius: radius of the circle, to the left positive, to the right negative [m].
         attitude: as in ``Walking``.
 
     Raises:

@@ -117,7 +117,7 @@ class Walker:
 
         Args:
             runs: controls, robots and gaits.
-            period: of control [s].
+            period: control period [s].
         """
         controls, robots, gaits = runs.controls, runs.robots, runs.gaits
         self._controls, self._robots, self._gaits = list(controls), list(robots), list(gaits)
@@ -172,9 +172,9 @@ class Walker:
         """Return the runs that begin another gait now, with that gait.
 
         Args:
-            time: since the beginning of the run [s].
+            time: time since the beginning of the run [s].
             sensed: readings; None if no rule is on.
-            phase: of the limbs, shape (run, limb) [cycle].
+            phase: phase of the limbs, shape (run, limb) [cycle].
         """
         busy = set(self._script)
         requests = []
@@ -198,7 +198,7 @@ class Walker:
         """Return the intended posture of every run by its clock; runs in a transition ignore it.
 
         Args:
-            time: since the beginning of the run [s].
+            time: time since the beginning of the run [s].
         """
         since = np.maximum(time - self._began, 0.0)
         size = np.where(self._full > 0, np.clip(since / np.maximum(self._full, 1e-9), 0.0, 1.0), 1.0)

@@ -218,7 +218,7 @@ def _passive(tail: Tail, number: int) -> tuple[Hinge, Hinge]:
 
     Args:
         tail: the measures.
-        number: of the passive segment, from the root [-].
+        number: number of the passive segment, from the root [-].
     """
     softer = 1.0 - 0.5 * number / max(tail.fin_segments - 1, 1)
     names = fin_names(tail)[2 * number : 2 * number + 2]
@@ -254,7 +254,7 @@ def _girdle(name: str, segment: str, position: float, leg: Leg) -> Girdle:
     Args:
         name: ending of the limbs' names, ``F`` or ``H``.
         segment: name of the segment that carries it.
-        position: from the segment's origin forward to the hips [m].
+        position: position from the segment's origin forward to the hips [m].
         leg: the measures of the left leg.
     """
 

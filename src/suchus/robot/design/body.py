@@ -175,28 +175,34 @@ def bends_trunk(hinge: str) -> bool:
 
 
 def _check_names(robot: Robot, check: Checks) -> None:
-    """Report a root or girdle on a segment that does not exist, and names that are used twice."""
+    """Report an axis without segments, a root or girdle on an unknown segment, and names that are used twice."""
     check.that(len(robot.axis) > 0, "the axis has no segment; give it one")
-    names = [segment.name for segment in robot.axis]
-    check.that(robot.root in names, f"root is {show(robot.root)}, no segment of the axis; there is {', '.join(names)}")
+    segment_names = [segment.name for segment in robot.axis]
+    check.that(
+        robot.root in segment_names,
+        f"root is {show(robot.root)}, no segment of the axis; there is {', '.join(segment_names)}",
+    )
     for girdle in robot.girdles:
         check.that(
-            girdle.segment in names,
-            f"girdle {girdle.name} sits on {show(girdle.segment)}, no segment of the axis; there is {', '.join(names)}",
+            girdle.segment in segment_names,
+            f"girdle {girdle.name} sits on {show(girdle.segment)}, no segment of the axis; there is "
+            f"{', '.join(segment_names)}",
         )
-    limbs = [f"{side}{girdle.name}" for girdle in robot.girdles for side in "LR"]
-    bodies = [
+    limb_names = [f"{side}{girdle.name}" for girdle in robot.girdles for side in "LR"]
+    link_names = [
         f"{limb}_{link.name}" for g in robot.girdles for limb in (f"L{g.name}", f"R{g.name}") for link in g.limb.links
     ]
-    hinges = [hinge.name for hinge in robot.axis_hinges] + [cable.name for cable in robot.cables]
-    shapes = [shape.name for segment in robot.axis for shape in segment.shapes]
+    hinge_and_cable_names = [hinge.name for hinge in robot.axis_hinges] + [cable.name for cable in robot.cables]
+    shape_names = [shape.name for segment in robot.axis for shape in segment.shapes]
     limb_hinges = [hinge.name for girdle in robot.girdles for hinge in girdle.limb.hinges]
-    check.printable([robot.name, *names, *bodies, *limbs, *hinges, *limb_hinges, *shapes])
+    check.printable(
+        [robot.name, *segment_names, *link_names, *limb_names, *hinge_and_cable_names, *limb_hinges, *shape_names]
+    )
     for kind, group_names in (
-        ("segments or links", [*names, *bodies]),
-        ("limbs", limbs),
-        ("hinges or cables", hinges),
-        ("shapes", shapes),
+        ("segments or links", [*segment_names, *link_names]),
+        ("limbs", limb_names),
+        ("hinges or cables", hinge_and_cable_names),
+        ("shapes", shape_names),
     ):
         duplicates = [name for name, count in Counter(group_names).items() if count > 1]
         check.that(not duplicates, f"several {kind} are called {', '.join(duplicates)}; each needs a name of its own")
@@ -294,9 +300,9 @@ def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float
     Args:
         check: collects what is wrong.
         robot: its name.
-        servos: by name.
-        mass: of the robot [kg].
-        length: of the robot [m].
+        servos: servos by name.
+        mass: mass of the robot [kg].
+        length: length of the robot [m].
     """
     for name, servo in servos.items():
         inertia_ratio = servo.armature / (mass * length**2)

@@ -68,7 +68,7 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
 
     Args:
         design: the robot, the gait, or a part; it stays as it is.
-        values: by path, see ``value_at``.
+        values: values by path, see ``value_at``.
 
     Raises:
         UnknownName: there is no such field.
@@ -107,7 +107,7 @@ def unit_at(design: Any, path: str) -> str:
 
     Args:
         design: the robot, the gait, or a part.
-        path: of the field, see ``value_at``.
+        path: path of the field, see ``value_at``.
 
     Raises:
         UnknownName: there is no such field.

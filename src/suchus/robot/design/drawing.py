@@ -20,7 +20,7 @@ _OVERLAP = 1.6
 _KEEL = 0.25
 """Share of the mass that lies in a keel inside the body, low, unless a drawing says otherwise [-]."""
 _FRICTION = 0.4
-"""Of the skin on the ground, which a swimmer does not touch [-]."""
+"""Coefficient of friction of the skin on the ground, which a swimmer does not touch [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,9 +30,9 @@ class Drawing:
     name: str
     """Name, as messages, tables and files show it."""
     length: float
-    """From the tip of the snout to the tip of the tail [m]."""
+    """Length from the tip of the snout to the tip of the tail [m]."""
     mass: float
-    """Of the whole body [kg]."""
+    """Mass of the whole body [kg]."""
     density: float = WATER_DENSITY
     """Mass over volume of the whole body, its air and lungs included [kg/m3]: the drawn sections are made larger or
     smaller alike until the volume is right. One that hovers has the density of its water."""
@@ -74,7 +74,7 @@ class Drawing:
         """Return it as a robot.
 
         Args:
-            servo: in every joint; one that holds the water if None, see ``design.scale.swim_servo_for``.
+            servo: servo in every joint; one that holds the water if None, see ``design.scale.swim_servo_for``.
 
         Raises:
             InvalidDesign: no sections of these proportions have the volume.
@@ -96,7 +96,7 @@ class Drawing:
 
         Args:
             scale: factor on width and height of the drawn sections [-].
-            servo: in every joint; None for one that holds the water.
+            servo: servo in every joint; None for one that holds the water.
         """
         ends = (0.0, *self.joints, 1.0)
         drive = servo or swim_servo_for(self.mass, self.length)
@@ -124,7 +124,7 @@ class Drawing:
         """Return place and half axes, both [body length], and relative size of each ellipsoid of a segment.
 
         Args:
-            number: of the segment, from the snout [-].
+            number: number of the segment, from the snout [-].
             ends: places of the joints with both ends of the body [body length].
             scale: factor on width and height [-].
         """
@@ -161,9 +161,9 @@ class Drawing:
         """Return the ellipsoids of one segment, and its keel if there is one.
 
         Args:
-            number: of the segment, from the snout [-].
+            number: number of the segment, from the snout [-].
             shells: place [body length], half axes [body length] and relative size of each ellipsoid.
-            center: of the segment, from the snout [body length].
+            center: center of the segment, from the snout [body length].
             total: sum of the relative sizes of all segments.
             segment_length: length of the segment [body length].
         """

@@ -24,7 +24,7 @@ def float_hull(
         freeboard_fraction: share of the volume that stays above the surface [-].
         foam_offset: how far the foam of every body lies above its middle [m].
         air: so much of the foam on the axis is a bladder [m3].
-        density: of the foam [kg/m3].
+        density: density of the foam [kg/m3].
 
     Raises:
         InvalidDesign: the share is not 0 to 0.9, the robot has a hull, or a body would swell beyond

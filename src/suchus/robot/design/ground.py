@@ -18,7 +18,7 @@ REACH = (-1.0, 6.0)
 HALF_WIDTH = 1.4
 """How far it extends to either side [m]; beyond it the ground is even."""
 CELL = 0.025
-"""Between the points of a height field [m]; about the size of a foot."""
+"""Distance between the points of a height field [m]; about the size of a foot."""
 _RAMP = 0.15  # [m]; over which bumps grow from nothing
 _MIN_SIZE = 1e-5  # [m]; of heights, lengths and widths
 _OUTER = (0.02, 0.98)  # quantiles between which the height of a field is measured

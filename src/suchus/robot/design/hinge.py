@@ -71,7 +71,7 @@ class Servo:
         """Return the greatest torque of the motor at a speed, in the direction of that torque [N m].
 
         Args:
-            speed: of the shaft in that direction; negative where it is driven backwards [rad/s].
+            speed: speed of the shaft in that direction; negative where it is driven backwards [rad/s].
         """
         if self.winding is None:
             return np.full(np.shape(speed), self.torque)
@@ -88,7 +88,8 @@ class Servo:
         Args:
             motor: as it is bought.
             volts: its supply [V]; that of its data sheet if None.
-            template: whose gains, rotor inertia and friction it has; None for those in proportion to its torque.
+            template: template whose gains, rotor inertia and friction it has; None for those in proportion to its
+                torque.
 
         Raises:
             InvalidFields: the supply is not one that the motor bears.
@@ -244,8 +245,8 @@ class LinearActuator:
 
         Args:
             servo: the servo.
-            radius: of its pulley [m].
-            travel: of the actuator to either side [m].
+            radius: radius of its pulley [m].
+            travel: travel of the actuator to either side [m].
         """
         return cls(
             travel=travel,
@@ -265,7 +266,7 @@ class LinearActuator:
         """Return the servo that moves the cords in the same way by a pulley.
 
         Args:
-            radius: of the pulley [m].
+            radius: radius of the pulley [m].
         """
         return Servo(
             kp=self.kp * radius**2,

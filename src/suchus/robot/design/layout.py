@@ -283,8 +283,8 @@ def _framed(inertia: Inertia | None, shift: float, side: float) -> Inertia | Non
     """Return the inertia of a body in the frame at its hinges; on the right side, the mirror image.
 
     Args:
-        inertia: of the left body; None if its design has none.
-        shift: of the frame against the origin of the segment [m].
+        inertia: inertia of the left body; None if its design has none.
+        shift: shift of the frame against the origin of the segment [m].
         side: 1 left, -1 right [-].
     """
     if inertia is None:
@@ -304,12 +304,12 @@ def _limb_bodies(
     """Return the bodies of one limb from the hip to the foot.
 
     Args:
-        girdle: that carries the limb.
-        name: of the limb.
+        girdle: girdle that carries the limb.
+        name: name of the limb.
         side: 1 left, -1 right [-].
         parent: index of the body that carries the girdle.
         first_index: index that the limb's first body will have.
-        shift: of the parent's frame against the origin of its segment [m].
+        shift: shift of the parent's frame against the origin of its segment [m].
     """
     bodies, offset = [], (shift + girdle.at, side * girdle.aside, girdle.above)
     for i, link in enumerate(girdle.limb.links):

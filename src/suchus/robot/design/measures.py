@@ -317,7 +317,7 @@ def _plates(
         root: segment whose hinge pitches the tail.
         driven_hinges: yaw hinges under the cable or with servos.
         cable: over these hinges; None if each has a servo.
-        servo: that drives them.
+        servo: servo that drives them.
         rods: shape of each segment.
     """
     count, lengths = len(driven_hinges), [segment.front + segment.rear for segment in segments]

@@ -123,7 +123,7 @@ def _disc(
 
     Args:
         body: index of the body that carries it.
-        center: in the frame of the body [m].
+        center: center in the frame of the body [m].
         axes: unit vectors across, upward and forward.
         half: half axes along them [m].
         volume: [m3].
@@ -151,7 +151,7 @@ def ball(body: int, center: tuple[float, float, float] | np.ndarray, radius: flo
 
     Args:
         body: index of the body that carries it.
-        center: in the frame of the body [m].
+        center: center in the frame of the body [m].
         radius: [m].
     """
     volume = 4 / 3 * pi * radius**3
@@ -188,8 +188,8 @@ def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
 
     Args:
         place: layout of the robot.
-        table: of the pieces, changed in place.
-        hull: of the robot.
+        table: table of the pieces, changed in place.
+        hull: hull of the robot.
     """
     number = {body.name: i for i, body in enumerate(place.bodies)}
     for foam in hull.foam:
@@ -206,7 +206,7 @@ def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
         column(table, "at")[is_in_body, 2] += foam.raised * foam.volume / (own_volume + foam.volume)
     if hull.air == 0.0:
         return
-    for body, volume in (_air_in_chambers if hull.chambers else _in_foam)(place, hull).items():
+    for body, volume in (_air_in_chambers if hull.chambers else _air_in_foam)(place, hull).items():
         is_in_body = table[:, 0] == number[body]
         piece_volumes = table[is_in_body, COLUMNS["volume"][0]]
         if hull.chambers:
@@ -215,27 +215,37 @@ def _dress(place: Layout, table: np.ndarray, hull: Hull) -> None:
         table[is_in_body, COLUMNS["air"][0] + kind] = volume * piece_volumes / piece_volumes.sum()
 
 
-def _in_foam(place: Layout, hull: Hull) -> dict[str, float]:
-    """Return the air in each body of the axis, in proportion to its foam [m3]."""
-    axis = {segment.name for segment in place.robot.axis}
-    on_axis = {foam.body: foam.volume for foam in hull.foam if foam.body in axis}
-    total = sum(on_axis.values())
-    if hull.air > total + 1e-12:
+def _air_in_foam(robot_layout: Layout, hull: Hull) -> dict[str, float]:
+    """Return the volume of air in each segment of the axis, in proportion to its foam [m3].
+
+    A bladder of air takes the place of foam; a hull has at most one foam for each body.
+
+    Args:
+        robot_layout: layout of the robot.
+        hull: hull of the robot.
+
+    Raises:
+        InvalidDesign: there is more air than foam on the axis.
+    """
+    segment_names = {segment.name for segment in robot_layout.robot.axis}
+    foam_volumes = {foam.body: foam.volume for foam in hull.foam if foam.body in segment_names}
+    total_foam = sum(foam_volumes.values())
+    if hull.air > total_foam + 1e-12:
         raise InvalidDesign(
-            f"hull.air is {1e3 * hull.air:g} l and the foam on the axis is {1e3 * total:.3g} l; at "
+            f"hull.air is {1e3 * hull.air:g} l and the foam on the axis is {1e3 * total_foam:.3g} l; at "
             "most all of it can be a bladder: add foam or take less air."
         )
-    return {body: hull.air * volume / total for body, volume in on_axis.items()}
+    return {body: hull.air * volume / total_foam for body, volume in foam_volumes.items()}
 
 
-def _air_in_chambers(place: Layout, hull: Hull) -> dict[str, float]:
-    """Return the air in each chamber [m3]."""
-    axis = [segment.name for segment in place.robot.axis]
+def _air_in_chambers(robot_layout: Layout, hull: Hull) -> dict[str, float]:
+    """Return the volume of air in the body of each chamber [m3]."""
+    segment_names = [segment.name for segment in robot_layout.robot.axis]
     for chamber in hull.chambers:
-        if chamber.body not in axis:
+        if chamber.body not in segment_names:
             raise InvalidDesign(
-                f"hull.chambers has one in {str(chamber.body)[:40]!r}, and the axis of robot {place.robot.name!r} has "
-                f"no such body; it has {', '.join(axis)}."
+                f"hull.chambers has one in {str(chamber.body)[:40]!r}, and the axis of robot "
+                f"{robot_layout.robot.name!r} has no such body; it has {', '.join(segment_names)}."
             )
     return {chamber.body: hull.air * chamber.share for chamber in hull.chambers}
 
@@ -245,9 +255,9 @@ def _check_hollow(place: Layout, body: str, air: float, volume: float) -> None:
 
     Args:
         place: layout of the robot.
-        body: that holds the chamber.
-        air: in the chamber [m3].
-        volume: of the body with its foam [m3].
+        body: body that holds the chamber.
+        air: volume of air in the chamber [m3].
+        volume: volume of the body with its foam [m3].
     """
     max_air = max(volume - masses(place.robot)[body] / SOLID, 0.0)
     if air > max_air + 1e-12:

@@ -35,17 +35,17 @@ class _Section(NamedTuple):
     half_height: np.ndarray
 
 
-def profile(robot: Robot, s: Float[np.ndarray, " station"]) -> Profile:
+def profile(robot: Robot, station: Float[np.ndarray, " station"]) -> Profile:
     """Return the sections of a straight robot.
 
     Args:
-        robot: in the general form; its rods lie along the axis.
-        s: from the tip of the snout [m].
+        robot: the robot; its rods lie along the axis.
+        station: distances of the sections from the tip of the snout [m].
     """
     shape_sections, start = [], 0.0
     for segment in robot.axis:
         origin = start + segment.front
-        shape_sections += [_section(shape, origin - s) for shape in segment.shapes]
+        shape_sections += [_section(shape, origin - station) for shape in segment.shapes]
         start += segment.front + segment.rear
     section = _Section(*(np.stack(columns, axis=-1) for columns in zip(*shape_sections, strict=True)))
     half_width = (np.abs(section.y) + section.half_width).max(axis=-1, where=section.half_width > 0, initial=0.0)
@@ -55,9 +55,9 @@ def profile(robot: Robot, s: Float[np.ndarray, " station"]) -> Profile:
     # Gauss-Chebyshev: exact for an ellipse that fills the section
     angle = (np.arange(_LEVELS) + 0.5) * np.pi / _LEVELS
     z = (0.5 * (top + bottom))[:, None] + (0.5 * (top - bottom))[:, None] * np.cos(angle)
-    length = _union(section, z) * np.sin(angle) * (np.pi / _LEVELS) * (0.5 * (top - bottom))[:, None]
-    area = length.sum(axis=-1)
-    center = np.divide((length * z).sum(axis=-1), area, out=np.zeros_like(area), where=area > 0)
+    weighted_width = _union_width(section, z) * np.sin(angle) * (np.pi / _LEVELS) * (0.5 * (top - bottom))[:, None]
+    area = weighted_width.sum(axis=-1)
+    center = np.divide((weighted_width * z).sum(axis=-1), area, out=np.zeros_like(area), where=area > 0)
     return Profile(half_width, 0.5 * (top - bottom), area, center)
 
 
@@ -76,21 +76,26 @@ def _section(shape: Rod | Shell, x: np.ndarray) -> _Section:
     return _Section(y0 + fraction * (y1 - y0), z0 + fraction * (z1 - z0), reach, reach)
 
 
-def _union(section: _Section, z: np.ndarray) -> np.ndarray:
-    """Return how wide the union of the ellipses is at heights z, shape (station, level)."""
+def _union_width(section: _Section, height: np.ndarray) -> np.ndarray:
+    """Return the width that the ellipses of a station cover together, gaps left out, shape (station, level) [m].
+
+    Args:
+        section: the ellipses, shape (station, ellipse).
+        height: heights at which the width is measured, shape (station, level) [m].
+    """
     half_height = np.where(section.half_height > 0, section.half_height, 1.0)[:, None, :]
-    chord_squared = 1.0 - ((z[:, :, None] - section.z[:, None, :]) / half_height) ** 2
-    half = np.where(
+    relative_half_chord_squared = 1.0 - ((height[:, :, None] - section.z[:, None, :]) / half_height) ** 2
+    half_chord = np.where(
         section.half_height[:, None, :] > 0,
-        section.half_width[:, None, :] * np.sqrt(np.clip(chord_squared, 0.0, None)),
+        section.half_width[:, None, :] * np.sqrt(np.clip(relative_half_chord_squared, 0.0, None)),
         0.0,
     )
-    left_edge, right_edge = section.y[:, None, :] - half, section.y[:, None, :] + half
-    order = np.argsort(left_edge, axis=-1)
-    left_edge, right_edge = np.take_along_axis(left_edge, order, -1), np.take_along_axis(right_edge, order, -1)
-    covered_edge = np.maximum.accumulate(right_edge, axis=-1)
-    previous_edge = np.concatenate([np.full_like(left_edge[..., :1], -np.inf), covered_edge[..., :-1]], axis=-1)
-    return np.asarray(np.clip(right_edge - np.maximum(left_edge, previous_edge), 0.0, None).sum(axis=-1))
+    lower_edge, upper_edge = section.y[:, None, :] - half_chord, section.y[:, None, :] + half_chord
+    order = np.argsort(lower_edge, axis=-1)
+    lower_edge, upper_edge = np.take_along_axis(lower_edge, order, -1), np.take_along_axis(upper_edge, order, -1)
+    covered_edge = np.maximum.accumulate(upper_edge, axis=-1)
+    previous_edge = np.concatenate([np.full_like(lower_edge[..., :1], -np.inf), covered_edge[..., :-1]], axis=-1)
+    return np.asarray(np.clip(upper_edge - np.maximum(lower_edge, previous_edge), 0.0, None).sum(axis=-1))
 
 
 def stations(robot: Robot) -> Sequence[tuple[float, float]]:

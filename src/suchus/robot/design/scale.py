@@ -82,8 +82,8 @@ def servo_for(mass: float, length: float) -> Servo:
     """Return the servo that suits a body of a size, like those of the article's robot.
 
     Args:
-        mass: of the whole body [kg].
-        length: of the whole body [m].
+        mass: mass of the whole body [kg].
+        length: length of the whole body [m].
     """
     require("servo_for", "mass", mass, 1e-6, 1e5, "kg")
     require("servo_for", "length", length, 1e-3, 100.0, "m")
@@ -124,8 +124,8 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
     the record has the torque that the water demands.
 
     Args:
-        mass: of the whole body [kg].
-        length: of the whole body [m].
+        mass: mass of the whole body [kg].
+        length: length of the whole body [m].
         beat: frequency of the swim [Hz]; that of a wave as long as the body that runs at 1.5 m/s to the root of its
             length over 1 m (dynamic similarity) if None.
     """
@@ -152,8 +152,8 @@ def spring_for(mass: float, length: float, mass_ratio: float) -> Spring:
     """Return a passive joint whose spring and damper are scaled to the mass and length of a body.
 
     Args:
-        mass: of the whole body [kg].
-        length: of the whole body [m].
+        mass: mass of the whole body [kg].
+        length: length of the whole body [m].
         mass_ratio: the mass of the segment over that of the heaviest one [-].
     """
     torque = mass * GRAVITY * length
@@ -168,9 +168,9 @@ def contact_for(length: float, *, foot_friction: float, skin_friction: float) ->
     """Return how a body of a size meets the ground.
 
     Args:
-        length: of the body [m].
-        foot_friction: of the feet [-].
-        skin_friction: of the skin [-].
+        length: length of the body [m].
+        foot_friction: friction coefficient of the feet [-].
+        skin_friction: friction coefficient of the skin [-].
     """
     return Contact(
         foot_friction=foot_friction,
@@ -190,8 +190,8 @@ def rescale(design: T, *, length_factor: float, mass_factor: float | None = None
 
     Args:
         design: a frozen value whose docstrings name the units.
-        length_factor: on lengths [-].
-        mass_factor: on masses [-]; the cube of ``length_factor`` if None.
+        length_factor: factor on lengths [-].
+        mass_factor: factor on masses [-]; the cube of ``length_factor`` if None.
 
     Raises:
         InvalidDesign: a factor is not positive, or the scaled value cannot be.
@@ -206,10 +206,10 @@ def rescale_fields(design: Any, names: Iterable[str], *, length_factor: float, m
     """Return some fields of a frozen value in another size, each by the power of its unit.
 
     Args:
-        design: whose docstrings name the units.
-        names: of the fields.
-        length_factor: on lengths [-].
-        mass_factor: on masses [-].
+        design: design whose docstrings name the units.
+        names: names of the fields.
+        length_factor: factor on lengths [-].
+        mass_factor: factor on masses [-].
     """
     field_meanings = meanings(type(design))
     resized = {}

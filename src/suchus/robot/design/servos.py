@@ -55,8 +55,8 @@ def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
 
     Args:
         robot: the robot; it stays as it is. The limbs of a girdle mirror each other, so that either name changes both.
-        servos: by the names of ``design.servo_names``; of two for one place the stronger counts. A linear actuator
-            becomes one that does what the servo would on the cable's ``pulley``.
+        servos: servos by the names of ``design.servo_names``; of two for one place the stronger counts. A linear
+            actuator becomes one that does what the servo would on the cable's ``pulley``.
     """
 
     def with_servo(hinge: Hinge, names: Collection[str]) -> Hinge:
@@ -96,7 +96,7 @@ def with_spring(robot: Robot, hinges: Collection[str], stiffness: float) -> Robo
     Args:
         robot: the robot; it stays as it is.
         hinges: names of hinges with springs.
-        stiffness: of each [N m/rad].
+        stiffness: stiffness of each [N m/rad].
     """
 
     def with_stiffness(hinge: Hinge) -> Hinge:

@@ -32,7 +32,7 @@ class Water:
 
         Args:
             speed: [m/s].
-            length: of the body [m].
+            length: length of the body [m].
 
         Source: Blasius 1908; Prandtl's 0.074 Re^(-1/5).
         """

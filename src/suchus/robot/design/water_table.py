@@ -97,7 +97,7 @@ def pack_table(
 
     Args:
         table: the pieces.
-        length: of the body, for the Reynolds number of its friction [m].
+        length: length of the body, for the Reynolds number of its friction [m].
         count: pieces to make room for; as many as there are if None.
     """
     blocks = -(-(len(table) if count is None else count) // LANES)

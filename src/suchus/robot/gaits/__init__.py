@@ -94,8 +94,8 @@ def in_size(gait: Gait, robot: Robot, maker: Robot) -> Gait:
     it is the gait itself, so that a design and its variants move alike.
 
     Args:
-        gait: for the robot ``maker``.
-        robot: who is to move in it.
+        gait: gait for the robot ``maker``.
+        robot: robot that is to move in it.
         maker: for whom it was made.
     """
     if 1 / MAX_LENGTH_RATIO < robot.length / maker.length < MAX_LENGTH_RATIO:
@@ -138,7 +138,7 @@ def gait_of(robot: Robot, gait: Gait | str | Path | None, place: str | Path = Pa
     """Return the gait that is meant for a robot: itself, by its name, by the path of its file, or the robot's own.
 
     Args:
-        robot: for whose limbs a file's metres are, and in whose hinges its places.
+        robot: robot for whose limbs a file's metres are, and in whose hinges its places.
         gait: the gait, its name, or the path of a TOML file; None for the robot's own.
         place: the folder from which paths are read.
 
@@ -167,7 +167,7 @@ def control_group(gait: Gait, replacement: Gait | None = None) -> Gait:
     """Return the control group of a gait: the same legs, its axis still.
 
     Args:
-        gait: with all of the axis.
+        gait: gait with all of the axis.
         replacement: gait to use as control group; None for the gait without the motion of its axis.
 
     Raises:
@@ -195,8 +195,8 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
 
     Args:
         robot: the design.
-        gait: with all of the axis.
-        control: with limbs only.
+        gait: gait with all of the axis.
+        control: control with limbs only.
     """
     place, gait = layout(robot), divide_axis(robot, gait)
     tail_servos = {*place.tail_yaw, *place.tail_pitch, *place.cables}

@@ -6,7 +6,7 @@ from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.motion import Bend, FootPath, Gait
 
 _TAIL = (3.2307692307692186, 6.395604395604396, 6.879120879120879, 7.362637362637363, 7.846153846153846)
-"""Of the tail's joints, toward the tip [degree]."""
+"""Amplitudes of the tail's joints, toward the tip [degree]."""
 gait = Gait(
     name="pleurobot_walk",
     period=2.0,

@@ -2,7 +2,7 @@
 
 Points are those of a left limb in the frame of its girdle, from the hip: forward, outward, up; right limbs are mirror
 images with the same angles. Closed forms are chosen where they apply: yaw and pitch at the hip and a knee (the
-article's leg), or yaw, pitch and roll at the hip and an elbow, whose redundant turn is said by the plane of the limb.
+article's leg), or yaw, pitch and roll at the hip and an elbow, whose redundant rotation is given by the swivel angle.
 Any other chain takes damped Gauss-Newton steps with an analytic Jacobian.
 """
 
@@ -39,9 +39,9 @@ class PlainLeg(NamedTuple):
     tibia: float
     """Length from knee to the foot's centre [m]."""
     foot_radius: float
-    """Of the ball [m]."""
+    """Radius of the foot's ball [m]."""
     hip_height: float
-    """Of the hip over the axis of the body [m]."""
+    """Height of the hip over the axis of the body [m]."""
 
     @property
     def reach(self) -> tuple[float, float]:
@@ -86,7 +86,7 @@ def inverse(
     limb: Limb,
     foot: Float[np.ndarray, "*batch 3"],
     *,
-    plane: float | Float[np.ndarray, "*batch"] = 0.0,
+    swivel: float | Float[np.ndarray, "*batch"] = 0.0,
     start: Float[np.ndarray, "*batch hinge"] | None = None,
     tries: int = SEEDS,
 ) -> Float[np.ndarray, "*batch hinge"]:
@@ -94,9 +94,9 @@ def inverse(
 
     Args:
         limb: the limb.
-        foot: from the hip: forward, outward, up [m].
-        plane: of a limb of the kind ``arm``: how far the elbow is turned forward about the line from hip to foot,
-            0 where it stands up [rad].
+        foot: position of the foot from the hip: forward, outward, up [m].
+        swivel: for a limb of the kind ``arm``: rotation of the elbow forward about the line from hip to foot, 0 where
+            it stands up [rad].
         start: angles near the answer, for chains without a closed form [rad]; the middle of the ranges if None.
         tries: how often such a chain begins again elsewhere before it gives up [-].
 
@@ -112,7 +112,7 @@ def inverse(
         base = np.stack([points[..., 1], points[..., 0], -points[..., 2]], axis=-1)
         return closed.inverse(PlainLeg(0.0, links[0].length, links[1].length, 0.0, 0.0), base)
     if method == "arm":
-        return _arm(limb, points, broadcast_to_shape(plane, points.shape[:-1], "the plane of the limb"))
+        return _arm(limb, points, broadcast_to_shape(swivel, points.shape[:-1], "the swivel angle of the limb"))
     return _numeric(limb, points, start, tries)
 
 
@@ -134,33 +134,44 @@ def _refuse_far(limb: Limb, points: np.ndarray) -> None:
         )
 
 
-def _arm(limb: Limb, foot: np.ndarray, plane: np.ndarray) -> np.ndarray:
-    """Solve yaw, pitch, roll and elbow: the elbow by the cosine law, its place on a circle by the plane."""
+def _arm(limb: Limb, foot: np.ndarray, swivel: np.ndarray) -> np.ndarray:
+    """Return yaw, pitch, roll and elbow of a limb of the kind ``arm``, shape (*batch, 4) [rad].
+
+    The cosine law gives the elbow's angle. Its position on a circle about the line from hip to foot follows from the
+    swivel angle. Feet out of reach are not refused: the elbow's cosine is clipped.
+
+    Args:
+        limb: the design; its first two links are the upper and the lower one.
+        foot: centre of the foot from the hip: forward, outward, up, shape (*batch, 3) [m].
+        swivel: rotation of the elbow forward about the line from hip to foot, 0 where it stands up, shape (*batch,)
+            [rad].
+    """
     upper_length, lower_length = limb.links[0].length, limb.links[1].length
     x, y, z = np.moveaxis(foot, -1, 0)
-    squared = x * x + y * y + z * z
-    distance = np.sqrt(squared)
-    bend = np.arccos(
-        np.clip((squared - upper_length**2 - lower_length**2) / (2.0 * upper_length * lower_length), -1.0, 1.0)
+    distance_squared = x * x + y * y + z * z
+    distance = np.sqrt(distance_squared)
+    elbow = np.arccos(
+        np.clip((distance_squared - upper_length**2 - lower_length**2) / (2.0 * upper_length * lower_length), -1.0, 1.0)
     )
-    flat = np.hypot(x, y)
-    level = np.maximum(flat, 1e-300)
+    horizontal_distance = np.hypot(x, y)
+    safe_horizontal_distance = np.maximum(horizontal_distance, 1e-300)
     # position of the elbow along the line from hip to foot
-    axial_offset = (upper_length**2 - lower_length**2 + squared) / (2.0 * distance)
+    axial_offset = (upper_length**2 - lower_length**2 + distance_squared) / (2.0 * distance)
     radial_offset = np.sqrt(np.maximum(upper_length**2 - axial_offset**2, 0.0))
     ux, uy, uz = x / distance, y / distance, z / distance
-    rise, side = radial_offset * np.cos(plane), radial_offset * np.sin(plane)
-    # up, across the line, and forward, across both; for a foot straight below the hip they are outward and forward
-    outward = np.where(flat > 0, y / level, 1.0)
-    ex = axial_offset * ux - rise * uz * x / level + side * outward
-    ey = axial_offset * uy - rise * uz * outward - side * x / level
-    ez = axial_offset * uz + rise * flat / distance
+    upward, sideways = radial_offset * np.cos(swivel), radial_offset * np.sin(swivel)
+    # the elbow is off the line by two offsets normal to it: one in the line's vertical plane, upward, and one level and
+    # forward; for a foot straight below the hip these two directions are outward and forward
+    azimuth_cos = np.where(horizontal_distance > 0, y / safe_horizontal_distance, 1.0)
+    ex = axial_offset * ux - upward * uz * x / safe_horizontal_distance + sideways * azimuth_cos
+    ey = axial_offset * uy - upward * uz * azimuth_cos - sideways * x / safe_horizontal_distance
+    ez = axial_offset * uz + upward * horizontal_distance / distance
     yaw, pitch = np.arctan2(ex, ey), np.arctan2(-ez, np.hypot(ex, ey))
-    s, c, sp, cp = np.sin(yaw), np.cos(yaw), np.sin(pitch), np.cos(pitch)
+    sin_yaw, cos_yaw, sin_pitch, cos_pitch = np.sin(yaw), np.cos(yaw), np.sin(pitch), np.cos(pitch)
     lx, ly, lz = x - ex, y - ey, z - ez
-    forward_part = c * lx - s * ly
-    down = -(s * sp * lx + c * sp * ly + cp * lz)
-    return np.stack([yaw, pitch, np.arctan2(forward_part, down), bend], axis=-1)
+    forward_part = cos_yaw * lx - sin_yaw * ly
+    down_part = -(sin_yaw * sin_pitch * lx + cos_yaw * sin_pitch * ly + cos_pitch * lz)
+    return np.stack([yaw, pitch, np.arctan2(forward_part, down_part), elbow], axis=-1)
 
 
 def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: int = SEEDS) -> np.ndarray:
@@ -168,7 +179,7 @@ def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: in
 
     Args:
         limb: the design.
-        points: of the foot from the hip, shape (*batch, 3) [m].
+        points: points of the foot from the hip, shape (*batch, 3) [m].
         start: angles near the answer [rad]; the middle of the ranges if None.
         tries: how often a point may start again [-].
     """
@@ -212,10 +223,10 @@ def _descend(
 
     Args:
         limb: the design.
-        points: of the foot from the hip, shape (point, 3) [m].
-        angles: at the start, shape (point, hinge) [rad].
-        lower_bound: of each hinge [rad].
-        upper_bound: of each hinge [rad].
+        points: points of the foot from the hip, shape (point, 3) [m].
+        angles: angles at the start, shape (point, hinge) [rad].
+        lower_bound: lower bound of each hinge [rad].
+        upper_bound: upper bound of each hinge [rad].
     """
     size, angles = limb.reach, angles.copy()
     error = np.full(len(points), np.inf)
@@ -241,7 +252,7 @@ def _chain(limb: Limb, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     Args:
         limb: the design.
-        angles: of the hinges, shape (*batch, hinge) [rad].
+        angles: angles of the hinges, shape (*batch, hinge) [rad].
     """
     batch = angles.shape[:-1]
     turn = np.broadcast_to(np.eye(3), (*batch, 3, 3))

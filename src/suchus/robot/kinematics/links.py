@@ -14,15 +14,15 @@ class LegLinks(Protocol):
 
     @property
     def hip_offset(self) -> float:
-        """From the midline to the yaw axis, a0 [m]."""
+        """Distance from the midline to the yaw axis, a0 [m]."""
 
     @property
     def femur(self) -> float:
-        """From hip to knee, a2 [m]."""
+        """Length from hip to knee, a2 [m]."""
 
     @property
     def tibia(self) -> float:
-        """From knee to foot, a3 [m]."""
+        """Length from knee to foot, a3 [m]."""
 
 
 @runtime_checkable
@@ -31,11 +31,11 @@ class SpineLinks(Protocol):
 
     @property
     def base(self) -> float:
-        """From frame 0 to the first joint, a0 [m]."""
+        """Length from frame 0 to the first joint, a0 [m]."""
 
     @property
     def link(self) -> float:
-        """From each joint to the next, a1 to a4 [m]."""
+        """Length from each joint to the next, a1 to a4 [m]."""
 
 
 @runtime_checkable

@@ -170,7 +170,7 @@ def _minimise_bending(spine: SpineLinks, points: np.ndarray, heading: np.ndarray
 
     Args:
         spine: the lengths.
-        points: of joint 5 in frame 0, shape (point, 3) [m].
+        points: points of joint 5 in frame 0, shape (point, 3) [m].
         heading: azimuth of the head, shape (point, 1) [rad].
     """
     aim, lower_bound, upper_bound, is_unreachable = _feasible_yaw(spine, points)
@@ -206,8 +206,8 @@ def _closed_form(
 
     Args:
         spine: the lengths.
-        point: of joint 5 in frame 0 [m].
-        azimuth: of the head [rad].
+        point: point of joint 5 in frame 0 [m].
+        azimuth: azimuth of the head [rad].
         first_yaw: the first angle [rad].
         branch: sign of the second pitch angle.
     """
@@ -241,7 +241,7 @@ def _feasible_yaw(spine: SpineLinks, points: np.ndarray) -> tuple[np.ndarray, ..
 
     Args:
         spine: the lengths.
-        points: of joint 5 in frame 0, shape (point, 3) [m].
+        points: points of joint 5 in frame 0, shape (point, 3) [m].
     """
     x, y, z = ((points - [spine.base, 0.0, 0.0]) / spine.link).T[..., None]
     rho, M = np.hypot(x, y), (x * x + y * y + z * z) / 2.0
@@ -263,8 +263,8 @@ def _golden_section(
 
     Args:
         cost: returns the cost at arguments of the shape of the bounds.
-        lower_bound: of each interval.
-        upper_bound: of each interval.
+        lower_bound: lower bound of each interval.
+        upper_bound: upper bound of each interval.
     """
     golden = (np.sqrt(5.0) - 1.0) / 2.0
     inner_lower = upper_bound - golden * (upper_bound - lower_bound)
@@ -294,7 +294,7 @@ def _unreachable(spine: SpineLinks, points: np.ndarray, condition: str) -> Unrea
 
     Args:
         spine: the lengths.
-        points: that cannot be reached [m].
+        points: points that cannot be reached [m].
         condition: under which they cannot, as the end of a clause.
     """
     max_reach = 4.0 * spine.link

@@ -78,7 +78,7 @@ def bend_of_servo(tail: Cords, angle: Numbers) -> Float[np.ndarray, "*batch"]:
 
     Args:
         tail: the measures of the cable section.
-        angle: of the pulley [rad].
+        angle: angle of the pulley [rad].
 
     Raises:
         OutsideLimits: the pulley would pull more cord than any bend of the tail takes up.

@@ -41,7 +41,7 @@ def frames(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrame
 
     Args:
         robot: the robot.
-        angles: of every hinge [rad].
+        angles: angles of every hinge [rad].
 
     Raises:
         InvalidDesign: no array of numbers, or not one for each of the robot's hinges.
@@ -87,7 +87,7 @@ def landmarks(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Landma
 
     Args:
         robot: the robot.
-        angles: of every hinge [rad].
+        angles: angles of every hinge [rad].
 
     Raises:
         InvalidDesign: no array of numbers, or not one for each of the robot's hinges.

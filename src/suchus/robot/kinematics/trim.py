@@ -22,7 +22,7 @@ def level_chambers(
 
     Args:
         robot: a design with air in its hull.
-        angles: of every hinge, in the order of ``joint_names(robot)`` [rad].
+        angles: angles of every hinge, in the order of ``joint_names(robot)`` [rad].
         front: body of the axis ahead of the root that has the front chamber.
         rear: body of the axis, the root or one behind it, that has the rear chamber.
 

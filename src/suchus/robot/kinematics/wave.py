@@ -38,7 +38,7 @@ class TravellingWave:
     angular_frequency: float
     """omega [rad/s]."""
     sign: int
-    """Of omega t: -1 runs from head to tail, +1 from tail to head, as printed [-]."""
+    """Sign of omega t: -1 runs from head to tail, +1 from tail to head, as printed [-]."""
 
     def __post_init__(self) -> None:
         with Checks("wave", self) as check:
@@ -94,9 +94,9 @@ def reading(
 
     Args:
         name: letter of the reading.
-        length: of the body [m]; only reading I depends on it.
+        length: length of the body [m]; only reading I depends on it.
         angular_frequency: omega, which the article does not give [rad/s].
-        sign: of omega t; 1 as printed.
+        sign: sign of omega t; 1 as printed.
         waves_per_body: wavelengths along the body [-]; only reading I depends on it.
 
     Raises:

@@ -30,7 +30,7 @@ from suchus.robot.motion.movement import (
     trunk_amplitude,
 )
 from suchus.robot.motion.parts import Bend, Curve, FixedLimbs, FootPath, Sweep
-from suchus.robot.motion.posture import Keyed, Planned, Posture, plan
+from suchus.robot.motion.posture import Keyed, Posture, PostureSamples, sample_postures
 from suchus.robot.motion.rising import max_snout_height, stand_up, stretched_length
 from suchus.robot.motion.swim import (
     LIMBS_BACK,
@@ -60,8 +60,8 @@ __all__ = [
     "Intended",
     "Keyed",
     "Movement",
-    "Planned",
     "Posture",
+    "PostureSamples",
     "Steer",
     "Sweep",
     "as_table",
@@ -86,8 +86,8 @@ __all__ = [
     "middle_stance",
     "min_gait_period",
     "movement",
-    "plan",
     "roll",
+    "sample_postures",
     "servo_parts",
     "servo_range",
     "stand_up",

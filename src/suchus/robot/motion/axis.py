@@ -24,7 +24,7 @@ class Hinges(NamedTuple):
     parts: tuple[AxisRegion, ...]
     """Part of the axis that each belongs to."""
     axial_positions: tuple[float, ...]
-    """Of each along the body, 0 at the snout and 1 at the tip of the tail [-]."""
+    """Position of each along the body, 0 at the snout and 1 at the tip of the tail [-]."""
 
     def indices_in(self, region: AxisRegion) -> list[int]:
         """Return which of them a part has."""
@@ -72,8 +72,8 @@ class Waves:
 
         Args:
             hinges: one row of hinges of the axis.
-            turn: of these hinges, ``yaw`` or ``pitch``.
-            gaits: one for each run.
+            turn: turning axis of these hinges, ``yaw`` or ``pitch``.
+            gaits: gait of each run.
         """
         self.hinges = hinges
         shape = (len(gaits), len(hinges.servos))
@@ -116,8 +116,8 @@ class Waves:
         """Return the bend of some hinges together [rad].
 
         Args:
-            indices: of the hinges.
-            bends: as ``bends`` returns them [rad].
+            indices: indices of the hinges.
+            bends: bends as ``bends`` returns them [rad].
         """
         if not len(indices):
             return np.zeros(bends.shape[:-1])
@@ -151,7 +151,7 @@ def _swing(bend: Bend, place: int, count: int) -> complex:
     """Return the complex amplitude of a region's bend at one of its hinges [rad].
 
     Args:
-        bend: of the region.
+        bend: bend angle of the region.
         place: index of the hinge in the region, from the head [-].
         count: number of hinges of the region [-].
     """

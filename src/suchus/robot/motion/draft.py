@@ -19,7 +19,7 @@ from suchus.robot.motion.limbs import foot_path
 from suchus.robot.motion.limits import check_limits, min_gait_period
 from suchus.robot.motion.parts import Bend, FootPath, Sweep
 
-_STROKES = (0.2, 0.15, 0.1, 0.06)  # [limb reach]; the longest stroke that all girdles can follow is chosen
+_HALF_STROKES = (0.2, 0.15, 0.1, 0.06)  # [limb reach]; the longest one that all girdles can follow is chosen
 _HEIGHTS = (
     0.5,
     0.55,
@@ -50,7 +50,7 @@ _SAMPLES, _JUMP, _MARGIN = (
     0.7,
     0.02,
 )  # samples of a path [-]; greatest jump between two of them [rad]; distance from a joint's stop [rad]
-_TRIES, _PATHS = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
+_TRIES, _MAX_SOLVES = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
 _SPEED = 0.6  # greatest speed of a joint over that of its servo [-]
 _PLANAR = 2  # hinges of a limb whose foot moves on a surface only
 
@@ -62,8 +62,8 @@ def draft_gait(robot: Robot, name: str) -> Gait:
     two hinges and upright ones, whose feet move on a surface only, get a curve for each servo.
 
     Args:
-        robot: any.
-        name: of the gait.
+        robot: any robot.
+        name: name of the gait.
 
     Raises:
         OutsideLimits: no path was found that all limbs reach within their ranges.
@@ -74,10 +74,10 @@ def draft_gait(robot: Robot, name: str) -> Gait:
     if not girdles:
         gait = _undulation(robot, name, period)
     elif all(_is_crank(girdle.limb) or _walks_by_paths(girdle.limb) for girdle in girdles):
-        gait = _walk(robot, name, phases, period)
+        gait = _first_feasible_walk(robot, name, phases, period)
     else:
         gait = table_walk(
-            robot, name=name, period=period, duty_factor=_DUTY, phases=phases, axis=_axis(robot), path=_cycle()
+            robot, name=name, period=period, duty_factor=_DUTY, phases=phases, axis=_axis(robot), path=_unit_path()
         )
     try:
         gait = _with_feasible_period(robot, gait)
@@ -87,23 +87,26 @@ def draft_gait(robot: Robot, name: str) -> Gait:
     return gait
 
 
-def _walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> Gait:
-    """Return the first walk of those that are tried, the longest strokes first.
+def _first_feasible_walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> Gait:
+    """Return the first walk whose foot paths all limbs can follow; longer strokes are tried first, then heights.
 
     Args:
         robot: the design.
-        name: of the gait.
-        phases: of the limbs [cycle].
-        period: of a cycle [s].
+        name: name of the gait.
+        phases: phases of the limbs [cycle].
+        period: period of the gait [s].
+
+    Raises:
+        OutsideLimits: the limbs can follow none of the paths, or the numerical solutions were used up before.
     """
     girdles = robot.girdles
-    clouds, budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_PATHS))
-    axis = _axis(robot)
-    for stroke in _STROKES:
+    clouds, solve_budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_MAX_SOLVES))
+    axis_bends = _axis(robot)
+    for half_stroke in _HALF_STROKES:
         for height in _heights(robot):
             limb_motions = []
             for girdle, cloud in zip(girdles, clouds, strict=True):
-                limb_motion = _does(robot, girdle, cloud, height, stroke, budget)
+                limb_motion = _first_reachable_path(robot, girdle, cloud, height, half_stroke, solve_budget)
                 if limb_motion is None:
                     break
                 limb_motions.append(limb_motion)
@@ -115,10 +118,15 @@ def _walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> 
                     limb_phases=phases,
                     limbs=tuple(limb_motions),
                     height=height,
-                    axis=axis,
+                    axis=axis_bends,
                 )
+    if next(solve_budget, None) is None:
+        raise OutsideLimits(
+            f"no walk was found for robot {robot.name!r}: the search ended after {_MAX_SOLVES} numerical solutions of "
+            "its limbs, before all paths were tried; write a gait of its own."
+        )
     raise OutsideLimits(
-        f"no walk was found for robot {robot.name!r}: its limbs reach no path of {_STROKES[-1]:g} of their reach "
+        f"no walk was found for robot {robot.name!r}: its limbs reach no path of {_HALF_STROKES[-1]:g} of their reach "
         "within their ranges; widen the ranges, or write a gait of its own."
     )
 
@@ -135,45 +143,52 @@ def _heights(robot: Robot) -> list[float]:
     """Return heights of the hindmost hips [limb reach]: those first at which the belly is clear, cranks' own alone."""
     hind = robot.girdles[-1]
     if _is_crank(hind.limb):
-        _, depth = _down(hind.limb)
+        _, depth = _lowest_foot(hind.limb)
         return [(depth * cos(_STANCE / 4) + hind.limb.foot.radius) / hind.limb.reach]
     belly = max(shape.bottom for segment in robot.axis for shape in segment.shapes) + hind.above
     clear = [h for h in _HEIGHTS if h * hind.limb.reach > belly + 0.05 * hind.limb.reach]
     return [*clear, *(h for h in sorted(_HEIGHTS, reverse=True) if h not in clear)]
 
 
-def _does(
-    robot: Robot, girdle: Girdle, cloud: cKDTree, height: float, stroke: float, budget: Iterator[int]
+def _first_reachable_path(
+    robot: Robot, girdle: Girdle, cloud: cKDTree, height: float, half_stroke: float, solve_budget: Iterator[int]
 ) -> FootPath | Sweep | None:
-    """Return a foot path or crank sweep that a girdle's limbs can do at a hip height; None if they cannot.
+    """Return the first foot path that a girdle's limbs can follow at a hip height; None if they can follow none.
+
+    Paths differ in how far outward and forward of the hip they lie. A limb of one crank gets its sweep at once.
 
     Args:
         robot: the design.
-        girdle: that carries the limbs.
+        girdle: girdle of the limbs.
         cloud: points that the foot can reach, from the hip [m].
-        height: of the hindmost hips [reach of their limb].
-        stroke: half of the path's length [limb reach].
-        budget: an iterator that ends when no more paths may be solved.
+        height: height of the hindmost hips above the ground, over the reach of their limbs [-].
+        half_stroke: half of the path's length, over the reach of the limb [-].
+        solve_budget: iterator with one item for each numerical solution that is left; a limb with a closed form uses
+            none.
     """
     limb = girdle.limb
     if _is_crank(limb):
-        return Sweep(stance=_STANCE, down=_down(limb)[0])
-    hind = robot.girdles[-1]
-    down = height * hind.limb.reach - hind.above + girdle.above - limb.foot.radius
-    lift = round(_LIFT * stroke, 4)
-    closed = limb_kinematics.kind(limb) != "other"
-    forward, upward = np.array([[stroke], [lift]]) * _cycle() * limb.reach
-    for outward, forward_offset in _foot_positions(limb):
-        feet = np.stack(
-            [forward + forward_offset * limb.reach, np.full(_SAMPLES, outward * limb.reach), upward - down], axis=-1
+        return Sweep(stance=_STANCE, down=_lowest_foot(limb)[0])
+    hindmost = robot.girdles[-1]
+    hip_to_foot_drop = height * hindmost.limb.reach - hindmost.above + girdle.above - limb.foot.radius
+    lift = round(_LIFT * half_stroke, 4)
+    has_closed_form = limb_kinematics.kind(limb) != "other"
+    forward, upward = np.array([[half_stroke], [lift]]) * _unit_path() * limb.reach
+    for outward, forward_offset in _foot_offsets(limb):
+        path_points = np.stack(
+            [forward + forward_offset * limb.reach, np.full(_SAMPLES, outward * limb.reach), upward - hip_to_foot_drop],
+            axis=-1,
         )
-        is_near = closed or float(np.max(cloud.query(feet[:: _SAMPLES // 4])[0])) < _CLOUD_TOLERANCE * limb.reach
-        if is_near and (closed or next(budget, None) is not None) and _follows(limb, feet):
-            return FootPath(stroke=stroke, lift=lift, outward=outward, ahead=forward_offset)
+        may_reach = (
+            has_closed_form
+            or float(np.max(cloud.query(path_points[:: _SAMPLES // 4])[0])) < _CLOUD_TOLERANCE * limb.reach
+        )
+        if may_reach and (has_closed_form or next(solve_budget, None) is not None) and _can_follow(limb, path_points):
+            return FootPath(stroke=half_stroke, lift=lift, outward=outward, ahead=forward_offset)
     return None
 
 
-def _foot_positions(limb: Limb) -> Iterator[tuple[float, float]]:
+def _foot_offsets(limb: Limb) -> Iterator[tuple[float, float]]:
     """Yield how far outside and ahead of the hip a foot may stand [limb reach]: as it is drawn first, if it stands."""
     resting_foot = limb_kinematics.forward(limb, np.zeros(len(limb.hinges))) / limb.reach
     if resting_foot[2] < -0.4:
@@ -186,15 +201,20 @@ def _foot_positions(limb: Limb) -> Iterator[tuple[float, float]]:
 
 
 @lru_cache(maxsize=1)
-def _cycle() -> np.ndarray:
-    """Return a path of stroke 1 and lift 1 about its middle: ahead and up, shape (2, sample) [-]."""
+def _unit_path() -> np.ndarray:
+    """Return a foot path of half stroke 1 and lift 1 about its middle: forward and up, shape (2, sample) [-]."""
     return np.stack(foot_path(np.arange(_SAMPLES) / _SAMPLES, _DUTY))
 
 
-def _follows(limb: Limb, feet: np.ndarray) -> bool:
-    """Return whether a limb brings its foot along a path within its ranges and without a jump."""
+def _can_follow(limb: Limb, path_points: np.ndarray) -> bool:
+    """Return whether a limb brings its foot along a path within its joint ranges and without a jump.
+
+    Args:
+        limb: the design of the limb.
+        path_points: positions of one foot over the cycle, from the hip: forward, outward, up, shape (sample, 3) [m].
+    """
     try:
-        angles = limb_kinematics.inverse(limb, feet, tries=_TRIES)
+        angles = limb_kinematics.inverse(limb, path_points, tries=_TRIES)
     except (Unreachable, NotConverged):
         return False
     lower_bound, upper_bound = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
@@ -203,7 +223,7 @@ def _follows(limb: Limb, feet: np.ndarray) -> bool:
 
 
 def _cloud(limb: Limb) -> cKDTree:
-    """Return where a limb's foot can be, from the hip."""
+    """Return a tree of points that a limb's foot can reach, from the hip [m]."""
     lower_bound, upper_bound = np.array([hinge.range or (-pi, pi) for hinge in limb.hinges]).T
     angles = np.random.default_rng(0).uniform(lower_bound, upper_bound, (_CLOUD, len(lower_bound)))
     return cKDTree(limb_kinematics.forward(limb, angles))
@@ -217,7 +237,7 @@ def _walks_by_paths(limb: Limb) -> bool:
     return len(limb.hinges) > _PLANAR and not is_upright(limb)
 
 
-def _down(limb: Limb) -> tuple[float, float]:
+def _lowest_foot(limb: Limb) -> tuple[float, float]:
     """Return the angle at which the foot of a crank is lowest [rad], and how deep that is below the hip [m]."""
     angles = np.linspace(-pi, pi, 721)
     depth = -limb_kinematics.forward(limb, angles[:, None])[:, 2]

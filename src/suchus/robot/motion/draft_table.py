@@ -49,11 +49,11 @@ def table_walk(
     """Return a walk of curves, whose feet follow a path ahead and up as far as each limb's hinges let them.
 
     Args:
-        robot: whose limbs have servos at two hinges or more.
-        name: of the gait.
-        period: of one cycle [s].
+        robot: robot whose limbs have servos at two hinges or more.
+        name: name of the gait.
+        period: period of one cycle [s].
         duty_factor: share of the cycle in which a foot stands [-].
-        phases: of the limbs when the walk begins [cycle].
+        phases: phases of the limbs when the walk begins [cycle].
         axis: how the axis bends.
         path: ahead and up over one cycle, with stroke 1 and lift 1 [-].
 
@@ -161,7 +161,7 @@ def _solve_path(
     Args:
         foot_of: returns the foot's position for angles of the driven hinges [m].
         targets: ahead and up of the foot at each sample [limb reach].
-        reach: of the limb [m].
+        reach: reach of the limb [m].
         start: angles of the first sample [rad].
         ends: lower and upper bounds of the driven hinges [rad].
         is_driven: which hinges have a servo.
@@ -198,10 +198,10 @@ def _tabled(
 
     Args:
         robot: the design.
-        name: of the gait.
-        period: of a cycle [s].
+        name: name of the gait.
+        period: period of a cycle [s].
         duty_factor: fraction of the cycle in which a foot stands [-].
-        phases: of the limbs [cycle].
+        phases: phases of the limbs [cycle].
         axis: bends of the axis.
         limbs: angles of each girdle's limb over a cycle, shape (sample, hinge) [rad].
     """

@@ -138,7 +138,7 @@ class GaitInMetres:
         """Return a gait in metres with the numbers of a gait, of its first limbs and knots where it has several.
 
         Args:
-            gait: of foot paths for two girdles.
+            gait: gait of foot paths for two girdles.
             reaches: lengths of the front and of the hind limbs [m].
 
         Raises:
@@ -322,8 +322,8 @@ def _slope(places: np.ndarray, lags: np.ndarray) -> float | None:
     """Return the smallest growth of the lag along the body, half cycles aside [cycle]; None if no wave fits.
 
     Args:
-        places: of the hinges along the body [body length].
-        lags: of their bends [cycle].
+        places: positions of the hinges along the body [body length].
+        lags: phase lags of their bends [cycle].
     """
     if len(places) < 2:
         return 0.0
@@ -469,12 +469,12 @@ def roll(
     bends to the left by ``trunk[0] cos 2 pi t`` and down by ``trunk[1] cos 2 pi (t - lag)``, with t in cycles.
 
     Args:
-        robot: that rolls.
-        period: of a cycle [s].
+        robot: robot that rolls.
+        period: period of a cycle [s].
         trunk: amplitudes of the trunk's lateral and vertical bend, each of all its hinges together [rad].
         tail: those of the tail [rad].
-        lag: of the vertical bends behind the lateral ones [cycle]; 0.25 and -0.25 roll oppositely.
-        tail_lag: of the tail behind the trunk [cycle]: 0 makes a C of the body, 0.5 an S.
+        lag: phase lag of the vertical bends behind the lateral ones [cycle]; 0.25 and -0.25 roll oppositely.
+        tail_lag: phase lag of the tail behind the trunk [cycle]: 0 makes a C of the body, 0.5 an S.
 
     Raises:
         UnsuitedRobot: it has no hinges for a bend.

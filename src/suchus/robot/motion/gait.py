@@ -112,7 +112,7 @@ class Gait:
 
         Args:
             *parts: the regions.
-            name: of the new gait; that of this one if empty.
+            name: name of the new gait; that of this one if empty.
         """
 
         def is_selected(region: str) -> bool:
@@ -421,7 +421,7 @@ def _with_steady(gait: Gait, region: AxisRegion, turn: Turn, value: float) -> Ga
 
     Args:
         gait: the gait.
-        region: of the axis.
+        region: region of the axis.
         turn: ``yaw`` or ``pitch``.
         value: the steady bend [rad].
     """

@@ -45,7 +45,7 @@ class LimbMotion:
 
     Args:
         robot: the design.
-        gaits: of each run; ``structure`` of ``suchus.robot.motion.movement`` must be the same for all.
+        gaits: gaits of each run; ``structure`` of ``suchus.robot.motion.movement`` must be the same for all.
         limb_indices: the limbs, in the order of the robot's.
     """
 
@@ -137,10 +137,10 @@ class LimbMotion:
         """Return the servo angles that bring feet to their places, shape (limb, *batch, servo) [rad].
 
         Args:
-            parameters: of the foot paths.
-            forward: of the feet from their hips [m].
-            outward: of the feet from their hips [m].
-            down: of the feet below their hips [m].
+            parameters: parameters of the foot paths.
+            forward: distance of the feet forward from their hips [m].
+            outward: distance of the feet outward from their hips [m].
+            down: distance of the feet below their hips [m].
             draw: draw feet into what limbs reach.
         """
         if parameters.leg is not None:
@@ -153,13 +153,13 @@ class LimbMotion:
             foot = _clip_to_reach(
                 foot, np.zeros(3), (min_reach + _REACH_MARGIN * max_reach, max_reach - _REACH_MARGIN * max_reach)
             )
-        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(parameters.swivel, forward.shape))
+        return limb_kinematics.inverse(limb, foot, swivel=np.broadcast_to(parameters.swivel, forward.shape))
 
     def _crank_angle(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
         """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above.
 
         Args:
-            phase: of the limbs, shape (limb, *batch) [cycle].
+            phase: phase of the limbs, shape (limb, *batch) [cycle].
             stance: angle turned through in stance [rad].
             down: angle at which the foot points straight down [rad].
         """
@@ -185,7 +185,7 @@ def foot_path(phase: Float[np.ndarray, "*batch"], duty: Any) -> tuple[np.ndarray
     """Return how far a foot is along its path, -1 to 1 forward, and how far it is lifted, 0 to 1 [-].
 
     Args:
-        phase: of the limb [cycle].
+        phase: phase of the limb [cycle].
         duty: share of the cycle in which it stands [-].
     """
     cycle, swing = np.mod(phase, 1.0), 1.0 - duty
@@ -238,7 +238,7 @@ def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> Non
     Args:
         place: layout of the robot.
         gait: to which the movement belongs.
-        girdle: that carries the limbs.
+        girdle: girdle that carries the limbs.
         limb: the movement.
     """
     robot = place.robot

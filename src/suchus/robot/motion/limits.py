@@ -192,7 +192,7 @@ def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
     Args:
         robot: the design.
         gait: the gait, which the robot can follow.
-        samples: of one cycle, at most ``MAX_ANGLES`` are taken [-].
+        samples: number of samples of one cycle, at most ``MAX_ANGLES`` are taken [-].
 
     Raises:
         OutsideLimits: the robot cannot follow it.

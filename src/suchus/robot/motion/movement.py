@@ -40,7 +40,7 @@ class Movement:
 
     Args:
         robot: the design.
-        gaits: of each run; ``structure`` must be the same for all.
+        gaits: gaits of each run; ``structure`` must be the same for all.
 
     Raises:
         OutsideLimits: a gait is for other limbs.
@@ -307,7 +307,7 @@ def intended(
     Args:
         robot: the design.
         gait: the gait.
-        time: since the beginning of the run [s].
+        time: time since the beginning of the run [s].
         begin: time at which the gait begins [s].
         ramp: duration from then on over which strokes and bends grow from zero, as 3 x^2 - 2 x^3 [s].
 
@@ -352,7 +352,7 @@ def limb_targets(
     Args:
         robot: the design.
         gait: the gait.
-        phase: of the limbs, not wrapped [cycle].
+        phase: phase of the limbs, not wrapped [cycle].
 
     Raises:
         OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
@@ -383,7 +383,7 @@ def _references(gaits: Sequence[Gait]) -> tuple[np.ndarray, np.ndarray]:
     """Return the sign with which each limb pulls on the axis [-], and the remaining phase of its pull [cycle].
 
     Args:
-        gaits: one for each run.
+        gaits: gait of each run.
     """
     pulls = [gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases) for gait in gaits]
     reference = np.array(pulls, dtype=float)

@@ -91,7 +91,7 @@ class Keyed:
 
     @property
     def duration(self) -> float:
-        """Of the whole sequence [s]."""
+        """Duration of the whole sequence [s]."""
         return self.times[-1]
 
     def reversed(self, name: str, *, slower: float = 1.0) -> "Keyed":
@@ -100,8 +100,8 @@ class Keyed:
         return replace(self, name=name, times=times, postures=tuple(reversed(self.postures)))
 
 
-class Planned(NamedTuple):
-    """A sequence over time: servo angles, and where the body is over the hind feet."""
+class PostureSamples(NamedTuple):
+    """Postures at some times: servo angles, and where the body is over the hind feet."""
 
     targets: Float[np.ndarray, "*batch servo"]
     """Servo angles in the order of the layout [rad]."""
@@ -194,40 +194,42 @@ def _arm(first_index: int, hinges: tuple[Hinge, ...]) -> tuple[int, ...]:
     return (yaws[0], pitches[0], pitches[-1]) if yaws and len(pitches) > 1 else ()
 
 
-def plan(robot: Robot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> Planned:
-    """Return a sequence at some times.
+def sample_postures(robot: Robot, sequence: Keyed, time: Float[np.ndarray, "*batch"]) -> PostureSamples:
+    """Return the postures of a sequence at some times, solved for their servo angles.
 
-    In every key the hips are where the centre of mass lies ``lead`` behind the feet. Between two keys they and every
-    other number of the posture follow half a cosine, so that the body rests in every key; before the first key and
-    after the last one it keeps their postures.
+    At each keyed posture the hips are where the centre of mass lies ``Posture.lead`` behind the feet. Between two
+    of them every number follows half a cosine, so that the body rests in each; before the first and after the last
+    one it keeps their postures.
 
     Args:
         robot: the design.
-        sequence: the keys.
-        time: since the beginning of the sequence [s].
+        sequence: keyed postures with their times.
+        time: time since the beginning of the sequence, any shape [s].
 
     Raises:
         OutsideLimits: a hind foot or a joint cannot get there; the message names it.
     """
-    chains, place = upright(robot), layout(robot)
-    keys = np.array([[getattr(p, name) for name in FIELDS] for p in sequence.postures])
-    numbers = _eased(np.array(sequence.times), np.column_stack([keys, _balance(robot, keys)]), time)
-    parameters, feet_forward = _fields_by_name(numbers), numbers[..., -1]
-    angles = _angles(robot, parameters, feet_forward)
-    targets = np.zeros((*angles.shape[:-1], len(place.servos)))  # the tail is straight, and so are cables
-    direct = [servo for servo, hinge in enumerate(place.servo_hinges) if hinge >= 0]
-    targets[..., direct] = angles[..., [place.servo_hinges[servo] for servo in direct]]
+    chains, robot_layout = upright(robot), layout(robot)
+    keys = np.array([[getattr(posture, name) for name in FIELDS] for posture in sequence.postures])
+    interpolated = _interpolate(
+        np.array(sequence.times), np.column_stack([keys, _balanced_feet_forward(robot, keys)]), time
+    )
+    fields_by_name, feet_forward = _fields_by_name(interpolated), interpolated[..., -1]
+    hinge_angles = _angles(robot, fields_by_name, feet_forward)
+    targets = np.zeros((*hinge_angles.shape[:-1], len(robot_layout.servos)))  # the tail is straight, and so are cables
+    direct_servos = [servo for servo, hinge in enumerate(robot_layout.servo_hinges) if hinge >= 0]
+    targets[..., direct_servos] = hinge_angles[..., [robot_layout.servo_hinges[servo] for servo in direct_servos]]
     _check_ranges(robot, targets)
-    pitch = parameters["pelvis_pitch"]
-    return Planned(
+    pitch = fields_by_name["pelvis_pitch"]
+    return PostureSamples(
         targets=targets,
         pitch=pitch,
-        feet=_feet(chains.leg, parameters, feet_forward),
-        lead=feet_forward - _forward_in_world(pitch, mass_from_hips(robot, angles)),
+        feet=_feet(chains.leg, fields_by_name, feet_forward),
+        lead=feet_forward - _forward_in_world(pitch, centre_of_mass_from_hips(robot, hinge_angles)),
     )
 
 
-def mass_forward_of_hips(robot: Robot, posture: Posture, feet_ahead: float) -> float:
+def centre_of_mass_forward_of_hips(robot: Robot, posture: Posture, feet_ahead: float) -> float:
     """Return how far the centre of mass lies ahead of the hips in a posture [m], whatever its own ``lead``.
 
     Args:
@@ -237,7 +239,7 @@ def mass_forward_of_hips(robot: Robot, posture: Posture, feet_ahead: float) -> f
     """
     parameters = {name: np.array(getattr(posture, name)) for name in FIELDS}
     angles = _angles(robot, parameters, np.array(feet_ahead), clip=True)
-    return float(_forward_in_world(parameters["pelvis_pitch"], mass_from_hips(robot, angles)))
+    return float(_forward_in_world(parameters["pelvis_pitch"], centre_of_mass_from_hips(robot, angles)))
 
 
 def hind_leg(
@@ -248,7 +250,7 @@ def hind_leg(
     Args:
         leg: the hind leg.
         feet: centre of the foot from the hip in the world: outward, forward, down [m].
-        pitch: of the pelvis, front end up positive [rad].
+        pitch: pitch angle of the pelvis, front end up positive [rad].
         clip: let a leg that is too short point to its foot.
 
     Raises:
@@ -269,13 +271,13 @@ def hind_leg(
     return leg_kinematics.inverse(leg, point)
 
 
-def _eased(times: np.ndarray, keys: np.ndarray, time: np.ndarray) -> np.ndarray:
+def _interpolate(times: np.ndarray, keys: np.ndarray, time: np.ndarray) -> np.ndarray:
     """Return the numbers of a sequence at some times, half a cosine from each key to the next, shape (*batch, number).
 
     Args:
-        times: of the keys [s].
+        times: times of the keys [s].
         keys: numbers of the posture at each key, shape (key, number).
-        time: since the beginning of the sequence [s].
+        time: time since the beginning of the sequence [s].
     """
     if len(times) == 1:
         return np.broadcast_to(keys[0], (*time.shape, keys.shape[1]))
@@ -284,7 +286,7 @@ def _eased(times: np.ndarray, keys: np.ndarray, time: np.ndarray) -> np.ndarray:
     return np.asarray(keys[i] + ((1.0 - np.cos(np.pi * fraction)) / 2.0)[..., None] * (keys[i + 1] - keys[i]))
 
 
-def mass_from_hips(robot: Robot, angles: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch 3"]:
+def centre_of_mass_from_hips(robot: Robot, angles: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass from the middle of the hips, in the frame of the root [m]."""
     return centre_of_mass(robot, angles) - np.array(upright(robot).hips)
 
@@ -294,8 +296,8 @@ def _forward_in_world(pitch: np.ndarray, point: np.ndarray) -> np.ndarray:
     return np.asarray(np.cos(pitch) * point[..., 0] - np.sin(pitch) * point[..., 2])
 
 
-def _balance(robot: Robot, keys: np.ndarray) -> np.ndarray:
-    """Return how far ahead of the hips the feet must be in each key for the demanded ``lead`` [m].
+def _balanced_feet_forward(robot: Robot, keys: np.ndarray) -> np.ndarray:
+    """Return how far ahead of the hips the feet must be at each key for its ``Posture.lead``, shape (key,) [m].
 
     The centre of mass moves a little with the hind legs, and the hind legs follow from it: a few rounds agree.
 
@@ -305,7 +307,7 @@ def _balance(robot: Robot, keys: np.ndarray) -> np.ndarray:
     """
     feet_forward = keys[:, FIELDS.index("lead")]
     for _ in range(BALANCE_ITERATIONS):
-        com = mass_from_hips(robot, _angles(robot, _fields_by_name(keys), feet_forward, clip=True))
+        com = centre_of_mass_from_hips(robot, _angles(robot, _fields_by_name(keys), feet_forward, clip=True))
         feet_forward = _forward_in_world(keys[:, FIELDS.index("pelvis_pitch")], com) + keys[:, FIELDS.index("lead")]
     return np.asarray(feet_forward)
 
@@ -353,9 +355,9 @@ def trunk_angles(
     """Return the angles of the trunk's pitch hinges, from the root forward [rad]; see ``Posture.trunk_second``.
 
     Args:
-        chains: of the body.
-        first_angle: of the first hinge, front end up positive [rad].
-        second_angle: of all other hinges together, front end up positive [rad].
+        chains: chains of the body.
+        first_angle: angle of the first hinge, front end up positive [rad].
+        second_angle: angle of all other hinges together, front end up positive [rad].
     """
     other_count = len(chains.trunk) - 1
     return np.stack(
@@ -373,9 +375,9 @@ def tail_down(
     """Return the pitch of a straight tail that brings its tip to a depth below the ground [rad].
 
     Args:
-        chains: of the body.
-        height: of the hips above the ground [m].
-        pitch: of the pelvis, front end up positive [rad].
+        chains: chains of the body.
+        height: height of the hips above the ground [m].
+        pitch: pitch angle of the pelvis, front end up positive [rad].
         press: the depth [m].
     """
     root = height - chains.tail_root * np.sin(pitch) - chains.hips[2] * np.cos(pitch)

@@ -13,18 +13,19 @@ from suchus.robot.motion.posture import (
     Keyed,
     Posture,
     belly,
+    centre_of_mass_forward_of_hips,
+    centre_of_mass_from_hips,
     hind_leg,
-    mass_forward_of_hips,
-    mass_from_hips,
     tail_down,
     trunk_angles,
     upright,
 )
 
 PELVIS_PITCH = radians(80)
-"""Of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its range."""
+"""Pitch of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its
+range."""
 TRUNK_FIRST, TRUNK_SECOND = radians(6), radians(3)
-"""Of the trunk's pitch joints when standing [rad]; the trunk then points straight up."""
+"""Angles of the trunk's pitch joints when standing [rad]; the trunk then points straight up."""
 LEAD = 0.05
 """Where the centre of mass is commanded behind the feet when the article's robot stands [m].
 
@@ -61,7 +62,7 @@ def stand_up(
     Heights follow the hind legs; where the hips are follows from the centre of mass.
 
     Args:
-        robot: who stands up.
+        robot: robot that stands up.
         lead: where the centre of mass is commanded behind the feet when standing [m]; ``LEAD`` in its size if None.
         slower: factor on all times [-].
         size: factor on clearances and on how far apart the feet stand, 1 for the article's [-]; ``size_of`` if None.
@@ -79,7 +80,7 @@ def stand_up(
     bent_posture = replace(level, trunk_first=radians(50), trunk_second=radians(40), tail_press=press, **_ARMS_RAISED)
     feet_forward = _feet_ahead(robot, level)
     lead_level, lead_bent = (
-        feet_forward - mass_forward_of_hips(robot, posture, feet_forward) for posture in (level, bent_posture)
+        feet_forward - centre_of_mass_forward_of_hips(robot, posture, feet_forward) for posture in (level, bent_posture)
     )
     raised_fields = {"stance": stance, "lift": 0.0, **_ARMS_RAISED}
     postures = (
@@ -120,7 +121,7 @@ def _feet_ahead(robot: Robot, level: Posture) -> float:
     length = leg.femur + leg.tibia
     down = level.hip_height - leg.foot_radius
     max_forward = np.sqrt((_NOT_QUITE * length) ** 2 - down**2 - level.stance**2)
-    return float(min(mass_forward_of_hips(robot, level, max_forward) + 0.17 * length, max_forward))
+    return float(min(centre_of_mass_forward_of_hips(robot, level, max_forward) + 0.17 * length, max_forward))
 
 
 def stretched_length(robot: Robot) -> float:
@@ -175,7 +176,7 @@ def max_snout_height(robot: Robot, lead: Float[np.ndarray, "*batch"]) -> Float[n
             for hinges in chains.standing:
                 angles[:, hinges] = leg_angles
             angles[:, chains.tail] = tail_down(chains, down + leg.foot_radius, pitch, 0.0)
-            com = mass_from_hips(robot, angles)
+            com = centre_of_mass_from_hips(robot, angles)
             feet_forward = c * com[:, 0] - s * com[:, 2] + shift
             down = np.sqrt(np.maximum(leg.reach[1] ** 2 - feet_forward**2 - stance**2, 0.0))
         snout, root = landmarks(robot, angles).snout - np.array(chains.hips), angles[:, chains.tail]

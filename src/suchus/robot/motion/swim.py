@@ -49,10 +49,10 @@ def swimming_gait(
 
     Args:
         robot: the design, with any axis and any limbs.
-        name: of the gait.
+        name: name of the gait.
         frequency: f [Hz], 0.01 to 20.
-        amplitude: of each of ``lateral_servos(robot)``; that of a cable is the bend of all its hinges together [rad], 0
-            to pi.
+        amplitude: amplitude of each of ``lateral_servos(robot)``; that of a cable is the bend of all its hinges
+            together [rad], 0 to pi.
         lag: phase lag of each of them behind f t [cycle], -1 to 1.
         limbs: yaw and pitch at which limbs that have such joints are held [rad]; other joints of limbs are held as near
             0 as they go.

@@ -33,14 +33,14 @@ class Transition(NamedTuple):
 
     @property
     def duration(self) -> float:
-        """Of the whole [s]."""
+        """Duration of the whole transition [s]."""
         return float(self.times[-1])
 
     def angles_at(self, time: float, start: Float[np.ndarray, " servo"]) -> Float[np.ndarray, " servo"]:
         """Return the servo angles at a time [rad].
 
         Args:
-            time: since the beginning of the transition [s].
+            time: time since the beginning of the transition [s].
             start: servo angles at that beginning [rad].
         """
         i = int(np.searchsorted(self.times, time, side="right"))

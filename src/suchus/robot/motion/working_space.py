@@ -53,7 +53,7 @@ def sample_configurations(robot: Robot, gait: Gait, *, standing: bool, count: in
         gait: where the feet stand.
         standing: on hind feet and the tip of the straight tail, the front legs tucked, instead of on four feet.
         count: how many configurations are drawn, rounded up to a power of two [-].
-        seed: of the drawing.
+        seed: seed of the drawing.
     """
     lower_bound, upper_bound = _box(robot, standing)
     metres = GaitInMetres.from_gait(gait, limb_reaches(robot))
@@ -133,9 +133,9 @@ def _place(robot: Robot, angles: np.ndarray, good: np.ndarray, names: tuple[str,
 
     Args:
         robot: the design.
-        angles: of every hinge, shape (n, joint), changed in place [rad].
+        angles: angles of every hinge, shape (n, joint), changed in place [rad].
         good: marks of feasible configurations, shape (n,), changed in place.
-        names: of the two legs.
+        names: names of the two legs.
         *feet: their positions in the frame of their girdle, shape (n, 3) [m].
     """
     for name, foot in zip(names, feet, strict=True):
@@ -154,7 +154,7 @@ def _tail_laid(robot: Robot, angles: np.ndarray, pelvis: np.ndarray) -> Bool[np.
 
     Args:
         robot: the design.
-        angles: of every hinge, shape (n, joint), changed in place [rad].
+        angles: angles of every hinge, shape (n, joint), changed in place [rad].
         pelvis: x, z and pitch, shape (n, 3) [m], [rad].
     """
     tail = robot.tail
@@ -209,7 +209,7 @@ def outline(
 
     Args:
         robot: the design.
-        angles: of every hinge [rad].
+        angles: angles of every hinge [rad].
         pelvis: x, z and pitch, see ``Configurations``.
     """
     place, body_frames, marks = layout(robot), frames(robot, angles), landmarks(robot, angles)
@@ -241,7 +241,7 @@ def extent(points: Float[np.ndarray, "n d"], cell: float) -> Extent:
     missed is ``f1 (f1 - 1) / (2 (f2 + 1))`` with f1 and f2 the numbers of cells that hold one and two points.
 
     Args:
-        points: in the plane or in space [m].
+        points: points in the plane or in space [m].
         cell: edge of a cell [m].
     """
     if len(points) == 0:

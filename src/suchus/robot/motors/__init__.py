@@ -49,7 +49,7 @@ def split(table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str], dic
     """Return the values of a servo's table, their sources, and the mistakes in its form, each by field.
 
     Args:
-        table: of one servo, as TOML gives it.
+        table: table of one servo, as TOML gives it.
     """
     values: dict[str, Any] = {}
     sources: dict[str, str] = {}

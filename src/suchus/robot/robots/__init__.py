@@ -15,7 +15,7 @@ class RelativeSize(NamedTuple):
     length: float
     """Length of the body [-]."""
     weight: float
-    """Of the body [-]."""
+    """Weight of the body [-]."""
 
 
 FOREIGN_ENDINGS = (".urdf", ".xml", ".mjcf")

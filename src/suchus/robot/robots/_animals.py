@@ -23,7 +23,7 @@ def pleurodeles(length: float, mass: float, density: float, keel: float, *, beat
     proportions. A part of the mass lies low, as that of flesh and bones below the lungs does.
 
     Args:
-        length: from the snout to the tip of the tail [m].
+        length: length from the snout to the tip of the tail [m].
         mass: [kg].
         density: mass over volume, lungs filled [kg/m3].
         keel: share of the mass of each part of the axis that lies low [-].
@@ -57,7 +57,7 @@ def _floating_segment(segment: Segment, density: float, keel: float, factor: flo
     """Return a segment with the volume of its mass, of which a part lies low.
 
     Args:
-        segment: of one rod.
+        segment: segment of one rod.
         density: mass over volume [kg/m3].
         keel: fraction of the mass that lies low [-].
         factor: on the radius [-].
@@ -81,7 +81,7 @@ def catshark(length: float, mass: float, density: float, width_factor: float, ta
     """Return a small-spotted catshark, its sections ellipses.
 
     Args:
-        length: from the snout to the tip of the tail [m].
+        length: length from the snout to the tip of the tail [m].
         mass: [kg].
         density: mass over volume [kg/m3].
         width_factor: factor on the drawn width [-].
@@ -111,7 +111,7 @@ def eel(length: float, mass: float, density: float, *, beat: float) -> Robot:
     """Return an eel, its sections ellipses.
 
     Args:
-        length: from the snout to the tip of the tail [m].
+        length: length from the snout to the tip of the tail [m].
         mass: [kg].
         density: mass over volume [kg/m3].
         beat: frequency of the swim for which its joints are stiff enough [Hz].

@@ -43,10 +43,10 @@ def row(
     """Return an axis of rods from the snout to the tip of the tail; each segment's origin is its front end.
 
     Args:
-        names: of the segments.
-        lengths: of the segments [m].
-        radii: of their rods [m].
-        masses: of the segments [kg].
+        names: names of the segments.
+        lengths: lengths of the segments [m].
+        radii: radii of their rods [m].
+        masses: masses of the segments [kg].
         joints: behind every segment but the last, those of each joint in order.
     """
     segments = []
@@ -75,13 +75,13 @@ def limb(
 
     Args:
         upper_length: length of the upper limb [m].
-        lower_length: of the lower limb to the foot's centre [m].
-        radius: of the upper limb [m].
-        masses: of upper limb, lower limb and foot [kg].
+        lower_length: length of the lower limb to the foot's centre [m].
+        radius: radius of the upper limb [m].
+        masses: masses of upper limb, lower limb and foot [kg].
         foot: radius of the foot [m].
-        servo: at every hinge.
+        servo: servo at every hinge.
         roll: whether the upper limb turns about itself.
-        limit: of every hinge to either side [rad]; pitch and elbow bend further down.
+        limit: limit of every hinge to either side [rad]; pitch and elbow bend further down.
     """
     hip = [hinge("yaw", "yaw", servo, limit), hinge("pitch", "pitch", servo, limit)]
     if roll:

@@ -110,7 +110,7 @@ def _servo_rows(path: str, demand: str) -> tuple[_Row, ...]:
     """Return path, plausible range and reason of every number of a servo.
 
     Args:
-        path: of the servo in the tables.
+        path: path of the servo in the tables.
         demand: torque that the robot's movements ask of it, as a clause.
     """
     return (

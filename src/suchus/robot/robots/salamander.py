@@ -27,7 +27,7 @@ def _passive(stiffness: float) -> Spring:
     """Return a passive joint after the published model.
 
     Args:
-        stiffness: over the body's weight times its length [-].
+        stiffness: stiffness over the body's weight times its length [-].
     """
     torque = _MASS * GRAVITY * _LENGTH
     return Spring(

@@ -28,8 +28,8 @@ def _shapes(name: str, mass: float) -> tuple[Shell | Rod, ...]:
     """Return an ellipsoid and the two edges of its flat belly, on which it stands.
 
     Args:
-        name: of the segment.
-        mass: of all three together [kg].
+        name: name of the segment.
+        mass: mass of all three together [kg].
     """
     end, edge = 0.4 * _SEGMENT, 0.2 * _WIDTH
     edges = tuple(
@@ -49,7 +49,7 @@ def _swimmer(mass: float) -> Robot:
     """Return the swimmer.
 
     Args:
-        mass: of each segment [kg].
+        mass: mass of each segment [kg].
     """
     servo = servo_for(_COUNT * mass, _LENGTH)
     return Robot(

@@ -56,8 +56,8 @@ def immersed(kind: float, depth: float) -> tuple[float, float]:
     """Return the share of a unit shape under a plane, and its first moment along the plane's normal.
 
     Args:
-        kind: of the shape.
-        depth: of its centre over its half extent along the normal; beyond -1 and 1 it is dry or under water.
+        kind: kind of the shape.
+        depth: depth of its centre over its half extent along the normal; beyond -1 and 1 it is dry or under water.
     """
     d = min(max(depth, -1.0), 1.0)
     chord_squared = 1.0 - d * d
@@ -108,11 +108,11 @@ def hydrostatic(
     Shape (5,): [m3], three [m4], and the work over density and gravity [m4].
 
     Args:
-        table: of pieces.
+        table: table of pieces.
         xpos: origins of the bodies, shape (body, 3) [m].
         xmat: their orientations, shape (body, 9).
         up_axis: unit vector against gravity, shape (3,).
-        level: of the surface above the origin [m].
+        level: level of the surface above the origin [m].
         air_fraction: shares of the air that are kept, in the front and in the rear chambers [-].
     """
     sums, vertical = np.zeros(5), three(up_axis, 0)
@@ -201,7 +201,7 @@ def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Write the depth of each piece below the surface, and its velocity relative to the water.
 
     Args:
-        table: of the pieces, shape (column, lane).
+        table: table of the pieces, shape (column, lane).
         rows: quantities of the pieces, see ``lanes``; written.
         water: its properties.
     """
@@ -238,7 +238,7 @@ def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Write the load of the water on each piece: force, couple about the point of reference, submerged volume.
 
     Args:
-        table: of the pieces, shape (column, lane).
+        table: table of the pieces, shape (column, lane).
         rows: quantities of the pieces, see ``lanes``; written.
         water: its properties.
     """
@@ -300,7 +300,7 @@ def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> N
     """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force.
 
     Args:
-        table: of the pieces, shape (column, lane).
+        table: table of the pieces, shape (column, lane).
         rows: quantities of the pieces, see ``lanes``; written.
         water: its properties.
     """

@@ -86,10 +86,10 @@ def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: floa
     """Return whether all pieces are far above the surface, waves of a height included.
 
     Args:
-        table: of the pieces, shape (block, column, lane).
+        table: table of the pieces, shape (block, column, lane).
         count: number of pieces [-].
         water: its properties.
-        height: of the waves above the level, at most [m].
+        height: height of the waves above the level, at most [m].
         motion: positions of the bodies.
     """
     for n in range(count):
@@ -105,13 +105,13 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
     """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``).
 
     Args:
-        table: of the pieces, shape (block, column, lane).
+        table: table of the pieces, shape (block, column, lane).
         count: number of pieces [-].
         water: its properties.
         bodies: the tree of bodies and joints.
         motion: positions and velocities of the bodies.
     """
-    bias = _bias(bodies, motion)
+    bias = _bias_accelerations(bodies, motion)
     rows, sums, wet_volume = np.zeros((ROWS, LANES)), np.zeros((len(bodies.parent), SUMS)), 0.0
     for block in range(table.shape[0]):
         block_table = table[block]
@@ -143,18 +143,22 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
 
 
 @compile_inline
-def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
-    """Return spatial accelerations of the bodies without those of the joints, shape (body, 6)."""
+def _bias_accelerations(bodies: Bodies, motion: Motion) -> np.ndarray:
+    """Return the spatial acceleration of each body with all joint accelerations set to zero, shape (body, 6).
+
+    Rotation comes first [rad/s2], then translation [m/s2], in MuJoCo's frame of the centre of mass (``cdof_dot``).
+    Gravity is left out.
+    """
     bias = np.empty((len(bodies.parent), 6))
     bias[0] = 0.0
-    for b in range(1, len(bodies.parent)):
-        parent_bias = bias[bodies.parent[b]]
-        turns, moves = three(parent_bias, 0), three(parent_bias, 3)
-        for j in range(bodies.first_joint[b], bodies.first_joint[b] + bodies.dofs[b]):
-            turns = plus(turns, times(motion.qvel[j], three(motion.cdof_dot[j], 0)))
-            moves = plus(moves, times(motion.qvel[j], three(motion.cdof_dot[j], 3)))
-        write(bias[b], 0, turns)
-        write(bias[b], 3, moves)
+    for body in range(1, len(bodies.parent)):
+        parent_bias = bias[bodies.parent[body]]
+        angular, linear = three(parent_bias, 0), three(parent_bias, 3)
+        for dof in range(bodies.first_dof[body], bodies.first_dof[body] + bodies.dof_counts[body]):
+            angular = plus(angular, times(motion.qvel[dof], three(motion.cdof_dot[dof], 0)))
+            linear = plus(linear, times(motion.qvel[dof], three(motion.cdof_dot[dof], 3)))
+        write(bias[body], 0, angular)
+        write(bias[body], 3, linear)
     return bias
 
 
@@ -187,9 +191,9 @@ def _hand_over(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
 
 @compile_inline
 def _burden(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
-    """Add the added inertia of each joint's subtree to the matrix.
+    """Add the added inertia of each joint's subtree to the mass matrix.
 
-    From force and power of the water is taken what this inertia takes by the accelerations of the last step.
+    The force and power of this inertia, at the accelerations of the last step, are subtracted from those of the water.
 
     Args:
         sums: loads and inertias of the subtrees, shape (body, ``SUMS``).

@@ -80,7 +80,7 @@ class WaterProperties(NamedTuple):
     level: float
     """Height of the surface above the world's origin, against gravity, without waves [m]."""
     density: float
-    """[kg/m3]."""
+    """Density of the water [kg/m3]."""
     air_fraction: tuple[float, float]
     """Shares of the hull's air that are kept, in the front and in the rear chambers [-]."""
     viscosity: float
@@ -94,8 +94,8 @@ class WaterProperties(NamedTuple):
     shedding: float
     """Factor on what is shed at the tail [-]."""
     up_axis: Vector
-    """Against gravity, unit vector."""
+    """Unit vector against gravity."""
     gravity: float
     """Its size [m/s2]."""
     length: float
-    """Of the body, for its Reynolds number [m]."""
+    """Length of the body, for its Reynolds number [m]."""

@@ -50,31 +50,31 @@ def pointer(typing, address):  # type: ignore[no-untyped-def]
 
 
 class Bodies(NamedTuple):
-    """The tree of bodies and joints."""
+    """The tree of bodies and degrees of freedom (dof) of a MuJoCo model, and the pattern of its mass matrix."""
 
     parent: np.ndarray
-    """Of each body (body,)."""
+    """Index of each body's parent, shape (body,)."""
     root: np.ndarray
-    """First body of its tree (body,)."""
-    first_joint: np.ndarray
-    """First joint of each body (body,)."""
-    dofs: np.ndarray
-    """Number of its joints (body,)."""
+    """First body of each body's tree, shape (body,)."""
+    first_dof: np.ndarray
+    """First degree of freedom of each body, shape (body,)."""
+    dof_counts: np.ndarray
+    """Number of degrees of freedom of each body, shape (body,)."""
     owner: np.ndarray
-    """Body that each joint moves (joint,)."""
+    """Body that each degree of freedom moves, shape (dof,)."""
     rownnz: np.ndarray
-    """Numbers in each row of the matrix (joint,)."""
+    """Number of entries in each row of the sparse mass matrix, shape (dof,)."""
     rowadr: np.ndarray
-    """Where each row begins (joint,)."""
+    """Index of the first entry of each row, shape (dof,)."""
     column: np.ndarray
-    """Joint of each number."""
+    """Degree of freedom of each entry's column, shape (entry,)."""
 
 
 class Motion(NamedTuple):
     """Where the bodies are and how they move, in the world."""
 
     time: float
-    """[s]."""
+    """Time of the simulation [s]."""
     xpos: np.ndarray
     """Origins (body, 3) [m]."""
     xmat: np.ndarray
@@ -125,7 +125,7 @@ def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
     Args:
         model: address of a ``mjModel``.
         data: address of its ``mjData``.
-        offsets: of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
     """
     model_words = carray(model, (4096,), np.int64)
     state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
@@ -163,8 +163,8 @@ def read_water(model: int, user: np.ndarray, offsets: np.ndarray, length: float)
     Args:
         model: address of a ``mjModel``.
         user: numbers of the water, see ``water_table``.
-        offsets: of ``FIELDS`` and ``DATA_FIELDS`` [byte].
-        length: of the robot, for the Reynolds number of friction [m].
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        length: length of the robot, for the Reynolds number of friction [m].
     """
     down = three(carray(model, (4096,), np.float64), offsets[_GRAVITY] // 8)
     gravity = sqrt(dot(down, down))

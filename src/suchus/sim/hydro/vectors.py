@@ -12,7 +12,7 @@ from suchus.core import kernel_cache
 Vector = tuple[float, float, float]
 """Three numbers in the world."""
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
-"""Of numba; products and sums may be computed in one instruction."""
+"""Options of numba; products and sums may be computed in one instruction."""
 P = ParamSpec("P")
 R = TypeVar("R")
 _SOURCES = Path(__file__).parent

@@ -90,9 +90,9 @@ def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"])
 @lru_cache(maxsize=64)
 def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[float, ...]) -> str:
     """Return a warning about a swimmer at rest as a sentence; empty if it floats upright and deep enough."""
-    equilibrium = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heels=3)
-    if equilibrium.surplus > HEAVIER * equilibrium.mass:
-        return _sinking_message(robot, density, equilibrium.surplus)
+    equilibrium = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heel_count=3)
+    if equilibrium.surplus_mass > HEAVIER * equilibrium.mass:
+        return _sinking_message(robot, density, equilibrium.surplus_mass)
     emerged_fraction = 1.0 - equilibrium.mass / (density * equilibrium.volume)
     lever = -equilibrium.metacentric_height
     if isnan(lever):
@@ -149,7 +149,7 @@ def surfaced(
         lake: the water.
         up_axis: against gravity, unit vector.
         qpos: the posture on the ground.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
     """
     level, air_fraction = lake.state_at(0.0)
     table = np.array(pieces(robot))

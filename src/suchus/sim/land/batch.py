@@ -214,7 +214,7 @@ class SimulationBatch:
 
         Args:
             sim: the run.
-            fraction: of the supply of the design [-].
+            fraction: fraction of the supply of the design [-].
         """
         volts = supplies(self._robots[sim])
         motors = ~np.isnan(volts)
@@ -237,7 +237,7 @@ class SimulationBatch:
         Args:
             sim: the run.
             body: name of the body.
-            force: in the world, shape (3,) [N]; zeros end the push.
+            force: force in the world, shape (3,) [N]; zeros end the push.
         """
         self._external_forces[sim, self.model.body(body).id, :3] = force
 
@@ -346,7 +346,7 @@ class SimulationBatch:
         Args:
             targets: shape (run, servo) [rad].
             steps: number of physics steps.
-            time: at which they begin [s].
+            time: time at which they begin [s].
             selection: whether each run is advanced, shape (run,); None advances all.
             need_forces: whether contact forces are needed as means; if not, they are those of the last step, which
                 is faster.
@@ -447,7 +447,7 @@ def _model(
 
     Args:
         body: robot, relief of its ground, and correction of its sections.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
         max_pieces: pieces that the table of the water has room for; 0 on dry land.
         is_solved: whether a flow solver computes the water.
     """

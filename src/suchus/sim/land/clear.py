@@ -21,7 +21,7 @@ def check_clear(robot: Robot, relief: Relief | None, qpos: Float[np.ndarray, " q
         robot: the design.
         relief: what stands up from the ground; None for even ground.
         qpos: generalised positions of the first posture.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
 
     Raises:
         InvalidDesign: it overlaps; the message names the body that is deepest inside, the depth and a remedy.

@@ -19,8 +19,8 @@ class CommandSpeeds:
     """Greatest speeds at which controllers turn the commanded angles, before noise and faults.
 
     Args:
-        runs: that share a controller.
-        period: of control [s].
+        runs: runs that share a controller.
+        period: control period [s].
     """
 
     def __init__(self, runs: Sequence[Run], period: float) -> None:

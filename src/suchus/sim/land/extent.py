@@ -33,8 +33,8 @@ def processor_seconds(run: Run, duration: float, timestep: float) -> float:
 
     Args:
         run: which.
-        duration: of the run [s].
-        timestep: of the physics [s].
+        duration: duration of the run [s].
+        timestep: time step of the physics [s].
     """
     return _SECONDS * len(layout(run.robot).hinges) * duration / timestep
 
@@ -43,10 +43,10 @@ def check_extent(runs: Sequence[Run], duration: float, timestep: float, period: 
     """Refuse runs that the machine cannot hold, or that compute for longer than a day, see ``suchus.core.large``.
 
     Args:
-        runs: that are simulated together.
-        duration: of each [s].
-        timestep: of the physics [s].
-        period: of control [s].
+        runs: runs that are simulated together.
+        duration: duration of each [s].
+        timestep: time step of the physics [s].
+        period: control period [s].
         sample_stride: control periods for each sample that is kept [-].
 
     Raises:

@@ -47,8 +47,8 @@ def joint_failure(
     """Return the faults of a run in which joints have failed from the start; one leg is the left one.
 
     Args:
-        robot: whose joints they are.
-        gait: that it walks in.
+        robot: robot whose joints they are.
+        gait: gait that it walks in.
         joint: one of ``failing_joints(robot)``.
         kind: without torque, or locked.
         legs: one or both of the girdle.

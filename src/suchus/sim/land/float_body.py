@@ -89,7 +89,7 @@ class FloatTank:
     Args:
         body: what floats.
         lake: the water; drag of the body is none whatever its coefficients.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
         integrator: MuJoCo's.
     """
 
@@ -123,8 +123,8 @@ class FloatTank:
         Args:
             centre: middle of its shape [m].
             turn: its orientation, wxyz; upright if None.
-            velocity: of the middle of its shape [m/s].
-            spin: in its own frame [rad/s].
+            velocity: velocity of the middle of its shape [m/s].
+            spin: angular velocity in its own frame [rad/s].
         """
         data = self.data
         data.qpos[3:7] = (1, 0, 0, 0) if turn is None else turn

@@ -21,7 +21,7 @@ class Injector:
 
     Args:
         batch: the simulations.
-        period: of control [s].
+        period: control period [s].
         robot: one of the batch's robots, which share a layout.
     """
 
@@ -86,7 +86,7 @@ class Site:
     Args:
         batch: the simulations.
         sim: the run.
-        columns: of servos, feet and bodies of the trunk in arrays, by group.
+        columns: columns of servos, feet and bodies of the trunk in arrays, by group.
     """
 
     def __init__(self, batch: SimulationBatch, sim: int, columns: Mapping[str, Mapping[str, int]]) -> None:
@@ -177,10 +177,10 @@ class Disturbances:
     """The faults, the pushes and the servos' errors of all runs of a batch, each run by a clock of its own.
 
     Args:
-        runs: of the batch.
+        runs: runs of the batch.
         batch: the simulations.
         ticks: number of control periods for which there is noise.
-        period: of control [s].
+        period: control period [s].
     """
 
     def __init__(self, runs: Sequence[Run], batch: SimulationBatch, ticks: int, period: float) -> None:

@@ -57,7 +57,7 @@ class Wave:
 
     @property
     def frequency(self) -> float:
-        """Of deep water, sqrt(g / (2 pi length)) [Hz]."""
+        """Frequency of the wave on deep water, sqrt(g / (2 pi length)) [Hz]."""
         return sqrt(GRAVITY / (tau * self.length))
 
 
@@ -176,8 +176,8 @@ class Waters:
     """The numbers of the water of every run, in the memory that the physics reads and writes.
 
     Args:
-        lakes: of the runs of a batch; None for those on dry land.
-        grounds: of the runs.
+        lakes: lakes of the runs of a batch; None for those on dry land.
+        grounds: grounds of the runs.
         physics: the ``mujoco.batch.Batch``.
     """
 

@@ -26,7 +26,7 @@ class Live:
 
     Args:
         run: how it begins; its faults and pushes happen at their times.
-        timestep: of the physics [s], a whole part of the control period; that of the robot's size if None.
+        timestep: time step of the physics [s], a whole part of the control period; that of the robot's size if None.
 
     Raises:
         InvalidDesign: a time step that does not fit, servo noise, a control other than ``Coordinated`` or a

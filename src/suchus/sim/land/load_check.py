@@ -26,8 +26,8 @@ def missing_load(record: xr.Dataset, runs: Sequence[Run]) -> Float[np.ndarray, "
     pushes, in runs that ended early or last no whole cycle, and where not every control period has a sample.
 
     Args:
-        record: of ``simulate``, in the order of the runs.
-        runs: of the record.
+        record: record of ``simulate``, in the order of the runs.
+        runs: runs of the record.
     """
     time = record.time.values
     lacking = np.full(len(runs), np.nan)
@@ -53,8 +53,8 @@ def check_loads(record: xr.Dataset, runs: Sequence[Run]) -> None:
     """Warn of runs whose recorded contacts do not carry the weight.
 
     Args:
-        record: of ``simulate``, in the order of the runs.
-        runs: of the record.
+        record: record of ``simulate``, in the order of the runs.
+        runs: runs of the record.
 
     Warns:
         Doubtful: over the last cycle the recorded load misses the weight by more than ``LOAD_TOLERANCE``.

@@ -25,15 +25,16 @@ from suchus.sim.land.readings import Recorder, Sensors
 from suchus.sim.land.run import Push, Run
 
 CONTROL_PERIOD = 0.01
-"""Of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has those of others."""
+"""Control period of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has
+those of others."""
 
 
 def physics_steps(timestep: float, period: float = CONTROL_PERIOD) -> int:
     """Return the number of physics steps in a control period.
 
     Args:
-        timestep: of the physics [s].
-        period: of control [s].
+        timestep: time step of the physics [s].
+        period: control period [s].
 
     Raises:
         InvalidDesign: the time step does not divide the control period.
@@ -49,9 +50,9 @@ def start(runs: Sequence[Run], ticks: int, period: float = CONTROL_PERIOD) -> Co
     """Start the controller of a group of runs that share one.
 
     Args:
-        runs: with equal controls, or with controls that can be joined.
+        runs: runs with equal controls, or with controls that can be joined.
         ticks: number of control periods to come.
-        period: of control [s].
+        period: control period [s].
     """
     control = runs[0].control
     group = Runs(
@@ -71,8 +72,8 @@ class Loop:
     can begin anew; its faults and pushes happen by it.
 
     Args:
-        runs: of the group.
-        timestep: of the physics [s], a whole part of the control period.
+        runs: runs of the group.
+        timestep: time step of the physics [s], a whole part of the control period.
         ticks: number of control periods for which controllers and noise are prepared.
         controller: what decides; None for the one that the runs name.
 
@@ -248,7 +249,7 @@ class Deduplication:
     Args:
         runs: the runs.
         initial_angles: the servo angles at the start, shape (run, servo) [rad].
-        period: of control [s].
+        period: control period [s].
     """
 
     def __init__(self, runs: Sequence[Run], initial_angles: np.ndarray, period: float) -> None:

@@ -30,8 +30,8 @@ class ServoLaws:
     """The numbers of each servo of a batch by which its torque follows, as the models have them now.
 
     Args:
-        model: that the runs begin with.
-        robots: of the runs.
+        model: model that the runs begin with.
+        robots: robots of the runs.
     """
 
     def __init__(self, model: Any, robots: Sequence[Robot]) -> None:
@@ -85,12 +85,12 @@ class Meter:
     of the former hardly depends on the time step, that of the latter is a quarter too great at 5 ms.
 
     Args:
-        water: of the batch, shape (run, ``hydro.NUMBERS``) or (run, 0) on dry land; read anew at every step.
-        sensors: of the batch, shape (run, sensor); likewise.
+        water: water of the batch, shape (run, ``hydro.NUMBERS``) or (run, 0) on dry land; read anew at every step.
+        sensors: sensors of the batch, shape (run, sensor); likewise.
         velocities: where the servos' speeds are among the sensors.
         torques: where their torques are.
-        laws: of the servos.
-        steps: of the physics in a control period.
+        laws: laws of the servos.
+        steps: steps of the physics in a control period.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class Meter:
         """Store the sensor readings before the first step.
 
         Args:
-            readings: of all sensors after the last period. A run that parts from its leader has the leader's
+            readings: readings of all sensors after the last period. A run that parts from its leader has the leader's
                 readings, but old sensors.
         """
         self._history[0] = readings[:, self._columns]
@@ -124,7 +124,7 @@ class Meter:
 
         Args:
             water: means of force and power of the water, shape (run, 4) [N, W]; written.
-            effort: of each servo, shape (run, servo, 6), in the order of ``record.EFFORT``; written.
+            effort: effort of each servo, shape (run, servo, 6), in the order of ``record.EFFORT``; written.
             selection: runs for which they are written.
         """
         if self._is_wet:
@@ -145,10 +145,10 @@ def servo_effort(
     """Return the effort of each servo over some physics steps, in the order of ``record.EFFORT``.
 
     Args:
-        torque: by the sensor, at the start of each step [N m].
-        start_speed: of the shaft before each step [rad/s].
+        torque: torque by the sensor, at the start of each step [N m].
+        start_speed: speed of the shaft before each step [rad/s].
         end_speed: after it [rad/s].
-        laws: of the servos.
+        laws: laws of the servos.
     """
     effort = np.empty((*torque.shape[1:], len(EFFORT)))
     step_weight = 1.0 / len(torque)

@@ -42,7 +42,7 @@ def towed_sections(robot: Robot, speed: float, lake: Lake) -> float:
     """Return the drag of the straight body without limbs that moves forward [N].
 
     Args:
-        robot: whose body.
+        robot: robot whose body is meant.
         speed: forward [m/s].
         lake: the water; its level does not matter.
     """
@@ -57,8 +57,8 @@ def held_sections(robot: Robot, gait: Gait, lake: Lake, *, sway: complex = 0j, t
     """Return the forces over a cycle on a body that swims in place, with a given motion of its head.
 
     Args:
-        robot: whose body, limbs left out.
-        gait: in which it swims.
+        robot: robot whose body is meant, without its limbs.
+        gait: gait in which it swims.
         lake: the water; its level does not matter.
         sway: harmonic of the snout's displacement to the right, ``Re(h exp(2 pi i f t))`` [m].
         turn: harmonic of the head's direction, counter-clockwise from above [rad].
@@ -91,10 +91,10 @@ def free_sections(robot: Robot, gait: Gait, lake: Lake, cycles: int) -> xr.Datas
     """Return a swim from rest in the plane, as heavy as the water that the body displaces, its motion growing at first.
 
     Args:
-        robot: whose body, limbs left out.
-        gait: in which it swims.
+        robot: robot whose body is meant, without its limbs.
+        gait: gait in which it swims.
         lake: the water; its level does not matter.
-        cycles: how many [-].
+        cycles: number of cycles [-].
 
     Returns:
         Per cycle ``speed`` of the centre of mass forward and ``power`` on the water; over ``phase`` of the last cycle
@@ -153,9 +153,9 @@ def sections_along(
     """Return the loads of the section model along a motion of root and joints in the plane, such as a recorded one.
 
     Args:
-        robot: whose body, limbs left out.
+        robot: robot whose body is meant, without its limbs.
         joints: lateral joints, from the head on.
-        positions: of the root (x, y, yaw) and of these joints [m, rad].
+        positions: positions of the root (x, y, yaw) and of these joints [m, rad].
         rate: their rates.
         push: their accelerations.
         lake: the water; its level does not matter.
@@ -253,7 +253,7 @@ class _Submerged:
         """Return the root (x, y, yaw) of a body from its snout and head.
 
         Args:
-            angles: of the lateral joints [rad].
+            angles: angles of the lateral joints [rad].
             lateral: distance of the snout to the left of the world's x axis [m]; its x is 0.
             heading: yaw of the head [rad].
         """

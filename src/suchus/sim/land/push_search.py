@@ -20,7 +20,7 @@ def smallest_pushes(
     *,
     start_time: float,
     levels: Sequence[float],
-    fell: Callable[[xr.Dataset], xr.DataArray],
+    has_fallen: Callable[[xr.Dataset], xr.DataArray],
     refinement_count: int = 4,
     duration: float = 0.2,
     body: str = "thorax",
@@ -30,48 +30,53 @@ def smallest_pushes(
 ) -> Float[np.ndarray, "run direction"]:
     """Return the smallest push that topples each run in each direction [N].
 
-    All levels of all runs and directions go into one batch; then ``finer`` forces between the last level that was
-    survived and the first that was not go into another. A robot that falls at one force and not at a greater one
-    counts as falling. Where no level topples, the answer is infinite.
+    All levels of all runs and directions go into one batch. A second batch has ``refinement_count`` evenly spaced
+    forces between the first level that topples and the level below it. The answer is the smallest of the forces that
+    topple, even if the robot survives a greater one. Where no level topples, the answer is infinite.
 
     Args:
-        runs: without pushes of their own.
+        runs: runs without pushes of their own.
         directions: unit vectors in the world: forward, left, up.
-        start_time: when the push begins [s].
+        start_time: time at which the push begins [s].
         levels: forces to try, increasing [N].
-        fell: returns from a record whether each run fell, along the dimension ``run``; the last sample of the record is
-            ``wait`` after the push.
+        has_fallen: function that returns from a record whether each run fell, along the dimension ``run``; the last
+            sample of the record is ``wait`` after the push.
         refinement_count: number of forces of the second batch; the answer is off by at most the gap between two of
             them.
-        duration: of the push [s].
-        body: what is pushed.
+        duration: duration of the push [s].
+        body: name of the body that is pushed.
         wait: time from the end of the push to the end of a run [s].
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
         progress: called with the finished fraction.
 
     Raises:
         InvalidDesign: the levels do not increase from above zero.
     """
-    scan = np.array([0.0, *levels])
-    if len(scan) < 2 or np.any(np.diff(scan) <= 0):
+    scanned_forces = np.array([0.0, *levels])
+    if len(scanned_forces) < 2 or np.any(np.diff(scanned_forces) <= 0):
         raise InvalidDesign(f"levels are {tuple(levels)}; increasing forces above 0 N are needed.")
-    topples = _Trial(
-        runs, directions, Push(force=(0.0, 0.0, 0.0), at=start_time, duration=duration, body=body), fell, wait, timestep
+    trial = _Trial(
+        runs,
+        directions,
+        Push(force=(0.0, 0.0, 0.0), at=start_time, duration=duration, body=body),
+        has_fallen,
+        wait,
+        timestep,
     )
-    forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
-    coarse = topples(forces, staged(progress, "coarse levels", 0.0, 0.6))
-    first_level = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
-    lower_force, smallest = scan[first_level], np.append(scan[1:], np.inf)[first_level]
+    forces = np.broadcast_to(scanned_forces[1:], (len(runs), len(directions), len(levels)))
+    is_toppled_coarse = trial(forces, staged(progress, "coarse levels", 0.0, 0.6))
+    first_level = np.where(is_toppled_coarse.any(axis=-1), is_toppled_coarse.argmax(axis=-1), len(levels))
+    lower_force, smallest = scanned_forces[first_level], np.append(scanned_forces[1:], np.inf)[first_level]
     if refinement_count:
-        gap = np.where(
+        bracket_width = np.where(
             np.isfinite(smallest), smallest - lower_force, 1.0
         )  # of those that never fall any will do: it is not used
-        fine_forces = lower_force[..., None] + gap[..., None] * (
+        fine_forces = lower_force[..., None] + bracket_width[..., None] * (
             np.arange(1, refinement_count + 1) / (refinement_count + 1)
         )
-        fine = topples(fine_forces, staged(progress, "finer levels", 0.6, 1.0))
-        fine_smallest = np.take_along_axis(fine_forces, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
-        smallest = np.where(fine.any(axis=-1) & np.isfinite(smallest), fine_smallest, smallest)
+        is_toppled_fine = trial(fine_forces, staged(progress, "finer levels", 0.6, 1.0))
+        fine_smallest = np.take_along_axis(fine_forces, is_toppled_fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+        smallest = np.where(is_toppled_fine.any(axis=-1) & np.isfinite(smallest), fine_smallest, smallest)
     progress("finer levels", 1.0)
     return smallest
 
@@ -82,7 +87,7 @@ class _Trial(NamedTuple):
     runs: Sequence[Run]
     directions: Sequence[tuple[float, float, float]]
     push: Push
-    fell: Callable[[xr.Dataset], xr.DataArray]
+    has_fallen: Callable[[xr.Dataset], xr.DataArray]
     wait: float
     timestep: float
 
@@ -100,7 +105,7 @@ class _Trial(NamedTuple):
         record = simulate(
             batch, duration=end, timestep=self.timestep, sample_stride=10, effort=False, progress=progress
         )
-        return np.asarray(self.fell(record).values, dtype=bool).reshape(forces.shape)
+        return np.asarray(self.has_fallen(record).values, dtype=bool).reshape(forces.shape)
 
 
 def _force_vector(direction: tuple[float, float, float], force: float) -> tuple[float, float, float]:

@@ -83,8 +83,8 @@ class Recorder:
 
     Args:
         batch: the simulations.
-        sensors: of the batch.
-        runs: of the batch.
+        sensors: sensors of the batch.
+        runs: runs of the batch.
         samples: for how many there is room.
         has_effort: whether what the servos do is kept too.
     """
@@ -133,7 +133,7 @@ class Recorder:
 
         Args:
             sample: its number.
-            phase: of the limbs, shape (run, limb) [cycle].
+            phase: phase of the limbs, shape (run, limb) [cycle].
             targets: commanded servo angles, shape (run, servo) [rad].
         """
         alive = slice(None) if self._batch.alive.all() else self._batch.alive
@@ -289,8 +289,8 @@ def _rolling(
     Between two samples a ball turns by a vector, and its centre advances by that vector times the radius, upward.
 
     Args:
-        orientation: of the balls in the world, unit quaternions.
-        radius: of the balls [m].
+        orientation: orientation of the balls in the world, unit quaternions.
+        radius: radius of the balls [m].
     """
     before, after = orientation[:, :-1], orientation[:, 1:]
     vector = before[..., :1] * after[..., 1:] - after[..., :1] * before[..., 1:]

@@ -46,9 +46,9 @@ def simulate(
         runs: at least one; the robots must share their number of tail joints, and which servos have integral action
             and warm up.
         duration: [s].
-        timestep: of the physics [s], a whole part of the control period; that of the robots' size if None, and where
-            one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints. Within
-            ``divide_steps`` it is divided.
+        timestep: time step of the physics [s], a whole part of the control period; that of the robots' size if None,
+            and where one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints.
+            Within ``divide_steps`` it is divided.
         sample_stride: keep one sample of at most so many control periods: of the greatest number for which the first
             second, in which robots settle, and the run end with a sample.
         effort: whether the record holds what the servos do (``record.EFFORT``), without which there is no work, cost
@@ -123,9 +123,9 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, stride: int) -
     """Refuse what cannot be simulated; return the control period [s].
 
     Args:
-        runs: of the batch.
-        duration: of each run [s].
-        timestep: of the physics [s].
+        runs: runs of the batch.
+        duration: duration of each run [s].
+        timestep: time step of the physics [s].
         stride: control periods for each sample [-].
     """
     periods = {control_period(run.robot) for run in runs}
@@ -181,9 +181,9 @@ def _simulate_group(
     """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled.
 
     Args:
-        runs: of the group.
+        runs: runs of the group.
         ticks: number of control periods.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
         stride: control periods for each sample [-].
         progress: called with the finished fraction.
         has_effort: whether the record holds what the servos do.
@@ -238,8 +238,8 @@ def crawl(
         lake: the water around the robot; dry land if None.
         control: open loop if None.
         noise: standard deviation of noise on every servo angle commanded [rad].
-        seed: of the noise.
-        timestep: of the physics [s]; that of the robot's size if None.
+        seed: seed of the noise.
+        timestep: time step of the physics [s]; that of the robot's size if None.
 
     Returns:
         The record, without the dimension ``run`` (see ``record.schema``).

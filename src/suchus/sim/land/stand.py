@@ -45,7 +45,7 @@ def on_stand(
         target: commanded angle at each step [rad].
         load: torque that acts on the joint from outside at each step [N m].
         gripped: whether the joint is clamped at each step.
-        timestep: of the physics, and of all samples [s].
+        timestep: time step of the physics, and of all samples [s].
 
     Raises:
         UnknownName: there is no such servo.

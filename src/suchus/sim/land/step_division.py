@@ -62,7 +62,7 @@ def divided_step(timestep: float) -> float:
     """Return the time step that a simulation takes for the one that it was given, and count the simulation.
 
     Args:
-        timestep: of the physics, as given [s].
+        timestep: time step of the physics, as given [s].
     """
     divisor = 1
     for division in _active:

@@ -124,10 +124,10 @@ class Stepper:
     """A run whose water is solved elsewhere.
 
     Args:
-        run: of one robot.
+        run: run of one robot.
         joints: names of those that the water feels beside the root, which then moves in its plane; None for all, and
             a root that moves in space.
-        timestep: of the physics [s], a whole part of the control period.
+        timestep: time step of the physics [s], a whole part of the control period.
         ticks: control periods for which controller, noise and record are prepared.
         controller: what decides; None for the one that the run names.
         begin: state in which it begins; None for the controller's first posture.
@@ -329,7 +329,7 @@ class Stepper:
         """Return the number of physics steps of the next interval; it ends at a time [s], fault or push at the latest.
 
         Args:
-            time: at which an interval must end [s].
+            time: time at which an interval must end [s].
             max_steps: greatest number of physics steps in an interval [-].
             landing: number of intervals of about equal length before such an end, so that none is very short [-].
         """

@@ -48,8 +48,8 @@ class Tolerances:
         """Return a run with one robot that was built of its design, on one ground.
 
         Args:
-            run: as designed; its own zero errors and plays are replaced.
-            seed: of the errors; runs of equal bodies with equal seeds get the same.
+            run: run as designed; its own zero errors and plays are replaced.
+            seed: seed of the errors; runs of equal bodies with equal seeds get the same.
         """
         rng = np.random.default_rng(seed)
         servos = len(servo_names(run.robot))

@@ -25,8 +25,8 @@ def measure_trunk_steering(
     Args:
         robot: the robot.
         gait: the gait.
-        bend: of the trunk, above 0 to 1.5 [rad].
-        cycles: that are measured [-].
+        bend: bend angle of the trunk, above 0 to 1.5 [rad].
+        cycles: number of cycles that are measured [-].
 
     Raises:
         OutsideLimits: the trunk cannot bend as far, or the gait has measured curves.

@@ -17,7 +17,7 @@ def tail_joint_spread(angles: xr.DataArray, joints: Sequence[str]) -> xr.DataArr
     Paper: section III.C, "the angle of rotation of each joint is the same".
 
     Args:
-        angles: of joints by name, with the dimension ``joint`` [rad].
+        angles: angles of joints by name, with the dimension ``joint`` [rad].
         joints: names of the cable joints; see ``design.cable_joints``.
     """
     bends = angles.sel(joint=list(joints))
@@ -93,8 +93,8 @@ def bend_swings(bend: xr.DataArray, period: xr.DataArray) -> xr.DataArray:
     """Return how often a bend over whole cycles changes its side in a cycle [-].
 
     Args:
-        bend: over time, without the sample that begins the next cycle [rad].
-        period: of a cycle [s].
+        bend: bend angle over time, without the sample that begins the next cycle [rad].
+        period: period of a cycle [s].
     """
     step = float(bend.time[1] - bend.time[0])
     cycles = bend.sizes["time"] * step / period

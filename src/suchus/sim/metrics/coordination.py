@@ -17,8 +17,8 @@ def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
     has.
 
     Args:
-        phase: of the limbs, with the dimension ``leg`` [cycle].
-        gait: whose phases are meant.
+        phase: phase of the limbs, with the dimension ``leg`` [cycle].
+        gait: gait whose phases are meant.
     """
     target_phases, legs = gait.limb_phases, phase.sizes["leg"]
     errors = []
@@ -40,8 +40,8 @@ def cycles_until(
     For good: every later sample of the record is within bounds, for at least ``hold`` cycles.
 
     Args:
-        error: with the dimension ``time`` [cycle].
-        period: of one cycle [s].
+        error: error with the dimension ``time`` [cycle].
+        period: period of one cycle [s].
         start: from when the cycles count [s].
         hold: least time within the tolerance until the end of the record [cycle].
         tolerance: the bounds [cycle].

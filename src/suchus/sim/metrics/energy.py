@@ -24,8 +24,8 @@ def effort(record: xr.Dataset, name: str, start: float = START, end: float | Non
     A value belongs to the time between the sample before and its own: the first sample of the window has no part in it.
 
     Args:
-        record: of one run or several.
-        name: of ``record.EFFORT``.
+        record: record of one run or several.
+        name: one of ``record.EFFORT``.
         start: [s].
         end: [s]; the last sample if None.
 

@@ -36,8 +36,13 @@ def weight(record: xr.Dataset) -> float:
     return float(record.mass) * GRAVITY
 
 
-def advance(record: xr.Dataset, window: Window) -> np.ndarray:
-    """Return how far the centre of mass of one run comes over the ground in a cycle, forward and left [m]."""
+def displacement_per_cycle(record: xr.Dataset, window: Window) -> np.ndarray:
+    """Return the mean displacement of the centre of mass in a cycle, along x and y of the world, shape (2,) [m].
+
+    Args:
+        record: record of one run.
+        window: whole cycles over which the mean is taken.
+    """
     centre_of_mass = record.centre_of_mass.sel(xyz=["x", "y"]).transpose("time", "xyz").values
     start_position, end_position = (
         np.array([np.interp(t, record.time.values, column) for column in centre_of_mass.T])
@@ -57,7 +62,7 @@ def stance_forces(record: xr.Dataset, window: Window) -> xr.DataArray:
 
 def _in_course_frame(force: xr.DataArray, record: xr.Dataset, window: Window) -> xr.DataArray:
     """Return the components of a force along the course of a run: up, toward the midline, forward."""
-    forward, leftward = advance(record, window)
+    forward, leftward = displacement_per_cycle(record, window)
     size = np.hypot(forward, leftward)
     c, s = (forward / size, leftward / size) if size > 0 else (1.0, 0.0)
     x, y, z = (force.sel(xyz=axis, drop=True) for axis in "xyz")
@@ -74,7 +79,7 @@ class FootStep(NamedTuple):
     parts: Mapping[str, float]
     """Its components at that instant, by ``PARTS`` [body weight]."""
     time: float
-    """That instant as a share of stance [-]."""
+    """Time of that instant as a fraction of stance [-]."""
     stance: float
     """Duration of the stance that holds it [cycle]."""
 
@@ -83,7 +88,7 @@ def step(force: xr.DataArray, min_force: float) -> FootStep:
     """Return what stands out in the force on one foot over a cycle.
 
     Args:
-        force: of one foot, ``phase part`` [body weight].
+        force: force of one foot, ``phase part`` [body weight].
         min_force: vertical force from which it stands [body weight].
     """
     parts = {name: force.sel(part=name).values for name in PARTS}

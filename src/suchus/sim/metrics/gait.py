@@ -12,76 +12,83 @@ LOADED_SHARE = 0.0145
 """Least normal force of a limb that carries at an instant [weight of the robot]."""
 
 
-STANCE_BEGINS, STANCE_ENDS = 0.05, 0.025
+STANCE_BEGIN_LOAD, STANCE_END_LOAD = 0.05, 0.025
 """Mean loads of a limb above which its stance begins and below which it ends [weight of the robot]."""
-MIN_STANCE = 0.04
-"""Time over which a limb's load is averaged for its stance, and shortest stance and swing [cycle]."""
+MIN_STANCE_FRACTION = 0.04
+"""Fraction of the cycle over which a limb's load is averaged; also the shortest stance and swing [cycle]."""
 
 
 def stance(record: xr.Dataset) -> xr.DataArray:
-    """Return over time whether each limb is in stance: whether it carries, with hysteresis in load and time.
+    """Return over time whether each limb is in stance, by its vertical load over the robot's weight [-].
 
-    A foot on stiff ground bounces: it is out of contact in up to a quarter of its physics steps, and in more of longer
-    ones. The load is therefore averaged over ``MIN_STANCE``. A stance begins where the mean rises above
-    ``STANCE_BEGINS`` and ends where it falls below ``STANCE_ENDS``; a swing, then a stance, shorter than
-    ``MIN_STANCE`` does not count. The mean says which stances there are. It rises before a step of the load and falls
-    after it, so each stance lasts from its first sample above ``STANCE_BEGINS`` to its last above ``STANCE_ENDS``.
-    Duty factors and phases so defined change by less than 0.01 between time steps of 0.5 and 5 ms. ``loaded`` says what
-    carries at an instant.
+    A foot on stiff ground bounces, so that the load drops to zero for single physics steps. Stances are found in three
+    passes:
+
+    1. The load is averaged over ``MIN_STANCE_FRACTION`` of the cycle. A stance begins where this mean rises above
+       ``STANCE_BEGIN_LOAD``, and ends where it falls below ``STANCE_END_LOAD``.
+    2. Swings shorter than ``MIN_STANCE_FRACTION`` are filled. Then stances that are shorter are dropped.
+    3. The mean rises before the load does and falls after it. Each stance is therefore trimmed: it lasts from the
+       first sample of the load itself above ``STANCE_BEGIN_LOAD`` to the last one above ``STANCE_END_LOAD``.
+
+    Duty factors and phases change by less than 0.01 between time steps of 0.5 and 5 ms. ``loaded`` says which limbs
+    carry at an instant.
 
     Args:
-        record: of one run or several, over a cycle and more.
+        record: record of one run or several, over at least one cycle.
+
+    Returns:
+        True in stance, with the dimensions of ``limb_load`` but for ``xyz``.
     """
     load = limb_load(record).sel(xyz="z", drop=True) / (record.mass * GRAVITY)
-    step = float(record.time[1] - record.time[0]) if record.sizes["time"] > 1 else np.inf
-    stands: xr.DataArray = xr.apply_ufunc(
+    sample_interval = float(record.time[1] - record.time[0]) if record.sizes["time"] > 1 else np.inf
+    in_stance: xr.DataArray = xr.apply_ufunc(
         _stance_of_limb,
         load,
         record.period,
         input_core_dims=[["time"], []],
         output_core_dims=[["time"]],
-        kwargs={"step": step},
+        kwargs={"sample_interval": sample_interval},
         vectorize=True,
         output_dtypes=[bool],
     )
-    return stands.transpose(*load.dims)
+    return in_stance.transpose(*load.dims)
 
 
-def _stance_of_limb(load: np.ndarray, period: float, step: float) -> np.ndarray:
+def _stance_of_limb(load: np.ndarray, period: float, sample_interval: float) -> np.ndarray:
     """Return whether one limb is in stance, shape (time,).
 
     Args:
-        load: shape (time,) [weight of the robot]; NaN where nothing is known.
-        period: of the cycle [s].
-        step: between samples [s].
+        load: vertical load, shape (time,) [weight of the robot]; NaN where nothing is known.
+        period: period of the gait [s].
+        sample_interval: time between samples [s].
     """
-    samples = MIN_STANCE * period / step
-    half = min(round(samples / 2), len(load) - 1)
-    padded = np.pad(np.nan_to_num(load), half, mode="edge")
-    mean = np.convolve(padded, np.full(2 * half + 1, 1.0 / (2 * half + 1)), mode="valid")
-    is_decided = (mean > STANCE_BEGINS) | (mean < STANCE_ENDS)
+    window_samples = MIN_STANCE_FRACTION * period / sample_interval
+    half_window = min(round(window_samples / 2), len(load) - 1)
+    padded = np.pad(np.nan_to_num(load), half_window, mode="edge")
+    mean = np.convolve(padded, np.full(2 * half_window + 1, 1.0 / (2 * half_window + 1)), mode="valid")
+    is_decided = (mean > STANCE_BEGIN_LOAD) | (mean < STANCE_END_LOAD)
     last_decision = np.maximum.accumulate(np.where(is_decided, np.arange(len(load)), 0))
-    stands = _without_short(mean[last_decision] > STANCE_BEGINS, round(samples))
-    return stands & _between_loads(stands, np.nan_to_num(load))
+    in_stance = _without_short(mean[last_decision] > STANCE_BEGIN_LOAD, round(window_samples))
+    return in_stance & _between_loads(in_stance, np.nan_to_num(load))
 
 
-def _between_loads(stands: np.ndarray, load: np.ndarray) -> np.ndarray:
+def _between_loads(in_stance: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Return whether each sample lies from the first load of its stance to the last one, shape (time,).
 
     The record's first and last samples may lie within a stance, which then reaches to the record's end.
 
     Args:
-        stands: whether the limb is in stance, shape (time,).
+        in_stance: whether the limb is in stance, shape (time,).
         load: shape (time,) [weight of the robot].
     """
-    number = np.cumsum(np.diff(stands, prepend=stands[:1]))  # of the interval of equal state
-    index, count = np.arange(len(stands)), int(number[-1]) + 1
-    first, last = np.full(count, len(stands)), np.full(count, -1)
-    begins, lasts = load > STANCE_BEGINS, load > STANCE_ENDS
-    np.minimum.at(first, number[begins], index[begins])
-    np.maximum.at(last, number[lasts], index[lasts])
-    first[0], last[-1] = 0, len(stands)
-    return np.asarray((index >= first[number]) & (index <= last[number]))
+    interval_index = np.cumsum(np.diff(in_stance, prepend=in_stance[:1]))  # of the interval of equal state
+    index, count = np.arange(len(in_stance)), int(interval_index[-1]) + 1
+    first, last = np.full(count, len(in_stance)), np.full(count, -1)
+    is_above_begin, is_above_end = load > STANCE_BEGIN_LOAD, load > STANCE_END_LOAD
+    np.minimum.at(first, interval_index[is_above_begin], index[is_above_begin])
+    np.maximum.at(last, interval_index[is_above_end], index[is_above_end])
+    first[0], last[-1] = 0, len(in_stance)
+    return np.asarray((index >= first[interval_index]) & (index <= last[interval_index]))
 
 
 def _without_short(state: np.ndarray, samples: int) -> np.ndarray:
@@ -102,7 +109,7 @@ def loaded(record: xr.Dataset, threshold: float | None = None) -> xr.DataArray:
     """Tell which limbs carry at each instant; for stances, which last, see ``stance``.
 
     Args:
-        record: of one run or several, or one instant.
+        record: record of one run or several, or one instant.
         threshold: least normal force of a limb that carries [N]; ``LOADED_SHARE`` of the weight if None.
     """
     return limb_load(record).sel(xyz="z") > threshold_of(record, threshold)
@@ -133,7 +140,7 @@ def sensed_phase(record: xr.Dataset, start: float = START, end: float | None = N
     """Return the phase by which each leg is ahead of the first, LF, from the first harmonic of its stance [cycle].
 
     Args:
-        record: over a whole number of cycles.
+        record: record over a whole number of cycles.
         start: [s].
         end: [s]; the last sample if None.
     """

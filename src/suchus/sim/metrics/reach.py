@@ -16,8 +16,8 @@ def reach(robot: Robot, record: xr.Dataset) -> xr.DataArray:
     Legs and tail do not count.
 
     Args:
-        robot: whose record it is.
-        record: of one run or of several runs of robots with these lengths.
+        robot: robot whose record it is.
+        record: record of one run or of several runs of robots with these lengths.
     """
     tops = xr.apply_ufunc(
         lambda q, x, angles: _tops(robot, q, x, angles).max(axis=-1),
@@ -35,8 +35,8 @@ def _tops(robot: Robot, q: np.ndarray, position: np.ndarray, angles: np.ndarray)
     Args:
         robot: the design.
         q: orientation of the root, shape (..., 4).
-        position: of the root in the world, shape (..., 3) [m].
-        angles: of the hinges, shape (..., joint) [rad].
+        position: position of the root in the world, shape (..., 3) [m].
+        angles: angles of the hinges, shape (..., joint) [rad].
     """
     robot_layout, body_frames, up_axis = layout(robot), frames(robot, angles), rotation.upward(q)
     segments = {segment.name: segment for segment in robot_layout.robot.axis}
@@ -104,7 +104,7 @@ def longest_hold(height: xr.DataArray, min_height: float) -> xr.DataArray:
     """Return the longest time without a break in which a height is at least ``min_height`` [s].
 
     Args:
-        height: over time [m].
+        height: height over time [m].
         min_height: height that the samples must reach [m].
     """
     step = float(height.time[1] - height.time[0])

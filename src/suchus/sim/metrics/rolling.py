@@ -15,9 +15,9 @@ def roll_angle(record: xr.Dataset, start: float = 0.0, end: float | None = None)
     not rolled, though its gyroscope reads a mean rate.
 
     Args:
-        record: of runs.
-        start: of the measurement, where the angle is zero [s].
-        end: of the measurement [s]; the last sample if None.
+        record: record of runs.
+        start: start of the measurement, where the angle is zero [s].
+        end: end of the measurement [s]; the last sample if None.
     """
     window = time_window(record, start, end)
     body_line = window.snout - window.tail_tip
@@ -37,7 +37,7 @@ def roll_rate(record: xr.Dataset, start: float = 0.0, end: float | None = None) 
     """Return the mean rate of roll about the long axis, right side down positive [rad/s].
 
     Args:
-        record: of runs.
+        record: record of runs.
         start: [s]; from there to the end there should be whole cycles.
         end: [s]; the last sample if None.
     """

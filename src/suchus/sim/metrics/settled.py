@@ -120,8 +120,8 @@ def whole_cycles(time: Float[np.ndarray, " time"], period: float, start: float =
     A run ends at the control period nearest to its duration.
 
     Args:
-        time: of the samples, equally spaced [s].
-        period: of the cycle [s].
+        time: time of the samples, equally spaced [s].
+        period: period of the cycle [s].
         start: time at which the first cycle begins [s].
     """
     half_sample = 0.5 * (time[-1] - time[-2]) if len(time) > 1 else 0.0
@@ -134,8 +134,8 @@ def cycle_speeds(record: xr.Dataset, period: float, start: float = 0.0) -> Float
     The speed is that of the horizontal displacement of a cycle. It is negative where the body moves tail first.
 
     Args:
-        record: of one run, with ``centre_of_mass`` and ``orientation``.
-        period: of the cycle [s].
+        record: record of one run, with ``centre_of_mass`` and ``orientation``.
+        period: period of the cycle [s].
         start: time at which the first cycle begins [s].
     """
     time = record.time.values.astype(float)

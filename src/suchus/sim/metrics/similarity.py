@@ -37,9 +37,9 @@ def swim_numbers(*, speed: float, length: float, frequency: float, swing: float,
 
     Args:
         speed: mean speed of the centre of mass along its course; tail first it counts as forward [m/s].
-        length: of the body, snout to tail tip [m].
-        frequency: of the beat [Hz].
-        swing: of the tail's tip from side to side, peak to peak [m].
+        length: length of the body, snout to tail tip [m].
+        frequency: frequency of the beat [Hz].
+        swing: distance of the tail's tip from side to side, peak to peak [m].
         viscosity: kinematic, of the medium [m2/s].
     """
     pace = abs(speed)

@@ -44,7 +44,7 @@ def support_polygon(record: xr.Dataset, time: float, threshold: float | None = N
     can touch: the support is never larger than that.
 
     Args:
-        record: of one run.
+        record: record of one run.
         time: [s].
         threshold: least normal force of what carries [N]; a share of the weight if None.
     """
@@ -68,7 +68,7 @@ def support_distance(record: xr.Dataset, time: float) -> float:
     side.
 
     Args:
-        record: of one run.
+        record: record of one run.
         time: [s].
     """
     corners = support_polygon(record, time)

@@ -13,7 +13,7 @@ def time_window(record: xr.Dataset, start: float = START, end: float | None = No
     """Return the samples from ``start`` to ``end``, both included.
 
     Args:
-        record: of a run.
+        record: record of a run.
         start: [s].
         end: [s]; the last sample if None.
 
@@ -34,7 +34,7 @@ def require_complete(record: xr.Dataset) -> xr.Dataset:
     """Return a record none of whose runs ended early.
 
     Args:
-        record: of several runs.
+        record: record of several runs.
 
     Raises:
         Diverged: the simulation of a run diverged; the error carries the time and the record of that run so far.
@@ -56,10 +56,10 @@ def mean_cycle(values: xr.DataArray, start: float, period: float, cycles: int) -
     """Return the mean of whole cycles over the phase, dimension ``phase`` [cycle].
 
     Args:
-        values: of one run, with the dimension ``time``.
+        values: values of one run, with the dimension ``time``.
         start: time at which the first cycle begins [s].
-        period: of the cycle [s].
-        cycles: how many.
+        period: period of the cycle [s].
+        cycles: number of cycles.
 
     Raises:
         IncompatibleRecord: the record is too short.

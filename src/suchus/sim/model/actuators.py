@@ -20,8 +20,8 @@ def add_servo(spec: Any, number: int, name: str, servo: Servo, robot_layout: Lay
 
     Args:
         spec: the model.
-        number: of the servo in the layout.
-        name: of the servo, and of its joint or cable.
+        number: number of the servo in the layout.
+        name: name of the servo, and of its joint or cable.
         servo: its design.
         robot_layout: the layout.
     """

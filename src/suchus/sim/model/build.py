@@ -27,7 +27,7 @@ def build(robot: Robot, *, timestep: float = TIMESTEP, relief: Relief | None = N
 
     Args:
         robot: the design.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
         relief: what stands up from even ground.
 
     Returns:
@@ -155,9 +155,9 @@ def _add_force(spec: Any, name: str, object_type: Any, touching: str) -> None:
     """Add a sensor of the net contact force of a part on the ground, in the world frame.
 
     Args:
-        spec: of the model.
-        name: of the sensor.
-        object_type: of the part: a geom, a body, or an x-body, which stands for its whole subtree.
+        spec: MuJoCo specification of the model.
+        name: name of the sensor.
+        object_type: type of the part: a geom, a body, or an x-body, which stands for its whole subtree.
         touching: name of the part.
     """
     force, net, count = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE), 3, 1
@@ -229,8 +229,8 @@ def skin(
     """Add a capsule of skin from ``start`` to ``end``.
 
     Args:
-        body: that carries the capsule.
-        name: of the geom.
+        body: body that carries the capsule.
+        name: name of the geom.
         start: centre of one end in the body's frame [m].
         end: centre of the other end [m].
         radius: [m].
@@ -262,7 +262,7 @@ def _touches(geom: Any, friction: float, contact: Contact, dimensions: int, colo
         geom: the shape.
         friction: sliding friction coefficient [-].
         contact: stiffness, torsional and rolling friction.
-        dimensions: of the contact, MuJoCo's ``condim`` [-].
+        dimensions: dimensions of the contact, MuJoCo's ``condim`` [-].
         colour: red, green, blue and opacity, 0 to 1.
     """
     # MuJoCo takes the maximum of two frictions at equal priority, so the robot's surfaces take precedence.
@@ -483,7 +483,7 @@ def standing(model: Any, robot: Robot, hip_height: float, servos: np.ndarray) ->
     Args:
         model: its ``mujoco.MjModel``, with a ground.
         robot: the design.
-        hip_height: of the root, higher where something would be below the ground [m].
+        hip_height: height of the root, higher where something would be below the ground [m].
         servos: shape (servo,) [rad].
     """
     data = mujoco.MjData(model)

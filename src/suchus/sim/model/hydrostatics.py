@@ -32,11 +32,11 @@ class Hydrostatics:
     """Mass with the foam [kg]."""
     volume: float
     """Volume with the foam, all of it under water [m3]."""
-    floats: bool
+    is_floating: bool
     """Whether it is lighter than the water that it can displace."""
-    missing: float
+    missing_volume: float
     """Volume that it lacks to float with nothing above the surface; negative where it has some to spare [m3]."""
-    surplus: float
+    surplus_mass: float
     """Mass by which it is too heavy; negative where it could carry more [kg]."""
     draft: float
     """Distance from the surface down to its lowest point, upright; NaN if it sinks or no trim balances it [m]."""
@@ -71,13 +71,13 @@ class Hydrostatics:
 class _Rigid:
     """A robot frozen in a posture: its pieces, its weight and its centre of mass, root at the origin."""
 
-    def __init__(self, robot: Robot, servos: np.ndarray, density: float, air_fraction: AirFractions) -> None:
+    def __init__(self, robot: Robot, servo_angles: np.ndarray, density: float, air_fraction: AirFractions) -> None:
         """Compute positions, mass and volume of the robot in its posture."""
         table = np.array(pieces(robot))
         model = wet_model(robot, TIMESTEP, None, len(table))
         self.data = data = mujoco.MjData(model)
         data.qpos[:3] = 0.0  # the model begins at a height that may be beyond the reach of a small robot
-        _bend(model, data, robot, servos)
+        _bend(model, data, robot, servo_angles)
         mujoco.mj_fwdPosition(model, data)
         self.table = unpack_table(model.numeric_data)
         self.centre, self.mass = np.array(data.subtree_com[0]), float(model.body_subtreemass[0])
@@ -86,19 +86,30 @@ class _Rigid:
         self.reach = 2.0 * float(robot.length)
         self.sunk = self.volume <= self.mass / density
 
-    def lever_at(self, heel: float, rise: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """Return up in the body's frame, the lever from the centre of mass to that of buoyancy, and the level [m]."""
-        up_axis = np.array([sin(rise), cos(rise) * sin(heel), cos(rise) * cos(heel)])
+    def lever_at(self, heel: float, nose_up: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """Return the lever from the centre of mass to that of buoyancy at an attitude and its own draft.
 
-        def surplus(height: float) -> float:
+        Args:
+            heel: angle of heel [rad].
+            nose_up: pitch, nose up positive [rad].
+
+        Returns:
+            The upward unit vector in the body's frame, shape (3,) [-]; the lever in the body's frame, shape (3,) [m];
+            and the height of the water's surface along the upward vector, from the body's origin [m].
+        """
+        up_axis = np.array([sin(nose_up), cos(nose_up) * sin(heel), cos(nose_up) * cos(heel)])
+
+        def surplus_volume(height: float) -> float:
             return float(self._statics(up_axis, height)[0] - self.mass / self.density)
 
-        level = self.reach if self.sunk else brentq(surplus, -self.reach, self.reach, xtol=1e-10)
-        sums = self._statics(up_axis, level)
-        return up_axis, sums[1:4] / sums[0] - self.centre, level
+        surface_height = self.reach if self.sunk else brentq(surplus_volume, -self.reach, self.reach, xtol=1e-10)
+        sums = self._statics(up_axis, surface_height)
+        return up_axis, sums[1:4] / sums[0] - self.centre, surface_height
 
-    def _statics(self, up_axis: np.ndarray, level: float) -> np.ndarray:
-        return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up_axis, level, self.air_fraction))
+    def _statics(self, up_axis: np.ndarray, surface_height: float) -> np.ndarray:
+        return np.asarray(
+            hydrostatic(self.table, self.data.xpos, self.data.xmat, up_axis, surface_height, self.air_fraction)
+        )
 
     def trim_submerged(self) -> float:
         """Return the pitch at which the centre of buoyancy is above that of mass, under water, nose down [rad]."""
@@ -106,25 +117,29 @@ class _Rigid:
         arm = sums[1:4] / sums[0] - self.centre
         return -atan2(arm[0], arm[2]) + 0.0  # no -0
 
-    def balance(self, heel: float, guess: float) -> tuple[float, float, float]:
-        """Return rise of the nose [rad], righting lever and level [m] at a heel; afloat the trim is in equilibrium.
+    def balance(self, heel: float, nose_up_guess: float) -> tuple[float, float, float]:
+        """Return pitch [rad], righting lever [m] and height of the surface [m] at a heel.
 
-        The search begins at the rise ``guess``. All three are NaN where no rise up to 80 degrees is an equilibrium: the
-        body would float on end.
+        Afloat, the pitch is that of equilibrium. All three are NaN where no pitch up to 80 degrees is an equilibrium:
+        the body would float on end. A body that sinks keeps the pitch 0.
+
+        Args:
+            heel: angle of heel [rad].
+            nose_up_guess: pitch at which the search begins, nose up positive [rad].
         """
 
-        def trim_moment(rise: float) -> float:
-            up_axis, arm, _ = self.lever_at(heel, rise)
+        def trim_moment(nose_up: float) -> float:
+            up_axis, arm, _ = self.lever_at(heel, nose_up)
             forward = np.array([1.0, 0.0, 0.0]) - up_axis[0] * up_axis
             return float(arm @ forward)
 
-        rise = 0.0 if self.sunk else _root(trim_moment, guess)
-        if isnan(rise):
+        nose_up = 0.0 if self.sunk else _root(trim_moment, nose_up_guess)
+        if isnan(nose_up):
             return nan, nan, nan
-        up_axis, arm, level = self.lever_at(heel, rise)
+        up_axis, arm, surface_height = self.lever_at(heel, nose_up)
         forward = np.array([1.0, 0.0, 0.0]) - up_axis[0] * up_axis
         leftward = np.cross(up_axis, forward / np.linalg.norm(forward))
-        return rise, -float(arm @ leftward), level
+        return nose_up, -float(arm @ leftward), surface_height
 
 
 def _root(function: Any, guess: float) -> float:
@@ -136,59 +151,59 @@ def _root(function: Any, guess: float) -> float:
     return float("nan")
 
 
-def _bend(model: Any, data: Any, robot: Robot, servos: np.ndarray) -> None:
+def _bend(model: Any, data: Any, robot: Robot, servo_angles: np.ndarray) -> None:
     robot_layout = layout(robot)
     direct = [i for i in range(len(robot_layout.servos)) if i not in robot_layout.cables]
-    data.qpos[joint_addresses(model, [robot_layout.servos[i] for i in direct])] = servos[direct]
+    data.qpos[joint_addresses(model, [robot_layout.servos[i] for i in direct])] = servo_angles[direct]
 
 
 def hydrostatics(
     robot: Robot,
-    servos: Float[np.ndarray, " servo"] | None = None,
+    servo_angles: Float[np.ndarray, " servo"] | None = None,
     *,
     density: float = WATER_DENSITY,
     air_fraction: float | AirFractions = 1.0,
-    heels: int = 37,
+    heel_count: int = 37,
 ) -> Hydrostatics:
     """Return how a robot floats, rigid in a posture with its cables straight.
 
     Args:
         robot: the design.
-        servos: angles of its servos; zeros if None.
-        density: of the water [kg/m3].
+        servo_angles: angles of its servos [rad]; zeros if None.
+        density: density of the water [kg/m3].
         air_fraction: share of the hull's air that is kept, or those of its front and rear chambers [-].
-        heels: angles of heel from 0 to 180 degrees at which the lever is computed [-].
+        heel_count: number of angles of heel, from 0 to 180 degrees, at which the lever is computed [-].
 
     Raises:
         InvalidDesign: a density or air fraction that cannot be, or another number of servo angles.
     """
     require("hydrostatics", "density", density, 1.0, 2e4, "kg/m3")
     fractions = _fraction_pair(air_fraction)
-    require("hydrostatics", "heels", heels, 3, 1000, "")
-    angles = np.zeros(len(servo_names(robot))) if servos is None else np.asarray(servos, dtype=float)
-    if len(angles) != len(servo_names(robot)):
+    require("hydrostatics", "heel_count", heel_count, 3, 1000, "")
+    posture = np.zeros(len(servo_names(robot))) if servo_angles is None else np.asarray(servo_angles, dtype=float)
+    if len(posture) != len(servo_names(robot)):
         raise InvalidDesign(
-            f"{len(angles)} servo angles are given and robot {robot.name!r} has {len(servo_names(robot))} servos."
+            f"{len(posture)} servo angles are given and robot {robot.name!r} has {len(servo_names(robot))} servos."
         )
-    body = _Rigid(robot, angles, density, fractions)
-    floats = body.volume * density > body.mass
-    rise, _, level = body.balance(0.0, 0.0)
-    heel = np.linspace(0.0, np.pi, int(heels))
-    lever, guess = np.zeros(len(heel)), 0.0 if isnan(rise) else rise
-    for i, angle in enumerate(heel):
-        balanced, lever[i], _ = body.balance(float(angle), guess)
-        guess = guess if isnan(balanced) else balanced
-    guess = 0.0 if isnan(rise) else rise
-    slope = (body.balance(_SMALL, guess)[1] - body.balance(-_SMALL, guess)[1]) / (2 * _SMALL)
-    ends = nan if isnan(rise) else _lowest_point(body, body.lever_at(0.0, rise)[0])
+    body = _Rigid(robot, posture, density, fractions)
+    is_floating = body.volume * density > body.mass
+    nose_up, _, surface_height = body.balance(0.0, 0.0)
+    heel = np.linspace(0.0, np.pi, int(heel_count))
+    lever, nose_up_guess = np.zeros(len(heel)), 0.0 if isnan(nose_up) else nose_up
+    for i, heel_angle in enumerate(heel):
+        balanced_nose_up, lever[i], _ = body.balance(float(heel_angle), nose_up_guess)
+        nose_up_guess = nose_up_guess if isnan(balanced_nose_up) else balanced_nose_up
+    nose_up_guess = 0.0 if isnan(nose_up) else nose_up
+    slope = (body.balance(_SMALL, nose_up_guess)[1] - body.balance(-_SMALL, nose_up_guess)[1]) / (2 * _SMALL)
+    lowest = nan if isnan(nose_up) else _lowest_point(body, body.lever_at(0.0, nose_up)[0])
     return Hydrostatics(
         mass=body.mass,
         volume=body.volume,
-        floats=bool(floats),
-        missing=body.mass / density - body.volume,
-        surplus=body.mass - density * body.volume,
-        draft=level - ends if floats else float("nan"),
-        trim=-rise + 0.0 if floats else float("nan"),
+        is_floating=bool(is_floating),
+        missing_volume=body.mass / density - body.volume,
+        surplus_mass=body.mass - density * body.volume,
+        draft=surface_height - lowest if is_floating else float("nan"),
+        trim=-nose_up + 0.0 if is_floating else float("nan"),  # no -0
         trim_submerged=body.trim_submerged(),
         metacentric_height=float(slope),
         heel=heel,

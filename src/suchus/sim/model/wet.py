@@ -34,7 +34,7 @@ def wet_model(
 
     Args:
         robot: the design.
-        timestep: of the physics [s].
+        timestep: time step of the physics [s].
         relief: what stands up from even ground.
         max_pieces: pieces that the table has room for, alike in all models of a batch.
         acting: whether the water acts in it; ``land.wetting.install`` goes before.
@@ -61,7 +61,7 @@ def compile_with_pieces(
     """Return a compiled ``mujoco.MjSpec`` that carries a robot's pieces.
 
     Args:
-        spec: of a robot, perhaps with further edits that keep its bodies.
+        spec: MuJoCo specification of a robot, perhaps with further edits that keep its bodies.
         robot: the design.
         max_pieces: see ``wet_model``; as much as needed if None.
         acting: see ``wet_model``.
@@ -88,9 +88,9 @@ def with_pieces(
     """Return a compiled ``mujoco.MjSpec`` that carries a table of pieces.
 
     Args:
-        spec: of any bodies.
-        table: of pieces; its bodies are numbered as MuJoCo numbers them.
-        length: for the Reynolds number of friction [m].
+        spec: MuJoCo specification of any bodies.
+        table: table of pieces; its bodies are numbered as MuJoCo numbers them.
+        length: length for the Reynolds number of friction [m].
         max_pieces: pieces that the table has room for; as many as there are if None.
         acting: see ``wet_model``.
         extra_numbers: see ``compile_with_pieces``.

@@ -297,7 +297,7 @@ def ground_of(record: xr.Dataset) -> Ground | None:
     """Return what a run stood on; None where it floats, or where the record is of before grounds were kept.
 
     Args:
-        record: of one run, with or without the dimension ``run``.
+        record: record of one run, with or without the dimension ``run``.
 
     Raises:
         IncompatibleRecord: what the record says is no ground.

@@ -204,7 +204,7 @@ class MidlineChain:
         """Return the midline about its centre, and the pose of the centre, in the frame of the flow.
 
         Args:
-            posture: of the chain.
+            posture: posture of the chain.
             min_half_width: half-width below which the body is thickened [m].
         """
         middle, station = self._shares
@@ -227,8 +227,8 @@ class MidlineChain:
 
         Args:
             place: posture; with that in the middle of the step, force times velocity is the power to second order.
-            loads: on the parts; torques about ``loads.reference_point``.
-            origin: of the grid's frame in the world of the flow [m].
+            loads: loads on the parts; torques about ``loads.reference_point``.
+            origin: origin of the grid's frame in the world of the flow [m].
         """
         points = self.centres(place)
         pull, turn = loads.parts.force[:, :2], loads.parts.torque
@@ -282,9 +282,9 @@ class MidlineChain:
 
         Args:
             place: posture.
-            rate: of the coordinates [m/s, rad/s].
-            origin: of the grid's frame in the world of the flow [m].
-            axes: of the flow [-].
+            rate: rate of the coordinates [m/s, rad/s].
+            origin: origin of the grid's frame in the world of the flow [m].
+            axes: number of axes of the flow [-].
         """
         points = self.centres(place)
         reference_points, linear = points.position.T - origin, (points.jacobian @ rate).T

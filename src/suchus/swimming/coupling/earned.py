@@ -30,11 +30,11 @@ class ForceParts:
     """Force across a link in one swim, and the two parts of the force that the section model predicts."""
 
     flow: Float[np.ndarray, " sample"]
-    """Of the flow [N]."""
+    """Force across a link by the flow solver [N]."""
     added_mass: Float[np.ndarray, " sample"]
-    """Of sections, by the acceleration [N]."""
+    """Force by the section model, the part by acceleration [N]."""
     drag: Float[np.ndarray, " sample"]
-    """Of sections, by the speed [N]."""
+    """Force by the section model, the part by speed [N]."""
     block: int
     """Samples in half a cycle [-]."""
 
@@ -102,13 +102,13 @@ def earned_correction(
     """Return the correction of all links with valid factors, None without one, and the judgement of every link.
 
     Args:
-        robot: that swam.
-        records: of one run each, in a flow of one viscosity; the factors are fitted to the first and held against the
-            others.
-        period: of a cycle [s].
+        robot: robot that swam.
+        records: records of one run each, in a flow of one viscosity; the factors are fitted to the first and held
+            against the others.
+        period: period of a cycle [s].
         start_time: time from which samples count [s].
         viscosity: kinematic, of the flow's water [m2/s].
-        name: of the correction.
+        name: name of the correction.
     """
     comparisons = [compare_sections(robot, record, start_time=start_time, viscosity=viscosity) for record in records]
     links = link_bodies(robot, comparisons[0].joints)

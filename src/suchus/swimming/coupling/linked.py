@@ -28,7 +28,7 @@ class LinkChain:
 
     Args:
         robot: which.
-        links: of its model.
+        links: links of its model.
         start: place of the root at the beginning [m].
     """
 
@@ -104,8 +104,8 @@ class LinkChain:
 
         Args:
             place: posture; with that in the middle of the step, force times velocity is the power to second order.
-            loads: on the links; torques about ``loads.reference_point``.
-            origin: of the grid's frame in the world of the flow [m].
+            loads: loads on the links; torques about ``loads.reference_point``.
+            origin: origin of the grid's frame in the world of the flow [m].
         """
         jacobian = self._jacobian(place)
         force, torque = self._wrenches(place, loads, origin)
@@ -132,9 +132,9 @@ class LinkChain:
 
         Args:
             place: posture.
-            rate: of the coordinates [m/s, rad/s].
-            origin: of the grid's frame in the world of the flow [m].
-            axes: of the flow, 3 [-].
+            rate: rate of the coordinates [m/s, rad/s].
+            origin: origin of the grid's frame in the world of the flow [m].
+            axes: number of axes of the flow, 3 [-].
         """
         states = self.states(ChainState(place, rate))
         return Twists(reference_points=states.position - origin, linear=states.velocity, angular=states.spin)

@@ -68,7 +68,7 @@ def swim_on_joints(
     sink without; a raised tail weighs nothing.
 
     Args:
-        robot: who swims.
+        robot: robot that swims.
         gait: what its servos are commanded; limbs are held back.
         setting: grid, water and time, of a free body in space.
         checkpoint: file that robot and water are kept in; if it exists, the swim goes on from there.

@@ -65,8 +65,8 @@ def coupling_record(
     Args:
         run: of which.
         chain: its midline.
-        series: of every step.
-        record: of the robot alone, of one run.
+        series: series of every step.
+        record: record of the robot alone, of one run.
         added_mass: added mass at the start, in the robot's coordinates.
     """
     values = _sampled(chain, series, record)

@@ -56,9 +56,9 @@ def residual_table(
     """Return the difference between the section model and the flow of a record.
 
     Args:
-        robot: that swam.
-        record: of one run in a flow, see ``record.COUPLED``.
-        period: of a cycle [s].
+        robot: robot that swam.
+        record: record of one run in a flow, see ``record.COUPLED``.
+        period: period of a cycle [s].
         start_time: time from which samples count [s].
         viscosity: kinematic, of the flow's water [m2/s].
 

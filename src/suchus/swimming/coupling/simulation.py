@@ -34,7 +34,7 @@ def simulate(
     Args:
         runs: at least one; see ``land.simulate``.
         duration: [s].
-        timestep: of the physics [s]; that of the robots' size, and in a flow of its steps, if None.
+        timestep: time step of the physics [s]; that of the robots' size, and in a flow of its steps, if None.
         sample_stride: keep one sample of so many control periods.
         keep: folder in which each run in a flow, robot and water, is kept as far as it has come, in a file named after
             the run; where it holds one, the run goes on from there, to the same bytes. None keeps nothing.

@@ -108,7 +108,7 @@ def check_swim(run: Run, duration: float) -> None:
     """Refuse a run whose gait, faults, control or body a flow cannot have, before the flow is set up.
 
     Args:
-        run: with a ``Slice`` or a ``Space``.
+        run: run with a ``Slice`` or a ``Space``.
         duration: [s].
 
     Raises:
@@ -220,10 +220,11 @@ class Swim:
     """One run in a flow, from rest.
 
     Args:
-        run: with a ``Slice`` or a ``Space``.
+        run: run with a ``Slice`` or a ``Space``.
         duration: [s]; infinity keeps no samples of the robot.
-        timestep: of the physics [s]; None for the largest that the robot's size and ``MIN_PHYSICS_STEPS`` allow.
-        thread_count: of the flow.
+        timestep: time step of the physics [s]; None for the largest that the robot's size and ``MIN_PHYSICS_STEPS``
+            allow.
+        thread_count: number of threads of the flow.
         controller: what decides instead of the run's; None for that one.
         begin: state of the robot at the beginning; None for the controller's first posture.
 
@@ -757,7 +758,7 @@ def _earlier_position(state: CoordinateState, span: float) -> np.ndarray:
     """Return the position of the robot a short time before a state, at its rates.
 
     Args:
-        state: in space with a quaternion; see ``CoordinateState``.
+        state: state in space with a quaternion; see ``CoordinateState``.
         span: time [s].
     """
     position, rate = state.position, state.rate

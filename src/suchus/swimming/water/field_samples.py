@@ -31,7 +31,7 @@ class FieldWindow:
 
         Args:
             grid: the cells.
-            length: of the body [m].
+            length: length of the body [m].
             rear_end: end of the window, from the snout [body length].
             half_width: half of its width [body length].
         """
@@ -97,10 +97,10 @@ def course(sim: flow.Simulation, samples: Samples, period: float, cycles: int) -
     """Return the lateral course of a free body from its start: midline and centre of mass at equal intervals of time.
 
     Args:
-        sim: at its end.
+        sim: simulation at its end.
         samples: of the swim, those of ``sample_course`` among them.
-        period: of one cycle [s].
-        cycles: that were swum [-].
+        period: period of one cycle [s].
+        cycles: number of cycles that were swum [-].
     """
     times, course_samples = period * np.arange(TICKS * cycles + 1) / TICKS, samples.series("course")
     lateral = np.column_stack(
@@ -124,7 +124,7 @@ def wake(sim: flow.Simulation) -> xr.Dataset:
     """Return the midline, the vorticity in the plane of symmetry, and the strongest vortices over and beside it.
 
     Args:
-        sim: of one ``Trunk``, the half above its plane of symmetry.
+        sim: simulation of one ``Trunk``, the half above its plane of symmetry.
     """
     grid, spine = sim.setup.grid, midline(sim)
     shape = sim.setup.bodies[0].shape
@@ -160,9 +160,9 @@ class VortexSampler:
         """Begin to wait for the last cycle.
 
         Args:
-            frequency: of the swim [Hz].
-            end: of its last cycle [s].
-            frames: that are kept, the last at the end; 0 keeps none [-].
+            frequency: frequency of the swim [Hz].
+            end: end of its last cycle [s].
+            frames: frames that are kept, the last at the end; 0 keeps none [-].
         """
         self._frequency, self._end, self._frames = frequency, end, frames
 

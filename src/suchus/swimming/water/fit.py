@@ -52,9 +52,9 @@ def fit(
     is free, the passive end straight.
 
     Args:
-        robot: whose joints.
+        robot: robot whose joints are meant.
         wave: to be made.
-        name: of the motion.
+        name: name of the motion.
         max_misfit: greatest misfit that still counts as the same wave, see ``Fit.misfit`` [-].
         limbs: yaw and pitch at which limbs are held, see ``motion.swimming_gait`` [rad].
 
@@ -144,8 +144,8 @@ def _check_amplitudes(robot: Robot, name: str, amplitudes: Sequence[float]) -> N
 
     Args:
         robot: the design.
-        name: of the motion, for the message.
-        amplitudes: of the bend of each lateral servo [rad].
+        name: name of the motion, for the message.
+        amplitudes: amplitudes of the bend of each lateral servo [rad].
     """
     limits = {hinge.name: _either_side(*(hinge.range or (-np.pi, np.pi))) for hinge in robot.axis_hinges}
     limits |= {cable.name: cable.bend_limit for cable in robot.cables}
@@ -173,8 +173,8 @@ def swim_of(
 
     Args:
         robot: any robot whose axis bends sideways; its hull makes no difference.
-        frequency: of the wave [Hz]; by default 1 Hz for bodies of 0.4 to 1.6 m, and as many control periods a cycle for
-            others.
+        frequency: frequency of the wave [Hz]; by default 1 Hz for bodies of 0.4 to 1.6 m, and as many control periods a
+            cycle for others.
         reading: letter of the reading of (20), see ``kinematics.wave.READINGS``.
         limbs: yaw and pitch at which limbs are held, see ``motion.swimming_gait`` [rad].
 
@@ -202,7 +202,7 @@ def attempts(robot: Robot, *, frequency: float) -> list[Attempt]:
     """Return the fit of a robot's joints to (20) in each of its readings.
 
     Args:
-        robot: whose joints.
+        robot: robot whose joints are meant.
         frequency: which the article does not give [Hz].
     """
     results = []

@@ -32,7 +32,7 @@ def immersed(
     Seen from above the frame is turned by half a turn, not mirrored: counter-clockwise stays counter-clockwise.
 
     Args:
-        outline: of the robot; stations about one cell apart serve well.
+        outline: outline of the robot; stations about one cell apart serve well.
         motion: how it swims.
         sway: harmonic of the snout's displacement to the right [m]; zero for a free body, which finds it by itself.
         turn: harmonic of the head's direction [rad].
@@ -63,7 +63,7 @@ def half_heights(outline: Outline, tail_height: float = 0.0) -> np.ndarray:
     """Return half of the body's height at the stations, without limbs, with a raised tail if requested [m].
 
     Args:
-        outline: of the robot.
+        outline: outline of the robot.
         tail_height: height that the last third is raised to, where it is not as high [m].
     """
     share = outline.s / outline.robot.length
@@ -113,7 +113,7 @@ def trunk(
     """Return the robot as a bending body in space, its sections ellipses, divided at its joints.
 
     Args:
-        outline: of the robot; stations about one cell apart serve well.
+        outline: outline of the robot; stations about one cell apart serve well.
         motion: how it swims.
         grow: time over which the motion grows from nothing [s].
         tail_height: see ``half_heights`` [m].

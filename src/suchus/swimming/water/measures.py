@@ -63,7 +63,7 @@ def swing(lateral_positions: Float[np.ndarray, "sample station"], cycles: int = 
 
     Args:
         lateral_positions: places to the side over whole cycles, first and last instant included [m].
-        cycles: how many [-].
+        cycles: number of cycles [-].
     """
     deviations = np.column_stack([level(track) for track in lateral_positions.T])[:-1]
     harmonic = 2.0 * np.fft.rfft(deviations, axis=0)[cycles] / len(deviations)
@@ -101,7 +101,7 @@ def wave_form(
 
     Args:
         s: arc length from the snout, over the length [-].
-        amplitude: of each station [m].
+        amplitude: amplitude of each station [m].
         lag: its phase lag [cycle].
 
     Returns:
@@ -159,9 +159,9 @@ def efficiency(drag: float, speed: float, power: float) -> float:
     """Return the quasi-propulsive efficiency: the power for towing the straight body over that of the joints.
 
     Args:
-        drag: of the straight body at that speed [N or N/m].
+        drag: drag of the straight body at that speed [N or N/m].
         speed: [m/s].
-        power: of the joints on the water [W or W/m].
+        power: power of the joints on the water [W or W/m].
 
     Source: Maertens, Gao and Triantafyllou 2017, J. Fluid Mech. 813, 301.
     """

@@ -22,8 +22,8 @@ def with_passive_end(outline: Outline, motion: Motion, speed: float, water: Wate
     with equal work for a sine. The model has a first harmonic, small bends, a round body and no wake.
 
     Args:
-        outline: of the robot.
-        motion: of the joints that are driven.
+        outline: outline of the robot.
+        motion: motion of the joints that are driven.
         speed: forward [m/s].
         water: fresh water if None.
     """
@@ -70,8 +70,8 @@ class _Load:
         """Compute added mass, mass and linearised drag of the stations in a lateral motion.
 
         Args:
-            outline: of the robot.
-            frequency: of the motion [Hz].
+            outline: outline of the robot.
+            frequency: frequency of the motion [Hz].
             speed: forward [m/s].
             water: density and drag coefficient.
             y: first harmonic of the lateral displacement [m].

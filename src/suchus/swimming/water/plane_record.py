@@ -195,7 +195,7 @@ def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.Midline
     Beyond means towards the snout for a joint ahead of the root, towards the tip for one behind it.
 
     Args:
-        outline: of the robot.
+        outline: outline of the robot.
         surface: pressure and friction along the skin.
         midline: where the joints are now.
     """
@@ -210,7 +210,7 @@ def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.Midline
     under the body, and requires less torque.
 
     Args:
-        outline: of the robot.
+        outline: outline of the robot.
         surface: pressure and friction along the skin.
         midline: where the joints are now.
     """

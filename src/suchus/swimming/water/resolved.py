@@ -65,7 +65,7 @@ def resolved_swim(
     are in the frame of the grid at each instant.
 
     Args:
-        robot: who swims.
+        robot: robot that swims.
         motion: how: with its joints, or as a wave that its midline follows exactly.
         setting: grid, water, time, and what moves the body.
         sway: harmonic of the displacement of a tethered body's snout to the right [m]; ``slender.recoil`` has those
@@ -112,8 +112,8 @@ def towed_drag(robot: Robot, speed: float, setting: SwimSetting, *, lengths: flo
     """Return the drag of the straight body in a stream, its mean over the last length of the distance [N or N/m].
 
     Args:
-        robot: whose body, limbs left out.
-        speed: of the stream, which grows over the first half length [m/s].
+        robot: robot whose body is meant, without its limbs.
+        speed: speed of the stream, which grows over the first half length [m/s].
         setting: grid and water; its cycles, and what moves the body, do not matter.
         lengths: distance that the stream moves [body length].
 

@@ -139,7 +139,7 @@ def run_on(
     """Run a flow to its end, from its checkpoint if there is one, and return its samples.
 
     Args:
-        sim: at its start.
+        sim: simulation at its start.
         end: a whole number of pauses [s].
         pause: between two savings; a step ends exactly there [s].
         sample: called after every step to take samples.

@@ -55,7 +55,7 @@ class SectionFlow(NamedTuple):
     residual: float
     """Rms of the force that drag and added mass do not explain, over that of the force [-]."""
     digest: str
-    """Of set-up and code of the flow."""
+    """Hash of set-up and code of the flow."""
 
 
 def attached_coefficients(keulegan: float, stokes: float = STOKES) -> tuple[float, float]:
@@ -82,9 +82,9 @@ def correction_factors(
     table the nearest aspect and Keulegan-Carpenter number are taken.
 
     Args:
-        half_width: of equally spaced sections [m].
-        half_height: of them [m].
-        amplitude: of their motion to the side [m].
+        half_width: half width of equally spaced sections [m].
+        half_height: half height of them [m].
+        amplitude: amplitude of their motion to the side [m].
 
     Returns:
         Factors on ``Water.cross_drag`` and on the added mass of ideal water.
@@ -131,7 +131,7 @@ def coefficients(aspect: float, keulegan: float, path: Path = TABLE) -> tuple[fl
     Args:
         aspect: height across the motion over thickness along it, 0.25 to 4 [-].
         keulegan: largest speed over frequency and height, 1 to 20 [-].
-        path: of the table.
+        path: path of the table.
 
     Raises:
         InvalidDesign: outside the table.

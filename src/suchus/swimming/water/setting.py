@@ -11,7 +11,7 @@ from suchus.flow.immerse import MIN_THICKNESS
 from suchus.robot.design import WATER_DENSITY, Robot
 
 DENSITY = WATER_DENSITY
-"""Of the water [kg/m3]."""
+"""Density of the water [kg/m3]."""
 GROWS = 0.5
 """Part of the first cycle in which the motion grows from nothing [cycle]."""
 FREE, ON_THE_SPOT, TETHERED = (True, True, True), (False, True, True), (False, False, False)
@@ -118,7 +118,7 @@ class SwimSetting:
         """Return the cells around a body whose snout is near the origin, most of the water behind it.
 
         Args:
-            length: of the body [m].
+            length: length of the body [m].
             swing: greatest displacement to a side, which widens the box in space [m].
             height: greatest half-height of the body, over which the water in space stands [m].
         """
@@ -136,7 +136,7 @@ class SwimSetting:
         """Return the cells around a body in space that moves in all directions.
 
         Args:
-            length: of the body [m].
+            length: length of the body [m].
             reach: greatest distance of the body from its axis, to any side [m].
         """
         half_width = reach + (_DRIFT_MARGIN + self.beside) * length

@@ -40,7 +40,7 @@ def resistive(outline: Outline, curve: MidlineCurve, speed: float, water: Water)
     """Return thrust and power after Taylor: drag square to the body, friction along it.
 
     Args:
-        outline: of the robot.
+        outline: outline of the robot.
         curve: its midline over one cycle, shape (time, station).
         speed: forward [m/s].
         water: the coefficients.
@@ -75,7 +75,7 @@ def reactive(outline: Outline, curve: MidlineCurve, speed: float, water: Water) 
     rest is the same for a wave and its reverse.
 
     Args:
-        outline: of the robot.
+        outline: outline of the robot.
         curve: its midline over one cycle, shape (time, station).
         speed: forward [m/s].
         water: density and friction.
@@ -100,7 +100,7 @@ def recoil(outline: Outline, motion: Motion, speed: float, water: Water) -> tupl
     time, by Lighthill's reactive force. The body has the mass of the water that it displaces.
 
     Args:
-        outline: of the robot.
+        outline: outline of the robot.
         motion: its motion.
         speed: forward [m/s].
         water: density.

@@ -146,9 +146,9 @@ class TetheredInSpace:
         It replaces the pressure difference, because no grid resolves the pressure along the skin of a round tail.
 
         Args:
-            sim: at its end.
-            time: at which [s].
-            force: on each part, shape (axis, part) [N].
+            sim: simulation at its end.
+            time: time [s].
+            force: force on each part, shape (axis, part) [N].
         """
         outline = self._swim.outline
         spine = sim.setup.bodies[0].shape.spine(time)  # type: ignore[union-attr]

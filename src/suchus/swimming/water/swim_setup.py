@@ -51,7 +51,7 @@ class ResolvedSwim:
 
     @property
     def period(self) -> float:
-        """Of one cycle [s]."""
+        """Period of one cycle [s]."""
         return 1.0 / self.motion.frequency
 
     @property
@@ -177,9 +177,9 @@ def cycle_means(
     """Return the mean of each cycle, steps weighted with their length.
 
     Args:
-        series: of a swim from its start.
-        period: of one cycle [s].
-        cycles: how many [-].
+        series: series of a swim from its start.
+        period: period of one cycle [s].
+        cycles: number of cycles [-].
         names: columns of the record.
     """
     means = np.empty((len(names), cycles))

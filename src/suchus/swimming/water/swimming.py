@@ -30,7 +30,7 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
     mass of the water that it displaces. Limbs have no effect.
 
     Args:
-        robot: who swims, or its name in the catalog.
+        robot: robot that swims, or its name in the catalog.
         motion: a gait; or a wave that the midline follows exactly, joints or not.
         water: density, viscosity and coefficients; fresh water if None.
         stations: points along the midline.
@@ -82,11 +82,11 @@ def _numbers(
 
     Args:
         robot: the design.
-        motion: of the midline.
-        outline: of the robot.
+        motion: motion of the midline.
+        outline: outline of the robot.
         curve: midline over one cycle.
         speed: forward [m/s].
-        power: of the body on the water [W].
+        power: power of the body on the water [W].
         water: density and viscosity.
     """
     swing = float(np.ptp(curve.y[:, -1]))
@@ -156,7 +156,7 @@ def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None,
     """Return the results of both slender-body models for motions, and whether the robot can follow them.
 
     Args:
-        robot: who swims.
+        robot: robot that swims.
         motions: how.
         water: fresh water if None.
         stations: points along the midline; 65 change the speed by less than 1 % from 257.
@@ -177,7 +177,7 @@ def max_amplitude_factor(robot: Robot, motion: Gait, *, max_factor: float = 4.0)
     """Return the greatest factor on all angles at which joints and servos can follow a motion, to 1e-4 [-].
 
     Args:
-        robot: who swims.
+        robot: robot that swims.
         motion: how.
         max_factor: factor that is not gone beyond [-].
     """

@@ -115,7 +115,7 @@ def undulation(outline: Outline, motion: Motion) -> Undulation:
     """Return the motion of a midline; in a gait the snout stays in place and the head straight.
 
     Args:
-        outline: of the robot.
+        outline: outline of the robot.
         motion: a gait, or a wave that is followed exactly, or a bend that was worked out before.
 
     Raises:
@@ -204,11 +204,11 @@ def motion_of_record(
     out.
 
     Args:
-        outline: of the robot without a hull.
-        record: of one run of a robot with these joints.
-        frequency: of the motion [Hz].
+        outline: outline of the robot without a hull.
+        record: record of one run of a robot with these joints.
+        frequency: frequency of the motion [Hz].
         cycles: over which is averaged [-].
-        name: of the motion.
+        name: name of the motion.
 
     Raises:
         InvalidDesign: the run is shorter, or a cycle has fewer than two samples for each harmonic.

@@ -20,7 +20,7 @@ class BodyWave(Protocol):
 
     @property
     def period(self) -> float:
-        """Of one cycle [s]."""
+        """Period of one cycle [s]."""
 
     def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return how far the midline lies off the axis, to the right positive [m]."""
@@ -43,7 +43,7 @@ class PrintedWave:
 
     @property
     def period(self) -> float:
-        """Of one cycle [s]."""
+        """Period of one cycle [s]."""
         return 2 * np.pi / self.wave.angular_frequency
 
     def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
@@ -68,7 +68,7 @@ class FilmedWave:
     length: float
     """Length of the body [m]."""
     frequency: float
-    """[Hz]."""
+    """Frequency of the wave [Hz]."""
     wavelength: float
     """Length of one whole wave [body length]."""
     head: float
@@ -78,7 +78,7 @@ class FilmedWave:
 
     @property
     def period(self) -> float:
-        """Of one cycle [s]."""
+        """Period of one cycle [s]."""
         return 1.0 / self.frequency
 
     def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
@@ -106,7 +106,7 @@ def printed_wave(
     """Return (20) on a robot in one of its readings.
 
     Args:
-        robot: whose body it runs along.
+        robot: robot whose body it runs along.
         reading: letter of ``kinematics.wave.READINGS``.
         frequency: which the article does not give [Hz].
         sign: -1 runs from head to tail; 1 as printed.

@@ -160,10 +160,10 @@ def _tail(ax: Axes, robot: Robot, height: float, tip_height: float) -> None:
     """Draw the tail: its driven part, a line for each joint, and the passive end in a paler tint.
 
     Args:
-        ax: to draw on.
-        robot: whose tail.
-        height: of the tail's root [m].
-        tip_height: of its tip [m].
+        ax: axes to draw on.
+        robot: robot whose tail is meant.
+        height: height of the tail's root [m].
+        tip_height: height of its tip [m].
     """
     tail = robot.tail
     total = tail.length - tail.offset

@@ -34,7 +34,7 @@ def draw_field(
 
     Args:
         ax: where.
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
         name: prefix of the swim in the record.
         field_name: which field.
         index: which instant.
@@ -68,7 +68,7 @@ def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.n
     """Return the outline and the midline of a body at one instant, each of shape (point, 2) [m].
 
     Args:
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
         name: prefix of the swim in the record.
         index: which instant.
     """

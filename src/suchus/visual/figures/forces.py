@@ -27,7 +27,7 @@ def ground_forces_figure(data: xr.Dataset) -> Figure:
     """Return the force on every foot over the cycle, beside the greatest of walking salamanders.
 
     Args:
-        data: as ``forces.walked_forces`` returns it.
+        data: data as ``forces.walked_forces`` returns it.
     """
     legs = [str(leg) for leg in data.leg.values]
     with styled():
@@ -68,7 +68,7 @@ def water_forces_figure(data: xr.Dataset) -> Figure:
     """Return force and power of the water over the cycle, a line for each model of the water.
 
     Args:
-        data: as ``forces.swum_forces`` returns it.
+        data: data as ``forces.swum_forces`` returns it.
     """
     with styled():
         figure, axes = panels(len(_ROWS), 1, width=8.0, height=1.8 + 2.2 * len(_ROWS), sharex=True)

@@ -108,7 +108,7 @@ def gait_diagram(tracks: Sequence[GaitTrack], *, cycles: Sequence[float] = (), u
     Args:
         tracks: the first in black, the second in grey and dashed.
         cycles: where cycles begin and end, in the unit of time.
-        unit: of time, ``s`` or ``cycle``.
+        unit: unit of time, ``s`` or ``cycle``.
     """
     bends = any(track.bends for track in tracks)
     vertical = bends and any(t.spine_vertical is not None or t.tail_vertical is not None for t in tracks)
@@ -135,7 +135,7 @@ def draw_bars(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
     An open bar: they bend to the left. No bar: a foot swings; spine or tail are straight.
 
     Args:
-        ax: to draw on.
+        ax: axes to draw on.
         tracks: one or two.
     """
     if not 1 <= len(tracks) <= len(_SHADES):
@@ -164,7 +164,7 @@ def draw_bends(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
     """Draw the lateral angles of spine and tail over time, right positive [deg].
 
     Args:
-        ax: to draw on.
+        ax: axes to draw on.
         tracks: the first drawn through, the second dashed.
     """
     ax.axhline(0.0, color=_EDGE, linewidth=0.8)
@@ -193,7 +193,7 @@ def draw_vertical(ax: Axes, tracks: Sequence[GaitTrack]) -> None:
     """Draw the vertical angles of spine and tail over time, up above and down, the positive side, below [deg].
 
     Args:
-        ax: to draw on.
+        ax: axes to draw on.
         tracks: the first drawn through, the second dashed; those without vertical angles are left out.
     """
     ax.axhline(0.0, color=_EDGE, linewidth=0.8)
@@ -239,7 +239,7 @@ def _bars(
     """Draw a bar over every interval in which a condition holds.
 
     Args:
-        ax: to draw on.
+        ax: axes to draw on.
         time: shape (time,).
         holds: the condition, shape (time,).
         row_span: top and height of the bar.

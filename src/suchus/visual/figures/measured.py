@@ -17,7 +17,7 @@ def strides_figure(data: xr.Dataset) -> Figure:
     """Return the strides of a walk one by one, with their intervals.
 
     Args:
-        data: as ``capture.tables`` returns it.
+        data: data as ``capture.tables`` returns it.
     """
     rows = [name for name in ("stride_length", "speed", "turning") if name in data]
     feet = [name for name in ("duty", "limb_phase") if name in data]
@@ -47,7 +47,7 @@ def curvature_figure(data: xr.Dataset) -> Figure:
     """Return the curvature along the midline over the phase of the mean cycle.
 
     Args:
-        data: as ``capture.tables`` returns it, with ``curvature``.
+        data: data as ``capture.tables`` returns it, with ``curvature``.
     """
     size = float(np.nanmax(np.abs(data.curvature.values)))
     with styled():
@@ -83,14 +83,14 @@ def _marks(
     """Draw the values of strides with their intervals.
 
     Args:
-        ax: to draw on.
+        ax: axes to draw on.
         data: holds the ends of the intervals, ``NAME_low`` and ``NAME_high``.
-        name: of the quantity.
+        name: name of the quantity.
         value: one for each stride, (stride,).
-        label: in the legend; empty: none.
-        colour: of marks and bars.
+        label: label in the legend; empty: none.
+        colour: colour of marks and bars.
         marker: shape of the marks.
-        offset: of the marks along the axis of strides [stride].
+        offset: offset of the marks along the axis of strides [stride].
     """
     lower_bound, upper_bound = data[f"{name}_low"].values, data[f"{name}_high"].values
     style: dict[str, Any] = {"color": colour, "marker": marker, "linestyle": "none", "markersize": 4, "elinewidth": 1.1}

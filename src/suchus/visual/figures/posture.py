@@ -42,8 +42,8 @@ def skeleton(robot: Robot, record: xr.Dataset, time: float) -> Skeleton:
     """Return the body's points in the world at one time.
 
     Args:
-        robot: whose record it is.
-        record: of one run.
+        robot: robot whose record it is.
+        record: record of one run.
         time: [s].
     """
     state, robot_layout = record.sel(time=time, method="nearest"), layout(robot)
@@ -78,8 +78,8 @@ def silhouette_at(robot: Robot, record: xr.Dataset, time: float, axes: tuple[int
     """Return the silhouette of a robot in the world at one time.
 
     Args:
-        robot: whose record it is.
-        record: of one run.
+        robot: robot whose record it is.
+        record: record of one run.
         time: [s].
         axes: which two coordinates are drawn: (0, 1) from above, (0, 2) from the side.
     """
@@ -102,14 +102,14 @@ def draw_posture(
     """Draw a posture, feet that stand filled, the support polygon and the centre of mass projected.
 
     Args:
-        ax: to draw on; its aspect becomes equal.
-        robot: whose record it is.
-        record: of one run.
+        ax: axes to draw on; their aspect becomes equal.
+        robot: robot whose record it is.
+        record: record of one run.
         time: [s].
         view: from above (x to the right, y up) or from the robot's left side is seen from its right (x right, z up).
         support: whether to draw support and centre of mass.
         ground: whether to draw even ground in a view from the side.
-        strength: of the colours; below one they fade to white, and the scutes are left out.
+        strength: strength of the colours; below one they fade to white, and the scutes are left out.
     """
     rows = [0, 1] if view == "above" else [0, 2]
     bones = skeleton(robot, record, time)
@@ -149,11 +149,11 @@ def draw_strip(
     """Draw a robot from above at several times, the earlier ones paler, with the track of its centre of mass.
 
     Args:
-        ax: to draw on; its aspect becomes equal.
-        robot: whose record it is.
-        record: of one run.
+        ax: axes to draw on; their aspect becomes equal.
+        robot: robot whose record it is.
+        record: record of one run.
         times: increasing [s].
-        role: of ``style.COLOURS``, for the track.
+        role: role of ``style.COLOURS``, for the track.
         lateral_offset: how far to the left of its place it is drawn [m].
     """
     shifted_record = record.assign(
@@ -190,11 +190,11 @@ def _draw_skin(ax: Axes, robot_layout: Layout, outline: Silhouette, view: View, 
     """Draw the skin; from the side the left legs lie behind the body and the right legs in front of it.
 
     Args:
-        ax: to draw on.
+        ax: axes to draw on.
         robot_layout: layout of the robot.
         outline: silhouette in the view.
         view: from above or from the side.
-        strength: of the colours; below one they fade to white.
+        strength: strength of the colours; below one they fade to white.
     """
     edge, body, far_leg, pale_face, plate = (
         _paler(c, strength) for c in (_EDGE, _BODY, _FAR_COLOUR, _PALE_COLOUR, _PLATE)

@@ -73,8 +73,8 @@ def draw_claim(record: xr.Dataset, claim: str) -> Figure:
     """Draw one claim over all samples.
 
     Args:
-        record: of the sweep: ``number`` and ``holds`` over claim and sample, ``correlation`` over claim and parameter,
-            ``value`` over sample and parameter, and the border.
+        record: record of the sweep: ``number`` and ``holds`` over claim and sample, ``correlation`` over claim and
+            parameter, ``value`` over sample and parameter, and the border.
         claim: key of the claim.
     """
     claimed = record.sel(claim=claim)
@@ -100,7 +100,7 @@ def _numbers(ax: Axes, number: np.ndarray, holds: np.ndarray, claim: str) -> Non
     """Draw the histogram of a claim's number, split by whether the claim holds, with the article's number.
 
     Args:
-        ax: to draw on.
+        ax: axes to draw on.
         number: the measured number of each sample, (sample,).
         holds: whether the claim holds in each sample, (sample,).
         claim: key of the claim.

@@ -25,8 +25,8 @@ def draw_use(servo_uses: Sequence[ServoUse], title: str) -> Figure:
     """Draw two bars for each servo, torque at its speed and heat, the one that is used most at the top.
 
     Args:
-        servo_uses: in any order.
-        title: of the figure.
+        servo_uses: uses of servos in any order.
+        title: title of the figure.
     """
     rows = sorted(servo_uses, key=lambda servo_use: max(servo_use.torque, servo_use.heat))
     with styled():

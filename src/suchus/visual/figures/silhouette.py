@@ -33,8 +33,8 @@ def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Sil
     """Return the silhouette of a posed skin.
 
     Args:
-        robot: whose skin it is.
-        vertices: of ``skin(robot)``, posed, (n, 3) [m].
+        robot: robot whose skin it is.
+        vertices: vertices of ``skin(robot)``, posed, (n, 3) [m].
         axes: which two coordinates are drawn: (0, 1) from above, (0, 2) from the side.
     """
     surface, flat = skin(robot), vertices[:, list(axes)]

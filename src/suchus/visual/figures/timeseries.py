@@ -12,9 +12,9 @@ def draw_lines(ax: Axes, values: xr.DataArray, roles: Sequence[str], *, scale: f
     """Draw one line per run in the colours of its role.
 
     Args:
-        ax: to draw on.
-        values: with the dimensions ``run`` and ``time``.
-        roles: of ``style.LINES``, one per run.
+        ax: axes to draw on.
+        values: values with the dimensions ``run`` and ``time``.
+        roles: roles of ``style.LINES``, one per run.
         scale: factor on the values, for a unit people read.
     """
     for i, role in enumerate(roles):
@@ -27,9 +27,9 @@ def draw_band(ax: Axes, values: xr.DataArray, role: str) -> None:
     """Shade the range of all runs over time in the colour of a role.
 
     Args:
-        ax: to draw on.
-        values: with the dimensions ``run`` and ``time``.
-        role: of ``style.LINES``.
+        ax: axes to draw on.
+        values: values with the dimensions ``run`` and ``time``.
+        role: role of ``style.LINES``.
     """
     lower_bound, upper_bound = values.min("run"), values.max("run")
     ax.fill_between(values.time, lower_bound, upper_bound, color=COLOURS[role], alpha=0.22, linewidth=0)
@@ -45,8 +45,8 @@ def mark_printed(ax: Axes, values: Mapping[str, float], time: float) -> None:
     """Mark the article's values with diamonds; the first has an entry in the legend.
 
     Args:
-        ax: to draw on.
-        values: by role, whose colour the bar takes.
+        ax: axes to draw on.
+        values: values by role, whose colour the bar takes.
         time: position along the axis of time [s].
     """
     for i, (role, value) in enumerate(values.items()):

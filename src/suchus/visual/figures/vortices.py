@@ -130,7 +130,7 @@ def check_vortex_record(record: xr.Dataset, subject: str = "the record") -> None
     """Refuse a record without the vortices of a swim in three dimensions over a cycle.
 
     Args:
-        record: in question.
+        record: record in question.
         subject: how a sentence begins.
 
     Raises:
@@ -171,7 +171,7 @@ def surface(
     """Return the upper half of the surfaces around the vortices, and the vorticity about z at their points [1/s].
 
     Args:
-        record: of the experiment ``swim_3d``.
+        record: record of the experiment ``swim_3d``.
         frame: which.
         coarse: cells along each side of a block over which the fields are averaged [-].
         level: value of Q, the second invariant, on the surfaces, above 0 [1/s2]; the record's own if None.
@@ -255,7 +255,7 @@ def draw_vortices(record: xr.Dataset) -> Figure:
     """Draw the surfaces around the vortices and the body at the end, from a corner.
 
     Args:
-        record: of the experiment ``swim_3d``.
+        record: record of the experiment ``swim_3d``.
     """
     last_frame = record.sizes["frame"] - 1
     with styled(axes__grid=False):
@@ -275,7 +275,7 @@ def film_vortices(record: xr.Dataset, progress: Progress = silent) -> bytes:
     """Return a film of the last cycle as a GIF.
 
     Args:
-        record: of the experiment ``swim_3d``.
+        record: record of the experiment ``swim_3d``.
         progress: told the share that is done.
     """
     count = record.sizes["frame"]

@@ -81,8 +81,8 @@ def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frame
     """Return the frames of one run.
 
     Args:
-        record: of one run, as ``check_record`` returns it.
-        robot: whose it is.
+        record: record of one run, as ``check_record`` returns it.
+        robot: robot of the record.
         rate: frames in a second [1/s]; by default the nearest to ``RATE`` that the samples give, fewer of a long run.
     """
     time = record.time.values.astype(float)

@@ -41,8 +41,8 @@ def replay(
     The ground is the one that the record holds, level and even where it holds none.
 
     Args:
-        record: of one run on land.
-        robot: whose it is.
+        record: record of one run on land.
+        robot: robot of the record.
         ghost: another run of the same robot, half transparent, for comparison.
         labels: what the two runs are called.
         title: heading; by default robot and gait.
@@ -75,8 +75,8 @@ def render_template(
 
     Args:
         template: its file name.
-        record: of one run on land.
-        robot: whose it is.
+        record: record of one run on land.
+        robot: robot of the record.
         ghost: another run of the same robot, half transparent.
         other_records: instead of a ghost, further runs of the robot on such ground, of which a slider chooses one.
         choice: the name of that slider.
@@ -204,7 +204,7 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
     """Return a cycle of a swim as an HTML page that plays offline and needs nothing else.
 
     Args:
-        record: of ``water.resolved`` in space with frames, or of the experiment ``swim_3d``.
+        record: record of ``water.resolved`` in space with frames, or of the experiment ``swim_3d``.
         title: heading.
         caption: one or two sentences: what there is to see.
 
@@ -245,7 +245,7 @@ def _packed_swim(record: xr.Dataset, pack: PackedArrays, coarse: int) -> dict[st
     """Pack the surfaces and the body of every frame and return the metadata that the player reads.
 
     Args:
-        record: of a swim in space with frames.
+        record: record of a swim in space with frames.
         pack: takes the arrays.
         coarse: cells along each side of a block of which surfaces are taken [-].
     """

@@ -67,7 +67,7 @@ def scene(
     """Return the metadata of the scene, and its arrays as base64.
 
     Args:
-        robot: who moves.
+        robot: robot that moves.
         moving: one run, or two of which the second is the ghost, or several of which one is chosen.
         labels: what the runs are called.
         ground: on what.
@@ -122,7 +122,7 @@ def _packed(robot: Robot, run: Frames, label: str, relief: Relief | None, pack: 
     """Pack one run: poses of the bones, centre of mass, feet, forces and tail in every frame.
 
     Args:
-        robot: who moves.
+        robot: robot that moves.
         run: frames of the run.
         label: name of the run.
         relief: what stands up from the ground; None where it is even.

@@ -46,7 +46,7 @@ def ankles(robot: Robot, bones: Poses, feet: np.ndarray, relief: Relief | None =
 
     Args:
         robot: the robot.
-        bones: of the bodies, (frame, bone, ...).
+        bones: bones of the bodies, (frame, bone, ...).
         feet: centres of the feet, (frame, 4, 3) [m].
         relief: what stands up from the ground; None where it is even.
     """

@@ -40,9 +40,9 @@ def poses(robot: Robot, position: np.ndarray, orientation: np.ndarray, angles: n
 
     Args:
         robot: the robot.
-        position: of the root, (..., 3) [m].
-        orientation: of the root, (..., 4), unit quaternions wxyz.
-        angles: of every hinge in the order of ``joint_names(robot)``, (..., joint) [rad].
+        position: position of the root, (..., 3) [m].
+        orientation: orientation of the root, (..., 4), unit quaternions wxyz.
+        angles: angles of every hinge in the order of ``joint_names(robot)``, (..., joint) [rad].
 
     Raises:
         InvalidDesign: the number of angles is not the robot's number of hinges.

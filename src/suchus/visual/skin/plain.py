@@ -77,8 +77,8 @@ def rod(start: np.ndarray, end: np.ndarray, radius: float) -> Mesh:
     """Return a rod with round ends.
 
     Args:
-        start: of its axis, (3,) [m].
-        end: of its axis, (3,) [m].
+        start: start of its axis, (3,) [m].
+        end: end of its axis, (3,) [m].
         radius: [m].
     """
     length = float(np.linalg.norm(end - start))

@@ -74,13 +74,13 @@ def _seated(
     """Return a scute that sits on the body's surface.
 
     Args:
-        outline: of the body.
-        proportions: of the animal; the exponent of the body's section is used.
+        outline: outline of the body.
+        proportions: proportions of the animal; the exponent of the body's section is used.
         x: place along the body [m].
         lateral_fraction: distance from the midline over the body's half width [-].
-        half_length: of the scute [m].
-        half_width: of the scute [m].
-        height: of its keel above the surface [m].
+        half_length: half length of the scute [m].
+        half_width: half width of the scute [m].
+        height: height of its keel above the surface [m].
     """
     position = np.array(x)
     w, h, n = float(outline.width(position)), float(outline.top(position)), proportions.roundness
@@ -99,9 +99,9 @@ def _crest(
         x: middle of the plate, forward [m].
         y: middle of the plate, to the left [m].
         z: height of its base [m].
-        half_length: of the base [m].
-        half_width: of the base [m].
-        height: of the keel above the base [m].
+        half_length: half length of the base [m].
+        half_width: half width of the base [m].
+        height: height of the keel above the base [m].
         lean: lateral offset of the keel's top over its height [-].
     """
     c, s = ring(8)

@@ -28,7 +28,7 @@ class Skin:
     """The surface of a body and how it follows the bones; the arrays are not to be written to."""
 
     vertices: np.ndarray
-    """At zero posture in the frame of the pelvis, (n, 3) [m]."""
+    """Positions at zero posture in the frame of the pelvis, (n, 3) [m]."""
     normals: np.ndarray
     """Unit normals, outward, (n, 3) [-]."""
     faces: np.ndarray
@@ -131,7 +131,7 @@ def _attach(robot: Robot, vertices: np.ndarray, attachment: str | int) -> tuple[
 
     Args:
         robot: the robot.
-        vertices: at zero posture, (n, 3) [m].
+        vertices: vertices at zero posture, (n, 3) [m].
         attachment: number of a bone, name of a leg, or empty for the axis.
     """
     if isinstance(attachment, int):
@@ -182,9 +182,9 @@ def _blended(
     A vertex at a joint hangs half on either bone; half a segment away from the joint it hangs on one bone alone.
 
     Args:
-        distances: of the vertices along the chain, (n,) [m].
+        distances: distances of the vertices along the chain, (n,) [m].
         joints: places of the joints along the chain, increasing [m].
-        lengths: of the segments, one more than joints [m].
+        lengths: lengths of the segments, one more than joints [m].
         order: numbers of the bones along the chain.
     """
     fractions = np.ones((len(distances), len(order)))

@@ -321,7 +321,7 @@ class BipedalReach(Experiment):
             levels=self.pushes,
             refinement_count=self.finer,
             wait=self.wait,
-            fell=lambda record: (
+            has_fallen=lambda record: (
                 record.snout.sel(xyz="z").isel(time=-1) < _STANDING_FRACTION * stretched_length(self.robot)
             ),
             timestep=_COARSE_TIMESTEP,

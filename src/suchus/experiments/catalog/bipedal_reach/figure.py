@@ -24,7 +24,7 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
     """Draw the height that the robot reaches over time, with robots as built and the article's two heights.
 
     Args:
-        record: of the experiment.
+        record: record of the experiment.
         hold: how long it stands [s].
     """
     _, rise_time, upright_time, leave_time, _, end_time = record.attrs["stages"]
@@ -82,7 +82,7 @@ def draw_limits(robot: Robot, record: xr.Dataset, min_reach: float) -> Figure:
 
     Args:
         robot: the robot of the other figures, marked by a star.
-        record: of the experiment.
+        record: record of the experiment.
         min_reach: reach from which a robot counts as standing [m].
     """
     reach = record.map_reach
@@ -194,7 +194,7 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
     """Draw the smallest pushes that topple the standing robot, with feedback and without, and over its lead.
 
     Args:
-        record: of the experiment.
+        record: record of the experiment.
         commanded: lead of the stand of the other figures [m].
     """
     with styled():
@@ -253,8 +253,8 @@ def draw_side_views(robot: Robot, record: xr.Dataset) -> Figure:
     """Draw the robot from its right side at five times while it rises, with mass, support and reach.
 
     Args:
-        robot: whose record it is.
-        record: of the experiment; its first run and its ``stages`` are used.
+        robot: robot whose record it is.
+        record: record of the experiment; its first run and its ``stages`` are used.
     """
     start, rise_time, upright_time, leave_time, *_ = record.attrs["stages"]
     rise_duration = upright_time - rise_time
@@ -370,8 +370,8 @@ def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
     """Draw the angles of pelvis, trunk and tail over time, down positive, and which feet stand, up and down again.
 
     Args:
-        robot: who stands up.
-        record: of the experiment; its first run and its ``stages`` are used.
+        robot: robot that stands up.
+        record: record of the experiment; its first run and its ``stages`` are used.
     """
     _, rise_time, upright_time, leave_time, down_time, _ = record.attrs["stages"]
     run = record.isel(run=0)

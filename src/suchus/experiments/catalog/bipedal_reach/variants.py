@@ -8,7 +8,7 @@ from suchus.core.errors import OutsideLimits
 from suchus.robot.control.standing import Balance, Standing
 from suchus.robot.design import Robot, with_values
 from suchus.robot.motion import Gait
-from suchus.robot.motion.posture import plan
+from suchus.robot.motion.posture import sample_postures
 from suchus.robot.motion.rising import stand_up
 
 START_TIME = 0.2
@@ -69,7 +69,7 @@ def stand_control(robot: Robot, lead: float, balance: Balance | None, size: floa
     """
     try:
         rise = stand_up(robot, lead=lead, size=size)
-        plan(robot, rise, np.linspace(0.0, rise.duration, 200))
+        sample_postures(robot, rise, np.linspace(0.0, rise.duration, 200))
     except OutsideLimits:
         return None
     return Standing(at=START_TIME, hold=86400.0, balance=balance, rise=rise)

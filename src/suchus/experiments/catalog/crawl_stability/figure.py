@@ -18,8 +18,8 @@ def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
     """Draw the height of the centre of mass about its mean: at equal commands, then at equal displacement.
 
     Args:
-        record: of one run per condition, then the legs alone at equal displacement.
-        names: of the conditions, roles of ``style.LINES``; with spine and tail first, limbs only second.
+        record: record of one run per condition, then the legs alone at equal displacement.
+        names: names of the conditions, roles of ``style.LINES``; with spine and tail first, limbs only second.
     """
     walk = time_window(record)
     height = walk.centre_of_mass.sel(xyz="z")
@@ -88,10 +88,10 @@ def draw_snapshots(robot: Robot, record: xr.Dataset, arms: Mapping[str, int], ti
     """Draw postures from above with support and projected centre of mass.
 
     Args:
-        robot: whose record it is.
-        record: with the dimension ``run``.
+        robot: robot whose record it is.
+        record: record with the dimension ``run``.
         arms: role and run of each row.
-        times: of the columns [s].
+        times: times of the columns [s].
     """
     with styled(axes__grid=False):
         figure, axes = panels(len(arms), len(times), width=10.5, height=1.9 * len(arms), sharex="row", sharey="row")

@@ -49,8 +49,8 @@ def draw_roll(robot: Robot, record: xr.Dataset) -> Figure:
     """Draw the robot from its right side while it turns once, in vacuum, bent as a C.
 
     Args:
-        robot: whose record it is.
-        record: of the arms.
+        robot: robot whose record it is.
+        record: record of the arms.
     """
     run = _run_of(record, "c_shape", "vacuum")
     period = float(run.period)
@@ -116,9 +116,9 @@ def draw_cost(robot: Robot, record: xr.Dataset, start: float) -> Figure:
     """Draw peak torques and speeds against what the servos can do, and the check of the angular momentum.
 
     Args:
-        robot: whose record it is.
-        record: with the arms and the time steps.
-        start: of the measurement [s].
+        robot: robot whose record it is.
+        record: record with the arms and the time steps.
+        start: start of the measurement [s].
     """
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.0, width_ratios=[1.5, 1])

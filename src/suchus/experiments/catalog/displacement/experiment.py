@@ -13,7 +13,7 @@ from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
-from suchus.experiments.catalog.displacement.figure import draw_course, draw_crawls, draw_decisions, draw_parts
+from suchus.experiments.catalog.displacement.figure import draw_course, draw_crawls, draw_parts, draw_sensitivity
 from suchus.experiments.experiment import (
     Measure,
     Measures,
@@ -240,7 +240,7 @@ class Displacement(TwoGroups):
             "crawling": draw_crawls(self.robot, record.isel(run=[0, 1]), _GROUPS),
             "parts": draw_parts(record, _forward(record), printed_distances if is_article else {}),
             "displacement_over_time": draw_course(record, _GROUPS, printed_distances if is_full_run else {}),
-            "displacement_map": draw_decisions(
+            "displacement_map": draw_sensitivity(
                 record, _ratio(record), self.gait, self._stroke(), is_article=is_article
             ),
         }

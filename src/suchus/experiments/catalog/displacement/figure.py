@@ -1,4 +1,4 @@
-"""Crawls side by side from above, what each part of the axis adds to the displacement, and what decides it."""
+"""Crawls side by side from above, what each part of the axis adds to the displacement, and on what it depends."""
 
 from collections.abc import Mapping, Sequence
 from math import degrees
@@ -27,8 +27,8 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
     """Draw one robot per run from above at the beginning, between and at the end of its walk.
 
     Args:
-        robot: whose record it is.
-        record: with one run per arm.
+        robot: robot whose record it is.
+        record: record with one run per arm.
         arms: roles of ``style.LINES``.
     """
     end = float(record.time[-1])
@@ -80,7 +80,7 @@ def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed_distances: Ma
     """Draw how far each condition gets, of the robots as built and as designed.
 
     Args:
-        record: of the experiment.
+        record: record of the experiment.
         designed: displacement of each condition of the robot as designed [m].
         printed_distances: the article's displacements by condition [m]; empty for another robot or gait.
     """
@@ -127,7 +127,7 @@ def draw_course(record: xr.Dataset, arms: Sequence[str], printed_distances: Mapp
     """Draw the displacement over time with all of the axis and without, and where the robots as built end.
 
     Args:
-        record: of the experiment, the two conditions first.
+        record: record of the experiment, the two conditions first.
         arms: names of the two conditions.
         printed_distances: the article's displacements by condition [m]; empty where they are not for this run.
     """
@@ -167,38 +167,46 @@ def draw_course(record: xr.Dataset, arms: Sequence[str], printed_distances: Mapp
     )
 
 
-def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: float, *, is_article: bool) -> Figure:
-    """Draw the ratio over stroke and bend, and the displacement over the tail's pitch and the trunk's phase lag.
+def draw_sensitivity(
+    record: xr.Dataset, ratio: xr.DataArray, gait: Gait, half_stroke: float, *, is_article: bool
+) -> Figure:
+    """Draw how the displacement depends on stroke, bend, the tail's pitch and the trunk's phase lag.
+
+    The left panel shows the ratio of displacements: a map over stroke and bend, or a curve if only one of them varies.
 
     Args:
-        record: of the experiment.
-        ratio: of the displacements with all of the axis and without, shape (stroke, bend) [-].
+        record: record of the experiment; ``pitched`` is the displacement over the tail's ``pitch``, and
+            ``late_coordinated`` that over ``late``, the phase lag of the trunk.
+        ratio: displacement with all of the axis over that without, shape (stroke, bend) [-].
         gait: the crawl of the other figures.
-        stroke: half the distance that its front feet move back in stance; 0 where it has no foot paths [m].
+        half_stroke: half the distance that its front feet move back in stance; 0 where it has no foot paths [m].
         is_article: whether the article's numbers are for this robot and its gaits.
     """
     has_pitches = record.sizes["pitch"] > 0
-    is_absolute = gait.has("foot paths") and gait.number("trunk_bend") > 0
+    has_units = gait.has("foot paths") and gait.number("trunk_bend") > 0
     with styled(axes__grid=False):
-        ratios = [1.35, 1, 1] if has_pitches else [1.35, 1]
-        figure, axes = panels(1, len(ratios), width=12.5, height=4.3, width_ratios=ratios)
-        star = (1.0, 1.0)
-        if is_absolute:
-            star = 1000 * stroke, degrees(gait.number("trunk_bend"))
-            ratio = ratio.assign_coords(stroke=record.stroke * star[0], bend=record.bend * star[1])
+        panel_widths = [1.35, 1, 1] if has_pitches else [1.35, 1]
+        figure, axes = panels(1, len(panel_widths), width=12.5, height=4.3, width_ratios=panel_widths)
+        reference = (1.0, 1.0)
+        if has_units:
+            reference = 1000 * half_stroke, degrees(gait.number("trunk_bend"))
+            ratio = ratio.assign_coords(stroke=record.stroke * reference[0], bend=record.bend * reference[1])
             ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
             ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
         printed_ratio = CLAIMS["displacement_ratio"].value if is_article else None
+        is_map = min(ratio.shape) > 1
+        has_article_line = is_map and printed_ratio is not None and _is_within(ratio, printed_ratio)
         ax = axes[0, 0]
-        if min(ratio.shape) > 1:
+        if is_map:
             label = "ratio of displacements [-]"
-            draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed_ratio)
-            ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_REFERENCE_LABEL)
+            article_level = printed_ratio if has_article_line else None
+            draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=article_level)
+            ax.plot(*reference, "*", markersize=15, color="white", markeredgecolor="black", label=_REFERENCE_LABEL)
         else:  # the body can vary only its strokes or only its bends
             dimension = "stroke" if ratio.sizes["stroke"] > 1 else "bend"
             ax.plot(ratio[dimension], ratio.squeeze("bend" if dimension == "stroke" else "stroke"), marker="o")
             ax.axvline(
-                star[dimension == "bend"],
+                reference[dimension == "bend"],
                 color=COLOURS["neutral"],
                 linestyle=":",
                 linewidth=1.2,
@@ -210,8 +218,8 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         ax.set_title("spine and tail over limbs only")
         if has_pitches:
             ax = axes[0, 1]
-            for arm in record.group.values:
-                ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[str(arm)])
+            for group in record.group.values:
+                ax.plot(np.degrees(record.pitch), record.pitched.sel(group=group), marker="o", **LINES[str(group)])
             gait_pitch = degrees(gait.number("tail_pitch"))
             ax.axvline(gait_pitch, color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_REFERENCE_LABEL)
             ax.set_xlabel("pitch of the tail, down [deg]")
@@ -225,16 +233,21 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         ax.set_xlabel("phase lag of the trunk [cycle]")
         ax.set_ylabel("displacement forward [m]")
         ax.set_title("phase lag of the trunk")
-    article_text = ", the orange line the article's ratio" if is_article else ""
-    marker_text = "star" if min(ratio.shape) > 1 else "dotted line"
-    axes_text = "" if is_absolute else " over shares of the strokes and bends of the robot's gait"
+    article_text = ", the orange line the article's ratio" if has_article_line else ""
+    marker_text = "star" if is_map else "dotted line"
+    axes_text = "" if has_units else " over shares of the strokes and bends of the robot's gait"
     pitch_text = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if has_pitches else ""
     return captioned(
         figure,
-        f"What decides. Left: the ratio of the displacements with spine and tail and with limbs only{axes_text}; the "
-        f"{marker_text} is the crawl of the other figures{article_text}.{pitch_text} Right: the phase "
-        "lag of the trunk's bend behind the legs, with spine and tail.",
+        "What the displacement depends on. Left: the ratio of the displacements with spine and tail and with limbs "
+        f"only{axes_text}; the {marker_text} is the crawl of the other figures{article_text}.{pitch_text} Right: the "
+        "phase lag of the trunk's bend behind the legs, with spine and tail.",
     )
+
+
+def _is_within(values: xr.DataArray, level: float) -> bool:
+    """Return whether a map of values has a contour line at a level."""
+    return bool(values.min() < level < values.max())
 
 
 def draw_map(
@@ -248,10 +261,10 @@ def draw_map(
     """Draw filled contours of a positive quantity on a logarithmic scale, with labelled lines.
 
     Args:
-        ax: to draw on; its labels come from the ``long_name`` and ``units`` of the coordinates.
+        ax: axes to draw on; their labels come from the ``long_name`` and ``units`` of the coordinates.
         values: two-dimensional, the first dimension up, the second to the right.
-        levels: of the lines, increasing; doubled on from the last until none of the values lies above them.
-        label: of the colour bar.
+        levels: levels of the lines, increasing; doubled on from the last until none of the values lies above them.
+        label: label of the colour bar.
         emphasised: level to draw thick.
     """
     vertical, horizontal = (values[d] for d in values.dims)

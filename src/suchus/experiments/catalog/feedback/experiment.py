@@ -192,10 +192,10 @@ class Feedback(Experiment):
         )
 
     def _replays(self, pair: xr.Dataset) -> Mapping[str, Replay]:
-        """Return the replay of one random start with feedback and without.
+        """Return the replay of one random start with feedback, and without as a transparent ghost, by its file name.
 
         Args:
-            pair: record of two runs, the one with feedback first.
+            pair: record of two runs, that with feedback first.
         """
         return replayed(
             "feedback_replay.html",

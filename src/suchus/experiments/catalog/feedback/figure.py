@@ -67,7 +67,7 @@ def draw_fans(error: xr.DataArray, tolerance: float) -> Figure:
     """Draw the phase error of every start over the cycles, one panel per law.
 
     Args:
-        error: with the dimensions ``law``, ``start`` and ``time`` (in cycles) [cycle].
+        error: error with the dimensions ``law``, ``start`` and ``time`` (in cycles) [cycle].
         tolerance: what counts as coordinated [cycle].
     """
     with styled():
@@ -138,7 +138,7 @@ def draw_gain(distance: xr.DataArray) -> Figure:
     """Draw the distance after each disturbance under each rule, over the undisturbed distance without feedback.
 
     Args:
-        distance: with the dimensions ``disturbance`` and ``arm`` [m].
+        distance: distance with the dimensions ``disturbance`` and ``arm`` [m].
     """
     ratio = (distance / distance.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
     rules = [rule for rule in _RULES if rule in ratio.arm.values]

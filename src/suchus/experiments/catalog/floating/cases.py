@@ -57,17 +57,20 @@ class KnownDraft:
 
 
 def drafts() -> list[KnownDraft]:
-    """Return a sphere, a lying cylinder and a box at several densities, with their drafts in closed form."""
-    r, known_drafts = 0.1, []
-    sphere = FloatBody(shape="ellipsoid", half=(r, r, r), mass=1, inertia=_UNIT_INERTIA)
-    cylinder = FloatBody(shape="cylinder", half=(0.3, r, r), mass=1, inertia=_UNIT_INERTIA, parts=4)
+    """Return a sphere, a lying cylinder and a box at several densities, with their exact drafts.
+
+    Depths of sphere and cylinder are roots of the exact volume of a cap and the exact area of a segment.
+    """
+    radius, known_drafts = 0.1, []
+    sphere = FloatBody(shape="ellipsoid", half=(radius, radius, radius), mass=1, inertia=_UNIT_INERTIA)
+    cylinder = FloatBody(shape="cylinder", half=(0.3, radius, radius), mass=1, inertia=_UNIT_INERTIA, parts=4)
     for density_ratio in (0.2, 0.5, 0.95):
-        cap = brentq(lambda x, s=density_ratio: x * x * (3 - x) / 4 - s, 0.0, 2.0, xtol=1e-15)
-        segment = brentq(
+        sphere_depth = brentq(lambda x, s=density_ratio: x * x * (3 - x) / 4 - s, 0.0, 2.0, xtol=1e-15)
+        cylinder_depth = brentq(
             lambda x, s=density_ratio: (acos(1 - x) - (1 - x) * sqrt(x * (2 - x))) / pi - s, 0.0, 2.0, xtol=1e-15
         )
-        known_drafts.append(_draft(f"sphere {density_ratio:g}", sphere, density_ratio, r * cap))
-        known_drafts.append(_draft(f"cylinder {density_ratio:g}", cylinder, density_ratio, r * segment))
+        known_drafts.append(_draft(f"sphere {density_ratio:g}", sphere, density_ratio, radius * sphere_depth))
+        known_drafts.append(_draft(f"cylinder {density_ratio:g}", cylinder, density_ratio, radius * cylinder_depth))
         known_drafts.append(
             _draft(
                 f"box {density_ratio:g}", replace(BOX, centre=(0, 0, 0)), density_ratio, 2 * BOX.half[2] * density_ratio
@@ -178,12 +181,15 @@ def relative_momentum_drift(motion: xr.Dataset) -> float:
 
 
 def bodies_by_piece() -> dict[str, FloatBody]:
-    """Return one body for each kind of piece that floating bodies are made of."""
-    half = (0.25, 0.1, 0.06)
+    """Return one body for each kind of piece into which the buoyancy model divides bodies, by that kind.
+
+    All have the same half extents: a cylinder along x of elliptic discs, an ellipsoid of one ball, a box of slabs.
+    """
+    half_extents = (0.25, 0.1, 0.06)
     return {
-        "disc": FloatBody(shape="cylinder", half=half, mass=1, inertia=_UNIT_INERTIA, parts=100),
-        "ball": FloatBody(shape="ellipsoid", half=half, mass=1, inertia=_UNIT_INERTIA),
-        "slab": FloatBody(shape="box", half=half, mass=1, inertia=_UNIT_INERTIA, parts=48),
+        "disc": FloatBody(shape="cylinder", half=half_extents, mass=1, inertia=_UNIT_INERTIA, parts=100),
+        "ball": FloatBody(shape="ellipsoid", half=half_extents, mass=1, inertia=_UNIT_INERTIA),
+        "slab": FloatBody(shape="box", half=half_extents, mass=1, inertia=_UNIT_INERTIA, parts=48),
     }
 
 

@@ -168,17 +168,17 @@ class Floating(Experiment):
     def _levers(self) -> xr.Dataset:
         """Return righting lever [m] and hydrostatic numbers of the robot with its hull and without."""
         hydrostatic_results = [
-            hydrostatics(robot, self._posture(robot), heels=self.angles)
+            hydrostatics(robot, self._posture(robot), heel_count=self.angles)
             for robot in (self.robot, with_values(self.robot, {"hull": None}))
         ]
         levers = xr.Dataset(
             {"lever": (("hull", "heel"), np.array([statics.lever for statics in hydrostatic_results]), {"units": "m"})},
             coords={"hull": ["floating", "bare"], "heel": ("heel", hydrostatic_results[0].heel, {"units": "rad"})},
         )
-        for name, unit in _STATICS.items():
+        for name, (field_name, unit) in _STATICS.items():
             levers[f"static_{name}"] = (
                 "hull",
-                np.array([float(getattr(statics, name)) for statics in hydrostatic_results]),
+                np.array([float(getattr(statics, field_name)) for statics in hydrostatic_results]),
                 {"units": unit},
             )
         return levers
@@ -242,7 +242,7 @@ class Floating(Experiment):
             {
                 f"{name}_{kind}": Measure(float(statics[f"static_{name}"]), unit)
                 for kind, statics in (("floating", hull_record), ("bare", bare_record))
-                for name, unit in _STATICS.items()
+                for name, (_, unit) in _STATICS.items()
                 if np.isfinite(float(statics[f"static_{name}"]))
             },
         )
@@ -252,18 +252,24 @@ class Floating(Experiment):
         return {"righting": draw_righting(outcome.record), "checks": draw_checks(outcome.record)}
 
 
-_STATICS: Mapping[str, str] = {
-    "mass": "kg", "volume": "m3", "missing": "m3", "surplus": "kg", "draft": "m", "trim": "rad",
-    "metacentric_height": "m", "vanishing": "rad",
-}  # fmt: skip
-"""Fields of ``Hydrostatics`` that become measures, with their units."""
+_STATICS: Mapping[str, tuple[str, str]] = {
+    "mass": ("mass", "kg"),
+    "volume": ("volume", "m3"),
+    "missing": ("missing_volume", "m3"),
+    "surplus": ("surplus_mass", "kg"),
+    "draft": ("draft", "m"),
+    "trim": ("trim", "rad"),
+    "metacentric_height": ("metacentric_height", "m"),
+    "vanishing": ("vanishing", "rad"),
+}
+"""Measures that are fields of ``Hydrostatics``: the field and its unit."""
 
 
 def draw_righting(record: xr.Dataset) -> Figure:
     """Draw the righting lever over the heel, and the heel over time of robots that were let go.
 
     Args:
-        record: with ``lever`` (hull, heel) [m], and runs with ``orientation``.
+        record: record with ``lever`` (hull, heel) [m], and runs with ``orientation``.
     """
     with styled():
         figure, axes = panels(1, 2, width=12.0, height=4.2)

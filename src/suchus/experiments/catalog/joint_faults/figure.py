@@ -127,7 +127,7 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
     """Draw displacement over time with one kind of fault, a panel per joint; the form of Figs 18 to 21.
 
     Args:
-        record: of the campaign: ``track`` and ``intact_track`` over time, on the ground.
+        record: record of the campaign: ``track`` and ``intact_track`` over time, on the ground.
         kind: ``limp`` or ``locked``.
         legs: ``one`` or ``both``.
     """

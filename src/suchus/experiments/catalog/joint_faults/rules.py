@@ -36,32 +36,36 @@ _TOLERATED_JOINTS = ("front_yaw", "hind_yaw", "hind_pitch")
 """Joints for which the article says that the loss is smaller with spine and tail; a front pitch joint stops both."""
 
 
-def _fault(joint: str, arm: str, clauses: tuple[Clause, ...]) -> Rule:
+def _fault_rule(joint: str, group: str, clauses: tuple[Clause, ...]) -> Rule:
     """Return the rule for the article's sentence on one joint and one group.
 
     Args:
         joint: joint that fails, as ``front_yaw``.
-        arm: ``coordinated`` or ``limbs_only``.
-        clauses: bounds of the change of displacement within which the sentence is true.
+        group: ``coordinated`` or ``limbs_only``.
+        clauses: bounds, within which the sentence is true, of the relative change of displacement [-]; a loss is
+            negative.
     """
-    cell = f"{joint}_limp_one"
-    measure = f"loss_{cell}_{arm}"
-    readings = "; ".join(
-        f"{kind}, {legs} {{loss_{joint}_{kind}_{legs}_{arm}:+.0%}}"
-        for kind in ("limp", "locked")
-        for legs in ("one", "both")
+    condition = f"{joint}_limp_one"
+    measure_name = f"loss_{condition}_{group}"
+    all_variants = "; ".join(
+        f"{failure}, {affected_side} {{loss_{joint}_{failure}_{affected_side}_{group}:+.0%}}"
+        for failure in ("limp", "locked")
+        for affected_side in ("one", "both")
     )
-    explanation = f"Judged is limp, one: {{{measure}_low:+.0%}} to {{{measure}_high:+.0%}}. All readings: {readings}."
+    explanation = (
+        f"Judged is limp, one: {{{measure_name}_low:+.0%}} to {{{measure_name}_high:+.0%}}. "
+        f"All readings: {all_variants}."
+    )
     return Rule(
-        claim=f"fault_{joint}_{arm}",
+        claim=f"fault_{joint}_{group}",
         experiment="joint_faults",
-        measure=measure,
-        kind="fitted" if f"fault_{joint}_{arm}" in _FITTED_CLAIMS else "measured",
-        holds=tuple(Clause(measure, clause.relation, clause.bound, clause.why) for clause in clauses),
+        measure=measure_name,
+        kind="fitted" if f"fault_{joint}_{group}" in _FITTED_CLAIMS else "measured",
+        holds=tuple(Clause(measure_name, clause.relation, clause.bound, clause.why) for clause in clauses),
         control=_INTACT_GROUP,
-        spread=(measure,),
+        spread=(measure_name,),
         of=DEFAULT_SPREAD_OF,
-        why=(_limbs_only_explanation(joint) if arm == "limbs_only" else "") + explanation,
+        why=(_limbs_only_explanation(joint) if group == "limbs_only" else "") + explanation,
     )
 
 
@@ -101,7 +105,7 @@ def _tolerance_explanation() -> str:
 
 
 RULES = (
-    *(_fault(joint, arm, clauses) for (joint, arm), clauses in _ARTICLE_CLAUSES.items()),
+    *(_fault_rule(joint, arm, clauses) for (joint, arm), clauses in _ARTICLE_CLAUSES.items()),
     Rule(
         claim="fault_support",
         experiment="joint_faults",

@@ -30,7 +30,7 @@ def on_stand(record: xr.Dataset) -> Figure:
     """Draw the angle of the joint in each test with each integral gain [deg].
 
     Args:
-        record: with ``angle`` (test, ki, time) [rad], ``step`` and ``load`` in its attributes.
+        record: record with ``angle`` (test, ki, time) [rad], ``step`` and ``load`` in its attributes.
     """
     with styled():
         figure, axes = panels(1, record.sizes["test"], width=12.0, height=4.0)
@@ -55,7 +55,8 @@ def tracking(record: xr.Dataset) -> Figure:
     """Draw the tracking error of the tested joint over the crawl with its droop, and of all kinds of servos [deg].
 
     Args:
-        record: with ``crawl_error`` and ``crawl_droop`` (servo, crawl_time) [rad], ``error_ms`` (ki, servo) [rad2].
+        record: record with ``crawl_error`` and ``crawl_droop`` (servo, crawl_time) [rad], ``error_ms`` (ki, servo)
+            [rad2].
     """
     with styled():
         figure, axes = panels(2, 1, height=6.6)

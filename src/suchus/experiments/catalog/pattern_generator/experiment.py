@@ -245,7 +245,7 @@ class PatternGeneratorExperiment(Experiment):
 
         Args:
             name: state of the record, ``walk`` or ``swim``.
-            drive: of the oscillators [-].
+            drive: drive of the oscillators [-].
             progress: called with the fraction that is done.
         """
         walks = drive <= _OSCILLATORS.limb_drives[1]
@@ -370,8 +370,8 @@ def lock_error(phase: np.ndarray, place: np.ndarray) -> np.ndarray:
     """Return the greatest phase error of an oscillator, without the mean phase shift of all [rad].
 
     Args:
-        phase: of the oscillators, shape (..., oscillator) [cycle].
-        place: of the oscillators, shape (oscillator,) [cycle].
+        phase: phase of the oscillators, shape (..., oscillator) [cycle].
+        place: phase of the oscillators in the locked state, shape (oscillator,) [cycle].
     """
     phasor = np.exp(2j * np.pi * (phase - place))
     common = phasor.mean(axis=-1, keepdims=True)
@@ -419,9 +419,9 @@ def _lock_measures(record: xr.Dataset, state: str, ending: str) -> Measures:
     """Return the fraction of starts that lock, and mean and greatest time until they do; NaN if none does.
 
     Args:
-        record: with ``STATE_error`` over starts and cycles [rad].
+        record: record with ``STATE_error`` over starts and cycles [rad].
         state: ``walk`` or ``swim``.
-        ending: of the names of the measures.
+        ending: ending of the names of the measures.
     """
     error, cycle = record[f"{state}_error"], record[f"{state}_cycle"]
     step = float(cycle[1] - cycle[0])

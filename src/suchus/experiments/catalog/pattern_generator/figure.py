@@ -12,34 +12,34 @@ from suchus.visual.figures.style import COLOURS, captioned, limb_colours, panels
 
 
 def draw_ramp(record: xr.Dataset, robot: Robot) -> Any:
-    """Return drive, limbs, bends of the axis and frequencies over a ramp of the drive.
+    """Draw drive, output of the limbs' oscillators, bends of the axis and frequencies over a ramp of the drive.
 
     Args:
-        record: with the variables ``ramp_*``.
-        robot: whose limbs they are.
+        record: record of the experiment, with the variables ``ramp_*``.
+        robot: robot whose limbs and axis are driven.
     """
     time, drive = record.ramp_time.values, record.ramp_drive.values
-    limbs = [name for name, _ in limb_colours(robot)]
-    walks = drive <= record.attrs["silent_above"]
+    limb_names = [name for name, _ in limb_colours(robot)]
+    are_limbs_active = drive <= record.attrs["silent_above"]
     with styled():
         figure, axes = panels(4, 1, width=10.0, height=9.5, sharex=True, height_ratios=[0.8, 1.6, 2.6, 1.2])
-        top, middle, waves, rate = axes[:, 0]
-        top.plot(time, drive, color="black")
-        top.set_ylabel("drive")
+        drive_ax, limb_ax, bend_ax, frequency_ax = axes[:, 0]
+        drive_ax.plot(time, drive, color="black")
+        drive_ax.set_ylabel("drive")
         output = record.ramp_amplitude * (1.0 + np.cos(2 * np.pi * record.ramp_phase))
         for i, (limb, colour) in enumerate(reversed(limb_colours(robot))):
-            middle.fill_between(time, i, i + 0.85 * output.sel(oscillator=limb), color=colour, linewidth=0)
-        middle.set_yticks(np.arange(len(limbs)) + 0.3, limbs[::-1])
-        middle.set_ylim(-0.15, len(limbs) + 0.1)
-        middle.set_ylabel("limbs")
-        _draw_waves(waves, record)
-        _draw_rates(rate, record, limbs[0])
+            limb_ax.fill_between(time, i, i + 0.85 * output.sel(oscillator=limb), color=colour, linewidth=0)
+        limb_ax.set_yticks(np.arange(len(limb_names)) + 0.3, limb_names[::-1])
+        limb_ax.set_ylim(-0.15, len(limb_names) + 0.1)
+        limb_ax.set_ylabel("limbs")
+        _draw_waves(bend_ax, record)
+        _draw_rates(frequency_ax, record, limb_names[0])
         for ax in axes[:, 0]:
-            ax.fill_between(time, 0, 1, where=walks, color=COLOURS["ground"], alpha=0.13, linewidth=0,
+            ax.fill_between(time, 0, 1, where=are_limbs_active, color=COLOURS["ground"], alpha=0.13, linewidth=0,
                             transform=ax.get_xaxis_transform(), zorder=0)  # fmt: skip
             ax.grid(False)
-        rate.set_xlabel("time [s]")
-        rate.set_xlim(time[0], time[-1])
+        frequency_ax.set_xlabel("time [s]")
+        frequency_ax.set_xlim(time[0], time[-1])
     return captioned(
         figure,
         "Coupled oscillators under a drive that rises and falls again; shaded: drives that move the limbs. From above: "
@@ -80,11 +80,11 @@ def _draw_rates(ax: Axes, record: xr.Dataset, limb: str) -> None:
 
 
 def draw_sweep(record: xr.Dataset, oscillators: Oscillators) -> Any:
-    """Return frequency, amplitude and lags over the drive.
+    """Draw frequency, amplitude and lags over the drive.
 
     Args:
-        record: of the sweep.
-        oscillators: of the oscillators, for the lines that they follow alone.
+        record: record of the sweep.
+        oscillators: parameters of the oscillators, for the curves that each follows uncoupled.
     """
     drive, scale = record.drive.values, record.attrs["frequency_scale"]
     fine = np.linspace(0.5, 5.5, 1001)
@@ -124,7 +124,7 @@ def draw_sweep(record: xr.Dataset, oscillators: Oscillators) -> Any:
 
 
 def draw_locks(record: xr.Dataset) -> Any:
-    """Return how the starts come to the locked state, at the two drives."""
+    """Draw how the phases of the starts converge to the locked state, at the two drives."""
     with styled():
         figure, axes = panels(1, 2, width=10.0, height=3.8, sharey=True)
         for ax, state in zip(axes[0], ("walk", "swim"), strict=True):
@@ -150,7 +150,7 @@ def draw_locks(record: xr.Dataset) -> Any:
 
 
 def draw_land(record: xr.Dataset) -> Any:
-    """Return stride over the drive, and turning by each kind of steering."""
+    """Draw the stride over the drive, and the turning by each kind of steering."""
     strides = ("drive_low", "straight", "drive_high")
     turns = ("straight", "asymmetry", "steering", "steering_right")
     with styled():

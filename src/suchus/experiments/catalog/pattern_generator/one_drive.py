@@ -26,8 +26,8 @@ def runs(robot: Robot, gait: Gait, drive: float, slope: float, water_line: float
     Args:
         robot: a floating robot.
         gait: gives bends and foot paths.
-        drive: of the oscillators, for the whole run [-].
-        slope: of the shore [rad].
+        drive: drive of the oscillators, for the whole run [-].
+        slope: slope of the shore [rad].
         water_line: distance of the water line ahead, along the ground [m].
     """
     return [
@@ -47,7 +47,7 @@ def reduced(record: xr.Dataset, water_line: float) -> xr.Dataset:
     """Return the stored part of these runs: distance up the shore from the water line, limb phase, load on the feet.
 
     Args:
-        record: of the runs, in the order of ``ARMS``.
+        record: record of the runs, in the order of ``ARMS``.
         water_line: distance of the water line from the start, along the ground [m].
     """
     limbs = record.limb_phase.isel(leg=0, drop=True)

@@ -67,10 +67,10 @@ def rehearse(
 
     Args:
         robot: the robot.
-        gait: of the walk.
+        gait: gait of the walk.
         control: control rule of the walk.
-        duration: with the first second of standing [s].
-        protocol: of the servos.
+        duration: duration with the first second of standing [s].
+        protocol: protocol of the servos.
         trouble: imperfections of the wire; none by default.
         actual_wiring: actual wiring of the robot, where it differs from the configured one.
     """
@@ -92,8 +92,8 @@ def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
 
     Args:
         robot: the robot.
-        gait: in whose first posture it begins.
-        goals: of all servos at every tick, shape (time, servo) [rad].
+        gait: gait in whose first posture it begins.
+        goals: goal angles of all servos at every tick, shape (time, servo) [rad].
 
     Returns:
         Record of the body, with a sample for each row of goals.

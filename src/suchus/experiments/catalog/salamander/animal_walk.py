@@ -13,7 +13,7 @@ from suchus.article.paper.walking_salamanders import ANIMAL
 from suchus.experiments.experiment import Measure, Measures
 from suchus.sim.metrics import each_cycle, first_harmonic, mean_cycle
 from suchus.sim.metrics.contact import contact_path
-from suchus.sim.metrics.foot_forces import PARTS, Window, advance, stance_forces, step, weight
+from suchus.sim.metrics.foot_forces import PARTS, Window, displacement_per_cycle, stance_forces, step, weight
 
 PAIRS = ("fore", "hind")
 
@@ -23,24 +23,27 @@ def window(record: xr.Dataset) -> Window:
     return Window(float(record.attrs["measured_from"]), float(record.period[0]), int(record.attrs["cycles"]))
 
 
-def waves(record: xr.Dataset, cycle_window: Window) -> Measures:
-    """Return the standing index of the axis, commanded and achieved [-], and the rms tracking error [rad].
+def axis_wave_measures(record: xr.Dataset, cycle_window: Window) -> Measures:
+    """Return how far the wave of the axis is a standing one, and how far servos are from their commands.
+
+    The standing index [-] is that of the first harmonic of the axis' joints, of the achieved angles and of the
+    commanded ones. The rms tracking error [rad] is that of the mean cycle, over all servos that drive one joint.
 
     Args:
-        record: of one run.
+        record: record of one run.
         cycle_window: start of the first cycle [s], period [s], number of cycles.
     """
-    names = list(record.attrs["axis"])
-    servos = [str(name) for name in record.servo.values if name in record.joint.values]
-    cycle = {
-        "walk": mean_cycle(record.joint_angle.sel(joint=servos), *cycle_window),
-        "commanded": mean_cycle(record.servo_target.sel(servo=servos).rename(servo="joint"), *cycle_window),
+    axis_joints = list(record.attrs["axis"])
+    joint_servos = [str(angle_kind) for angle_kind in record.servo.values if angle_kind in record.joint.values]
+    mean_cycles = {
+        "walk": mean_cycle(record.joint_angle.sel(joint=joint_servos), *cycle_window),
+        "commanded": mean_cycle(record.servo_target.sel(servo=joint_servos).rename(servo="joint"), *cycle_window),
     }
     measures = Measures()
-    for name, angles in cycle.items():
-        harmonic = first_harmonic(angles.sel(joint=names))
-        measures[f"standing_index_{name}"] = Measure(standing_index(np.abs(harmonic), np.angle(harmonic)), "-")
-    tracking_error = float(np.sqrt(((cycle["walk"] - cycle["commanded"]) ** 2).mean()))
+    for angle_kind, angles in mean_cycles.items():
+        harmonic = first_harmonic(angles.sel(joint=axis_joints))
+        measures[f"standing_index_{angle_kind}"] = Measure(standing_index(np.abs(harmonic), np.angle(harmonic)), "-")
+    tracking_error = float(np.sqrt(((mean_cycles["walk"] - mean_cycles["commanded"]) ** 2).mean()))
     return measures | {"angle_missed": Measure(tracking_error, "rad")}
 
 
@@ -48,7 +51,7 @@ def steps(record: xr.Dataset, cycle_window: Window, stance_threshold: float) -> 
     """Return forces on fore and hind feet, each the mean of left and right, and the slip of the feet.
 
     Args:
-        record: of one run.
+        record: record of one run.
         cycle_window: start of the first cycle [s], period [s], number of cycles.
         stance_threshold: vertical force from which a foot stands [body weight].
     """
@@ -82,7 +85,7 @@ def _slip(record: xr.Dataset, cycle_window: Window, legs: list[str], stance_thre
     excerpt = record.sel(time=slice(cycle_window.start - 1e-9, cycle_window.end + 1e-9), leg=legs)
     speed = (contact_path(excerpt).sel(xyz=["x", "y"]).differentiate("time") ** 2).sum("xyz") ** 0.5
     stands = excerpt.foot_force.sel(xyz="z") > stance_threshold * weight(record)
-    forward = np.hypot(*advance(record, cycle_window)) / cycle_window.period
+    forward = np.hypot(*displacement_per_cycle(record, cycle_window)) / cycle_window.period
     return float(speed.where(stands).mean()) / forward if forward > 0 and bool(stands.any()) else nan
 
 

@@ -11,7 +11,7 @@ from suchus.article.paper.walking_salamanders import ANIMAL
 from suchus.core.checks import Checks
 from suchus.core.errors import UnsuitedRobot
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog.salamander.animal_walk import PAIRS, comparison_table, steps, waves
+from suchus.experiments.catalog.salamander.animal_walk import PAIRS, axis_wave_measures, comparison_table, steps
 from suchus.experiments.catalog.salamander.animal_walk import window as measured_window
 from suchus.experiments.catalog.salamander.figure import draw_angles, draw_feet
 from suchus.experiments.experiment import (
@@ -31,7 +31,7 @@ from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run, simulate
 from suchus.sim.metrics import displacement, heading_change
-from suchus.sim.metrics.foot_forces import Window, advance, stance_forces, weight
+from suchus.sim.metrics.foot_forces import Window, displacement_per_cycle, stance_forces, weight
 
 _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
 
@@ -134,12 +134,13 @@ class Salamander(Experiment):
         cycle_window, length = measured_window(record), float(record.attrs["length"])
         walk = record.isel(run=0)
         stride = [
-            float(np.hypot(*advance(record.isel(run=i), cycle_window))) / length for i in range(record.sizes["run"])
+            float(np.hypot(*displacement_per_cycle(record.isel(run=i), cycle_window))) / length
+            for i in range(record.sizes["run"])
         ]
         turn_per_cycle = float(heading_change(walk, cycle_window.start, cycle_window.end)) / cycle_window.cycles
         body = _under_load(walk, cycle_window)
         return Measures(
-            waves(walk, cycle_window),
+            axis_wave_measures(walk, cycle_window),
             {
                 "stride_walk": Measure(stride[0], "body length"),
                 "stride_straight_axis": Measure(stride[1], "body length"),

@@ -26,7 +26,7 @@ def draw_angles(record: xr.Dataset, cycle_window: tuple[float, float, int]) -> F
     """Draw the mean cycle of every servo that moves, as commanded and as achieved.
 
     Args:
-        record: of one run.
+        record: record of one run.
         cycle_window: start of the first cycle [s], period [s] and number of cycles.
     """
     commanded = mean_cycle(record.servo_target, *cycle_window) * _DEGREES

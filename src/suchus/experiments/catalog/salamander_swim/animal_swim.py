@@ -47,10 +47,10 @@ def envelope(robot: Robot, record: xr.Dataset, start: float, period: float) -> E
     """Return the lateral swing of snout, axis joints and tail tip over the whole cycles of one run after a time.
 
     Args:
-        robot: of the record.
-        record: of one run.
+        robot: robot of the record.
+        record: record of one run.
         start: time from which cycles are measured [s].
-        period: of a cycle [s].
+        period: period of a cycle [s].
     """
     excerpt = record.sel(time=slice(start - 1e-9, None))
     straight = _midline(robot, np.zeros((1, excerpt.sizes["joint"])))[0]

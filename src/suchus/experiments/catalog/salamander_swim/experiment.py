@@ -262,7 +262,7 @@ def draw_strides(record: xr.Dataset, animal: float) -> Figure:
     """Draw the stride over the frequency beside the animal's, with the spread over other waters at the highest.
 
     Args:
-        record: with ``frequency`` and ``stride`` of each swim, and ``stride_other`` in other waters.
+        record: record with ``frequency`` and ``stride`` of each swim, and ``stride_other`` in other waters.
         animal: the animal's stride [body length].
     """
     frequency, stride, other_strides = record.frequency.values, record.stride.values, record.stride_other.values
@@ -287,7 +287,7 @@ def draw_envelope(record: xr.Dataset) -> Figure:
     """Draw how far the body swings from end to end over the place behind the snout, a line for each frequency.
 
     Args:
-        record: with ``frequency`` and ``swing`` of each swim, and ``place``.
+        record: record with ``frequency`` and ``swing`` of each swim, and ``place``.
     """
     shades = np.linspace(0.35, 1.0, record.sizes["swim"])
     with styled():

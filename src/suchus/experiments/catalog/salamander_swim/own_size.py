@@ -37,13 +37,13 @@ class OwnSize:
     """An animal at its own size, and how it swims."""
 
     length: float
-    """[m]."""
+    """Length of the body [m]."""
     mass: float
-    """[kg]."""
+    """Mass of the body [kg]."""
     density: float
     """Mass over volume, lungs or air included [kg/m3]."""
     frequency: float
-    """Of the swim [Hz]."""
+    """Frequency of the swim [Hz]."""
     body: "Callable[[OwnSize], Robot]"
     """Makes its body."""
     swim: "Callable[[OwnSize, Robot], Gait]"
@@ -159,9 +159,9 @@ def swim_animals(names: Sequence[str], *, settle: int, cycles: int, progress: Pr
     Each starts upright at the surface, or on the ground if it sinks, and swims.
 
     Args:
-        names: in ``ANIMALS``.
+        names: names in ``ANIMALS``.
         settle: cycles before anything is measured [-].
-        cycles: that are measured [-].
+        cycles: number of cycles that are measured [-].
         progress: called with the fraction that is done.
     """
     rows = [
@@ -216,8 +216,8 @@ def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) 
     return {
         "length": robot.length, "mass": robot.mass, "volume": sum(volumes(robot).values()),
         "frequency": gait.frequency, "keel": flotation.metacentric_height,
-        "trim": flotation.trim if flotation.floats else flotation.trim_submerged, "vanishing": flotation.vanishing,
-        "speed": direction_sign * float(np.hypot(*displacement[:2])) / duration, "surplus": flotation.surplus,
+        "trim": flotation.trim if flotation.is_floating else flotation.trim_submerged, "vanishing": flotation.vanishing,
+        "speed": direction_sign * float(np.hypot(*displacement[:2])) / duration, "surplus": flotation.surplus_mass,
         "heel": float(np.abs(rotation.heel(excerpt.orientation.values)).max()),
         "pitch": float(rotation.pitch(excerpt.orientation.values).mean()),
         "under": float(excerpt.share_under.mean()), "swing": float(np.ptp(lateral_offset)),
@@ -229,7 +229,7 @@ def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) 
 def trim_submerged(robot: Robot) -> float:
     """Return the equilibrium pitch of a submerged robot in the mean posture of the swim, nose down positive [rad]."""
     gait = animal_gait(robot, FREQUENCIES[0])
-    return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heels=3).trim_submerged
+    return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heel_count=3).trim_submerged
 
 
 def measures(record: xr.Dataset) -> Measures:
@@ -261,7 +261,7 @@ def draw(record: xr.Dataset, filmed_stride: float) -> Figure:
     """Draw how far each animal comes in a cycle, and how it lies in the water.
 
     Args:
-        record: with ``animal``.
+        record: record with ``animal``.
         filmed_stride: stride of the salamander that was filmed [body length].
     """
     names, rows = [str(name) for name in record.animal.values], np.arange(record.sizes["animal"])

@@ -196,7 +196,7 @@ class Shore(Experiment):
             case_paths[name] = ("case", np.array(values), {"units": unit})
         shown_index = self._shown_case_index(case_paths)
         back = cycle_targets(self.robot, straight_gait(self.robot, limbs=LIMBS_BACK), np.zeros(1))[0]
-        floating = hydrostatics(self.robot, back, heels=3)
+        floating = hydrostatics(self.robot, back, heel_count=3)
         metres = self._metres(staged(progress, "work per metre on land, at the surface and below", 0.9, 1.0))
         full_record = xr.merge(
             [record.isel(run=[shown_index]), case_paths, metres], combine_attrs="override", compat="no_conflicts"
@@ -243,11 +243,11 @@ class Shore(Experiment):
         """Return a run up a shore from the water, or down into the water where ``uphill`` is negative.
 
         Args:
-            gait: on land.
+            gait: gait on land.
             uphill: slope ahead [rad].
             scale: factor on the friction of the robot's surfaces [-].
             air_fraction: fraction of the hull's air that is let out [-].
-            seed: of the errors of the robot as built [-].
+            seed: seed of the errors of the robot as built [-].
         """
         offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
         course = self.approach if uphill > 0 else 0.0
@@ -365,8 +365,8 @@ def paths(record: xr.Dataset, runs: list[Run], interval: int) -> xr.Dataset:
     """Return the downsampled path of each run, and its number of changes between swimming and walking.
 
     Args:
-        record: of the runs.
-        runs: on even slopes in lakes of constant level.
+        record: record of the runs.
+        runs: runs on even slopes in lakes of constant level.
         interval: number of samples of which one is kept; powers and shares are means over them.
     """
     ups = np.array([up_direction(run.ground) for run in runs])

@@ -126,9 +126,9 @@ def posture_times(level: xr.Dataset, path: xr.Dataset, length: float, shore_dist
     the one with the snout farthest ahead of every foot is chosen.
 
     Args:
-        level: of ``levelled``.
-        path: of the same run, with ``ahead`` over ``moment``.
-        length: of the robot, of which fewer are drawn where they would lie on each other [m].
+        level: level of ``levelled``.
+        path: path of the same run, with ``ahead`` over ``moment``.
+        length: length of the robot; fewer postures are drawn where they would lie on each other [m].
         shore_distance: distance beyond the water line that counts as ashore; a little more is drawn [m].
     """
     distance, moment = path.ahead.values, path.moment.values

@@ -303,7 +303,7 @@ def _lying_fraction(robot: Robot, excerpt: xr.Dataset) -> float:
     """Return the mean fraction of the tail's length that lies on the ground; 0 of a body without a tail [-].
 
     Args:
-        robot: of the record.
+        robot: robot of the record.
         excerpt: the measured cycles of one run.
     """
     robot_layout = layout(robot)
@@ -332,8 +332,8 @@ def _radii(segments: Sequence[Segment], positions: np.ndarray) -> np.ndarray:
     """Return the half height of a tail at its joints and its tip, interpolated between the segments' middles [m].
 
     Args:
-        segments: of the tail, from the root.
-        positions: of joints and tip, along the tail from its root [m].
+        segments: segments of the tail, from the root.
+        positions: positions of joints and tip, along the tail from its root [m].
     """
     segment_radii = np.array(
         [max(s.radius if isinstance(s, Rod) else s.half[2] for s in segment.shapes) for segment in segments]
@@ -354,7 +354,7 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]],
     """Draw speed, cost, duty factor and Froude number over cycle time, the other model of the servos thinly.
 
     Args:
-        record: of the experiment ``speed_range``.
+        record: record of the experiment ``speed_range``.
         lines: style of each gait.
         servos: names of the two servo models, the robot's own first.
     """

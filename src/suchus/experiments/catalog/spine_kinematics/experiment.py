@@ -149,7 +149,7 @@ def _inverted(back: SpineMeasures, angles: np.ndarray) -> xr.Dataset:
 
     Args:
         back: measures of the spine.
-        angles: of the postures, shape (sample, 5) [rad].
+        angles: angles of the postures, shape (sample, 5) [rad].
     """
     T = spine.forward(back, angles)
     target, azimuth = T[:, :3, 3], _azimuth(T)
@@ -186,7 +186,7 @@ def _workspace(back: SpineMeasures, angles: np.ndarray, grid: int) -> xr.Dataset
 
     Args:
         back: measures of the spine.
-        angles: of the random postures, shape (sample, 5) [rad].
+        angles: angles of the random postures, shape (sample, 5) [rad].
         grid: cells along the longer side of the maps [-].
     """
     x, y, z = spine.forward(back, angles)[:, :3, 3].T
@@ -238,7 +238,7 @@ def _errors(back: SpineMeasures, count: int, seed: int) -> xr.Dataset:
     Args:
         back: measures of the spine.
         count: number of postures [-].
-        seed: of the postures [-].
+        seed: seed of the postures [-].
     """
     angles = np.random.default_rng(seed + 1).uniform(-MILD, MILD, (count, 5))
     end, printed_end = spine.forward(back, angles)[:, :3, 3], printed.spine_position(back, angles)

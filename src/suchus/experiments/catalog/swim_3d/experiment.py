@@ -423,9 +423,9 @@ def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[
     """Yield speed, power, mass and similarity numbers of the free body on the finest grid, and its thrust while held.
 
     Args:
-        record: of ``Swim3d.recorded``.
+        record: record of ``Swim3d.recorded``.
         robot: the robot that swims.
-        frequency: of the wave [Hz].
+        frequency: frequency of the wave [Hz].
     """
     speeds, power = record.speed.values[-1], float(record.power[-1, -1])
     speed, weight = float(speeds[-1]), float(record.weight)

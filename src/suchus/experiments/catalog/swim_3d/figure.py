@@ -22,7 +22,7 @@ def draw_speeds(record: xr.Dataset) -> Figure:
     """Draw the mean speed of each cycle on every grid, beside the slice and the slender-body models.
 
     Args:
-        record: of the experiment ``swim_3d``.
+        record: record of the experiment ``swim_3d``.
     """
     shades = np.linspace(0.4, 1.0, record.sizes["grid"])
     with styled():
@@ -52,7 +52,7 @@ def draw_wake(record: xr.Dataset) -> Figure:
     """Draw the wake at the end: vorticity in the plane of symmetry, and the vortices seen from above and the side.
 
     Args:
-        record: of the experiment ``swim_3d``.
+        record: record of the experiment ``swim_3d``.
     """
     limit = span(record.vorticity.values, 0.985)
     vortex_limit = float(np.quantile(record.vortices_above.values, 0.985))
@@ -106,7 +106,7 @@ def draw_tails(record: xr.Dataset) -> Figure:
     """Draw the speed over the cycles for every height of the tail, and that of the motions beside it.
 
     Args:
-        record: of the experiment ``swim_3d``.
+        record: record of the experiment ``swim_3d``.
     """
     names = [str(name) for name in record.compared.values]
     colours: dict[tuple[Axes, str], object] = {}
@@ -147,7 +147,7 @@ def draw_joints(record: xr.Dataset) -> Figure:
     """Draw the torque of the water about each joint over the last cycle.
 
     Args:
-        record: of the experiment ``swim_3d``.
+        record: record of the experiment ``swim_3d``.
     """
     order = np.argsort(record.joint_place.values)
     torque = record.joint_torque.values[:, order]

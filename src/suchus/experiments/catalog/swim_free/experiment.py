@@ -334,7 +334,7 @@ class SwimFree(Experiment):
         """Return every run by sections: motions, stiffer joints, steering, varied coefficients of the water.
 
         Args:
-            motions: by name.
+            motions: motions by name.
             factors: least and greatest factor on each coefficient [-].
         """
         lake, whole_wave = self._lake, motions["whole"]
@@ -505,7 +505,7 @@ def _settled_speed(centre: xr.DataArray, record: xr.Dataset) -> SettledMean:
 
     Args:
         centre: centre of mass of one run, over ``time`` and ``xyz`` [m].
-        record: with ``frequency`` and ``measured_cycles``.
+        record: record with ``frequency`` and ``measured_cycles``.
     """
     period = 1.0 / record.attrs["frequency"]
     time = centre.time.values.astype(float)

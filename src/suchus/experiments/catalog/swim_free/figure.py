@@ -58,8 +58,8 @@ def draw_tail(record: xr.Dataset) -> Figure:
     """Draw the amplitude of each joint of the cable, commanded and taken, and the tracks of the swims.
 
     Args:
-        record: of runs labelled ``whole``, ``whole_stiff``, ``tail_only``, ``tail_only_stiff`` and ``steered``; the
-            tracks alone of a robot without cables.
+        record: record of runs labelled ``whole``, ``whole_stiff``, ``tail_only``, ``tail_only_stiff`` and ``steered``;
+            the tracks alone of a robot without cables.
     """
     labels, cabled = [str(label) for label in record.label.values], len(record.attrs["cable"]) > 0
     with styled():
@@ -110,7 +110,7 @@ def draw_below(record: xr.Dataset, swim_labels: Mapping[str, str]) -> Figure:
     """Draw depth and pitch of the swims below the surface over time.
 
     Args:
-        record: with ``deep_depth`` and ``deep_pitch`` over ``dive`` and ``dive_time``; attributes ``depth`` and
+        record: record with ``deep_depth`` and ``deep_pitch`` over ``dive`` and ``dive_time``; attributes ``depth`` and
             ``deep_from``.
         swim_labels: what each swim is called.
     """

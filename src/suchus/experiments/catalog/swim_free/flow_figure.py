@@ -18,7 +18,7 @@ def draw_in_flow(record: xr.Dataset) -> Mapping[str, Figure]:
     """Draw speeds, forces, residuals and energy balance of the swims in the flow.
 
     Args:
-        record: of the experiment ``swim_free`` with a flow; see ``in_flow``.
+        record: record of the experiment ``swim_free`` with a flow; see ``in_flow``.
     """
     fin_swims = fins(record)
     fin_figures = {"flow_fin": _fins(record, fin_swims)} if fin_swims.stiffness.size > 1 else {}
@@ -173,8 +173,8 @@ def _fins(record: xr.Dataset, fin_swims: xr.Dataset) -> Figure:
     """Draw speed and cost of transport over the stiffness of the passive end, with the best stiffness marked.
 
     Args:
-        record: of the experiment ``swim_free`` with a flow.
-        fin_swims: of ``in_flow.fins``.
+        record: record of the experiment ``swim_free`` with a flow.
+        fin_swims: swims of ``in_flow.fins``.
     """
     stiffness, speed, cost = fin_swims.stiffness.values, fin_swims.speed.values, fin_swims.cost.values
     with styled():

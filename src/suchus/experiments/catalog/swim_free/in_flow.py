@@ -44,7 +44,7 @@ def flow_runs(
 
     Args:
         joints: the robot by the ending of its swims' names, as it is and with stiffer joints.
-        motions: by name.
+        motions: motions by name.
         swim_names: names of swims.
         water: a ``Slice`` or a ``Space``.
     """
@@ -76,8 +76,8 @@ def fin_runs(run: Run, stiffnesses: Sequence[float]) -> list[Run]:
     """Return a run with other stiffnesses of the passive end's joints, the softest first.
 
     Args:
-        run: in a flow.
-        stiffnesses: of each joint [N m/rad].
+        run: run in a flow.
+        stiffnesses: stiffnesses of each joint [N m/rad].
     """
     joints = passive_joints(run.robot)
     return [
@@ -93,7 +93,7 @@ def fins(record: xr.Dataset) -> xr.Dataset:
     NaN; a record without such swims has none.
 
     Args:
-        record: of the experiment with a flow.
+        record: record of the experiment with a flow.
     """
     names = [str(name) for name in record.flow_run.values if FIN in str(name)]
     last_cycle = record.flow_servo_power.sel(
@@ -133,8 +133,8 @@ def swim_in_flow(runs: Sequence[Run], cycles: int, keep: str, progress: Progress
     A later swim that diverges has NaN from there on.
 
     Args:
-        runs: of ``flow_runs``.
-        cycles: of each swim [-].
+        runs: runs of ``flow_runs``.
+        cycles: number of cycles of each swim [-].
         keep: folder of checkpoints, from which swims resume; empty keeps nothing.
         progress: called with the fraction that is done.
 
@@ -214,8 +214,8 @@ def _section_tables(
     A later swim that broke off has NaN.
 
     Args:
-        runs: in the flow.
-        records: of the runs.
+        runs: runs in the flow.
+        records: records of the runs.
         complete_records: those of ``records`` that did not diverge.
         viscosity: kinematic, of the flow's water [m2/s].
     """
@@ -258,9 +258,9 @@ def compare_section_speeds(
     Better forces do not guarantee a better speed, because speed depends on the small difference of thrust and drag.
 
     Args:
-        runs: in the flow, without those that the correction was fitted to.
+        runs: runs in the flow, without those that the correction was fitted to.
         in_flow: speeds of the runs in the flow [m/s].
-        cycles: of each swim [-].
+        cycles: number of cycles of each swim [-].
         viscosity: kinematic, of the flow's water [m2/s].
         correction: fitted to the forces.
 
@@ -398,7 +398,7 @@ def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = 
     """Return the table of the section model beside the flow, as Markdown.
 
     Args:
-        record: of the experiment.
+        record: record of the experiment.
         judgement: see ``FlowSwims``; empty for none.
         is_earned: whether a correction is written beside it.
     """

@@ -33,10 +33,10 @@ def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
     """Return swims that dive from the surface to a depth; none if the robot has not the air to hover.
 
     Args:
-        robot: that swims.
-        gait: in which it swims.
-        lake: in which it swims.
-        depth: of its root below the level [m].
+        robot: robot that swims.
+        gait: gait in which it swims.
+        lake: lake in which it swims.
+        depth: depth of its root below the level [m].
     """
     if not hovers(robot, lake):
         return []
@@ -60,8 +60,8 @@ def dive_record(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
     front chambers.
 
     Args:
-        record: of the swims.
-        runs: of ``deep_runs``.
+        record: record of the swims.
+        runs: runs of ``deep_runs``.
     """
     names = [str(label) for label in record.label.values]
     values = {
@@ -85,7 +85,7 @@ def dive_record(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
 def _hovering(run: Run) -> float:
     """Return the pitch of a robot that hovers in the first posture of its swim, nose down positive [rad]."""
     posture = cycle_targets(run.robot, run.gait, np.zeros(1), np.zeros(1))[0]
-    return hydrostatics(run.robot, posture, air_fraction=neutral_air_fraction(run.robot), heels=3).trim_submerged
+    return hydrostatics(run.robot, posture, air_fraction=neutral_air_fraction(run.robot), heel_count=3).trim_submerged
 
 
 def measures(record: xr.Dataset) -> Measures:

@@ -160,7 +160,7 @@ class SwimSweep(Experiment):
 
         Args:
             axis: the other parameter, ``frequency`` or ``waves``.
-            values: of the other parameter, in Hz or waves per body length.
+            values: values of the other parameter, in Hz or waves per body length.
             motion: gait of an amplitude factor and a value of the other parameter.
         """
         motions = [motion(amplitude, value) for amplitude in self.amplitudes for value in values]
@@ -265,7 +265,7 @@ def _power(quantity: xr.DataArray, speed: xr.DataArray) -> float:
 
     Args:
         quantity: parameter of each motion.
-        speed: of each motion; NaN where the motion is impossible [m/s].
+        speed: speed of each motion; NaN where the motion is impossible [m/s].
     """
     good = np.flatnonzero(np.isfinite(speed.values) & (speed.values > 0.0))
     if good.size < 2:

@@ -35,7 +35,7 @@ def draw_maps(record: xr.Dataset, model: str) -> Figure:
     Each motion that was computed is a cell with its number; nothing is interpolated, and scales begin at zero.
 
     Args:
-        record: of the experiment ``swim_sweep``.
+        record: record of the experiment ``swim_sweep``.
         model: which of the slender-body models.
     """
     model_record = record.sel(model=model)
@@ -73,8 +73,8 @@ def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -
 
     Args:
         ax: axes to draw on.
-        record: of one slender-body model.
-        name: of the quantity, one of ``_ROWS``.
+        record: record of one slender-body model.
+        name: name of the quantity, one of ``_ROWS``.
         axis: the other parameter, one of ``_AXES``.
         scale: colour scale of the quantity.
     """
@@ -134,7 +134,7 @@ def draw_check(record: xr.Dataset) -> Figure:
     """Draw the speed of the checked points by CFD and by the slender-body models.
 
     Args:
-        record: of the experiment ``swim_sweep``.
+        record: record of the experiment ``swim_sweep``.
     """
     with styled():
         figure, axes = panels(1, 1, width=7.2, height=3.9)

@@ -382,10 +382,10 @@ def _free_swim(
     """Yield speed, efficiency and similarity numbers of the free body, and the speeds of the slender-body models.
 
     Args:
-        record: of the experiment.
+        record: record of the experiment.
         free_swim: the free swim, of ``select_swim``.
         robot: the robot that swims.
-        frequency: of the wave [Hz].
+        frequency: frequency of the wave [Hz].
         reynolds: frequency times length squared over viscosity [-].
     """
     swim_result = SwimMeasures.from_record(free_swim, frequency)

@@ -80,7 +80,7 @@ def draw_quarters(record: xr.Dataset) -> Figure:
     """Draw pressure, vorticity and streamlines around the tethered body at the four quarters of a cycle, as Fig. 17.
 
     Args:
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
     """
     # the jump at the tail's edge exceeds all other values: end the scales where the two sides still differ
     limits = {
@@ -126,7 +126,7 @@ def draw_sides(record: xr.Dataset) -> Figure:
     """Draw the pressure on the two sides of the tail at the four quarters, and where their difference sits.
 
     Args:
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
     """
     quarter_record = record[["held_place", "held_bend"]].interp(held_phase=record.held_instant.values)
     positions, bend = quarter_record.held_place.values, quarter_record.held_bend.values
@@ -157,7 +157,7 @@ def draw_forces(record: xr.Dataset) -> Figure:
     """Draw forces over the last cycle, ours and as printed, and what the servos carry.
 
     Args:
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
     """
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.4)
@@ -206,7 +206,7 @@ def draw_free(record: xr.Dataset) -> Figure:
     """Draw the free swim: its wake, its speed over the cycles, and what trunk and tail each do.
 
     Args:
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
     """
     with styled(axes__grid=False):
         figure, axes = panels(2, 1, width=10.5, height=8.2, height_ratios=[1.35, 1])
@@ -245,7 +245,7 @@ def film_vorticity(record: xr.Dataset) -> bytes:
     """Return the last cycle of the free swim as a film of its vorticity.
 
     Args:
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
     """
     return _film(record, "vorticity", "1/s", VORTICITY, 0.97, "Vorticity over the last cycle of the free swim, red "
                  "counter-clockwise; the picture travels with the body, which swims to the left.")  # fmt: skip
@@ -255,7 +255,7 @@ def film_pressure(record: xr.Dataset) -> bytes:
     """Return the last cycle of the free swim as a film of its pressure.
 
     Args:
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
     """
     return _film(record, "pressure", "Pa", PRESSURE, 0.985, "Pressure over the last cycle of the free swim, purple "
                  "above and brown below that of the far water; the picture travels with the body.")  # fmt: skip
@@ -265,12 +265,12 @@ def _film(record: xr.Dataset, quantity: str, unit: str, colours: str, fraction: 
     """Return the last cycle of the free swim as a film of one field.
 
     Args:
-        record: of the experiment ``swimming``.
+        record: record of the experiment ``swimming``.
         quantity: ``vorticity`` or ``pressure``.
-        unit: of the quantity.
+        unit: unit of the quantity.
         colours: name of the colour map.
         fraction: quantile of the absolute values at which the colour scale ends [-].
-        caption: of the film.
+        caption: caption of the film.
     """
     values, phase = record[f"free_{quantity}"].values, record.free_frame.values
     with styled(axes__grid=False, figure__dpi=_FILM_DPI):

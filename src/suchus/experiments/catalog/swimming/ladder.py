@@ -194,7 +194,7 @@ def _attempt(name: str, unable: dict[str, str], run: Callable[[], Any]) -> Any:
     """Return the result of a rung; None if the rung cannot run, and then ``unable`` has the reason.
 
     Args:
-        name: of the rung.
+        name: name of the rung.
         unable: reasons by rung; a reason is added to it.
         run: computes the result.
 
@@ -225,8 +225,8 @@ def _stacked(key: str, results: Iterable[Mapping[str, Any]], cycles: int) -> Any
     """Return one variable of all rungs as a tuple for xarray: dimensions, values, attributes.
 
     Args:
-        key: of ``_SHAPES``.
-        results: of each rung, by variable; a missing variable becomes NaN.
+        key: key of ``_SHAPES``.
+        results: results of each rung, by variable; a missing variable becomes NaN.
         cycles: cycles of each swim [-].
     """
     dims, unit = _SHAPES[key]
@@ -263,7 +263,7 @@ def _of_swims(climb: LadderSetting, swims: Swims) -> dict[str, Any]:
 
     Args:
         climb: setting of the ladder.
-        swims: by motion, and ``held``.
+        swims: swims by motion, and ``held``.
     """
     missing = np.full(climb.cycles, np.nan)
     results: dict[str, Any] = {
@@ -359,7 +359,7 @@ def _of_sections(climb: LadderSetting, record: xr.Dataset) -> dict[str, Any]:
 
     Args:
         climb: setting of the ladder.
-        record: of ``_in_sections``.
+        record: record of ``_in_sections``.
     """
     period, time = 1.0 / climb.wave_fit.gait.frequency, record.time.values.astype(float)
     settling_time = period * _section_settling_cycles(climb)
@@ -449,8 +449,8 @@ def settle(
 
     Args:
         half: returns the number between two cycles, once for each side to which the swim may start.
-        cycles: of the swim [-].
-        scale: of the number, in its unit.
+        cycles: number of cycles of the swim [-].
+        scale: scale of the number, in its unit.
         min_start: first cycle that may count [-].
     """
     number = None
@@ -474,8 +474,8 @@ def measures(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]
     """Return every rung's numbers, ``_low``, ``_high`` and ``_apart``, and its speeds.
 
     Args:
-        record: with what ``run_ladder`` returned.
-        length: of the robot [m].
+        record: record with what ``run_ladder`` returned.
+        length: length of the robot [m].
     """
     yield from _of_rungs(record, length)
     for motion in MOTIONS:
@@ -490,8 +490,8 @@ def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]
     In three dimensions the bounds include those of the stored study of grids.
 
     Args:
-        record: of ``run_ladder``.
-        length: of the robot [m].
+        record: record of ``run_ladder``.
+        length: length of the robot [m].
     """
     grids = json.loads(record.attrs["grids"])
     for name in record.rung.values:
@@ -520,7 +520,7 @@ def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, SettledNumb
 
     Args:
         rung: record of one rung.
-        length: of the robot [m].
+        length: length of the robot [m].
     """
     cycles = rung.sizes["ladder_cycle"]
     whole_speed, tail, trunk = (rung.ladder_speed.sel(ladder_motion=motion).values for motion in MOTIONS)
@@ -560,7 +560,7 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumbe
 
     Args:
         course: lateral position of the midline, shape (tick, place) [body length].
-        cycles: of the swim [-].
+        cycles: number of cycles of the swim [-].
     """
     names = ("wave_share", "wave_waves_per_body", "wave_envelope_middle", "wave_envelope_tip")
     s = np.linspace(0.0, 1.0, course.shape[1])
@@ -600,7 +600,7 @@ def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, Settle
 
     Args:
         difference: mean pressure difference, shape (cycle, quarter).
-        cycles: of the swim [-].
+        cycles: number of cycles of the swim [-].
     """
     size = float(np.sort(np.abs(difference[1:]), axis=None).mean())
 
@@ -621,7 +621,7 @@ def _pushing(force: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumbe
 
     Args:
         force: forward and lateral, shape (cycle, quarter, 2).
-        cycles: of the swim [-].
+        cycles: number of cycles of the swim [-].
     """
     size = float(np.sort(np.hypot(force[1:, :, 0], force[1:, :, 1]), axis=None).mean())
 

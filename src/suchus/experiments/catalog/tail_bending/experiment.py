@@ -186,7 +186,7 @@ def _cords(plates: TailMeasures, bend: np.ndarray, linear: bool) -> xr.Dataset:
 
     Args:
         plates: measures of the tail.
-        bend: of the whole tail [rad].
+        bend: bend angle of the whole tail [rad].
         linear: whether a linear actuator moves the cords.
     """
     toward_change, away_change = tail.cable_changes(plates, bend)

@@ -401,7 +401,7 @@ def _run_quantities(record: xr.Dataset, is_met: Sequence[bool]) -> np.ndarray:
     """Return the quantities of ``_UNITS``, shape (run, quantity).
 
     Args:
-        record: of the runs.
+        record: record of the runs.
         is_met: whether each robot reached the obstacle.
     """
     excerpt, displacements = time_window(record), displacement(record)
@@ -421,7 +421,7 @@ def _meets_obstacle(record: xr.Dataset, run: Run) -> bool:
     """Return whether a robot reached the obstacle in its path; True on even ground, which has none.
 
     Args:
-        record: of one run.
+        record: record of one run.
         run: the run.
     """
     robot_layout = layout(run.robot)

@@ -25,7 +25,7 @@ def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Fi
     """Draw the distance on bumps, steps and stones over height, or as bars where they are few; falls as crosses.
 
     Args:
-        record: of the experiment ``terrain``.
+        record: record of the experiment ``terrain``.
         lines: style of each condition.
     """
     kinds = [str(kind) for kind in dict.fromkeys(record.kind.values)]
@@ -101,8 +101,8 @@ def draw_on_bumps(robot: Robot, record: xr.Dataset, posture_text: str) -> Figure
     """Draw every run of a record from the side at its end, on the ground under it.
 
     Args:
-        robot: who walked.
-        record: of the experiment.
+        robot: robot that walked.
+        record: record of the experiment.
         posture_text: what the postures are, from above to below.
     """
     with styled(axes__grid=False):

@@ -307,7 +307,7 @@ def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> 
     """Draw curvature over bend and asymmetry, and the measured over the commanded radius.
 
     Args:
-        record: of the experiment ``turning``.
+        record: record of the experiment ``turning``.
         lines: style of each gait.
     """
     with styled():

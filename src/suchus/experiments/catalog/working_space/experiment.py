@@ -153,7 +153,8 @@ def draw_room(record: xr.Dataset, states: Sequence[str]) -> Figure:
     """Draw the cells that the snout reaches in two states, and the highest configuration of each.
 
     Args:
-        record: with ``snout_STATE`` (kept, xyz), ``body_STATE`` (point, xyz), ``legs_STATE`` (leg, end, xyz) [m].
+        record: record with ``snout_STATE`` (kept, xyz), ``body_STATE`` (point, xyz), ``legs_STATE`` (leg, end, xyz)
+            [m].
         states: their names, the smaller room first.
     """
     with styled():
@@ -163,7 +164,7 @@ def draw_room(record: xr.Dataset, states: Sequence[str]) -> Figure:
                 snout, colour = record[f"snout_{state}"].values, COLOURS[role]
                 if vertical_axis == 1:
                     snout = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])
-                _cells(ax, snout[:, [horizontal_axis, vertical_axis]], record.attrs["cell"], colour)
+                _fill_occupied_cells(ax, snout[:, [horizontal_axis, vertical_axis]], record.attrs["cell"], colour)
                 ax.plot([], [], "s", color=colour, alpha=0.55, markersize=10, label=state)
             for state, role in zip(states, _ROLES, strict=True):
                 if f"body_{state}" in record:
@@ -175,11 +176,18 @@ def draw_room(record: xr.Dataset, states: Sequence[str]) -> Figure:
     return figure
 
 
-def _cells(ax: Any, points: np.ndarray, cell: float, colour: str) -> None:
-    """Fill the cells that hold a point."""
+def _fill_occupied_cells(ax: Any, points: np.ndarray, cell_size: float, colour: str) -> None:
+    """Draw the squares of a regular grid that contain at least one point, in one translucent colour.
+
+    Args:
+        ax: axes to draw on.
+        points: points in the plane of the panel, shape (point, 2) [m].
+        cell_size: side of a square [m].
+        colour: colour of the squares.
+    """
     if len(points) == 0:
         return
-    edges = [np.arange(p.min(), p.max() + 2 * cell, cell) for p in points.T]
+    edges = [np.arange(coordinates.min(), coordinates.max() + 2 * cell_size, cell_size) for coordinates in points.T]
     counts, _ = np.histogramdd(points, bins=edges)
     occupied = np.ma.masked_equal(counts.T > 0, False)
     ax.pcolormesh(*edges, occupied, cmap=ListedColormap([colour]), alpha=0.38, antialiased=False, linewidth=0, zorder=1)
@@ -190,10 +198,10 @@ def _posture(ax: Any, record: xr.Dataset, state: str, axes: tuple[int, int], col
 
     Args:
         ax: axes to draw on.
-        record: with ``body_STATE`` and ``legs_STATE`` [m].
+        record: record with ``body_STATE`` and ``legs_STATE`` [m].
         state: one of ``STATES``.
         axes: indices of the horizontal and the vertical coordinate in ``xyz``.
-        colour: of the lines.
+        colour: colour of the lines.
     """
     body, legs = record[f"body_{state}"].values[:, list(axes)], record[f"legs_{state}"].values[..., list(axes)]
     ax.plot(

@@ -30,10 +30,10 @@ def export(robot: Robot, gait: Gait, folder: str | Path, kind: Format, *, timest
 
     Args:
         robot: the design.
-        gait: whose mid-stance is the home posture.
+        gait: gait whose mid-stance is the home posture.
         folder: an older export there is replaced where nobody changed it.
-        kind: of model.
-        timestep: of the physics, for MJCF [s].
+        kind: kind of model.
+        timestep: time step of the physics, for MJCF [s].
 
     Raises:
         UnknownName: there is no such format.

@@ -23,8 +23,8 @@ def mjcf(robot: Robot, gait: Gait, *, timestep: float = TIMESTEP) -> tuple[str, 
 
     Args:
         robot: the design.
-        gait: whose mid-stance, trunk and tail straight, is the keyframe.
-        timestep: of the physics [s].
+        gait: gait whose mid-stance, trunk and tail straight, is the keyframe.
+        timestep: time step of the physics [s].
 
     Returns:
         The texts of ``NAME.xml`` and ``scene.xml``.

@@ -53,7 +53,7 @@ def usd(robot: Robot, gait: Gait) -> str:
 
     Args:
         robot: the design.
-        gait: whose mid-stance is the target of the drives.
+        gait: gait whose mid-stance is the target of the drives.
 
     Raises:
         NoUsd: usd-core is not installed.

@@ -372,7 +372,7 @@ def _cleaned(
 
     Args:
         element: the element.
-        tags: of the children that are copied.
+        tags: tags of the children that are copied.
         unread_meshes: file of each mesh that is not read, by name.
     """
     copy = ElementTree.Element(element.tag, {k: v for k, v in element.attrib.items() if k not in ("material", "mocap")})

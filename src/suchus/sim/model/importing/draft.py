@@ -61,7 +61,7 @@ def draft_of(plan: BodyPlan, name: str, words: Words) -> Draft:
 
     Args:
         plan: axis and limbs.
-        name: of the robot.
+        name: name of the robot.
         words: what the user said.
 
     Raises:
@@ -161,7 +161,7 @@ def _reason_against_leg(plan: BodyPlan, words: Words, number: int) -> str:
     Args:
         plan: axis and limbs.
         words: what the user said.
-        number: of the pair.
+        number: number of the pair.
     """
     chains = plan.pairs[number]
     names = [name for chain in chains for i in chain.parts for name in plan.tree_part(i).names]
@@ -293,7 +293,7 @@ def _ends(making: Making, parts: list[TreePart], joint_positions: list[float]) -
 
     Args:
         making: the draft.
-        parts: of the axis, from the front.
+        parts: parts of the axis, from the front.
         joint_positions: x of the hinges between them [m].
     """
     limbs = [chain for pair in making.plan.pairs for chain in pair]
@@ -331,9 +331,9 @@ def _shapes(making: Making, tree_part: TreePart, front: float, length: float, nu
 
     Args:
         making: the draft.
-        tree_part: of the file, which becomes the segment.
+        tree_part: part of the file, which becomes the segment.
         front: x of the segment's front end [m].
-        length: of the segment [m].
+        length: length of the segment [m].
         number: index of the segment.
     """
     start = np.array([front, 0.0, 0.0])
@@ -513,7 +513,7 @@ def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, note_path: st
 
     Args:
         making: the draft.
-        parts: of the limb, from the hip.
+        parts: parts of the limb, from the hip.
         knee: anchor of the last hinges in the robot's frame [m].
         note_path: place of the limb in the robot's file.
     """

@@ -62,7 +62,7 @@ def _max_torques(model: Any, actuators: dict[int, int]) -> dict[int, float | Non
     """Return the greatest torque of the actuators of each hinge at standstill [N m]; None where nothing bounds it.
 
     Args:
-        model: of the file.
+        model: model of the file.
         actuators: hinge of each actuator.
     """
     trial = copy(model)

@@ -101,9 +101,9 @@ def hinge_of(
     Args:
         name: of it.
         turn: what it turns.
-        sign: of its angles against those of the file.
-        joint: of the file.
-        size: of the robot.
+        sign: sign of its angles against those of the file.
+        joint: joint of the file.
+        size: size of the robot.
         mass_fraction: mass of what it carries over that of the heaviest part, for a spring.
         lone: whether it is the only hinge of a limb, which may turn all round.
     """
@@ -240,9 +240,9 @@ class Making:
         """Return centre and moments of the mass of parts that move as one, along the robot's axes.
 
         Args:
-            note_path: of the segment or link in the robot's file.
+            note_path: path of the segment or link in the robot's file.
             parts: the parts.
-            origin: of the frame, in that of the robot [m].
+            origin: origin of the frame, in that of the robot [m].
 
         Returns:
             None where the file does not say.

@@ -100,7 +100,7 @@ def find_plane(tree: Tree, *, front: str | None, heading: float | None) -> tuple
     Args:
         tree: the parts.
         front: a body at the front end; None: guess by names, else along the file's x axis.
-        heading: of the front, from the file's x axis to the left [degree]; None: guess.
+        heading: heading of the front, from the file's x axis to the left [degree]; None: guess.
 
     Raises:
         UnreadableFile: no plane maps enough hinges onto each other.
@@ -435,7 +435,7 @@ def _remarks_on_front(plane: Plane, reference_axis: str) -> list[str]:
 
     Args:
         plane: the mirror plane.
-        reference_axis: of the file, from which headings count.
+        reference_axis: reference axis of the file, from which headings count.
     """
     heading_text = f"the file's {reference_axis} axis turned left by {plane.heading % 360:g} degrees"
     opposite_heading = (plane.heading + 180) % 360

@@ -60,10 +60,10 @@ def _angle(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, pivot: Joint
 
     Args:
         plan: axis and limbs.
-        parts: of the tree, as turned so far.
+        parts: parts of the tree, as turned so far.
         chain: the limb.
         pivot: the hinge that is turned.
-        axis: of the next hinge, in the robot's frame.
+        axis: axis of the next hinge, in the robot's frame.
     """
     rotation_axis = plan.plane.turn @ pivot.axis
     axis_index = int(np.argmax(np.abs(rotation_axis)))
@@ -90,10 +90,10 @@ def _turn(parts: list[TreePart], plan: BodyPlan, part_index: int, joint_index: i
     """Rotate everything that a hinge carries by an angle [rad], and set the new zero of the hinge.
 
     Args:
-        parts: of the tree; those that move are replaced.
+        parts: parts of the tree; those that move are replaced.
         plan: the body plan.
         part_index: part that the hinge carries.
-        joint_index: of the hinge in that part.
+        joint_index: index of the hinge in that part.
         angle: [rad].
     """
     pivot = parts[part_index].joints[joint_index]
@@ -136,7 +136,7 @@ def import_robot(path: str | Path, *, name: str, words: Words | None = None) -> 
 
     Args:
         path: the file.
-        name: of the robot.
+        name: name of the robot.
         words: answers to what geometry cannot say.
 
     Raises:

@@ -30,9 +30,9 @@ def upright(tree: Tree, up: str | None, gravity: tuple[float, float, float] | No
     The axis is that of the option, else that of the file's gravity, else the one along which the feet are level.
 
     Args:
-        tree: of the file.
+        tree: tree of the file.
         up: the axis of the file that points up, see ``UP_AXES``; None: find it.
-        gravity: of the file [m/s2]; None where it states none.
+        gravity: gravity of the file [m/s2]; None where it states none.
 
     Raises:
         UnreadableFile: gravity lies along none of the axes, or nothing says which axis is up.
@@ -143,7 +143,7 @@ def _turned(tree: Tree, up: str, remark: str) -> Tree:
     """Return a tree whose axis ``up`` is turned to z and its reference axis to x.
 
     Args:
-        tree: of the file.
+        tree: tree of the file.
         up: see ``UP_AXES``.
         remark: to add.
     """
