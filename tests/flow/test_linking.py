@@ -76,7 +76,7 @@ def test_the_same_bytes_cold_warm_partly_warm_and_on_two_threads(tmp_path):
 @pytest.mark.validate
 def test_the_same_bytes_of_a_whole_flow(tmp_path):
     cold, warm = told(WHOLE, tmp_path), told(WHOLE, tmp_path)
-    for kernel in ("poisson.solve", "immerse.immerse", "paint.sections"):
+    for kernel in ("poisson.solve", "immerse.immerse", "paint.section_motions"):
         forget(tmp_path, kernel)
     assert len({*cold, *warm, *told(WHOLE, tmp_path)}) == 1
 

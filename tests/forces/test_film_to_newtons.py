@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from suchus.animals.capture import Camera, SyntheticAnimal, UnusableTracks, driven_fraction, film, film_animal, observe
 from suchus.animals.forces import Unknown, summary_lines, walked_forces
-from suchus.animals.forces.body import Quantities, errors, sample_walk, unsure, widen_body
+from suchus.animals.forces.body import Quantities, errors, names_with_interval, sample_walk, widen_body
 from suchus.animals.forces.water import THICK_WATER, _hinge_harmonics, _spread, _SwimCycle, swum_forces
 from suchus.apps.cli import main
 from suchus.core.errors import InvalidDesign, UnknownName
@@ -85,7 +85,7 @@ def test_what_is_said_of_the_speed_is_so(walked):
 
 
 def test_the_middle_of_all_distributions_is_the_walk_itself_and_their_ends_are_those_of_intervals(walk):
-    names = unsure(walk)
+    names = names_with_interval(walk)
     same = sample_walk(walk, dict.fromkeys(names, 0.5))
     assert {name: one.value for name, one in same.numbers.items()} == pytest.approx(
         {name: one.value for name, one in walk.numbers.items()}, nan_ok=True

@@ -57,7 +57,7 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], st
     rows = [_body(stride_tracks, period) for stride_tracks in stride_list]
     data = xr.Dataset(coords={"stride": ("stride", np.arange(1, len(numbers) + 1), {"units": "1"})})
     data["start"] = ("stride", ends[:-1], _attributes("s", "time at which the stride begins"))
-    cut_error = np.hypot(jitter, _EXTRAPOLATION_ERROR * _extrapolated(clock, numbers + zero))
+    cut_error = np.hypot(jitter, _EXTRAPOLATION_ERROR * _extrapolated(clock, numbers + start_phase))
     error = cut_error * period
     _add_with_interval(data, "period", ("stride",), lasts, error, "s", "duration of the stride")
     unit = tracks.unit

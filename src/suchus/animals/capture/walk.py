@@ -62,7 +62,7 @@ class Walk:
     """File that the tracks are from."""
     cycles: float
     """Number of cycles that were seen [-]."""
-    upright: bool
+    has_heights: bool
     """Whether heights were seen."""
     tail_share: float
     """Where along the tail its lateral angle was taken, 1 at the tip [-]."""
@@ -181,7 +181,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     return Walk(
         source=tracks.source,
         cycles=float((tracks.time[-1] - tracks.time[0]) / period),
-        upright=tracks.upright,
+        has_heights=tracks.has_heights,
         tail_share=tail_share,
         numbers=numbers,
         bends={name: complex(_first_harmonic(mean_reading.angles[name], zero)) for name in mean_reading.angles},
