@@ -23,7 +23,7 @@ FIRST, COUNT = 2000, 200
 KEPT = Path(__file__).with_name("intervals.json")
 PAGE = ROOT / "docs" / "capture.md"
 READS = tuple(
-    f"capture/{name}.py"
+    f"animals/capture/{name}.py"
     for name in (
         *("angles", "animal", "camera", "cycle", "exchange", "feet", "film", "late", "names", "pauses", "screen"),
         *("strides", "swings", "tracks", "walk"),
