@@ -27,7 +27,7 @@ LIBRARIES = (
     "numpy", "scipy.constants", "scipy.interpolate", "scipy.ndimage", "scipy.optimize", "scipy.signal",
     "scipy.spatial.transform", "scipy.stats", "numba", "llvmlite.binding", "mujoco", "xarray", "h5netcdf", "h5py",
     "matplotlib.figure", "matplotlib.backends.backend_agg", "mpl_toolkits.mplot3d", "PIL.Image", "pydantic", "jinja2",
-    "rich.progress", "jaxtyping", "tyro",
+    "rich.progress", "tyro",
 )  # fmt: skip
 """What most programs import; nothing of suchus."""
 CAN_FORK = sys.platform == "linux"

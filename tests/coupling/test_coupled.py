@@ -404,5 +404,6 @@ def test_any_chain_swims_in_a_slice(body):
     run = Run(robot=robot, gait=gait, water=Slice(cells=40, reynolds=600.0), control=Swimming(ramp=gait.period))
     record = simulate([run], duration=round(0.5 * gait.period, 1), progress=silent).isel(run=0)
     assert np.isnan(float(record.ended)) or float(record.ended) >= float(record.time[-1]) - 1e-9
-    later = record.sel(time=slice(0.1 * gait.period, None))
+    # the residual is over the greatest force so far, which is small while the swing begins
+    later = record.sel(time=slice(0.2 * gait.period, None))
     assert float(later.coupling_residual.max()) < 0.03

@@ -17,6 +17,7 @@ HARMLESS = (
     "suchus.core.threads",
     "suchus.core.progress",
     "suchus.core.kernel_cache",
+    "suchus.core.printable",
     "suchus.core.writing",
 )
 """Words, what is too large to begin with, how this machine computes, how many threads, how far something is, and where

@@ -51,7 +51,7 @@ def test_a_meter_writes_the_chosen_runs_alone(robot):
     model = compile_model(robot)
     two = ServoLaws(model, [robot, robot])
     meter = Meter(water, sensors, slice(0, 19), slice(19, 38), two, 2)
-    meter.begin()
+    meter.begin(sensors)
     for step, force in enumerate((4.0, 8.0)):
         water[:, hydro.FORCE] = force
         meter.record_step(step)

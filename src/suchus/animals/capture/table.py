@@ -107,9 +107,6 @@ def write_table(tracks: Tracks, path: str | Path) -> Path:
     return write(path, text.getvalue())
 
 
-_MAX_COLUMNS = 10_000
-
-
 def _rows(path: Path) -> list[list[str]]:
     """Return the non-empty rows of a CSV table, header included."""
     try:
@@ -125,10 +122,6 @@ def _rows(path: Path) -> list[list[str]]:
         raise UnreadableFile(f"{path} is no CSV table: {error}.") from error
     if not rows:
         raise UnreadableFile(f"{path} is empty; a header ({_EXAMPLE}) and one row per frame are needed.")
-    if len(rows[0]) > _MAX_COLUMNS:
-        raise UnreadableFile(
-            f"{path} has {len(rows[0])} columns; up to {_MAX_COLUMNS} are read, two for each keypoint: leave some out."
-        )
     if len(rows) == 1:
         raise UnusableTracks(f"{path.name} holds a header and no frame; at least one cycle is needed.")
     return rows
