@@ -140,5 +140,5 @@ def _repeats_earlier_rule(rule: Rule, rules: Mapping[str, Rule]) -> bool:
 
 
 def _comparison_key(rule: Rule) -> tuple[object, ...]:
-    clauses = sorted((clause.measure, clause.relation, str(clause.bound)) for clause in rule.holds)
+    clauses = sorted(clause.comparison for clause in rule.holds)
     return rule.experiment, rule.measure, clauses

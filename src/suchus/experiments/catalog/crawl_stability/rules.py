@@ -3,9 +3,20 @@
 from math import nan, radians
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, ControlGroup, Rule, Variation, measure_with_interval
+from suchus.article.verdict.rule import (
+    DEFAULT_SPREAD_OF,
+    Clause,
+    ControlGroup,
+    Rule,
+    SmallestEffect,
+    Variation,
+    measure_with_interval,
+)
 
 _STEADINESS_REASON = "steadier is a smaller fluctuation"
+_VISIBLE_CHANGE = SmallestEffect(
+    size=0.05, why="a twentieth of a fluctuation of 4 mm is 0.2 mm, about what motion capture resolves"
+)
 _MAX_DUTY_CLAUSE = Clause(
     "hind_duty_limbs_tail_lifted", "<=", 0.85, "feet that hardly leave the ground walk in no gait, and rise with none"
 )
@@ -21,7 +32,7 @@ RULES = (
         claim="com_fluctuation",
         experiment="crawl_stability",
         measure="com_height_pp_change_tail_lifted",
-        holds=(Clause("com_height_pp_change_tail_lifted", "<", 0.0, _STEADINESS_REASON),),
+        holds=(Clause("com_height_pp_change_tail_lifted", "<", 0.0, _STEADINESS_REASON, _VISIBLE_CHANGE),),
         control=_TAIL_LIFTED_GROUP,
         spread=("com_height_pp_change_tail_lifted", "hind_duty_limbs_tail_lifted"),
         of=DEFAULT_SPREAD_OF,
@@ -86,7 +97,7 @@ RULES = (
                 0.05,
                 "less than a twentieth of the weight supports nothing",
             ),
-            Clause("tail_contact_pp_change", "<", 0.0, _STEADINESS_REASON),
+            Clause("tail_contact_pp_change", "<", 0.0, _STEADINESS_REASON, _VISIBLE_CHANGE),
         ),
         control=ControlGroup(
             group="spine_only",
@@ -104,7 +115,7 @@ RULES = (
         claim="wagging_balances",
         experiment="crawl_stability",
         measure="wagging_pp_change",
-        holds=(Clause("wagging_pp_change", "<", 0.0, _STEADINESS_REASON),),
+        holds=(Clause("wagging_pp_change", "<", 0.0, _STEADINESS_REASON, _VISIBLE_CHANGE),),
         control=ControlGroup(
             group="tail_still", why="What wags balances: the same crawl whose tail is dragged without it."
         ),
@@ -128,7 +139,7 @@ VARIED = Variation(claims=("tilt_limbs_only",), designs=("robot", "gait"), sampl
 _HEIGHT = {
     "com_height_pp_change_tail_lifted": -0.1,
     "com_height_pp_change_tail_lifted_low": -0.2,
-    "com_height_pp_change_tail_lifted_high": -0.001,
+    "com_height_pp_change_tail_lifted_high": -0.051,
     **measure_with_interval("hind_duty_limbs_tail_lifted", 0.7, 0.845),
     "com_height_pp_coordinated": 0.0038,
     "com_height_pp_limbs_only": 0.0042,
@@ -162,11 +173,11 @@ _TILT = {
 _TAIL = {
     "tail_contact_pp_change": -0.1,
     "tail_contact_pp_change_low": -0.2,
-    "tail_contact_pp_change_high": -0.001,
+    "tail_contact_pp_change_high": -0.051,
     "tail_contact_pp_change_limbs_only": -0.4,
     **measure_with_interval("tail_load_share_coordinated", 0.0505, 0.06),
 }
-_WAG = {"wagging_pp_change": -0.1, "wagging_pp_change_low": -0.2, "wagging_pp_change_high": -0.001}
+_WAG = {"wagging_pp_change": -0.1, "wagging_pp_change_low": -0.2, "wagging_pp_change_high": -0.051}
 
 EXAMPLES: Examples = {
     "com_fluctuation": [
@@ -174,16 +185,16 @@ EXAMPLES: Examples = {
         (_HEIGHT | _DUTY_ABOVE_LEAST, "reproduced"),
         (_HEIGHT | _DUTY_ACROSS_LEAST, "undecided"),
         (_HEIGHT | _DUTY_BELOW_LEAST, "not testable"),
-        (_HEIGHT | {"com_height_pp_change_tail_lifted_high": 0.001}, "undecided"),
-        (_HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", 0.001, 0.1), "contradicted"),
+        (_HEIGHT | {"com_height_pp_change_tail_lifted_high": -0.049}, "undecided"),
+        (_HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", -0.049, 0.1), "contradicted"),
         (_HEIGHT | _DUTY_ACROSS_LIMIT, "undecided"),
         (
-            _HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", 0.001, 0.1) | _DUTY_ACROSS_LIMIT,
+            _HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", -0.049, 0.1) | _DUTY_ACROSS_LIMIT,
             "undecided",
         ),
         (_HEIGHT | _DUTY_ABOVE_LIMIT, "not testable"),
         (
-            _HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", 0.001, 0.1) | _DUTY_ABOVE_LIMIT,
+            _HEIGHT | measure_with_interval("com_height_pp_change_tail_lifted", -0.049, 0.1) | _DUTY_ABOVE_LIMIT,
             "not testable",
         ),
     ],
@@ -229,13 +240,13 @@ EXAMPLES: Examples = {
         (_TAIL, "reproduced"),
         (_TAIL | measure_with_interval("tail_load_share_coordinated", 0.0495, 0.06), "undecided"),
         (_TAIL | measure_with_interval("tail_load_share_coordinated", 0.04, 0.0495), "contradicted"),
-        (_TAIL | {"tail_contact_pp_change_high": 0.001}, "undecided"),
-        (_TAIL | measure_with_interval("tail_contact_pp_change", 0.001, 0.1), "contradicted"),
+        (_TAIL | {"tail_contact_pp_change_high": -0.049}, "undecided"),
+        (_TAIL | measure_with_interval("tail_contact_pp_change", -0.049, 0.1), "contradicted"),
     ],
     "wagging_balances": [
         (_WAG, "reproduced"),
-        (_WAG | {"wagging_pp_change_high": 0.001}, "undecided"),
-        (_WAG | measure_with_interval("wagging_pp_change", 0.001, 0.1), "contradicted"),
+        (_WAG | {"wagging_pp_change_high": -0.049}, "undecided"),
+        (_WAG | measure_with_interval("wagging_pp_change", -0.049, 0.1), "contradicted"),
     ],
     "spine_sinusoidal": [
         ({"spine_sine_r2": 0.951}, "by construction"),
