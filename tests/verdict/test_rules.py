@@ -158,6 +158,21 @@ def test_an_effect_that_is_surely_there_and_too_small_to_matter_is_none():
     assert str(above) == "x > 0 by at least 0.01: gain (the least that matters: a reason)"
 
 
+def test_a_clause_of_another_measure_that_decides_is_shown_with_its_value():
+    rule, rows = RULES["fault_support"], examples_of("joint_faults")["fault_support"]
+    fails = rows[0][0] | measure_with_interval("com_rise_limp", -0.009, -0.007)
+    assert judge(rule, fails).verdict == "contradicted"
+    assert "What fails is com_rise_limp > 0 by at least 0.001 (com_rise_limp: -0.008, -0.009 to -0.007)." in (
+        judge(rule, fails).why
+    )
+    undecided = rows[0][0] | measure_with_interval("com_rise_limp", 0.0005, 0.002)
+    assert "Undecided is com_rise_limp > 0" in judge(rule, undecided).why
+    shown = fails | measure_with_interval("support_share_limp", 0.1, 0.2)
+    for measures in (rows[0][0], shown):  # it holds, or what is shown decides too
+        assert "What fails" not in judge(rule, measures).why
+    assert RULES["tail_swing"].deciding(SWINGS[2][0]) == ""
+
+
 def test_a_verdict_is_fragile_where_other_designs_say_otherwise():
     measures = SWINGS[0][0]  # reproduced
     for share, held in ((ROBUST + 0.01, False), (ROBUST - 0.01, True)):

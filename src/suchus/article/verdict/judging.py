@@ -125,9 +125,9 @@ Word = Literal[
 """``reproduced``: it came out, and the middle of ours is the printed number as rounded. ``same sense``: another number,
 but the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
 ``undecided``: an interval covers both sides of a bound or is unknown, and nothing else fails. ``models disagree``:
-models that can carry the claim say different words. ``not testable``: nothing was measured that could decide, or the control group
-does not do what the claim needs. ``by construction``:
-an input, a count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was
+models that can carry the claim say different words. ``not testable``: nothing was measured that could decide, or the
+control group does not do what the claim needs. ``by construction``: an input, a count or a commanded shape that is read
+back, an identity of formulas, or a consequence of symmetry. ``fitted``: a free number was
 chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
@@ -216,7 +216,9 @@ def judge(
         )
     model_voices = ladder.voices(rule, measures, unable)
     value, lower_bound, upper_bound = _value(rule, measures, model_voices), None, None
-    reason = " ".join(text for text in (rule.reason(measures), rule.unable(measures), rule.unknown(measures)) if text)
+    deciding = "" if model_voices else rule.deciding(measures)
+    reason_parts = (rule.reason(measures), deciding, rule.unable(measures), rule.unknown(measures))
+    reason = " ".join(text for text in reason_parts if text)
     if model_voices:
         _, min_value, max_value = ladder.spread(model_voices)
         lower_bound, upper_bound = (min_value, max_value) if isfinite(value) else (None, None)

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 MIN_REPEATS = 6
-"""Least number of repeats with which a median has a 95 % interval, see ``suchus.core.intervals.min_median_count`` [-]."""
+"""Least number of repeats with which a median has a 95 % interval [-]; ``core.intervals.min_median_count`` gives it."""
 _UNITS = {"mm": 1e3, "g": 1e3, "ms": 1e3, "MPa": 1e-6}
 
 
@@ -68,8 +68,9 @@ Kind = Literal["measured", "construction", "fitted", "animals"]
 """What a claim's number or statement rests on.
 
 ``measured``: it came out of a run or a calculation and could have come out otherwise. ``construction``: an input, a
-count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was chosen so that
-it comes out. ``animals``: the article speaks of animals, which a robot can resemble but neither confirm nor contradict.
+count or a commanded shape that is read back, an identity of formulas, or a consequence of symmetry. ``fitted``: a
+free number was chosen so that it comes out. ``animals``: the article speaks of animals, which a robot can resemble but
+neither confirm nor contradict.
 """
 DEFAULT_SPREAD_OF = "robots built of the design, with the errors of their servos, masses and friction"
 """What the intervals of most rules are of, for people."""
@@ -266,6 +267,25 @@ class Rule:
         """Return a sentence that names the properties that the control group lacks; empty if it has all of them."""
         lacking = [str(clause) for clause in self._control_clauses if clause.holds(measures, self.spread) is not True]
         return f"The control group, {self.control.group}, lacks {listed(lacking)}." if self.control and lacking else ""
+
+    def deciding(self, measures: Mapping[str, float]) -> str:
+        """Return a sentence with the clauses that do not hold and are of another measure than the one that is shown.
+
+        It is empty where the statement holds, or where the measure that is shown decides.
+        """
+        failing = [clause for clause in self.holds if clause.holds(measures, self.spread) is False]
+        open_clauses = [clause for clause in self.holds if clause.holds(measures, self.spread) is None]
+        decisive = failing or open_clauses
+        if not decisive or self.measure in [clause.measure for clause in decisive]:
+            return ""
+        texts = [f"{clause.comparison} ({clause.measure}: {self._written(clause, measures)})" for clause in decisive]
+        return f"{'What fails is' if failing else 'Undecided is'} {listed(texts)}."
+
+    def _written(self, clause: Clause, measures: Mapping[str, float]) -> str:
+        """Return the value of a clause's measure, with its interval in brackets where it has one."""
+        ends = interval(clause.measure, measures, self.spread)
+        text = f"{measures[clause.measure]:.3g}"
+        return f"{text}, {ends[0]:.3g} to {ends[1]:.3g}" if clause.measure in self.spread else text
 
     def unknown(self, measures: Mapping[str, float]) -> str:
         """Return a sentence that names the measures whose intervals are unknown; empty if all are known."""
