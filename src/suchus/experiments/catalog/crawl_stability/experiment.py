@@ -225,8 +225,8 @@ def _snapshot_quantities() -> dict[str, str]:
 def _designed_changes(record: xr.Dataset) -> Measures:
     """Return the changes of the peak-to-peak height of the robot exactly as designed, as ``NAME_designed``.
 
-    Random errors of robots as built enlarge a peak-to-peak value on average, so the design may lie outside of the interval of
-    these robots.
+    Random errors of robots as built enlarge a peak-to-peak value on average, so the design may lie outside of the
+    interval of these robots.
     """
     labels = [str(label) for label in record.condition.values]
     heights = dict(zip(labels, height_peak_to_peak(record).values, strict=True))
