@@ -124,10 +124,10 @@ Word = Literal[
 ]  # fmt: skip
 """``reproduced``: it came out, and the middle of ours is the printed number as rounded. ``same sense``: another number,
 but the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
-``undecided``: an interval covers both sides of a bound, and nothing else fails. ``models disagree``: models that can
-carry the claim say different words. ``not testable``: nothing was measured that could decide, or the control group
-does not do what the claim needs. ``by construction``:
-an input, a count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was
+``undecided``: an interval covers both sides of a bound or is unknown, and nothing else fails. ``models disagree``:
+models that can carry the claim say different words. ``not testable``: nothing was measured that could decide, or the
+control group does not do what the claim needs. ``by construction``: an input, a count or a commanded shape that is read
+back, an identity of formulas, or a consequence of symmetry. ``fitted``: a free number was
 chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
@@ -216,13 +216,17 @@ def judge(
         )
     model_voices = ladder.voices(rule, measures, unable)
     value, lower_bound, upper_bound = _value(rule, measures, model_voices), None, None
-    reason = " ".join(text for text in (rule.reason(measures), rule.unable(measures)) if text)
+    deciding = "" if model_voices else rule.deciding(measures)
+    reason_parts = (rule.reason(measures), deciding, rule.unable(measures), rule.unknown(measures))
+    reason = " ".join(text for text in reason_parts if text)
     if model_voices:
         _, min_value, max_value = ladder.spread(model_voices)
         lower_bound, upper_bound = (min_value, max_value) if isfinite(value) else (None, None)
         reason = f"{reason} {ladder.sentence(model_voices, rule.form)}"
     elif rule.measure in rule.spread and isfinite(value):
-        lower_bound, upper_bound = interval(rule.measure, measures, rule.spread)
+        lower_bound, upper_bound = (
+            end if isfinite(end) else None for end in interval(rule.measure, measures, rule.spread)
+        )
     return Verdict(
         claim=claim,
         rule=rule,

@@ -20,6 +20,7 @@ from suchus.experiments.experiment import (
     Replay,
     SimulationResult,
     estimated,
+    estimated_fraction,
     silent,
     staged,
 )
@@ -420,7 +421,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     measures = Measures()
     for law in record.law.values:
         convergence_cycles = cycles_taken.sel(law=law).values
-        measures |= estimated(f"converged_{law}", np.isfinite(convergence_cycles), "-", middle=np.mean)
+        measures |= estimated_fraction(f"converged_{law}", np.isfinite(convergence_cycles))
         measures[f"phase_error_{law}"] = Measure(float(_last_seconds(error.sel(law=law), hold * period).mean()), "-")
         if law in ("own_load", "cross_load", "body_limb", "closed_noisy"):
             upper_quantile = np.quantile(np.minimum(convergence_cycles, cycles), 0.9)

@@ -22,6 +22,7 @@ from suchus.experiments.experiment import (
     Replay,
     SimulationResult,
     estimated,
+    estimated_fraction,
     silent,
     staged,
 )
@@ -467,7 +468,7 @@ def _rough_measures(rough_record: xr.Dataset) -> Measures:
     semi_erect_measures = Measures()
 
     def share(name: str, is_ahead: xr.DataArray) -> Measures:
-        return estimated(name, is_ahead.astype(float) if is_judged else [float("nan")], "-", middle=np.mean)
+        return estimated_fraction(name, is_ahead if is_judged else [float("nan")])
 
     if "semi_erect" in rough_record.arm.values:
         semi = distances.sel(arm="semi_erect", drop=True)

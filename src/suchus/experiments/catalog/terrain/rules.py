@@ -3,7 +3,17 @@
 from math import nan
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, ControlGroup, Rule, Variation, measure_with_interval
+from suchus.article.verdict.rule import (
+    DEFAULT_SPREAD_OF,
+    Clause,
+    ControlGroup,
+    Rule,
+    SmallestEffect,
+    Variation,
+    measure_with_interval,
+)
+
+_LEAST_WALK = SmallestEffect(size=0.05, why="a robot that slides or settles moves by up to a twentieth of its length")
 
 RULES = (
     Rule(
@@ -41,7 +51,7 @@ RULES = (
         measure="transitions_upright",
         holds=(
             Clause("transitions_upright", ">=", 1.0, "a robot that falls has not switched"),
-            Clause("transition_after_least", ">", 0.0, "after the switch it walks on"),
+            Clause("transition_after_least", ">", 0.0, "after the switch it walks on", _LEAST_WALK),
         ),
         why="{transitions:.0f} transitions out of one walk into another, 3.5 s at a stand each, on even ground and "
         "bumps of 30 mm: {transitions_upright:.0%} stay upright, with tilts up to {transition_tilt:deg.0f} degrees, "
@@ -98,8 +108,8 @@ EXAMPLES: Examples = {
     "switches_structure": [
         (_REASON_MEASURES, "reproduced"),
         (_REASON_MEASURES | {"transitions_upright": 0.999}, "contradicted"),
-        (_REASON_MEASURES | {"transition_after_least": 1e-4}, "reproduced"),
-        (_REASON_MEASURES | {"transition_after_least": -1e-4}, "contradicted"),
+        (_REASON_MEASURES | {"transition_after_least": 0.051}, "reproduced"),
+        (_REASON_MEASURES | {"transition_after_least": 0.049}, "contradicted"),
         (_REASON_MEASURES | {"transitions_upright": nan}, "not testable"),
     ],
 }
