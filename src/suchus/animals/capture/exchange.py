@@ -67,18 +67,20 @@ def find_exchange(tracks: Tracks, noise: Mapping[str, float], scale: float, walk
     penalties = body.penalties(identity)
     if sum(penalty.size for penalty in penalties) < _MIN_GAIN:
         return None
-    best_gain, best = _MIN_GAIN, None
+    best_gain, best_names = _MIN_GAIN, None
     for names in body.exchanges():
         assignment = identity | {right_name: track for track, right_name in names.items()}
-        changed = body.penalties(assignment)
-        affected = [penalty for penalty in changed if set(penalty.roles) & set(names)]
-        gain = sum(penalty.size for penalty in penalties) - sum(penalty.size for penalty in changed)
-        if gain > best_gain and all(penalty.size <= _MAX_REMAINDER for penalty in affected):
-            best_gain, best = gain, names
-    if best is None:
+        changed_penalties = body.penalties(assignment)
+        affected_penalties = [penalty for penalty in changed_penalties if set(penalty.roles) & set(names)]
+        gain = sum(penalty.size for penalty in penalties) - sum(penalty.size for penalty in changed_penalties)
+        if gain > best_gain and all(penalty.size <= _MAX_REMAINDER for penalty in affected_penalties):
+            best_gain, best_names = gain, names
+    if best_names is None:
         return None
-    worst = max((penalty for penalty in penalties if set(penalty.roles) & set(best)), key=lambda penalty: penalty.size)
-    return Exchange(best, _reason(worst))
+    worst_penalty = max(
+        (penalty for penalty in penalties if set(penalty.roles) & set(best_names)), key=lambda penalty: penalty.size
+    )
+    return Exchange(best_names, _reason(worst_penalty))
 
 
 def _reason(penalty: _Penalty) -> str:
@@ -159,35 +161,35 @@ class _Body:
     def _fold(self, triple: tuple[str, str, str], index: Mapping[str, int]) -> _Penalty:
         """Return the penalty of a midline that folds back at a keypoint, by the median bend there."""
         i, j, k = (index[name] for name in triple)
-        front, rear = self._place[:, j] - self._place[:, i], self._place[:, k] - self._place[:, j]
+        front_link, rear_link = self._place[:, j] - self._place[:, i], self._place[:, k] - self._place[:, j]
         axes = self._place.shape[-1]
-        dot = float(np.median(np.sum(front * rear, axis=-1))) + axes * float(self._noise[j]) ** 2
-        cross = np.linalg.norm(np.median(_cross(front, rear), axis=0))
+        dot = float(np.median(np.sum(front_link * rear_link, axis=-1))) + axes * float(self._noise[j]) ** 2
+        cross = np.linalg.norm(np.median(_cross(front_link, rear_link), axis=0))
         angle = float(np.arctan2(cross, dot))
         return _Penalty(_limited((max(0.0, angle - _FOLD) / _FOLD_STEP) ** 2), "fold", triple)
 
     def _foot(self, leg: str, index: Mapping[str, int]) -> list[_Penalty]:
         """Return the penalties of a foot: on the wrong side, near the wrong girdle, out of reach, or still."""
-        front, rear = self._line
-        f, p, q = index[leg], index[front], index[rear]
+        front_link, rear_link = self._line
+        f, p, q = index[leg], index[front_link], index[rear_link]
         axis = self._place[:, p, :2] - self._place[:, q, :2]
         axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-12)
         offset = self._place[:, f, :2] - self._place[:, q, :2]
-        left = float(np.median(axis[:, 0] * offset[:, 1] - axis[:, 1] * offset[:, 0])) / self._scale
-        outward = left if leg.startswith("L") else -left
-        along = np.sum(axis * offset, axis=-1)
-        sweep = 1.4826 * float(np.median(np.abs(along - np.median(along))))
+        left_offset = float(np.median(axis[:, 0] * offset[:, 1] - axis[:, 1] * offset[:, 0])) / self._scale
+        outward_offset = left_offset if leg.startswith("L") else -left_offset
+        axial_position = np.sum(axis * offset, axis=-1)
+        sweep = 1.4826 * float(np.median(np.abs(axial_position - np.median(axial_position))))
         sweep = np.sqrt(max(0.0, sweep**2 - self._pair_noise[f, q] ** 2)) / self._scale
-        own, other = (p, q) if leg.endswith("F") else (q, p)
-        nearer = float(self._distance[f, own] - self._distance[f, other]) / self._scale
-        reach = float(self._distance[f, own]) / self._scale
-        still = min(_MAX_STILL_PENALTY, 4.0 * max(0.0, 1.0 - sweep / _MIN_SWEEP) ** 2)
-        side = max(0.0, 1.0 - outward / _MIN_OUTWARD) ** 2 if self._view == "top" else 0.0
+        own_girdle, other_girdle = (p, q) if leg.endswith("F") else (q, p)
+        girdle_excess = float(self._distance[f, own_girdle] - self._distance[f, other_girdle]) / self._scale
+        reach = float(self._distance[f, own_girdle]) / self._scale
+        still_penalty = min(_MAX_STILL_PENALTY, 4.0 * max(0.0, 1.0 - sweep / _MIN_SWEEP) ** 2)
+        side_penalty = max(0.0, 1.0 - outward_offset / _MIN_OUTWARD) ** 2 if self._view == "top" else 0.0
         return [
-            _Penalty(_limited(side), "side", (leg,)),
-            _Penalty(_limited((max(0.0, nearer) / _GIRDLE_STEP) ** 2), "girdle", (leg,)),
+            _Penalty(_limited(side_penalty), "side", (leg,)),
+            _Penalty(_limited((max(0.0, girdle_excess) / _GIRDLE_STEP) ** 2), "girdle", (leg,)),
             _Penalty(_limited(max(0.0, reach / _REACH) ** 4), "reach", (leg,)),
-            _Penalty(still, "still", (leg,)),
+            _Penalty(still_penalty, "still", (leg,)),
         ]
 
 
