@@ -34,7 +34,7 @@ PIECES = (
     (water.Fluid, "step place _measure _clear _advance"),
     (poisson, "solve"),
     (multigrid, "coarsen copy_coefficients"),
-    (midline, "paint sections"),
+    (midline, "paint section_motions"),
     (midline.Midline, "markers"),
     (farfield, "gather induce"),
     (border.Border, "prepare update_induced fill"),

@@ -58,7 +58,7 @@ def test_a_servo_of_the_design_that_gets_too_warm_is_told_in_a_sentence(warm, sa
     calm = ServoLoad(torque=1.0, limit=2.0, at_limit=0.0, first=nan, off=0.0, needed=1.0, steady=60.0, warm_after=inf)
     loads = {name: replace(calm, warm_after=after, steady=steady) for name, (after, steady) in warm.items()}
     own = {"spine_only": dict.fromkeys(layout(robot).servos, calm) | loads}
-    sizing = Sizing(robot=robot, cases=cases(robot, (GAITS["spine_only"],)), own=own, families=())
+    sizing = Sizing(robot=robot, cases=cases(robot, (GAITS["spine_only"],)), designed_loads=own, families=())
     told = answer(sizing)[1:]
     assert told == ([] if said is None else [f"As it is designed, {said} if the movement went on for ever."])
 

@@ -214,7 +214,7 @@ def test_what_others_of_its_batch_do_changes_nothing():
     swam = start_batch(way, [ROBOT], [GAIT], [0], 3000, PERIOD)
     for tick in range(400):
         swam.command(tick, sensed(0.0, yaw=0.3 * (tick > 0)))
-    assert np.abs(swam._heading._offset).max() == 0.0
+    assert np.abs(swam._heading._steering).max() == 0.0
     assert np.abs(swam._stroke - 1.0).max() == 0.0
 
 

@@ -82,10 +82,10 @@ def test_switching_the_rules_keeps_the_asked_heading():
     rules = Coordinated(heading=HeadingRule())
     walk = Live(Run(robot=ROBOT, gait=GAIT, control=rules, faults=(Limp("LF_yaw"),)), timestep=STEP)
     until(walk, 3.0)
-    turned = walk._loop.controller._heading._facing._turn_angle.copy()
+    turned = walk._loop.controller._heading._heading_estimator._turn_angle.copy()
     walk.walk(GAIT.strode(1.1))
     walk.step()
-    assert abs(walk._loop.controller._heading._facing._turn_angle - turned) < 0.05
+    assert abs(walk._loop.controller._heading._heading_estimator._turn_angle - turned) < 0.05
 
 
 def test_a_gait_out_of_reach_is_refused_and_the_walk_goes_on():

@@ -63,7 +63,7 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
     "salamander": {
         "measure: stride[0] is the last": "The last ground's stride is the greatest there with or without the first's.",
         "window: record.period[0] is the last": "All of its runs are of one gait.",
-        "waves: cycle['walk'] - cycle['commanded'] the other way round": _SIZE,
+        "axis_wave_measures: mean_cycles['walk'] - mean_cycles['commanded'] the other way round": _SIZE,
     },
     "salamander_swim": {
         "measure: other_strides.min() is max": _ONE_WATER,
