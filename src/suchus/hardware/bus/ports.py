@@ -160,6 +160,11 @@ def _serial(name: str, baud: int) -> Port:
         ) from error
     path = Path(name)
     if not path.exists():
+        if not str(path.absolute()).startswith("/dev/"):
+            raise BusFailure(
+                f"there is no port {name}, and no adapter has such a name: start suchus emulate for this robot first, "
+                "in another terminal, which makes it; a robot's own port begins with /dev/."
+            )
         raise BusFailure(f"there is no port {name}; {_ports_text()}")
     if not path.is_char_device():
         raise BusFailure(f"{name} is no serial port but a {'folder' if path.is_dir() else 'file'}; {_ports_text()}")
