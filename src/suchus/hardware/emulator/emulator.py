@@ -44,7 +44,7 @@ class _Line:
     heard_baud: int = 0
     """Bit rate of the host's last bytes [1/s]."""
     registered: dict[int, tuple[int, bytes]] = field(default_factory=dict)
-    """What servos write when they are told to act: address and bytes by servo."""
+    """What servos write at the instruction to act: address and bytes by servo."""
 
 
 class Emulator:
@@ -289,7 +289,7 @@ class Emulator:
                 self._write(line, device, address, payload)
 
     def _act(self, line: _Line) -> None:
-        """Write what servos were told to write later."""
+        """Write what registered writes hold."""
         for servo, (address, payload) in line.registered.items():
             device = self._listening(line, servo)
             if device is not None:
