@@ -52,6 +52,9 @@ def test_friction_of_motor_and_load_by_hand():
     back = servo.friction_torque(2.0, -1.0, 0.0) - servo.friction_torque(2.0, 1.0, 0.0)
     linear = 2.0 * 1.0 * (2.0462e-08 + 0.0140658535)
     assert back == pytest.approx(linear + 0.00999998 * 1.0**2, rel=1e-3)  # the load's square, since the motor drives
+    driven = servo.friction_torque(1.0, -2.0, 0.0) - servo.friction_torque(1.0, 2.0, 0.0)
+    linear = 2.0 * 2.0 * (2.0462e-08 + 0.0140658535)
+    assert driven == pytest.approx(linear + 0.00690851 * 1.0**2, rel=1e-3)  # the motor's square, since the load drives
     m1 = identified_servo("MX-64 12 V, m1")
     assert m1.friction_torque(3.0, -3.0, 0.0) == m1.friction
 
