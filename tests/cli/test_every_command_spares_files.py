@@ -397,8 +397,8 @@ def test_the_log_of_a_stopped_drive_finds_a_free_place(desk):
     for name in ("driven", "driven_stopped1"):
         (desk / name).mkdir()
         (desk / name / "record.nc").write_text("mine")
-    drive._save_record_only(log, desk / "driven")
-    drive._save_record_only(log, desk / "new")
+    drive._SavedLog(desk / "driven").save(log)
+    drive._SavedLog(desk / "new").save(log)
     assert load(desk / "driven_stopped2" / "record.nc").x.item() == load(desk / "new" / "record.nc").x.item() == 1.0
     assert (desk / "driven" / "record.nc").read_text() == (desk / "driven_stopped1" / "record.nc").read_text() == "mine"
 

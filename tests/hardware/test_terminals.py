@@ -35,7 +35,9 @@ def test_a_terminal_that_closes_a_signal_and_an_emulator_that_ends_leave_a_log_a
     words = [sys.executable, "-m", "suchus"]
     heard, ours, driver = tmp_path / "heard", None, None
     with heard.open("w") as said:
-        emulator = subprocess.Popen([*words, "emulate", "caiman", "--clock", "bus"], cwd=tmp_path, stdout=said)
+        emulator = subprocess.Popen(
+            [*words, "emulate", "caiman", "--protocol", "dynamixel", "--clock", "bus"], cwd=tmp_path, stdout=said
+        )
     try:
         wait_for(lambda: "wired as" in heard.read_text())
         ours, theirs = pty.openpty()

@@ -8,7 +8,7 @@ from suchus.core import rotation
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import crawl
-from suchus.sim.land.readings import _rolling
+from suchus.sim.land.readings import rolling_displacement
 from suchus.sim.metrics import slip
 from suchus.sim.metrics.contact import contact_path
 
@@ -25,17 +25,17 @@ def turns(axis, angles):
 )
 def test_a_ball_rolls_by_its_angle_times_its_radius(axis, way):
     angles = np.linspace(0.0, 5.0, 40)  # beyond a turn, where a quaternion changes its sign
-    rolled = _rolling(turns(axis, angles), np.array([[RADIUS]]))[0, :, 0]
+    rolled = rolling_displacement(turns(axis, angles), np.array([[RADIUS]]))[0, :, 0]
     assert rolled == pytest.approx(RADIUS * angles[:, None] * np.array(way), abs=1e-12)
     signs = np.where(np.arange(40) % 2, 1.0, -1.0)[None, :, None, None]
-    flipped = _rolling(signs * turns(axis, angles), np.array([[RADIUS]]))[0, :, 0]
+    flipped = rolling_displacement(signs * turns(axis, angles), np.array([[RADIUS]]))[0, :, 0]
     assert flipped == pytest.approx(rolled, abs=1e-12)
 
 
 def test_a_gap_stays_a_gap():
     quaternions = turns((0.0, 1.0, 0.0), np.linspace(0.0, 1.0, 5))
     quaternions[:, 3:] = np.nan
-    rolled = _rolling(quaternions, np.array([[RADIUS]]))
+    rolled = rolling_displacement(quaternions, np.array([[RADIUS]]))
     assert np.isfinite(rolled[:, :3]).all()
     assert np.isnan(rolled[:, 3:]).all()
 

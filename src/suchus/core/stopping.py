@@ -89,6 +89,35 @@ def finishing(seconds: float) -> Iterator[None]:
         _finishing_times.remove(seconds)
 
 
+@contextmanager
+def deferred_signals() -> Iterator[None]:
+    """While the block runs, hold Ctrl-C, SIGTERM and SIGHUP back; they act when the block has ended.
+
+    It is for a short block that must not be cut, such as writing what was measured once and cannot be computed again.
+    Outside the main thread, to which signals do not come, it does nothing.
+    """
+    if current_thread() is not main_thread():
+        yield
+        return
+    pending: list[int] = []
+
+    def note(signum: int, frame: FrameType | None) -> None:
+        del frame
+        pending.append(signum)
+
+    handlers = {}
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) not in (signal.SIG_IGN, None):
+            handlers[number] = signal.signal(number, note)
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        for signum in dict.fromkeys(pending):
+            signal.raise_signal(signum)
+
+
 def end_with_parent() -> None:
     """Let this process end as soon as the one that started it has, whatever it is at and however that one ended."""
     parent = parent_process()

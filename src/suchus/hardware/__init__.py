@@ -13,6 +13,7 @@ from suchus.hardware.guard import DriveLimits
 from suchus.hardware.limits import check_commands, check_loads, overloaded
 from suchus.hardware.loads import LoadCase, ServoLoad, cases, loads, loads_of_cases, share_at_limit
 from suchus.hardware.log import DriveLog, fix_in_place, hinge_angles
+from suchus.hardware.odometry import walked_distance
 from suchus.hardware.rig import Rig, RigReading, senses
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
 from suchus.hardware.sizing import ServoFamily, Sizing, size, with_better, with_motors
@@ -54,6 +55,7 @@ __all__ = [
     "size",
     "straight",
     "trajectory_text",
+    "walked_distance",
     "wire_statistics",
     "wiring_text",
     "with_better",

@@ -13,6 +13,7 @@ from suchus.core.checks import Checks
 from suchus.core.errors import BusFailure, OutsideLimits, SuchusError, UnsuitedRobot
 from suchus.core.files import digest, versions
 from suchus.core.progress import Progress, silent
+from suchus.core.stopping import deferred_signals
 from suchus.hardware.blind import BlindRig
 from suchus.hardware.guard import DriveLimits, Guard
 from suchus.hardware.log import DriveLog
@@ -169,6 +170,7 @@ def drive(
     stop_request: Callable[[], str] = lambda: "",
     say: Callable[[str], None] = lambda _: None,
     progress: Progress = silent,
+    save_log: Callable[[xr.Dataset], None] = lambda _: None,
 ) -> xr.Dataset:
     """Drive a robot, and stop it safely in any case.
 
@@ -184,6 +186,8 @@ def drive(
         stop_request: returns why to stop, where somebody asked for it.
         say: is given sentences that people should read while it moves.
         progress: told the share that is done.
+        save_log: is given the log when the robot has been stopped, however the drive ended; signals wait until it
+            returns.
 
     Returns:
         The log, a record of one run, see ``record.VARIABLES`` and ``record.BUS_VARIABLES``; ``cause`` says why it
@@ -201,7 +205,9 @@ def drive(
     controller = start([run], ticks + 1, rig.period)
     for sentence in rig.check():
         say(sentence)
-    session = _Drive(rig, gait, controller, settings, clock or WallClock(rig.period), stop_request, say, progress)
+    session = _Drive(
+        rig, gait, controller, settings, clock or WallClock(rig.period), stop_request, say, progress, save_log
+    )
     return session.run(ticks)
 
 
@@ -218,11 +224,12 @@ class _Drive:
         stop_request: Callable[[], str],
         say: Callable[[str], None],
         progress: Progress,
+        save_log: Callable[[xr.Dataset], None],
     ) -> None:
         """Take rig, gait, controller and settings; nothing moves yet."""
         self._rig, self._gait, self._controller = rig, gait, controller
         self._settings, self._clock, self._stop_request, self._say = settings, clock, stop_request, say
-        self._progress = progress
+        self._progress, self._save_log = progress, save_log
         self._log, self._guard = DriveLog(rig.robot, gait), Guard(rig, settings.limits)
         self._warning_count = 0
         self._tick = self._offset = 0
@@ -232,8 +239,9 @@ class _Drive:
         self._limb = np.full(len(layout(rig.robot).limbs), np.nan)
 
     def run(self, ticks: int) -> xr.Dataset:
-        """Approach the first posture, drive for some ticks, stop the robot safely and return the log."""
-        cause, failed, is_complete = "", None, False
+        """Approach the first posture, drive for some ticks, stop the robot safely, save the log and return it."""
+        stop_mode, cause, is_complete = self._settings.stop, "", False
+        failure: BaseException | None = None
         try:
             self._approach()
             self._go(ticks)
@@ -241,19 +249,26 @@ class _Drive:
         except _Halted as stop:
             cause = str(stop)
         except BusFailure as error:
-            cause, failed = str(error), error
+            cause, failure = str(error), error
         except KeyboardInterrupt as stop:
-            with suppress(KeyboardInterrupt):  # asked twice: its torque is off by then
-                self._end(self._settings.stop)
-            stop.record = self._record(f"{STOP_PREFIX}a signal.")  # type: ignore[attr-defined]
-            raise
-        except BaseException:
-            self._end("off")
-            raise
-        self._end(self._settings.stop)
-        record = self._record(cause)
-        if failed is not None or (cause and not is_complete and not cause.startswith(STOP_PREFIX)):
-            raise BusFailure(f"{cause.rstrip('.')}; the robot was stopped.", record=record) from failed
+            cause, failure = _SIGNAL_CAUSE, stop
+        except BaseException as error:
+            stop_mode, cause, failure = "off", f"{type(error).__name__}: {error}", error
+        try:
+            self._end(stop_mode)
+        except KeyboardInterrupt as stop:  # asked while it is let down: its torque is off by then
+            cause, failure = cause or _SIGNAL_CAUSE, failure or stop
+        except BaseException as error:
+            cause, failure = cause or f"{type(error).__name__}: {error}", failure or error
+        with deferred_signals():
+            record = self._record(cause)
+            self._save_log(record)
+        if failure is not None and not isinstance(failure, BusFailure):
+            if isinstance(failure, KeyboardInterrupt):
+                failure.record = record  # type: ignore[attr-defined]
+            raise failure
+        if failure is not None or (cause and not is_complete and not cause.startswith(STOP_PREFIX)):
+            raise BusFailure(f"{cause.rstrip('.')}; the robot was stopped.", record=record) from failure
         return record
 
     def _approach(self) -> None:
@@ -422,6 +437,7 @@ class _Drive:
 
 STOP_PREFIX = "asked to stop: "
 """How the cause of a drive begins that somebody ended: that is no failure."""
+_SIGNAL_CAUSE = f"{STOP_PREFIX}a signal."
 
 
 def wire_statistics(record: xr.Dataset) -> dict[str, Any]:

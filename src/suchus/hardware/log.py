@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from suchus.core.rotation import rotate
 from suchus.robot.design import Robot, layout
 from suchus.robot.kinematics.tail import bend_of_servo
 from suchus.robot.motion import Gait
 from suchus.sim.record import BUS_VARIABLES, VARIABLES, dataset
-from suchus.visual.skin import poses
+from suchus.visual.skin import Poses, poses
 
 
 class DriveLog:
@@ -111,6 +112,23 @@ def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
     return angles
 
 
+def foot_centers(robot: Robot, bones: Poses) -> np.ndarray:
+    """Return the centres of the feet in postures, shape (..., leg, 3) [m].
+
+    Args:
+        robot: the design.
+        bones: the postures.
+    """
+    centers = []
+    for limb in layout(robot).limbs:
+        forward, outward, up = limb.girdle.limb.links[-1].end
+        end = np.array([forward, limb.side * outward, up])
+        centers.append(bones.positions[..., limb.tip, :] + rotate(bones.quaternions[..., limb.tip, :], end))
+    if not centers:
+        return np.zeros((*bones.positions.shape[:-2], 0, 3))
+    return np.stack(centers, axis=-2)
+
+
 def fix_in_place(record: xr.Dataset, robot: Robot) -> xr.Dataset:
     """Return a log that can be shown: a robot without a measured position is fixed above the ground, without loads.
 
@@ -132,9 +150,11 @@ def fix_in_place(record: xr.Dataset, robot: Robot) -> xr.Dataset:
     quaternions = record.orientation.values
     orientation = np.where(np.isfinite(quaternions).all(axis=-1, keepdims=True), quaternions, level)
     bones = poses(robot, position, orientation, record.joint_angle.values)
-    min_height = float(bones.positions[..., 2].min(initial=0.0))
+    feet = foot_centers(robot, bones)
+    foot_radii = np.array([limb.girdle.limb.foot.radius for limb in place.limbs])
+    min_height = float(min(bones.positions[..., 2].min(initial=0.0), (feet[..., 2] - foot_radii).min(initial=0.0)))
     position[:, 2] = -min_height + 0.1 * robot.length * bool(not place.limbs) + 0.02 * robot.length
-    tips = bones.positions[:, [limb.tip for limb in place.limbs]] + position[:, None]
+    tips = feet + position[:, None]
     variables = {
         "position": position, "orientation": orientation, "centre_of_mass": position, "foot_position": tips,
         "foot_force": np.zeros((count, len(place.limbs), 3)), "belly_force": np.zeros((count, len(place.trunk), 3)),

@@ -322,7 +322,7 @@ class Rig:
         return (
             f"nobody answers on {place.port} at {place.baud} baud: look at the power of the servos, the plug of the "
             "bus "
-            f"and whether they speak {place.protocol}."
+            f"and whether they speak {place.protocol}. For an emulated robot start suchus emulate first."
         )
 
     def _settings(self, number: int, bus: Bus) -> list[str]:

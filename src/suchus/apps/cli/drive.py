@@ -2,6 +2,7 @@
 
 import select
 import shlex
+import shutil
 import sys
 import termios
 import time
@@ -9,10 +10,11 @@ import tty
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass, field, replace
-from itertools import chain, count
+from itertools import chain, count, pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import tyro
 import xarray as xr
 from rich.console import Console
@@ -23,10 +25,21 @@ from suchus.apps.cli.terminal import working
 from suchus.apps.report import PAGE, check_place, save_outcome
 from suchus.apps.report.result import RECORD
 from suchus.core.errors import BusFailure, UnknownName
-from suchus.core.files import check_writable, path_exists, save
+from suchus.core.files import check_writable, new_folder, path_exists, save
 from suchus.core.stopping import StopSignal, finishing
 from suchus.experiments.catalog._driven import Driven
-from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
+from suchus.hardware import (
+    BlindRig,
+    BusClock,
+    DriveSettings,
+    Rig,
+    WallClock,
+    check_drive,
+    drive,
+    read_map,
+    read_wiring,
+    walked_distance,
+)
 from suchus.hardware.bus import BusProtocol, Instruction, Packet, Port, Wiring
 from suchus.hardware.emulator import EmulatedBody, Emulator, MemoryPort
 from suchus.hardware.protocols import bus_protocol, channel_protocol
@@ -135,7 +148,9 @@ def _drive(
     """
     settings = DriveSettings(duration=options.seconds, stop=options.stop)
     start = time.perf_counter()
+    print(_opening(options, gait, words), flush=True)
     experiment = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
+    log = _SavedLog(folder)
     with finishing(_SHUTDOWN_TIME), open_rig() as (rig, clock):
         check_drive(rig, gait, control)
         try:
@@ -149,15 +164,44 @@ def _drive(
                     stop_request=stop_reason,
                     say=bars.say,
                     progress=bars.task(gait.name),
+                    save_log=log.save,
                 )
-        except StopSignal as stop:
-            _save_record_only(getattr(stop, "record", None), folder)
+        except StopSignal:
+            log.announce()
             raise
         except (BusFailure, KeyboardInterrupt) as error:
-            _save_log(experiment, getattr(error, "record", None), folder, words, time.perf_counter() - start)
+            _report(experiment, getattr(error, "record", None), log, words, time.perf_counter() - start)
             raise
-    _save_log(experiment, record, folder, words, time.perf_counter() - start)
+        except BaseException:
+            log.announce()
+            raise
+    _report(experiment, record, log, words, time.perf_counter() - start)
     return 0
+
+
+def _opening(options: DriveOptions, gait: Gait, words: Sequence[str]) -> str:
+    """Return the first line of a drive: what is driven, and what to start if nobody answers.
+
+    Args:
+        options: of the command.
+        gait: the gait.
+        words: words of the command line, which name the robot or its file.
+    """
+    robot = options.robot.name
+    if options.dry_run:
+        return f"dry run of {robot} in {gait.name}: no port is opened."
+    if options.map is not None:
+        return (
+            f"driving {robot} in {gait.name} by the pulses of {options.map}. These servos answer nothing: if none "
+            "moves, look at their supply."
+        )
+    given = dict(pairwise([word for pair in words for word in pair.split("=", 1)]))
+    emulate = ["suchus", "emulate", given.get("--robot", robot), "--hardware", str(options.hardware)]
+    emulate += ["--clock", "bus"] if options.clock == "bus" else []
+    return (
+        f"driving {robot} in {gait.name} over {options.hardware}. If nobody answers: switch the servos on, or start "
+        f"`{shlex.join(emulate)}` in another terminal."
+    )
 
 
 @contextmanager
@@ -234,43 +278,100 @@ def _open_rig(options: DriveOptions, wiring: Wiring, gait: Gait, control: Contro
         rig.close()
 
 
-def _save_log(
-    experiment: Driven, record: xr.Dataset | None, folder: Path, words: Sequence[str], seconds: float
+class _SavedLog:
+    """The log of a drive on the disk, from the moment at which the robot stands.
+
+    Args:
+        folder: of the drive; where something is there already, a folder beside it takes the log until its page is made.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._draft: Path | None = None
+
+    def save(self, record: xr.Dataset) -> None:
+        """Save the log in a folder that suchus signs; an earlier log is not overwritten."""
+        if record.sizes["time"] < 1:
+            return
+        alternatives = (self.folder.with_name(f"{self.folder.name}_stopped{number}") for number in count(1))
+        free_folder = next(place for place in chain([self.folder], alternatives) if not path_exists(place))
+        with new_folder(free_folder, lasting=True) as draft:
+            save(record, draft / RECORD)
+        self._draft = free_folder
+
+    def announce(self) -> None:
+        """Print where the log is, if one was saved."""
+        if self._draft is not None:
+            with suppress(OSError):  # the terminal may be closed
+                print(f"the log: {self._draft / RECORD}", flush=True)
+
+    def discard_draft(self) -> None:
+        """Remove the log beside the folder, once the folder itself holds it."""
+        if self._draft is not None and self._draft != self.folder:
+            shutil.rmtree(self._draft, ignore_errors=True)
+
+
+def _report(
+    experiment: Driven, record: xr.Dataset | None, log: _SavedLog, words: Sequence[str], seconds: float
 ) -> None:
-    """Write the folder of a log, and print the result and its cause.
+    """Draw a saved log, write its page, and print the result, its cause and a summary.
 
     Args:
         experiment: the question that the log answers.
         record: the log; None or empty: nothing is written.
-        folder: folder of the log.
+        log: where it is saved.
         words: words of the command line.
         seconds: duration of the drive [s].
     """
     if record is None or record.sizes["time"] < 1:
         return
-    outcome = experiment.tell(record, seconds)
-    with styled():
-        figures = experiment.draw(outcome)
-    save_outcome(outcome, figures, experiment, folder, command=shlex.join(["suchus", "drive", *words]))
+    try:
+        outcome = experiment.tell(record, seconds)
+        with styled():
+            figures = experiment.draw(outcome)
+        save_outcome(outcome, figures, experiment, log.folder, command=shlex.join(["suchus", "drive", *words]))
+    except BaseException:
+        log.announce()
+        raise
+    log.discard_draft()
     console = Console(highlight=False)
     console.print(outcome.decides, markup=False)
     cause = str(record.cause.item())
     if cause:
         console.print(cause, markup=False)
-    print(f"the log, its figures and its replay: {folder / PAGE}")
+    print(f"the log, its figures and its replay: {log.folder / PAGE}")
+    print(_summary(record, experiment))
 
 
-def _save_record_only(record: xr.Dataset | None, folder: Path) -> None:
-    """Save the log without figures, since a stopped process has little time left."""
-    if record is not None and record.sizes["time"] > 0:
-        alternatives = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
-        folder = next(
-            candidate for candidate in chain([folder], alternatives) if not path_exists(candidate)
-        )  # an earlier log is not overwritten
-        folder.mkdir(parents=True)
-        log_path = save(record, folder / RECORD)
-        with suppress(OSError):  # the terminal may be closed
-            print(f"the log: {log_path}", flush=True)
+def _summary(record: xr.Dataset, experiment: Driven) -> str:
+    """Return the last line of a drive: the distance, how well servos followed, and which one got warmest."""
+    is_measured = bool(np.isfinite(record.position.values).all(axis=-1).sum() > 1)
+    is_walk = is_measured or (experiment.gait.limb_phases and experiment.control != SWIM)
+    distance = walked_distance(record, experiment.robot) if is_walk else float("nan")
+    if not np.isfinite(distance):
+        parts = ["nothing measured how far it went"]
+    elif is_measured:
+        parts = [f"it went {distance:.2f} m"]
+    else:
+        parts = [f"by its legs it walked about {distance:.2f} m, if no foot slipped"]
+    errors = np.degrees(np.sqrt(((record.servo_angle - record.servo_asked) ** 2).mean("time"))).values
+    if np.isfinite(errors).any():
+        worst = int(np.nanargmax(errors))
+        mean_error = float(np.sqrt(np.nanmean(errors**2)))
+        parts.append(
+            f"servos followed to {mean_error:.1f} degrees (root mean square), {record.servo.values[worst]} worst with "
+            f"{errors[worst]:.1f}"
+        )
+    temperatures = record.servo_temperature.values
+    if np.isfinite(temperatures).any():
+        hottest = np.nanmax(np.where(np.isfinite(temperatures), temperatures, -np.inf), axis=0)
+        first = next(row for row in temperatures if np.isfinite(row).any())
+        warmest = int(np.argmax(hottest))
+        start = float(first[warmest]) if np.isfinite(first[warmest]) else float(np.nanmin(first))
+        parts.append(
+            f"{record.servo.values[warmest]} got warmest, {hottest[warmest]:.0f} degrees Celsius (from {start:.0f})"
+        )
+    return "; ".join(parts) + "."
 
 
 @contextmanager

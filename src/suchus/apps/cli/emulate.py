@@ -1,5 +1,6 @@
 """``suchus emulate ROBOT``: its servos on buses that other programs open, with the simulated robot behind them."""
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -15,10 +16,10 @@ from suchus.apps.cli.view import pages_of_viewer
 from suchus.core.files import check_replaceable, check_writable, write
 from suchus.core.files.store import packed
 from suchus.hardware import read_wiring, write_wiring
-from suchus.hardware.bus import BusPlace, Wiring, straight
+from suchus.hardware.bus import BusPlace, Wiring, own_models, straight
 from suchus.hardware.emulator import EmulatedBody, Emulator, Server, Trouble
-from suchus.hardware.protocols import bus_protocol
-from suchus.robot.design import Robot
+from suchus.hardware.protocols import bus_protocol, servo_table
+from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
@@ -26,6 +27,7 @@ from suchus.sim.faults import FAULTS, from_table
 from suchus.sim.land import Ground, Lake
 
 _PLACE = Path("hardware.toml")
+_DEFAULT_PROTOCOL = "dynamixel"  # of a robot whose file names no servos that a bus speaks with
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,9 +38,10 @@ class EmulateOptions:
     """The robot that is emulated."""
     hardware: Path = _PLACE
     """Which servo hangs where, with the paths of the ports; written for this robot where there is no such file."""
-    protocol: str = "dynamixel"
+    protocol: str | None = None
     """What servos speak, where the file is written: dynamixel, feetech, line (hobby servos behind a board of your
-    own), or a protocol of your own; suchus list shows them."""
+    own), or a protocol of your own; suchus list shows them. By default the servos that the robot's file names, on the
+    buses that they speak."""
     clock: Literal["wall", "bus"] = "wall"
     """wall: time passes by itself; bus: the robot moves when it is told to, by suchus drive --clock bus."""
     gait: Gait | None = None
@@ -87,7 +90,8 @@ def emulate(words: Sequence[str]) -> int:
         latency=trouble.latency if is_clocked else 0.0,
     )
     wiring, links = _wiring_and_links(options)
-    server = Server(Emulator(wiring, body, trouble, has_clock=is_clocked), links, sockets=options.socket)
+    emulator = Emulator(wiring, body, trouble, has_clock=is_clocked, say=_say)
+    server = Server(emulator, links, sockets=options.socket, say=_say)
     viewer: Any = None
     after_step: Callable[[], None] = _do_nothing
     try:
@@ -96,7 +100,8 @@ def emulate(words: Sequence[str]) -> int:
         if not options.hardware.exists():
             write_wiring(_with_ports(wiring, server.ports), options.hardware)
         print(
-            f"{', '.join(server.ports)}: the servos of {options.robot.name}, wired as {options.hardware} says",
+            f"{', '.join(server.ports)}: the servos of {options.robot.name}, {_models_text(wiring)}, wired as "
+            f"{options.hardware} says",
             flush=True,
         )
         if trouble.latency and is_clocked and abs(body.latency - trouble.latency) > 1e-9:
@@ -118,6 +123,17 @@ def emulate(words: Sequence[str]) -> int:
     return 0
 
 
+def _say(sentence: str) -> None:
+    """Print what a host should know, at once."""
+    print(sentence, flush=True)
+
+
+def _models_text(wiring: Wiring) -> str:
+    """Return how many servos of each model there are, in words."""
+    counts = Counter(servo.model for servo in wiring.servo)
+    return " and ".join(f"{count} {model} ({servo_table(model).protocol})" for model, count in counts.items())
+
+
 def _do_nothing() -> None:
     """Do nothing after a step."""
 
@@ -129,11 +145,36 @@ def _wiring_and_links(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
         ports = [Path(bus.port) for bus in wiring.bus if "://" not in bus.port]
         return wiring, ports if len(ports) == len(wiring.bus) and not options.socket else []
     check_writable(options.hardware.parent)
-    link = options.hardware.parent / f"{options.hardware.stem}.port"
-    protocol = bus_protocol(options.protocol)
-    bus_place = BusPlace(port=link.name, protocol=protocol.name, baud=protocol.default_baud)
-    wiring = straight(options.robot, [bus_place], protocol.default_model, boards=True)
-    return wiring, [] if options.socket else [link]
+    models = servo_models(options.robot, options.protocol)
+    protocols = [bus_protocol(name) for name in dict.fromkeys(servo_table(model).protocol for model in models.values())]
+    stem = options.hardware.stem
+    names = [f"{stem}.port" if i == 0 else f"{stem}{i + 1}.port" for i in range(len(protocols))]
+    buses = [
+        BusPlace(port=name, protocol=protocol.name, baud=protocol.default_baud)
+        for name, protocol in zip(names, protocols, strict=True)
+    ]
+    wiring = straight(options.robot, buses, models, boards=True)
+    return wiring, [] if options.socket else [options.hardware.parent / name for name in names]
+
+
+def servo_models(robot: Robot, protocol: str | None) -> dict[str, str]:
+    """Return the models of an emulated robot's servos by name: its own, where they speak the protocol.
+
+    A servo whose model the robot's file does not name, or that speaks another protocol, is the default model of the
+    protocol.
+
+    Args:
+        robot: that is emulated.
+        protocol: of all servos; None for what the robot's own servos speak.
+    """
+    models = own_models(robot)
+    if protocol is None:
+        spoken = [servo_table(model).protocol for model in models.values()]
+        default = bus_protocol(spoken[0] if spoken else _DEFAULT_PROTOCOL).default_model
+    else:
+        default = bus_protocol(protocol).default_model
+        models = {name: model for name, model in models.items() if servo_table(model).protocol == protocol}
+    return {name: models.get(name, default) for name in layout(robot).servos}
 
 
 def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:

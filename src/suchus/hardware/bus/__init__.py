@@ -2,9 +2,9 @@
 
 from suchus.hardware.bus.bus import WAIT, Bus, Counts, NoAnswer
 from suchus.hardware.bus.packets import BROADCAST, Decoder, Instruction, Packet, Refusal
-from suchus.hardware.bus.ports import BusGone, FilePort, Port, bit_rate, latency_timer, open_port
+from suchus.hardware.bus.ports import BusGone, FilePort, Port, bit_rate, latency_timer, open_port, port_holders
 from suchus.hardware.bus.protocol import BusProtocol, ChannelProtocol, PulseBoards, ServoProtocol
-from suchus.hardware.bus.tables import STEP, STEPS, Register, Sign, Table
+from suchus.hardware.bus.tables import STEP, STEPS, Mode, Register, Sign, Table, register_label
 from suchus.hardware.bus.wiring import (
     CLOCK,
     BoardPlace,
@@ -16,6 +16,7 @@ from suchus.hardware.bus.wiring import (
     check_names,
     duplicates,
     fingerprint,
+    own_models,
     straight,
 )
 
@@ -35,6 +36,7 @@ __all__ = [
     "Decoder",
     "FilePort",
     "Instruction",
+    "Mode",
     "NoAnswer",
     "Packet",
     "Port",
@@ -54,5 +56,8 @@ __all__ = [
     "fingerprint",
     "latency_timer",
     "open_port",
+    "own_models",
+    "port_holders",
+    "register_label",
     "straight",
 ]

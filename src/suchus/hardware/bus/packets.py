@@ -20,9 +20,15 @@ class Instruction(IntEnum):
     PING = 0x01
     READ = 0x02
     WRITE = 0x03
+    REG_WRITE = 0x04
+    ACTION = 0x05
     REBOOT = 0x08
     SYNC_READ = 0x82
     SYNC_WRITE = 0x83
+    FAST_SYNC_READ = 0x8A
+    BULK_READ = 0x92
+    BULK_WRITE = 0x93
+    FAST_BULK_READ = 0x9A
 
 
 class Refusal(IntEnum):
@@ -31,6 +37,7 @@ class Refusal(IntEnum):
     NONE = 0
     INSTRUCTION = 2
     RANGE = 4
+    LENGTH = 5
     LIMIT = 6
     ACCESS = 7
 

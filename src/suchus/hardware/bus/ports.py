@@ -160,6 +160,11 @@ def _serial(name: str, baud: int) -> Port:
         ) from error
     path = Path(name)
     if not path.exists():
+        if not str(path.absolute()).startswith("/dev/"):
+            raise BusFailure(
+                f"there is no port {name}, and no adapter has such a name: start suchus emulate for this robot first, "
+                "in another terminal, which makes it; a robot's own port begins with /dev/."
+            )
         raise BusFailure(f"there is no port {name}; {_ports_text()}")
     if not path.is_char_device():
         raise BusFailure(f"{name} is no serial port but a {'folder' if path.is_dir() else 'file'}; {_ports_text()}")
@@ -174,8 +179,33 @@ def _serial(name: str, baud: int) -> Port:
                 f"{name} may not be opened by you: join the group that owns it, often dialout, and log in again."
             ) from error
         raise BusFailure(f"{name} cannot be opened at {baud} baud as a serial port: {error}.") from error
+    others = port_holders(name)
+    if others:
+        device.close()
+        raise BusFailure(
+            f"{name} is open in another program too, process {others[0]}: a bus bears one host. End that one first."
+        )
     _lower_latency(device)
     return FilePort(name, device.fileno(), device)
+
+
+def port_holders(name: str) -> list[int]:
+    """Return the processes, other than this one, that have a serial port open, as far as Linux shows them to us.
+
+    Args:
+        name: of the port, or of a link to it.
+    """
+    device = os.path.realpath(name)
+    holders = []
+    for folder in Path("/proc").glob("[0-9]*/fd"):
+        process = int(folder.parent.name)
+        if process == os.getpid():
+            continue
+        with suppress(OSError):
+            targets = {str(entry.readlink()) for entry in folder.iterdir()}
+            if device in targets and "/dev/ptmx" not in targets and "/dev/pts/ptmx" not in targets:
+                holders.append(process)
+    return sorted(holders)
 
 
 def _ports_text() -> str:

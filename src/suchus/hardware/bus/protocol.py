@@ -13,6 +13,13 @@ DEFAULT_BAUD = 1_000_000
 """Bit rate of an emulated bus, where its protocol says no other [1/s]."""
 
 
+BASIC_INSTRUCTIONS = frozenset({
+    Instruction.PING, Instruction.READ, Instruction.WRITE, Instruction.REBOOT, Instruction.SYNC_READ,
+    Instruction.SYNC_WRITE,
+})  # fmt: skip
+"""Instructions that a drive needs, and that the servos of every protocol know."""
+
+
 class ServoProtocol:
     """How a servo is spoken to.
 
@@ -39,8 +46,10 @@ class BusProtocol(ServoProtocol, ABC):
     """Protocol of the servos behind a board that speaks this one; empty where the servos speak it themselves."""
     bauds: Mapping[int, int] = MappingProxyType({})
     """Bit rates by the value of the register ``baud_rate`` [1/s]."""
+    instructions: frozenset[Instruction] = BASIC_INSTRUCTIONS
+    """Instructions that its servos know."""
     default_model: str = ""
-    """Model of all servos of an emulated robot for which no hardware is written."""
+    """Model of the servos of an emulated robot that names no servo with this protocol."""
     default_baud: int = DEFAULT_BAUD
     """Bit rate of such a robot's bus [1/s]."""
 
@@ -94,6 +103,17 @@ class BusProtocol(ServoProtocol, ABC):
         """
         del model_number, firmware
         return b""
+
+    def joined_reply(self, replies: Sequence[Packet]) -> bytes:
+        """Return the bytes of the one reply that several servos make together, as to a fast read.
+
+        Args:
+            replies: of the servos, in the order in which they were asked; at least one.
+
+        Raises:
+            NotImplementedError: the protocol has no such reply.
+        """
+        raise NotImplementedError(f"the protocol {self.name!r} has no reply of several servos")
 
     # --- requests -----------------------------------------------------------------------------------------------------
 

@@ -16,6 +16,8 @@ from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.design import Motor
 
 Sign = Literal["none", "two", "bit"]
+Mode = Literal["position", "multi-turn", "velocity", "current", "voltage", "step"]
+"""What a servo controls in an operating mode; ``position`` within one turn and its limits, ``multi-turn`` beyond."""
 
 STEPS = 4096
 """Steps of a turn of the servos of Dynamixel X, Feetech STS and of boards of one's own [-]."""
@@ -99,6 +101,18 @@ class Table:
     """Value of ``torque_limit`` that stands for all of the torque [-]."""
     alerts: tuple[tuple[int, str], ...] = ()
     """Bits of ``hardware_error``, and what they say."""
+    modes: Mapping[int, Mode] = field(default_factory=dict)
+    """What it controls by the value of ``operating_mode``; empty: positions in any."""
+    offset_sign: int = 1
+    """1 where its position is that of its encoder plus ``homing_offset``, -1 where it is minus [-]."""
+    max_position_offset: int = 2**20
+    """Greatest ``homing_offset`` that acts in the mode ``position``, in steps [-]."""
+    centering: int | None = None
+    """Value of ``torque_enable`` that makes the present position the middle of a turn; None where none does [-]."""
+    extent: int = 0
+    """End of the addresses that it answers for, registers that are not in ``registers`` included; 0 for their end."""
+    other_registers: tuple[tuple[int, int, str], ...] = ()
+    """First address, end and name of registers that its maker gives it and that are not in ``registers``."""
 
     def __post_init__(self) -> None:
         """Refuse a table with registers that overlap or, for a servo, without those that a drive needs.
@@ -195,6 +209,18 @@ class Table:
         """Bytes of the whole table [byte]."""
         last_register = self.registers[-1]
         return last_register.address + last_register.size
+
+
+def register_label(table: Table, address: int) -> str:
+    """Return the name of what a table has at an address, for a message; empty where it has nothing.
+
+    Args:
+        table: of a servo or a board.
+        address: of a byte.
+    """
+    names = [r.name for r in table.registers if r.address <= address < r.address + r.size]
+    names += [name for start, end, name in table.other_registers if start <= address < end]
+    return names[0] if names else ""
 
 
 def _board(model: str, number: int, protocol: str, registers: tuple[Register, ...]) -> Table:

@@ -1,7 +1,7 @@
 """Bus and number of each servo of a robot, and the conversion between steps of the servo and joint angles."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -190,15 +190,25 @@ def fingerprint(robot: Robot) -> str:
     return digest({"servos": list(layout(robot).servos), "ranges": ranges})[:16]
 
 
-def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool = False) -> Wiring:
+def own_models(robot: Robot) -> dict[str, str]:
+    """Return the models of a robot's servos by name, as its file says; those that no bus speaks with are left out."""
+    models = {}
+    for name in layout(robot).servos:
+        winding = robot.servo(name).winding
+        if winding is not None and winding.motor in servo_tables():
+            models[name] = winding.motor
+    return models
+
+
+def straight(robot: Robot, bus: Sequence[BusPlace], model: str | Mapping[str, str], *, boards: bool = False) -> Wiring:
     """Return a wiring to start from: servos numbered from 1 in the order of the layout, mounted in the middle.
 
-    Several buses get equal shares of the servos, one after the other.
+    Several buses get equal shares of the servos, one after the other; each servo hangs on a bus that it speaks.
 
     Args:
         robot: robot that is wired.
-        bus: the buses; at least one.
-        model: model of all servos.
+        bus: the buses; at least one for each protocol of the servos.
+        model: model of all servos, or of each by its name.
         boards: whether it has a board for each kind of sensor, on the first bus.
 
     Raises:
@@ -209,24 +219,19 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
     place = layout(robot)
     _refuse_cranks(robot)
     _refuse_linear(robot)
-    share = -(-len(place.servos) // len(bus))
-    if share > 199:
-        raise InvalidDesign(
-            f"robot {robot.name!r} has {share} servos for each bus; up to 199 are allowed: use more buses."
-        )
-    ranges, table = servo_ranges(robot), servo_table(model)
-    min_angle, max_angle = (
-        (table[name].initial - table.center) * table.step for name in ("position_low", "position_high")
-    )
+    models = dict.fromkeys(place.servos, model) if isinstance(model, str) else model
+    tables = {name: servo_table(models[name]) for name in place.servos}
+    slots = _bus_slots(robot, bus, {name: table.protocol for name, table in tables.items()})
+    ranges = servo_ranges(robot)
     servo = tuple(
         ServoPlace(
             name=name,
-            id=1 + i % share,
-            model=model,
-            bus=i // share,
-            zero=table.center,
-            low=float(max(ranges[i, 0], min_angle)),
-            high=float(min(ranges[i, 1], max_angle)),
+            id=slots[name][1],
+            model=models[name],
+            bus=slots[name][0],
+            zero=tables[name].center,
+            low=float(max(ranges[i, 0], _limit_angle(tables[name], "position_low"))),
+            high=float(min(ranges[i, 1], _limit_angle(tables[name], "position_high"))),
         )
         for i, name in enumerate(place.servos)
     )
@@ -234,6 +239,32 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
     kinds: tuple[Kind, ...] = ("imu", *(("feet",) if place.limbs else ()), "belly", "tail")
     board = tuple(BoardPlace(kind=kind, id=200 + i, unit=unit) for i, kind in enumerate(kinds)) if boards else ()
     return Wiring(robot=robot.name, fingerprint=fingerprint(robot), bus=tuple(bus), servo=servo, board=board)
+
+
+def _limit_angle(table: Table, register: str) -> float:
+    """Return the angle of the limit with which a servo comes from its maker [rad]."""
+    return (table[register].initial - table.center) * table.step
+
+
+def _bus_slots(robot: Robot, bus: Sequence[BusPlace], protocols: Mapping[str, str]) -> dict[str, tuple[int, int]]:
+    """Return the bus and the number on it of each servo, from 1 in the order of the layout.
+
+    Args:
+        robot: whose servos they are.
+        bus: the buses.
+        protocols: of the servos, by name; one that no bus speaks hangs on the first bus, and is refused later.
+    """
+    slots: dict[str, tuple[int, int]] = {}
+    for protocol in dict.fromkeys(protocols.values()):
+        names = [name for name, servo_protocol in protocols.items() if servo_protocol == protocol]
+        numbers = [i for i, place in enumerate(bus) if place.protocol == protocol] or list(range(len(bus)))
+        share = -(-len(names) // len(numbers))
+        if share > 199:
+            raise InvalidDesign(
+                f"robot {robot.name!r} has {share} servos for each bus; up to 199 are allowed: use more buses."
+            )
+        slots |= {name: (numbers[i // share], 1 + i % share) for i, name in enumerate(names)}
+    return slots
 
 
 def _refuse_cranks(robot: Robot) -> None:

@@ -1,8 +1,10 @@
 """Devices on an emulated bus: servos with their control tables, and sensor boards."""
 
+from math import copysign, inf, pi, sqrt
+
 import numpy as np
 
-from suchus.hardware.bus import Refusal, Register, ServoPlace, Table
+from suchus.hardware.bus import Mode, Refusal, Register, ServoPlace, Table
 from suchus.robot.control import Sensed
 
 AMBIENT = 25.0
@@ -10,6 +12,20 @@ AMBIENT = 25.0
 SWITCHES_OFF = {"input voltage": False, "overheated": True, "encoder": False, "electrical shock": True,
                 "current": True, "overload": True}  # fmt: skip
 """Which alerts take the torque away, as the makers set them."""
+WITHOUT_EFFECT = (
+    "angular_resolution", "clockwise_dead_zone", "counterclockwise_dead_zone", "drive_mode", "feedforward_1st_gain",
+    "feedforward_2nd_gain", "goal_time", "min_startup_force", "overcurrent_time", "overload_torque", "phase",
+    "position_d_gain", "position_i_gain", "position_p_gain", "protection_current", "protection_time",
+    "protective_torque", "protocol_type", "secondary_id", "startup_configuration", "velocity_i_gain",
+    "velocity_p_gain",
+)  # fmt: skip
+"""Registers that an emulated servo keeps, and that change nothing in how the simulated robot moves."""
+_LIMITED = {"goal_velocity": "velocity_limit", "torque_limit": "voltage_limit", "goal_current": "current_limit"}
+"""Registers whose size may not exceed the value of another one."""
+_CURRENT_BASED = 5  # operating mode of positions with a limit of current
+_MAX_MULTI_TURN = 2**20  # greatest goal beyond a turn [-]
+_MOVING_SPEED = 10 * 0.229 * 2 * pi / 60  # speed above which a servo says that it moves [rad/s]
+_TICKS = 32768  # milliseconds after which a servo's clock begins anew
 
 
 class Device:
@@ -34,6 +50,15 @@ class Device:
         """Set a register, also one that is read-only for the host."""
         register = self.table[name]
         self.memory[register.address : register.address + register.size] = register.encode(value)
+
+    @property
+    def extent(self) -> int:
+        """End of the addresses that it answers for."""
+        return max(self.table.extent, self.table.length)
+
+    def holds(self, address: int, length: int) -> bool:
+        """Return whether it can answer for bytes from an address on."""
+        return length > 0 and address + length <= self.extent
 
     def read(self, address: int, length: int) -> bytes:
         """Return bytes as they are."""
@@ -71,6 +96,9 @@ class EmulatedServo(Device):
         """Voltage of the battery at the beginning [V]."""
         self.temperature, self.voltage, self.torque = AMBIENT, self.supply, 0.0
         self.heard_at = 0.0
+        self.angle = 0.0
+        """Angle of the joint [rad]."""
+        self._setpoint, self._rate, self._has_goal = 0.0, 0.0, False
         self.off = False
         """Whether it has switched itself off; a reboot ends that."""
 
@@ -80,16 +108,86 @@ class EmulatedServo(Device):
         return self.table.bauds[self.get("baud_rate")]
 
     @property
+    def mode(self) -> Mode:
+        """What it controls."""
+        if not self.table.modes:
+            return "position"
+        return self.table.modes.get(self.get("operating_mode"), "position")
+
+    @property
     def share(self) -> float:
         """Share of its torque that it may use, 0 to 1 [-]."""
-        if self.off or not self.get("torque_enable"):
+        if self.off or not self.get("torque_enable") or self.mode in ("current", "voltage", "step"):
             return 0.0
-        return min(max(self.get("torque_limit") / self.table.full, 0.0), 1.0)
+        share = min(max(self.get("torque_limit") / self.table.full, 0.0), 1.0)
+        if self.mode == "multi-turn" and self.get("operating_mode") == _CURRENT_BASED and "goal_current" in self.table:
+            motor, register = self.table.motor, self.table["goal_current"]
+            if motor is not None:
+                share *= min(abs(self.get("goal_current")) * register.unit / motor.stall_current, 1.0)
+        return share
+
+    @property
+    def offset(self) -> int:
+        """What ``homing_offset`` adds to the position that it tells, in steps [-]."""
+        if "homing_offset" not in self.table:
+            return 0
+        offset = self.get("homing_offset")
+        if self.mode == "position" and abs(offset) > self.table.max_position_offset:
+            return 0
+        return self.table.offset_sign * offset
 
     @property
     def goal(self) -> float:
         """Angle of the joint that it aims at [rad]."""
-        return self.place.sign * (self.get("goal_position") - self.place.zero) * self.table.step
+        steps = self.get("goal_position") - self.offset - self.place.zero
+        if self.offset and self.mode == "position":  # the way within a turn
+            turn = round(2 * pi / self.table.step)
+            steps = (steps + turn // 2) % turn - turn // 2
+        return self.place.sign * steps * self.table.step
+
+    @property
+    def has_profile(self) -> bool:
+        """Whether its goal acts little by little: by a profile, or since it turns at a speed."""
+        return self.mode == "velocity" or self._max_speed < inf or self._max_acceleration < inf
+
+    @property
+    def _max_speed(self) -> float:
+        """Speed of its profile [rad/s]; infinite for none."""
+        name = "profile_velocity" if "profile_velocity" in self.table else "goal_velocity"
+        if name not in self.table or self.mode == "velocity" or not self.get(name):
+            return inf
+        return abs(self.get(name)) * self.table[name].unit
+
+    @property
+    def _max_acceleration(self) -> float:
+        """Acceleration of its profile [rad/s2]; infinite for none."""
+        name = "profile_acceleration" if "profile_acceleration" in self.table else "acceleration"
+        if name not in self.table or not self.get(name):
+            return inf
+        return self.get(name) * self.table[name].unit
+
+    def advance(self, seconds: float) -> float | None:
+        """Return the angle that the joint is sent to after some time [rad]; None where its goal acts at once.
+
+        Args:
+            seconds: how much time passes [s].
+        """
+        if not self.has_profile or self.share <= 0.0 or (not self._has_goal and self.mode != "velocity"):
+            self._setpoint, self._rate = self.angle, 0.0
+            return None
+        distance = self.goal - self._setpoint
+        if self.mode == "velocity":
+            rate = self.place.sign * self.get("goal_velocity") * self.table["goal_velocity"].unit
+        else:
+            braking = _braking_speed(self._max_acceleration, abs(distance), seconds)
+            rate = copysign(min(self._max_speed, braking, abs(distance) / seconds), distance)
+        max_change = self._max_acceleration * seconds
+        self._rate = min(max(rate, self._rate - max_change), self._rate + max_change)
+        step = self._rate * seconds
+        if self.mode != "velocity" and abs(step) >= abs(distance):
+            step, self._rate = distance, 0.0
+        self._setpoint += step
+        return self._setpoint
 
     @property
     def alerts(self) -> int:
@@ -107,10 +205,32 @@ class EmulatedServo(Device):
             refusal = self._refusal(register, register.decode(data[register.address - address :][: register.size]))
             if refusal:
                 return refusal
+        former_torque = self.get("torque_enable")
         self.memory[address : address + len(data)] = data
-        if any(register.name == "bus_watchdog" for register in registers):
+        names = [register.name for register in registers]
+        if "bus_watchdog" in names:
             self.put("bus_watchdog", max(self.get("bus_watchdog"), 0))
+        if "torque_enable" in names and self.get("torque_enable") == self.table.centering:
+            self.put("torque_enable", former_torque)
+            self._center()
+        if "max_torque" in names:
+            self.put("torque_limit", self.get("max_torque"))
+        self._has_goal = self._has_goal or "goal_position" in names
+        if {"homing_offset", "operating_mode", "torque_enable"} & set(names):
+            self._tell_position()
         return Refusal.NONE
+
+    def _center(self) -> None:
+        """Let the present position be the middle of a turn, as the maker's command for that does."""
+        actual = self.place.zero + round(self.place.sign * self.angle / self.table.step)
+        self.put("homing_offset", self.table.offset_sign * (self.table.center - actual))
+
+    def _tell_position(self) -> None:
+        """Tell the position of the joint, with the offset that is set."""
+        steps = self.place.zero + round(self.place.sign * self.angle / self.table.step) + self.offset
+        if self.offset and self.table.offset_sign < 0 and self.mode == "position":
+            steps %= round(2 * pi / self.table.step)
+        self.put("present_position", steps)
 
     @staticmethod
     def _partly(register: Register, address: int, data: bytes) -> bool:
@@ -130,9 +250,23 @@ class EmulatedServo(Device):
             return Refusal.ACCESS
         if register.span is not None and not register.span[0] <= value <= register.span[1]:
             return Refusal.RANGE
-        if register.name == "goal_position" and not self.get("position_low") <= value <= self.get("position_high"):
+        if register.name == "operating_mode" and self.table.modes and value not in self.table.modes:
+            return Refusal.RANGE
+        if register.name == "torque_enable" and value > 1 and value != self.table.centering:
+            return Refusal.RANGE
+        if register.name == "goal_position":
+            return self._goal_refusal(value)
+        bound = _LIMITED.get(register.name, "")
+        if bound in self.table and abs(value) > self.get(bound):
             return Refusal.LIMIT
         return Refusal.NONE
+
+    def _goal_refusal(self, value: int) -> Refusal:
+        """Return why a goal is outside the limits that are set; in modes without limits those of the register."""
+        low, high = self.get("position_low"), self.get("position_high")
+        if self.mode == "multi-turn" or (self.table.offset_sign < 0 and low == high == 0):
+            return Refusal.NONE if abs(value) < _MAX_MULTI_TURN else Refusal.LIMIT
+        return Refusal.NONE if low <= value <= high else Refusal.LIMIT
 
     def feel(self, angle: float, speed: float, torque: float) -> None:
         """Write angle, speed and torque of the joint to the registers that report them.
@@ -143,7 +277,10 @@ class EmulatedServo(Device):
             torque: torque of the servo on it [N m].
         """
         sign, table = self.place.sign, self.table
-        self.put("present_position", self.place.zero + round(sign * angle / table.step))
+        self.angle = angle
+        self._tell_position()
+        if "moving" in table:
+            self.put("moving", int(abs(speed) > _MOVING_SPEED))
         self.put("present_velocity", round(sign * speed / table["present_velocity"].unit))
         self.torque = abs(torque)
         self._tell("present_current", sign * torque / table.torque_per_ampere)
@@ -168,6 +305,8 @@ class EmulatedServo(Device):
             cooling = (self.temperature - AMBIENT) / heat.resistance
             self.temperature += seconds * ((loss - cooling) / heat.capacity + heating)
         self.voltage = voltage
+        if "realtime_tick" in self.table:
+            self.put("realtime_tick", round(1e3 * time) % _TICKS)
         if self.temperature >= self.get("temperature_limit"):
             self.fail("overheated")
         if voltage < self.table["voltage_low"].unit * self.get("voltage_low"):
@@ -193,7 +332,10 @@ class EmulatedServo(Device):
         bits = {text: bit for bit, text in self.table.alerts}
         if alert in bits:
             self.put("hardware_error", self.get("hardware_error") | 1 << bits[alert])
-        self.off = self.off or SWITCHES_OFF[alert]
+        if "shutdown" in self.table and alert in bits:
+            self.off = self.off or bool(self.get("shutdown") >> bits[alert] & 1)
+        else:
+            self.off = self.off or SWITCHES_OFF[alert]
 
     def reboot(self) -> None:
         """Reboot the servo: torque and alerts are off."""
@@ -207,6 +349,20 @@ class EmulatedServo(Device):
     def _tell(self, name: str, value: float) -> None:
         if name in self.table:
             self.put(name, round(value / self.table[name].unit))
+
+
+def _braking_speed(acceleration: float, distance: float, period: float) -> float:
+    """Return the greatest speed from which something that brakes once a period stops within a distance [m/s, rad/s].
+
+    Args:
+        acceleration: by which it brakes; infinite for at once.
+        distance: to the stop.
+        period: between two changes of the speed [s].
+    """
+    if acceleration == inf:
+        return inf
+    half_step = 0.5 * acceleration * period
+    return sqrt(half_step**2 + 2.0 * acceleration * distance) - half_step
 
 
 class Board(Device):

@@ -1,7 +1,7 @@
 """Buses of an emulated robot: bytes in, bytes out, with the delays of a real bus."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from random import Random
 
 import numpy as np
@@ -17,9 +17,10 @@ from suchus.hardware.bus import (
     Packet,
     Refusal,
     Wiring,
+    register_label,
 )
 from suchus.hardware.emulator.body import EmulatedBody
-from suchus.hardware.emulator.devices import Board, Device, EmulatedServo
+from suchus.hardware.emulator.devices import WITHOUT_EFFECT, Board, Device, EmulatedServo
 from suchus.hardware.emulator.trouble import Trouble
 from suchus.hardware.protocols import bus_protocol
 from suchus.robot.control import Sensed
@@ -27,6 +28,8 @@ from suchus.robot.control import Sensed
 BITS = 10
 """Bits that a byte takes on the wire, start and stop bit included [-]."""
 _SOAKED = 2.0  # [s]; after so long in water a servo is silent
+_FAST_READS = (Instruction.FAST_SYNC_READ, Instruction.FAST_BULK_READ)
+_FAST_HEAD = 8  # bytes before the first servo's part of a joined reply
 _GARBLED = 0.5  # share of the bytes of two replies that collide which arrive wrong [-]
 
 
@@ -38,6 +41,10 @@ class _Line:
     decoder: Decoder
     devices: dict[int, Device]
     baud: int
+    heard_baud: int = 0
+    """Bit rate of the host's last bytes [1/s]."""
+    registered: dict[int, tuple[int, bytes]] = field(default_factory=dict)
+    """What servos write at the instruction to act: address and bytes by servo."""
 
 
 class Emulator:
@@ -48,12 +55,20 @@ class Emulator:
         body: the robot behind it.
         trouble: what goes wrong.
         has_clock: whether its time passes when its clock is told to, and not by itself.
+        say: is given sentences on what a host asks and no servo has, each once.
     """
 
     def __init__(
-        self, wiring: Wiring, body: EmulatedBody, trouble: Trouble | None = None, *, has_clock: bool = False
+        self,
+        wiring: Wiring,
+        body: EmulatedBody,
+        trouble: Trouble | None = None,
+        *,
+        has_clock: bool = False,
+        say: Callable[[str], None] = lambda _: None,
     ) -> None:
         """Connect emulated servos and boards to the buses of a wiring."""
+        self._say, self._remarks = say, set[str]()
         self.body, self.clocked, self.trouble = body, has_clock, trouble or Trouble()
         self.wiring = wiring
         self.diverged: Diverged | None = None
@@ -90,16 +105,23 @@ class Emulator:
             baud: bit rate at which they were sent, where that can be known: servos hear nothing else [1/s].
         """
         line, replies, arrival_time = self.lines[number], list[tuple[float, bytes]](), 0.0
-        if baud is not None and baud != line.baud:
+        line.heard_baud = line.baud if baud is None else baud
+        if all(line.heard_baud != rate for rate in (line.baud, *self._rates(line))):
             return []
         for packet in line.decoder.feed(data):
+            if packet.code in _FAST_READS and packet.code in line.protocol.instructions:
+                joined = self._joined(line, packet)
+                arrival_time += len(joined) * BITS / line.heard_baud
+                if joined and self._random.random() >= self.trouble.lost:
+                    replies.append((arrival_time, joined))
+                continue
             clock = packet.id == CLOCK or (packet.code == Instruction.SYNC_READ and CLOCK in packet.data)
             if not clock and self._random.random() < self.trouble.lost:
                 continue
             for servo, reply in self._answers(line, packet):
                 data = line.protocol.reply(reply) if servo is None else self._spoilt(line, reply)
                 delay = servo.reply_delay if isinstance(servo, EmulatedServo) else 0.0
-                arrival_time += delay + len(line.protocol.reply(reply)) * BITS / line.baud
+                arrival_time += delay + len(line.protocol.reply(reply)) * BITS / line.heard_baud
                 if data:
                     replies.append((arrival_time, data))
         return replies
@@ -112,6 +134,10 @@ class Emulator:
     def step(self) -> None:
         """Let one control period pass."""
         self._power()
+        for servo in self.servos:
+            setpoint = servo.advance(self.body.period)
+            if setpoint is not None:
+                self.body.aim({servo.number: self._rounded(setpoint)})
         try:
             self.body.step()
         except Diverged as error:
@@ -132,8 +158,7 @@ class Emulator:
                 if servo == CLOCK and self.clocked:
                     answers.append((None, Packet(CLOCK, 0, self.body.tick.to_bytes(4, "little").ljust(length, b"\0"))))
                 elif (device := self._listening(line, servo)) is not None:
-                    code = line.protocol.reply_code(Refusal.NONE, device.alerts)
-                    answers.append((device, Packet(servo, code, device.read(address, length))))
+                    answers.append((device, self._read(line, servo, device, address, length)))
             return answers
         if packet.code == Instruction.SYNC_WRITE and len(data) > 2 * word:
             address, length = _number(data, word), _number(data[word:], word)
@@ -141,7 +166,21 @@ class Emulator:
             for start in range(0, len(payload) - length, length + 1):
                 target = self._listening(line, payload[start])
                 if target is not None:
-                    self._write(target, address, payload[start + 1 : start + 1 + length])
+                    self._write(line, target, address, payload[start + 1 : start + 1 + length])
+            return []
+        if packet.code not in line.protocol.instructions and packet.id == BROADCAST:
+            return []
+        if packet.code == Instruction.BULK_READ:
+            return [
+                (device, self._read(line, servo, device, address, length))
+                for servo, address, length in _bulk_rows(data, word)
+                if (device := self._listening(line, servo)) is not None
+            ]
+        if packet.code == Instruction.BULK_WRITE:
+            self._write_bulk(line, data)
+            return []
+        if packet.code == Instruction.ACTION:
+            self._act(line)
             return []
         if packet.id == CLOCK:
             return [(None, self._of_clock(packet, word))] if self.clocked else []
@@ -167,14 +206,107 @@ class Emulator:
             firmware = device.get("firmware") if "firmware" in device.table else 0
             answer = line.protocol.ping_data(device.get("model_number"), firmware)
         elif packet.code == Instruction.READ and len(data) == 2 * word:
-            answer = device.read(_number(data, word), _number(data[word:], word))
+            return [(device, self._read(line, packet.id, device, _number(data, word), _number(data[word:], word)))]
+        elif packet.code == Instruction.REG_WRITE and packet.code in line.protocol.instructions and len(data) > word:
+            line.registered[packet.id] = _number(data, word), data[word:]
         elif packet.code == Instruction.WRITE and len(data) > word:
-            refusal = self._write(device, _number(data, word), data[word:])
+            refusal = self._write(line, device, _number(data, word), data[word:])
         elif packet.code == Instruction.REBOOT and isinstance(device, EmulatedServo):
             device.reboot()
         else:
             refusal = Refusal.INSTRUCTION
+        if packet.code != Instruction.PING and self._is_mute(device):
+            return []
         return [(device, Packet(packet.id, line.protocol.reply_code(refusal, device.alerts), answer))]
+
+    def _read(self, line: _Line, servo: int, device: Device, address: int, length: int) -> Packet:
+        """Return the reply of a device to a read: its bytes, or a refusal of what it cannot hold.
+
+        Args:
+            line: its bus.
+            servo: its number.
+            device: that is read.
+            address: of the first byte.
+            length: how many bytes.
+        """
+        if not device.holds(address, length):
+            self._remark(
+                f"length {servo} {address}",
+                f"number {servo}, a {device.table.model}, was asked for {length} bytes from address {address} on; it "
+                f"has {device.extent}: it refuses.",
+            )
+            return Packet(servo, line.protocol.reply_code(Refusal.LENGTH, device.alerts))
+        self._remark_unknown(servo, device, address, length, "was asked for", "it answers zeros")
+        return Packet(servo, line.protocol.reply_code(Refusal.NONE, device.alerts), device.read(address, length))
+
+    def _remark_unknown(
+        self, servo: int, device: Device, address: int, length: int, verb: str, consequence: str
+    ) -> None:
+        """Say once that bytes hold no register that the emulator knows, with their address and their maker's name."""
+        registers = device.table.registers
+        if any(r.address < address + length and address < r.address + r.size for r in registers):
+            return
+        label = register_label(device.table, address)
+        reason = f"{label}, which is not emulated" if label else "where it has no register"
+        self._remark(
+            f"unknown {servo} {address}",
+            f"number {servo}, a {device.table.model}, {verb} {length} bytes at address {address}, {reason}: "
+            f"{consequence}.",
+        )
+
+    def _remark(self, key: str, sentence: str) -> None:
+        """Say a sentence, once for each key."""
+        if key not in self._remarks:
+            self._remarks.add(key)
+            self._say(sentence)
+
+    def _joined(self, line: _Line, packet: Packet) -> bytes:
+        """Return the one reply of several servos to a fast read; it breaks off before the first that is silent."""
+        word, data = line.protocol.word, packet.data
+        if packet.code == Instruction.FAST_BULK_READ:
+            rows = _bulk_rows(data, word)
+        else:
+            address, length = _number(data, word), _number(data[word:], word)
+            rows = [(servo, address, length) for servo in data[2 * word :]]
+        replies: list[Packet] = []
+        for servo, address, length in rows:
+            device = self._listening(line, servo)
+            if device is None:
+                whole = [*replies, *(Packet(other, 0, bytes(size)) for other, _, size in rows[len(replies) :])]
+                present = sum(4 + len(reply.data) for reply in replies)
+                return line.protocol.joined_reply(whole)[: _FAST_HEAD + present] if replies else b""
+            replies.append(self._read(line, servo, device, address, length))
+        return line.protocol.joined_reply(replies) if replies else b""
+
+    def _write_bulk(self, line: _Line, data: bytes) -> None:
+        """Write different registers of several servos, none of which answers."""
+        word = line.protocol.word
+        while len(data) > 2 * word:
+            servo, address, length = data[0], _number(data[1:], word), _number(data[1 + word :], word)
+            payload, data = data[1 + 2 * word :][:length], data[1 + 2 * word + length :]
+            device = self._listening(line, servo)
+            if device is not None and len(payload) == length:
+                self._write(line, device, address, payload)
+
+    def _act(self, line: _Line) -> None:
+        """Write what registered writes hold."""
+        for servo, (address, payload) in line.registered.items():
+            device = self._listening(line, servo)
+            if device is not None:
+                self._write(line, device, address, payload)
+        line.registered.clear()
+
+    @staticmethod
+    def _is_mute(device: Device) -> bool:
+        """Return whether a servo is set to answer less than this request, which was no ping and no read."""
+        if not isinstance(device, EmulatedServo) or "status_level" not in device.table:
+            return False
+        return device.get("status_level") < device.table["status_level"].initial
+
+    @staticmethod
+    def _rates(line: _Line) -> list[int]:
+        """Return the bit rates at which servos of a bus listen [1/s]."""
+        return [device.baud for device in line.devices.values() if isinstance(device, EmulatedServo)]
 
     def _listening(self, line: _Line, servo: int) -> Device | None:
         """Return a device, or None if it does not answer."""
@@ -185,21 +317,67 @@ class Emulator:
         if servo in self.trouble.wet and self.body.time >= self.trouble.at + _SOAKED:
             return None
         if isinstance(device, EmulatedServo):
-            if device.baud != line.baud:
+            if device.baud != line.heard_baud:
                 return None
             device.heard_at = self.body.time
         return device
 
-    def _write(self, device: Device, address: int, data: bytes) -> Refusal:
-        """Write registers of a device, pass new goals and torque limits to the robot, and return the refusal."""
+    def _write(self, line: _Line, device: Device, address: int, data: bytes) -> Refusal:
+        """Write registers of a device, pass new goals and torque limits to the robot, and return the refusal.
+
+        Args:
+            line: its bus.
+            device: that is written.
+            address: of the first byte.
+            data: the bytes.
+        """
+        if not isinstance(device, EmulatedServo):
+            return device.write(address, data)
+        servo = device.get("id")
         refusal = device.write(address, data)
-        if isinstance(device, EmulatedServo) and refusal == Refusal.NONE:
-            goal = device.table["goal_position"]
-            if address <= goal.address < address + len(data):
-                self.body.aim({device.number: self._rounded(device.goal)})
-            if device.share != self.body.powered[device.number]:
-                self._power()
+        self._remark_unknown(servo, device, address, len(data), "was sent", "it refuses them")
+        if refusal != Refusal.NONE:
+            return refusal
+        if device.get("id") != servo:
+            self._renumber(line, device, servo)
+        goal = device.table["goal_position"]
+        if address <= goal.address < address + len(data) and not device.has_profile:
+            self.body.aim({device.number: self._rounded(device.goal)})
+        if device.share != self.body.powered[device.number]:
+            self._power()
+        self._remark_without_effect(servo, device, address, len(data))
         return refusal
+
+    def _renumber(self, line: _Line, device: EmulatedServo, former: int) -> None:
+        """Let a servo listen to its new number; where another has it, the number stays as it was."""
+        new = device.get("id")
+        if new in line.devices:
+            device.put("id", former)
+            self._remark(
+                f"twin {new}",
+                f"number {former} was to become number {new}, which another one has: on a real bus both would "
+                "answer at once. It stays as it is.",
+            )
+            return
+        line.devices[new] = line.devices.pop(former)
+
+    def _remark_without_effect(self, servo: int, device: EmulatedServo, address: int, length: int) -> None:
+        """Say once what a servo keeps without an effect on the simulated robot."""
+        for register in device.table.registers:
+            is_written = address <= register.address < address + length
+            if is_written and register.name in WITHOUT_EFFECT and device.get(register.name) != register.initial:
+                self._remark(
+                    f"effect {register.name}",
+                    f"number {servo} keeps {register.name} = {device.get(register.name)} (address "
+                    f"{register.address}), and the simulated robot moves as before: its servos have the gains of its "
+                    "own file.",
+                )
+        if device.mode in ("current", "voltage", "step"):
+            self._remark(
+                f"mode {device.mode}",
+                f"number {servo} is in operating mode {device.get('operating_mode')}, control of {device.mode}, which "
+                "is not simulated: its joint is limp.",
+            )
 
     def _spoilt(self, line: _Line, reply: Packet) -> bytes:
         """Return the bytes of a reply as they arrive; empty if it is lost."""
@@ -255,6 +433,13 @@ class Emulator:
     def _rounded(self, angle: float) -> float:
         step = self.trouble.resolution
         return round(angle / step) * step if step > 0.0 else angle
+
+
+def _bulk_rows(data: bytes, word: int) -> list[tuple[int, int, int]]:
+    """Return number, address and length of each servo that a bulk read asks."""
+    size = 1 + 2 * word
+    rows = [data[start : start + size] for start in range(0, len(data) - size + 1, size)]
+    return [(row[0], _number(row[1:], word), _number(row[1 + word :], word)) for row in rows]
 
 
 def _number(data: Sequence[int], word: int) -> int:

@@ -8,11 +8,12 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from itertools import count
 from pathlib import Path
+from threading import Event, Thread
 from time import monotonic
 from typing import Any
 
 from suchus.core.errors import Unwritable
-from suchus.hardware.bus import bit_rate
+from suchus.hardware.bus import bit_rate, port_holders
 from suchus.hardware.emulator.emulator import BITS, Emulator
 
 try:
@@ -22,6 +23,7 @@ except ImportError:  # pragma: no cover - Windows
     pty = None  # type: ignore[assignment]
 
 _CHUNK = 4096  # bytes of a read
+_LOOK_INTERVAL = 1.0  # [s]; between two looks for a second host
 _MAX_LAG = 0.25  # [s]; a machine that falls behind by more lets the robot's time wait
 
 
@@ -35,19 +37,28 @@ class Server:
         emulator: what is served.
         links: paths at which the pseudo-terminals can be found, one for each bus; they are links, and go at the end.
         sockets: whether to listen on sockets of this computer instead of pseudo-terminals.
+        say: is given a sentence where a second host is on a bus.
 
     Raises:
         Unwritable: a link cannot be made.
     """
 
-    def __init__(self, emulator: Emulator, links: Sequence[str | Path] = (), *, sockets: bool = False) -> None:
+    def __init__(
+        self,
+        emulator: Emulator,
+        links: Sequence[str | Path] = (),
+        *,
+        sockets: bool = False,
+        say: Callable[[str], None] = lambda _: None,
+    ) -> None:
         """Open a port for each bus of an emulator."""
+        self._say, self._seen_hosts = say, set[tuple[int, ...]]()
         self._emulator = emulator
         sockets = sockets or pty is None
         self._ends: list[Any] = []
         self._linked: list[Path] = []
         for number in range(len(emulator.lines)):
-            self._ends.append(_Socket() if sockets else _Terminal())
+            self._ends.append(_Socket(say) if sockets else _Terminal())
             if not sockets and links:
                 self._link(Path(links[number]), self._ends[-1].name)
         self.ports: tuple[str, ...] = tuple(str(path) for path in self._linked) or tuple(e.name for e in self._ends)
@@ -67,6 +78,15 @@ class Server:
         Raises:
             Diverged: the simulation diverged.
         """
+        end_event = Event()
+        Thread(target=self._watch_hosts, args=(end_event,), daemon=True).start()
+        try:
+            self._serve(should_stop, after_period)
+        finally:
+            end_event.set()
+
+    def _serve(self, should_stop: Callable[[], bool], after_period: Callable[[], None]) -> None:
+        """Serve until told to stop, see ``serve``."""
         emulator, period = self._emulator, self._emulator.body.period
         due, last_tick = monotonic() + period, emulator.body.tick
         while not should_stop():
@@ -88,6 +108,25 @@ class Server:
                 after_period()
             if emulator.diverged is not None:
                 raise emulator.diverged
+
+    def _watch_hosts(self, end_event: Event) -> None:
+        """Look for a second host now and then, beside the loop, which nothing may delay."""
+        while not end_event.wait(_LOOK_INTERVAL):
+            self.look_for_hosts()
+
+    def look_for_hosts(self) -> None:
+        """Say where several programs have the port of a bus open, once for each company of them."""
+        for number, end in enumerate(self._ends):
+            if not isinstance(end, _Terminal):
+                continue
+            hosts = tuple(port_holders(end.name))
+            if len(hosts) > 1 and hosts not in self._seen_hosts:
+                self._seen_hosts.add(hosts)
+                self._say(
+                    f"{len(hosts)} programs have {self.ports[number]} open, processes "
+                    f"{' and '.join(str(host) for host in hosts)}: a bus bears one host, since replies do not say "
+                    "whose they are. End the others."
+                )
 
     def close(self) -> None:
         """Close the ports and take the links away."""
@@ -188,7 +227,8 @@ class _Socket:
 
     baud = None
 
-    def __init__(self) -> None:
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
         self._listener = socket.create_server(("127.0.0.1", 0))
         self._listener.setblocking(False)
         self._host: socket.socket | None = None
@@ -200,10 +240,17 @@ class _Socket:
         return [self._listener.fileno(), *([] if self._host is None else [self._host.fileno()])]
 
     def receive(self, file: int) -> bytes:
-        """Return what has come; take a host in the place of the one before."""
+        """Return what has come; take a host, or refuse it while there is another one."""
         if file == self._listener.fileno():
             with suppress(OSError):
-                host, _ = self._listener.accept()
+                host, address = self._listener.accept()
+                if self._is_busy():
+                    host.close()
+                    self._say(
+                        f"a second host (port {address[1]} of this computer) wanted {self.name}, which another one "
+                        "has: it was refused."
+                    )
+                    return b""
                 host.setblocking(False)
                 host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 self._leave()
@@ -229,6 +276,17 @@ class _Socket:
         """Close all."""
         self._leave()
         self._listener.close()
+
+    def _is_busy(self) -> bool:
+        """Return whether there is a host that has not closed its end."""
+        if self._host is None:
+            return False
+        try:
+            return self._host.recv(1, socket.MSG_PEEK) != b""
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False
 
     def _leave(self) -> None:
         if self._host is not None:

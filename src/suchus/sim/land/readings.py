@@ -265,7 +265,7 @@ class Recorder:
             "snout": block(("snout",), "position"),
             "tail_tip": block(("tail_tip",), "position"),
             "foot_position": points([f"{limb}_foot" for limb in robot_layout.limb_names], "position"),
-            "foot_roll": _rolling(turns, self._foot_radii),
+            "foot_roll": rolling_displacement(turns, self._foot_radii),
             # the sensors read the robot's force on the ground; the record holds the ground's on the robot
             "foot_force": -feet,
             "limb_force": feet - points(robot_layout.limb_names, "limb_force"),
@@ -281,7 +281,7 @@ class Recorder:
         }
 
 
-def _rolling(
+def rolling_displacement(
     orientation: Float[np.ndarray, "run time limb 4"], radius: Float[np.ndarray, "run limb"]
 ) -> Float[np.ndarray, "run time limb 3"]:
     """Return how far each ball has rolled over level ground since the first sample [m].
