@@ -45,6 +45,8 @@ from suchus.robot.robots import ROBOTS  # noqa: E402
 gc.disable()  # until all tests are collected: modules stay, and the search for garbage takes a fifth of their import
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 """Processes that tests start get the default: under nohup they would inherit an ignored hang-up and not stop on it."""
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # as where a shell started the tests in the background
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
     os.environ.setdefault("SUCHUS_THREADS", "1")
 xr.set_options(use_numbagg=False, use_bottleneck=False)  # as on the command line; numbagg compiles for half a minute

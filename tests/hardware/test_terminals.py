@@ -10,6 +10,7 @@ from time import monotonic, sleep
 import pytest
 from tests.wires import wiring
 
+from suchus.apps.cli import main
 from suchus.core.files import load
 from suchus.hardware.bus import Bus, open_port
 from suchus.hardware.protocols import PROTOCOLS
@@ -84,3 +85,11 @@ def _held(port):
         return False
     finally:
         os.close(descriptor)
+
+
+@pytest.mark.parametrize("seconds", ["nan", "inf", "-1"])
+def test_a_duration_that_cannot_be_is_refused_before_a_port_is_made(seconds, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["emulate", "caiman", "--seconds", seconds]) == 2
+    assert "seconds" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

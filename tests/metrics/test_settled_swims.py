@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from suchus.sim.metrics import MIN_SETTLED_CYCLES, VISIBLE_TREND, settled_mean
+from suchus.sim.metrics import MIN_SETTLED_CYCLES, VISIBLE_TREND, settled_mean, whole_cycles
 
 CYCLES = np.arange(40)
 
@@ -85,3 +85,13 @@ def test_the_scale_sets_the_tolerance_of_a_small_quantity() -> None:
 def test_an_empty_series_is_refused() -> None:
     with pytest.raises(ValueError, match="at least one cycle"):
         settled_mean(np.array([]))
+
+
+@pytest.mark.parametrize(
+    ("end", "count"),
+    [(0.545, 1), (0.540, 0), (1.090, 2), (1.085, 1), (0.0, 0)],
+)
+def test_a_cycle_that_ends_within_half_a_sample_is_whole(end: float, count: int) -> None:
+    """A run ends at the control period of 5 ms that is nearest to its duration."""
+    time = np.arange(round(end / 0.005) + 1) * 0.005
+    assert whole_cycles(time, 0.54500413) == count

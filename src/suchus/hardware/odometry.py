@@ -4,13 +4,10 @@ import numpy as np
 import xarray as xr
 
 from suchus.hardware.log import foot_centers, hinge_angles
-from suchus.robot.design import Robot, layout
+from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.sim.land.readings import rolling_displacement
+from suchus.sim.metrics.gait import LOADED_SHARE
 from suchus.visual.skin import poses
-
-_STANCE_LOAD = 0.02
-"""Load from which a foot stands, as a fraction of the robot's weight [-]."""
-_GRAVITY = 9.81  # [m/s2]
 
 
 def walked_distance(record: xr.Dataset, robot: Robot) -> float:
@@ -22,7 +19,7 @@ def walked_distance(record: xr.Dataset, robot: Robot) -> float:
 
     Args:
         record: the log of a drive, or a record of one run.
-        robot: that was driven.
+        robot: robot that was driven.
     """
     walk = record.sel(time=slice(0.0, None))
     positions = walk.position.values[:, :2]
@@ -58,7 +55,7 @@ def _standing_feet(walk: xr.Dataset, robot: Robot) -> np.ndarray:
     """Return which feet stand at each sample, shape (time, leg)."""
     loads = walk.foot_force.values[..., 2]
     if np.isfinite(loads).any():
-        is_loaded: np.ndarray = loads > _STANCE_LOAD * robot.mass * _GRAVITY
+        is_loaded: np.ndarray = loads > LOADED_SHARE * robot.mass * GRAVITY
         return is_loaded
     swing_fraction = 1.0 - float(walk.duty_factor)
     is_in_stance: np.ndarray = np.mod(walk.limb_phase.values, 1.0) >= swing_fraction  # False where the phase is NaN

@@ -60,7 +60,7 @@ def read_pose_table(path: Path, software: str, individual: str | None) -> tuple[
         UnreadableFile: the table is broken, or not of this software.
         UnusableTracks: it holds no frame, or several individuals to choose from.
     """
-    rows = _rows(path)
+    rows = csv_rows(path)
     if software == "SLEAP":
         return _sleap(rows, individual, path.name)
     if software == "Anipose":
@@ -77,8 +77,12 @@ def check_width(count: int, name: str) -> None:
         )
 
 
-def _rows(path: Path) -> list[list[str]]:
-    """Return the rows of a CSV table that are not empty."""
+def csv_rows(path: Path) -> list[list[str]]:
+    """Return the rows of a CSV table that are not empty, header included.
+
+    Raises:
+        UnreadableFile: it is no CSV table in UTF-8, or has too many columns.
+    """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             header = file.readline()

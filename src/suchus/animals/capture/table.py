@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Complex, Float
 
-from suchus.animals.capture.poses import check_width, software_of
+from suchus.animals.capture.poses import csv_rows, software_of
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, map_keypoint_names
 from suchus.core.checks import require
 from suchus.core.errors import UnreadableFile
@@ -108,18 +108,8 @@ def write_table(tracks: Tracks, path: str | Path) -> Path:
 
 
 def _rows(path: Path) -> list[list[str]]:
-    """Return the non-empty rows of a CSV table, header included."""
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            check_width(file.readline().count(",") + 1, path.name)
-            file.seek(0)
-            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    except UnicodeDecodeError as error:
-        raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
-    except OSError as error:
-        raise UnreadableFile(f"{path} cannot be read: {(error.strerror or str(error)).lower()}.") from error
-    except csv.Error as error:
-        raise UnreadableFile(f"{path} is no CSV table: {error}.") from error
+    """Return the non-empty rows of a table of keypoints, header included; refuse one without a frame."""
+    rows = csv_rows(path)
     if not rows:
         raise UnreadableFile(f"{path} is empty; a header ({_EXAMPLE}) and one row per frame are needed.")
     if len(rows) == 1:

@@ -319,7 +319,7 @@ def _report(
     Args:
         experiment: the question that the log answers.
         record: the log; None or empty: nothing is written.
-        log: folder where it is saved.
+        log: where it is saved.
         words: words of the command line.
         seconds: duration of the drive [s].
     """

@@ -13,6 +13,7 @@ import tyro
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.view import pages_of_viewer
+from suchus.core.checks import require
 from suchus.core.files import check_replaceable, check_writable, write
 from suchus.core.files.store import packed
 from suchus.hardware import read_wiring, write_wiring
@@ -27,6 +28,7 @@ from suchus.sim.faults import FAULTS, from_table
 from suchus.sim.land import Ground, Lake
 
 _PLACE = Path("hardware.toml")
+_MAX_DURATION = 1e6  # [s]
 _DEFAULT_PROTOCOL = "dynamixel"  # of a robot whose file names no servos that a bus speaks with
 
 
@@ -76,6 +78,8 @@ def emulate(words: Sequence[str]) -> int:
         "Emulate a robot's servos on a bus: what drives them cannot tell them from real ones, and nothing can break."
     )
     options = parse(EmulateOptions, "suchus emulate", _robot_first(words), description)
+    if options.seconds is not None:
+        require("emulate", "seconds", options.seconds, 0.0, _MAX_DURATION, "s")
     if options.out is not None:
         check_writable(options.out.parent)
         check_replaceable(options.out)
