@@ -75,12 +75,20 @@ def find_exchange(tracks: Tracks, noise: Mapping[str, float], scale: float, walk
         gain = sum(penalty.size for penalty in penalties) - sum(penalty.size for penalty in changed_penalties)
         if gain > best_gain and all(penalty.size <= _MAX_REMAINDER for penalty in affected_penalties):
             best_gain, best_names = gain, names
-    if best_names is None:
+    if best_names is None or _is_mirrored(best_names):
         return None
     worst_penalty = max(
         (penalty for penalty in penalties if set(penalty.roles) & set(best_names)), key=lambda penalty: penalty.size
     )
     return Exchange(best_names, _reason(worst_penalty))
+
+
+def _is_mirrored(names: Mapping[str, str]) -> bool:
+    """Return whether left and right feet of a pair are exchanged, or of both, as in a picture that is mirrored.
+
+    These are compared frame by frame elsewhere.
+    """
+    return set(names) <= set(LEGS) and all(leg[1] == name[1] for leg, name in names.items())
 
 
 def _reason(penalty: _Penalty) -> str:
@@ -122,20 +130,11 @@ class _Body:
         self._index = {name: i for i, name in enumerate(self.names)}
 
     def exchanges(self) -> list[dict[str, str]]:
-        """Return the exchanges that are considered: of two keypoints, and every permutation of the feet.
-
-        Left and right feet of one pair are not among them: they are compared frame by frame elsewhere, and both pairs
-        together are a picture that is mirrored.
-        """
+        """Return the exchanges that are considered: of two keypoints, and every permutation of the feet."""
         pairs = [{first: second, second: first} for first, second in combinations(self.names, 2)]
         orders = [dict(zip(self._legs, order, strict=True)) for order in permutations(self._legs)]
         feet = [{leg: name for leg, name in order.items() if leg != name} for order in orders]
-        exchanges = pairs + [names for names in feet if len(names) > 2]
-        return [
-            names
-            for names in exchanges
-            if not set(names) <= set(LEGS) or any(leg[1] != name[1] for leg, name in names.items())
-        ]
+        return pairs + [names for names in feet if len(names) > 2]
 
     def penalties(self, tracks_of: Mapping[str, str]) -> list[_Penalty]:
         """Return the penalties of all roles.
