@@ -78,7 +78,17 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
             f"_VOICE_STYLES: {colour} {sign} the other way round": "Colours and signs of a figure, and no measure."
             for colour, sign in (("#cfe8d5", "✓"), ("#f3d0c9", "×"), ("#f6e8b8", "?"), ("#ececec", ""))
         },
-        "_waving: swing(cycle_course, 1).share[0] is the last": "What is read there is the tip's place alone.",
+        "_waving: swing(cycle_course, 1).variance_fraction[0] is the last": (
+            "What is read there is the tip's position alone."
+        ),
+        **{
+            broken: "Of ten cycles, as they are here, eight count either way; test_swim_ladder.py looks at it."
+            for broken in (
+                "settle: min(MIN_SETTLED_CYCLES, cycles - 1) is max",
+                "_numbers: max((mean.start for mean in means)) is min",
+                "_numbers: max(start, 1) is min",
+            )
+        },
         "_pushing: first_quarter - third_quarter * (1.0, -1.0) the other way round": _SIZE,
     },
     "joint_loops": {"measure: float(final_interval.sel(test='step')[-1]) - step the other way round": _SIZE},

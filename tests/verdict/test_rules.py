@@ -161,6 +161,7 @@ def test_an_effect_that_is_surely_there_and_too_small_to_matter_is_none():
 def test_a_clause_of_another_measure_that_decides_is_shown_with_its_value():
     rule, rows = RULES["fault_support"], examples_of("joint_faults")["fault_support"]
     fails = rows[0][0] | measure_with_interval("com_rise_limp", -0.009, -0.007)
+    fails |= measure_with_interval("com_rise_locked", -0.009, -0.007)
     assert judge(rule, fails).verdict == "contradicted"
     assert "What fails is com_rise_limp > 0 by at least 0.001 (com_rise_limp: -0.008, -0.009 to -0.007)." in (
         judge(rule, fails).why
@@ -248,3 +249,16 @@ def test_every_statement_of_the_article_has_a_rule_or_a_reason_why_there_is_none
 def test_an_experiment_without_rules_has_none():
     assert rules_of("turning") == ()
     assert rules_of("of no shelf") == ()
+
+
+def test_a_statement_that_holds_by_one_meaning_alone_depends_on_the_reading():
+    rule, rows = RULES["fault_hind_pitch_coordinated"], examples_of("joint_faults")["fault_hind_pitch_coordinated"]
+    limp, locked = "loss_hind_pitch_limp_one_coordinated", "loss_hind_pitch_locked_one_coordinated"
+    measures = rows[0][0] | measure_with_interval(limp, -0.42, -0.38)
+    verdict = judge(rule, measures | measure_with_interval(locked, -0.03, -0.01))
+    assert verdict.verdict == "depends on the reading"
+    assert "limp: contradicted (-0.4, -0.42 to -0.38); locked: same sense (-0.02, -0.03 to -0.01)" in verdict.why
+    assert judge(rule, measures | measure_with_interval(locked, -0.3, -0.2)).verdict == "contradicted"
+    undecided = judge(rule, measures | measure_with_interval(locked, -0.2, 0.0))
+    assert undecided.verdict == "contradicted"
+    assert "locked: undecided" in undecided.why

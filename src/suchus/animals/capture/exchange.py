@@ -155,17 +155,17 @@ class _Body:
         distance = self._distance[i, j]
         fraction = _CHORD if distance > _LONG * self._scale else _SWAY
         tolerance = fraction * min(distance, self._scale) + self._pair_noise[i, j] / 2 + 1e-12
-        return _Penalty(_limited((self._spread[i, j] / tolerance) ** 2), "link", pair)
+        return _Penalty(_limited_power(self._spread[i, j] / tolerance), "link", pair)
 
     def _fold(self, triple: tuple[str, str, str], index: Mapping[str, int]) -> _Penalty:
         """Return the penalty of a midline that folds back at a keypoint, by the median bend there."""
         i, j, k = (index[name] for name in triple)
         front_link, rear_link = self._place[:, j] - self._place[:, i], self._place[:, k] - self._place[:, j]
         axes = self._place.shape[-1]
-        dot = float(np.median(np.sum(front_link * rear_link, axis=-1))) + axes * float(self._noise[j]) ** 2
+        dot = float(np.median(np.sum(front_link * rear_link, axis=-1))) + axes * float(np.square(self._noise[j]))
         cross = np.linalg.norm(np.median(_cross(front_link, rear_link), axis=0))
         angle = float(np.arctan2(cross, dot))
-        return _Penalty(_limited((max(0.0, angle - _FOLD) / _FOLD_STEP) ** 2), "fold", triple)
+        return _Penalty(_limited_power((angle - _FOLD) / _FOLD_STEP), "fold", triple)
 
     def _foot(self, leg: str, index: Mapping[str, int]) -> list[_Penalty]:
         """Return the penalties of a foot: on the wrong side, near the wrong girdle, out of reach, or still."""
@@ -178,22 +178,23 @@ class _Body:
         outward_offset = left_offset if leg.startswith("L") else -left_offset
         axial_position = np.sum(axis * offset, axis=-1)
         sweep = 1.4826 * float(np.median(np.abs(axial_position - np.median(axial_position))))
-        sweep = np.sqrt(max(0.0, sweep**2 - self._pair_noise[f, q] ** 2)) / self._scale
+        sweep = np.sqrt(max(0.0, np.square(sweep) - np.square(self._pair_noise[f, q]))) / self._scale
         own_girdle, other_girdle = (p, q) if leg.endswith("F") else (q, p)
         girdle_excess = float(self._distance[f, own_girdle] - self._distance[f, other_girdle]) / self._scale
         reach = float(self._distance[f, own_girdle]) / self._scale
         still_penalty = min(_MAX_STILL_PENALTY, 4.0 * max(0.0, 1.0 - sweep / _MIN_SWEEP) ** 2)
-        side_penalty = max(0.0, 1.0 - outward_offset / _MIN_OUTWARD) ** 2 if self._view == "top" else 0.0
+        side_penalty = _limited_power(1.0 - outward_offset / _MIN_OUTWARD) if self._view == "top" else 0.0
         return [
-            _Penalty(_limited(side_penalty), "side", (leg,)),
-            _Penalty(_limited((max(0.0, girdle_excess) / _GIRDLE_STEP) ** 2), "girdle", (leg,)),
-            _Penalty(_limited(max(0.0, reach / _REACH) ** 4), "reach", (leg,)),
+            _Penalty(side_penalty, "side", (leg,)),
+            _Penalty(_limited_power(girdle_excess / _GIRDLE_STEP), "girdle", (leg,)),
+            _Penalty(_limited_power(reach / _REACH, 4), "reach", (leg,)),
             _Penalty(still_penalty, "still", (leg,)),
         ]
 
 
-def _limited(size: float) -> float:
-    return float(min(size, _MAX_PENALTY))
+def _limited_power(deviation: float, power: int = 2) -> float:
+    """Return a power of a deviation, 0 below it and at most ``_MAX_PENALTY``; no number is too large for it."""
+    return float(min(min(max(0.0, deviation), _MAX_PENALTY) ** power, _MAX_PENALTY))
 
 
 def _cross(first: np.ndarray, second: np.ndarray) -> Float[np.ndarray, "frame axis"]:

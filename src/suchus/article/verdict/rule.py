@@ -5,7 +5,7 @@ What decided it is a sentence whose numbers know how to be written in the unit t
 
 import operator
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from math import degrees, isfinite, nan
 from string import Formatter
@@ -188,6 +188,20 @@ class Rung:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Interpretation:
+    """One of several meanings of the article's words, by which the same clauses are asked of other measures."""
+
+    name: str
+    """Its name, for people: ``locked, in one leg``."""
+    measures: tuple[str, str]
+    """Part of the names of the rule's measures, and what stands in its place in the names of those that are asked."""
+
+    def measure(self, name: str) -> str:
+        """Return the name of the measure that is asked in the place of one of the rule's."""
+        return name.replace(*self.measures)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
     """When a claim counts as what; it is applied by ``judge``."""
 
@@ -214,6 +228,10 @@ class Rule:
     settled: float = 0.1
     """Greatest spread of a rung's halves and starting sides, over the size of what is measured, with which it has a
     word: ``MEASURE_NAME_apart`` [-]."""
+    interpretation: str = ""
+    """Name of the meaning of the article's words that the rule's own measures have; empty where there is one alone."""
+    others: tuple[Interpretation, ...] = ()
+    """Other meanings; where the statement holds by one and not by another, the word is ``depends on the reading``."""
     form: str = ".3g"
     """How the rungs' numbers are written, see ``Reading``."""
     unswept: str = ""
@@ -242,6 +260,31 @@ class Rule:
             spread = {f"{name}_{rung}{end}" for name in measures for rung in carrying for end in ends}
             return spread | {f"{name}_{rung}" for name in bounds for rung in carrying}
         return measures | bounds | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
+
+    @property
+    def by_others(self) -> tuple["Rule", ...]:
+        """The rule in each other meaning of the article's words, with the same clauses."""
+        return tuple(self._interpreted(other) for other in self.others)
+
+    def _interpreted(self, other: Interpretation) -> "Rule":
+        """Return the rule in another meaning of the article's words."""
+        clauses = tuple(
+            replace(
+                clause,
+                measure=other.measure(clause.measure),
+                bound=other.measure(clause.bound) if isinstance(clause.bound, str) else clause.bound,
+            )
+            for clause in self.holds
+        )
+        return replace(
+            self,
+            measure=other.measure(self.measure),
+            holds=clauses,
+            spread=tuple(map(other.measure, self.spread)),
+            interpretation=other.name,
+            others=(),
+            why="",
+        )
 
     @property
     def named_in_reason(self) -> set[str]:

@@ -54,6 +54,8 @@ _HEIGHT_TOLERANCE = 1e-9  # heights that differ by less are equal [m]
 SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 """Arms that keep one posture."""
 _COMPARED_ARMS = ("low_crawl", "high_walk_level")
+FLAT_ARMS = ("low_crawl", "high_walk")
+"""Arms whose costs on even ground are compared, of more robots than walk on the other grounds."""
 _STRUCTURE_ARMS = ("low_crawl", "high_walk", "high_walk_level")
 """Arms of the two structures that the article compares."""
 _ROUGH_MEASURES = (
@@ -82,7 +84,7 @@ class Terrain(Experiment):
     needs = ("foot_paths",)
     judged_settings = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
     judged_minima: ClassVar[Mapping[str, float]] = {
-        "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 14.0,
+        "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "flat_robots": 6, "walked": 14.0,
     }  # fmt: skip
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -109,6 +111,9 @@ class Terrain(Experiment):
     """Whether a robot that begins in the crawl and rises when its belly touches walks too."""
     seeds: int = 4
     """Runs of each posture on each ground [-]."""
+    flat_robots: int = 12
+    """Number of robots, each built of the design, of which the cost on even ground is compared [-]; at least six are
+    needed for an interval of the median."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """By how much the robots and grounds of the seeds differ from their design."""
     walked: float = 14.0
@@ -128,13 +133,22 @@ class Terrain(Experiment):
             check.that(len(self.surfaces) > 0, f"{self.name()}.surfaces is empty; even or bumps is needed")
             check.whole("transitions", 1, 6)
             check.whole("seeds", 1, 1000)
+            check.whole("flat_robots", 1, 1000)
             check.number("walked", 0.5, 3600.0, "s")
             check.number("timestep", 1e-5, control_period(self.robot), "s")
 
     def quick(self) -> "Terrain":
         """Three grounds, one seed, a short walk, two transitions on even ground."""
         return replace(
-            self, bumps=(0.03,), steps=(), stones=(0.04,), surfaces=("even",), transitions=2, seeds=1, walked=1.5
+            self,
+            bumps=(0.03,),
+            steps=(),
+            stones=(0.04,),
+            surfaces=("even",),
+            transitions=2,
+            seeds=1,
+            flat_robots=1,
+            walked=1.5,
         )
 
     def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
@@ -158,7 +172,8 @@ class Terrain(Experiment):
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Walk on every ground, and turn every posture into every other."""
-        ground_record = self._ground_record(staged(progress, "grounds", 0.0, 0.9))
+        ground_record = self._ground_record(staged(progress, "grounds", 0.0, 0.85))
+        ground_record["flat_cost"] = self._flat_costs(ground_record, staged(progress, "even ground", 0.85, 0.9))
         change_record = self._changes(staged(progress, "transitions", 0.9, 0.97))
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(ground_record).merge(change_record)
         return SimulationResult(record=record, replays=self._replays(record))
@@ -170,7 +185,8 @@ class Terrain(Experiment):
             return super(Terrain, self).simulate_measures(measure_names, progress)
         needs_rough = any(name in _ROUGH_MEASURES for name in names)
         variant = self if needs_rough else replace(self, bumps=(), steps=(), stones=())
-        ground_record = variant._ground_record(staged(progress, "grounds", 0.0, 0.9), _STRUCTURE_ARMS)
+        ground_record = variant._ground_record(staged(progress, "grounds", 0.0, 0.8), _STRUCTURE_ARMS)
+        ground_record["flat_cost"] = self._flat_costs(ground_record, staged(progress, "even ground", 0.8, 0.9))
         change_record = self._changes(staged(progress, "transitions", 0.9, 1.0))
         measures, rough_record = _flat(ground_record) | _transitions(change_record), _rough_grounds(ground_record)
         return measures | _rough_measures(rough_record) | _falls(rough_record) if needs_rough else measures
@@ -320,6 +336,33 @@ class Terrain(Experiment):
         data["size_of_robot"] = ((), self._size, {"units": "1", "long_name": "length over that of the article's robot"})
         return data
 
+    def _flat_costs(self, ground_record: xr.Dataset, progress: Progress) -> xr.DataArray:
+        """Return the cost of transport of crawl and high walk on even ground, by condition and robot [-].
+
+        Args:
+            ground_record: record of the grounds, of which the first is even; its robots count first.
+            progress: called with the fraction that is done.
+        """
+        arms = {name: arm for name, arm in self.arms().items() if name in FLAT_ARMS}
+        seeds = range(self.seeds, self.flat_robots)
+        runs = [
+            self.tolerances.draw_run(Run(robot=self.robot, gait=gait, control=control, label=name, seed=seed), seed)
+            for name, (gait, control) in arms.items()
+            for seed in seeds
+        ]
+        cost = ground_record.cost.isel(ground=0, drop=True).sel(arm=list(FLAT_ARMS)).values[:, : self.flat_robots]
+        if runs:
+            record = simulate(
+                runs, duration=START + self.walked, timestep=self.timestep, sample_stride=5, progress=progress
+            )
+            cost = np.concatenate([cost, cost_of_transport(record).values.reshape(len(arms), -1)], axis=1)
+        return xr.DataArray(
+            cost,
+            dims=("flat_arm", "robot_built"),
+            coords={"flat_arm": list(FLAT_ARMS)},
+            attrs={"units": "1", "long_name": "cost of transport on even ground of each robot that is built"},
+        )
+
     @property
     def _pace(self) -> float:
         """Time scale of the robot over that of the article's robot, by Froude scaling [-]."""
@@ -447,9 +490,8 @@ def _most_tilt(record: xr.Dataset) -> np.ndarray:
 
 def _flat(record: xr.Dataset) -> Measures:
     """Return what the crawl costs on even ground, of what the high walk costs, of robots as built."""
-    cost = record.isel(ground=0).cost
-    ratio = cost.sel(arm="low_crawl") / cost.sel(arm="high_walk")
-    return estimated("flat_cost_ratio", ratio, "-")
+    crawl, high_walk = (record.flat_cost.sel(flat_arm=name, drop=True) for name in FLAT_ARMS)
+    return estimated("flat_cost_ratio", crawl / high_walk, "-")
 
 
 def _rough_measures(rough_record: xr.Dataset) -> Measures:

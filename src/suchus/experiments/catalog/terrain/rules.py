@@ -60,7 +60,10 @@ RULES = (
 )
 
 VARIED = Variation(
-    claims=("crawl_structure_flat", "erect_structure_rough", "switches_structure"), designs=("robot",), samples=16
+    claims=("crawl_structure_flat", "erect_structure_rough", "switches_structure"),
+    designs=("robot",),
+    settings={"flat_robots": 6},
+    samples=16,
 )
 
 _REASON_MEASURES = {
