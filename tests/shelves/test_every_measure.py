@@ -81,14 +81,14 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "_waving: swing(cycle_course, 1).variance_fraction[0] is the last": (
             "What is read there is the tip's position alone."
         ),
-        **{
-            broken: "Of ten cycles, as they are here, eight count either way; test_swim_ladder.py looks at it."
-            for broken in (
+        **dict.fromkeys(
+            (
                 "settle: min(MIN_SETTLED_CYCLES, cycles - 1) is max",
                 "_numbers: max((mean.start for mean in means)) is min",
                 "_numbers: max(start, 1) is min",
-            )
-        },
+            ),
+            "Of ten cycles, as they are here, eight count either way; test_swim_ladder.py looks at it.",
+        ),
         "_pushing: first_quarter - third_quarter * (1.0, -1.0) the other way round": _SIZE,
     },
     "joint_loops": {"measure: float(final_interval.sel(test='step')[-1]) - step the other way round": _SIZE},
