@@ -59,7 +59,7 @@ FLAT_ARMS = ("low_crawl", "high_walk")
 _STRUCTURE_ARMS = ("low_crawl", "high_walk", "high_walk_level")
 """Arms of the two structures that the article compares."""
 _ROUGH_MEASURES = (
-    "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_ahead_share",
+    "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_open_loop_kept_share", "erect_ahead_share",
     *(f"falls_rough_{name}" for name in _STRUCTURE_ARMS),
 )  # fmt: skip
 """Measures of the two structures on rough grounds."""
@@ -189,7 +189,9 @@ class Terrain(Experiment):
         ground_record["flat_cost"] = self._flat_costs(ground_record, staged(progress, "even ground", 0.8, 0.9))
         change_record = self._changes(staged(progress, "transitions", 0.9, 1.0))
         measures, rough_record = _flat(ground_record) | _transitions(change_record), _rough_grounds(ground_record)
-        return measures | _rough_measures(rough_record) | _falls(rough_record) if needs_rough else measures
+        return (
+            measures | _rough_measures(rough_record, ground_record) | _falls(rough_record) if needs_rough else measures
+        )
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
@@ -218,7 +220,7 @@ class Terrain(Experiment):
         share = _share_of_best(record)
         return measures | {
             **_flat(record),
-            **_rough_measures(rough_record),
+            **_rough_measures(rough_record, record),
             **_falls(rough_record),
             "switching_share_of_best_worst": Measure(float(share.min()), "-"),
             "switching_worst_height": Measure(float(record.height[int(share.argmin("ground"))]), "m"),
@@ -494,10 +496,15 @@ def _flat(record: xr.Dataset) -> Measures:
     return estimated("flat_cost_ratio", crawl / high_walk, "-")
 
 
-def _rough_measures(rough_record: xr.Dataset) -> Measures:
+def _rough_measures(rough_record: xr.Dataset, record: xr.Dataset) -> Measures:
     """Return the fraction of rough grounds on which erect legs get farther; NaN if a robot did not reach its obstacle.
 
-    Each seed of each kind and height is a ground of its own, and a robot of its own.
+    Each seed of each kind and height is a ground of its own, and a robot of its own. Farther is in metres, and as a
+    fraction of the same robot's displacement on even ground.
+
+    Args:
+        rough_record: record of the rough grounds.
+        record: record of all grounds, the even one first.
     """
     met_fraction = (
         float(rough_record.met.sel(arm=list(_COMPARED_ARMS)).mean("seed").min())
@@ -506,6 +513,9 @@ def _rough_measures(rough_record: xr.Dataset) -> Measures:
     )
     distances = rough_record.forward.stack(one=("ground", "seed"))
     crawl, erect, level = (distances.sel(arm=arm, drop=True) for arm in _STRUCTURE_ARMS)
+    even_distances = record.forward.isel(ground=0, drop=True)
+    kept = (rough_record.forward / even_distances).stack(one=("ground", "seed"))
+    crawl_kept, erect_kept = (kept.sel(arm=arm, drop=True) for arm in FLAT_ARMS)
     is_judged = met_fraction >= 1.0
     semi_erect_measures = Measures()
 
@@ -521,6 +531,7 @@ def _rough_measures(rough_record: xr.Dataset) -> Measures:
             "rough_grounds": Measure(float(rough_record.sizes["ground"] * rough_record.sizes["seed"]), "-"),
         },
         share("erect_open_loop_ahead_share", erect > crawl),
+        share("erect_open_loop_kept_share", erect_kept > crawl_kept),
         share("erect_ahead_share", level > crawl),
         semi_erect_measures,
     )

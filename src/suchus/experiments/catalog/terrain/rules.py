@@ -7,6 +7,7 @@ from suchus.article.verdict.rule import (
     DEFAULT_SPREAD_OF,
     Clause,
     ControlGroup,
+    Interpretation,
     Rule,
     SmallestEffect,
     Variation,
@@ -37,6 +38,13 @@ RULES = (
         ),
         control=ControlGroup(group="low_crawl", why="Section II.B: one structure or the other, on the same grounds."),
         spread=("erect_open_loop_ahead_share",),
+        interpretation="by distance",
+        others=(
+            Interpretation(
+                name="by the fraction kept of its own distance on even ground",
+                measures=("open_loop_ahead_share", "open_loop_kept_share"),
+            ),
+        ),
         of="grounds, each with its own obstacles and its own robot",
         why="Open loop, since the article names no IMU: on {erect_open_loop_ahead_share:.0%} "
         "({erect_open_loop_ahead_share_low:.0%} to {erect_open_loop_ahead_share_high:.0%}) of {rough_grounds:.0f} "
@@ -75,6 +83,9 @@ _REASON_MEASURES = {
     "erect_open_loop_ahead_share": 0.8,
     "erect_open_loop_ahead_share_low": 0.6,
     "erect_open_loop_ahead_share_high": 0.9,
+    "erect_open_loop_kept_share": 0.8,
+    "erect_open_loop_kept_share_low": 0.6,
+    "erect_open_loop_kept_share_high": 0.9,
     "erect_ahead_share": 0.5,
     "semi_erect_ahead_of_both_share": 0.9,
     "rough_grounds": 36.0,
@@ -99,7 +110,15 @@ EXAMPLES: Examples = {
         (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.501, 0.9), "reproduced"),
         (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.5, 0.9), "undecided"),
         (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.2, 0.501), "undecided"),
-        (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.2, 0.5), "contradicted"),
+        (_REASON_MEASURES | measure_with_interval("erect_open_loop_ahead_share", 0.2, 0.5), "depends on the reading"),
+        (_REASON_MEASURES | measure_with_interval("erect_open_loop_kept_share", 0.2, 0.5), "depends on the reading"),
+        (_REASON_MEASURES | measure_with_interval("erect_open_loop_kept_share", 0.2, 0.501), "reproduced"),
+        (
+            _REASON_MEASURES
+            | measure_with_interval("erect_open_loop_ahead_share", 0.2, 0.5)
+            | measure_with_interval("erect_open_loop_kept_share", 0.2, 0.5),
+            "contradicted",
+        ),
         (_REASON_MEASURES | {"falls_rough_high_walk": 20.0}, "reproduced"),
         (_REASON_MEASURES | {"falls_rough_high_walk": 19.8}, "reproduced"),
         (_REASON_MEASURES | {"falls_rough_high_walk": 20.2}, "contradicted"),
