@@ -158,8 +158,8 @@ class Watch:
     def wakes(self, water: Fluid, time: float) -> None:
         """Warn of a wake that leaves through a side so near behind a body that the forces depend on the side.
 
-        The far water must have carried the wake there since the start: a domain that follows a body sways with it, and a
-        vortex that comes to a side beside it is no wake that leaves.
+        The far water must have carried the wake there since the start: a domain that follows a body sways with it, and
+        a vortex that comes to a side beside it is no wake that leaves.
 
         Args:
             water: the water after a step, with the bodies.
