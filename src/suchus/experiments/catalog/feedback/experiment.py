@@ -115,7 +115,7 @@ class Feedback(Experiment):
     starts: int = 72
     """Number of random initial limb phases of each law whose converged fraction is judged [-]: if all of 72 converge,
     the exact interval begins above 95 %."""
-    compared_starts: int = 16
+    compared_starts: int = 32
     """Number of random initial limb phases of each other law [-]: the first of those of the judged laws."""
     cycles: int = 6
     """Simulated duration of each start [cycle]."""
