@@ -190,6 +190,16 @@ def test_erect_legs_are_ahead_where_they_get_farther_and_told_only_if_all_met():
     )
 
 
+def test_what_is_kept_is_a_fraction_of_the_same_robots_even_ground():
+    record = rough_record()
+    record.forward[0, record.arm.values.tolist().index("high_walk")] = 0.75
+    found = {name: m.value for name, m in EXPERIMENTS["terrain"].measure(record).items()}
+    assert found["erect_open_loop_ahead_share"] == pytest.approx(2 / 3)
+    assert found["erect_open_loop_kept_share"] == 1.0  # 0.8 of 0.75 m is more than 1 of 1 m
+    record.forward[0, record.arm.values.tolist().index("high_walk")] = 1.25
+    assert EXPERIMENTS["terrain"].measure(record)["erect_open_loop_kept_share"].value == 0.0
+
+
 def test_terrain_and_speed_are_judged_only_by_runs_that_meet_what_is_judged():
     terrain, speeds = EXPERIMENTS["terrain"], EXPERIMENTS["speed_range"]
     assert terrain.unjudged() == speeds.unjudged() == ""
