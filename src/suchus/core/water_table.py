@@ -143,9 +143,9 @@ SHAPE_WIDTH = 60
 (
     SHAPE_COUNT, USERDATA_START, BODY_COUNT, WAVE_COUNT, LEVEL_COUNT, CURRENT_COUNT, TRIANGLE_COUNT, SPLASH, SHEAR,
 ) = range(1, 10)  # fmt: skip
-"""Indices in the header of a table of shapes: number of shapes, first number in the user data, bodies of the model, rows
-of waves, of the level over time and of the current's factor over time, triangles, fraction of the energy that a splash
-takes, and the current's change per height (3) [1/s]."""
+"""Indices in the header of a table of shapes: number of shapes, first number in the user data, bodies of the model,
+rows of waves, of the level over time and of the current's factor over time, triangles, fraction of the energy that a
+splash takes, and the current's change per height (3) [1/s]."""
 SHAPE_HEADER = 12
 """Numbers ahead of the numbers of the water in a table of shapes; after those stand levels, factors, waves, shapes and
 triangles."""

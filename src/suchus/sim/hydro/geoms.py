@@ -9,6 +9,7 @@ a body that leaves gets nothing back.
 """
 
 from math import cos, exp, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -67,39 +68,97 @@ def scheduled(rows: np.ndarray, time: float) -> float:
     return float(rows[last, 1])
 
 
-@compile_inline
-def _elevation(waves: np.ndarray, time: float, x: Vector) -> float:
-    """Return the height of the surface above the level at a point [m]."""
-    height = 0.0
-    for wave in waves:
-        height += wave[0] * cos(wave[1] * x[0] + wave[2] * x[1] + wave[3] * x[2] - wave[4] * time + wave[5])
-    return height
+class _Waves(NamedTuple):
+    """Waves on deep water over a shape; above the level the water moves as at the level."""
+
+    height: float
+    """Mean height of the surface above the level, at six points of the shape [m]."""
+    slope: Vector
+    """Gradient of that height, along the shape's axes [-]."""
+    velocity: Vector
+    """Velocity of the water at the centre [m/s]."""
+    acceleration: Vector
+    """Its rate at that point [m/s2]."""
+    gradient: tuple[Vector, Vector, Vector]
+    """Rows of the gradient of the velocity, which is symmetric [1/s]."""
 
 
 @compile_inline
-def _orbits(waves: np.ndarray, time: float, x: Vector, level: float, up_axis: Vector) -> tuple[Vector, Vector]:
-    """Return velocity and acceleration of the water in waves on deep water, at a point.
-
-    Above the level they are as at the level.
+def _waves_over(
+    waves: np.ndarray, time: float, x: Vector, level: float, up_axis: Vector, reaches: tuple[Vector, Vector, Vector]
+) -> _Waves:
+    """Return what waves do at a shape.
 
     Args:
         waves: shape (wave, ``WAVE_WIDTH``).
         time: [s].
-        x: the point [m].
+        x: centre of the shape [m].
         level: level of the surface [m].
         up_axis: unit vector against gravity.
+        reaches: half of the distances between the points at which the surface is taken, along three axes [m].
     """
-    velocity, acceleration, zero = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    zero = (0.0, 0.0, 0.0)
+    height, slope, velocity, acceleration = 0.0, zero, zero, zero
+    gradient = (zero, zero, zero)
     above = min(dot(up_axis, x) - level, 0.0)
+    is_under = 1.0 if above < 0.0 else 0.0
     for wave in waves:
         k, omega = (wave[1], wave[2], wave[3]), wave[4]
         number = sqrt(dot(k, k))
         phase = dot(k, x) - omega * time + wave[5]
         c, s = cos(phase), sin(phase)
+        mean, first, second, third = 1.0, dot(k, reaches[0]), dot(k, reaches[1]), dot(k, reaches[2])
+        mean += _cosine(first) + _cosine(second) + _cosine(third) - 3.0
+        height += wave[0] * c * mean
+        steep = wave[0] * s
+        slope = plus(slope, (-steep * _sine(first), -steep * _sine(second), -steep * _sine(third)))
         speed = wave[0] * omega * exp(number * above)
-        velocity = plus(velocity, blend(speed * c / number, k, speed * s, up_axis, 0.0, zero))
-        acceleration = plus(acceleration, blend(omega * speed * s / number, k, -omega * speed * c, up_axis, 0.0, zero))
-    return velocity, acceleration
+        along = times(1.0 / number, k)
+        velocity = plus(velocity, blend(speed * c, along, speed * s, up_axis, 0.0, zero))
+        acceleration = plus(acceleration, blend(omega * speed * s, along, -omega * speed * c, up_axis, 0.0, zero))
+        rate, climb = number * speed, number * speed * is_under
+        gradient = (
+            plus(gradient[0], _row(0, along, up_axis, rate, climb, c, s)),
+            plus(gradient[1], _row(1, along, up_axis, rate, climb, c, s)),
+            plus(gradient[2], _row(2, along, up_axis, rate, climb, c, s)),
+        )
+    return _Waves(height, slope, velocity, acceleration, gradient)
+
+
+@compile_inline
+def _cosine(x: float) -> float:
+    """Return the cosine, by its series where that is exact to rounding."""
+    if abs(x) < 0.1:
+        y = x * x
+        return 1.0 - y * (0.5 - y * (1.0 / 24.0 - y * (1.0 / 720.0 - y / 40320.0)))
+    return cos(x)
+
+
+@compile_inline
+def _sine(x: float) -> float:
+    """Return the sine, by its series where that is exact to rounding."""
+    if abs(x) < 0.1:
+        y = x * x
+        return x * (1.0 - y * (1.0 / 6.0 - y * (1.0 / 120.0 - y * (1.0 / 5040.0 - y / 362880.0))))
+    return sin(x)
+
+
+@compile_inline
+def _row(i: int, along: Vector, up_axis: Vector, rate: float, climb: float, c: float, s: float) -> Vector:
+    """Return a row of the gradient of a wave's velocity: how its component i changes along each direction [1/s].
+
+    Args:
+        i: component.
+        along: direction of the wave.
+        up_axis: unit vector against gravity.
+        rate: wave number times speed of the water [1/s].
+        climb: the same if the velocity changes with height, 0 above the level [1/s].
+        c: cosine of the wave's phase.
+        s: its sine.
+    """
+    return blend(
+        rate * (c * up_axis[i] - s * along[i]), along, climb * (c * along[i] + s * up_axis[i]), up_axis, 0.0, along
+    )
 
 
 @compile_inline
@@ -133,18 +192,22 @@ def stir(
         above = dot(up_axis, centre) - user[LEVEL]
         stream, gain, normal, height = plus(current, times(min(above, 0.0), shear)), surge, up_axis, 0.0
         if len(waves) > 0:
-            middle, slope = _elevation(waves, time, centre), (0.0, 0.0, 0.0)
-            height = middle
-            for i in range(3):
-                axis, reach = lane(rows, lanes.E_A + 3 * i, n), _NODE * table[lanes.HALF + i, n]
-                front = _elevation(waves, time, plus(centre, times(reach, axis)))
-                back = _elevation(waves, time, plus(centre, times(-reach, axis)))
-                height += 0.5 * (front + back) - middle
-                slope = plus(slope, times(0.5 * (front - back) / reach, axis))
+            axes = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
+            half = lane(table, lanes.HALF, n)
+            reach = times(_NODE, half)
+            reaches = times(reach[0], axes[0]), times(reach[1], axes[1]), times(reach[2], axes[2])
+            over = _waves_over(waves, time, centre, user[LEVEL], up_axis, reaches)
+            height = over.height
+            slope = blend(
+                over.slope[0] / reach[0], axes[0], over.slope[1] / reach[1], axes[1], over.slope[2] / reach[2], axes[2]
+            )
             normal = plus(up_axis, times(-1.0, plus(slope, times(-dot(slope, up_axis), up_axis))))
             normal = times(1.0 / sqrt(dot(normal, normal)), normal)
-            velocity, acceleration = _orbits(waves, time, centre, user[LEVEL], up_axis)
-            stream, gain = plus(stream, velocity), plus(gain, acceleration)
+            stream = plus(stream, over.velocity)
+            passing = dot(over.gradient[0], stream), dot(over.gradient[1], stream), dot(over.gradient[2], stream)
+            gain = plus(gain, plus(over.acceleration, passing))
+        if above < 0.0:
+            gain = plus(gain, times(dot(stream, up_axis), shear))
         rows[lanes.ELEVATION, n] = height
         write_lane(rows, lanes.STREAM, n, stream)
         write_lane(rows, lanes.SURGE, n, gain)

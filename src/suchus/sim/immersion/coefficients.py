@@ -6,7 +6,7 @@ ellipsoid of the same half extents. Drag coefficients: Hoerner, Fluid-Dynamic Dr
 """
 
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
 from jaxtyping import Float
@@ -19,22 +19,24 @@ Triple = tuple[float, float, float]
 BOX = -1
 """Kind of a box; in the table of shapes it is a polyhedron."""
 
-_PLATE_ADDED = ((1, 1.25, 1.59, 2, 2.5, 3.17, 4, 5, 6.25, 8, 10, 1e3),
+_PLATE_ADDED = ((1, 1.25, 1.59, 2, 2.5, 3.17, 4, 5, 6.25, 8, 10, inf),
                 (0.579, 0.642, 0.704, 0.757, 0.801, 0.840, 0.872, 0.897, 0.917, 0.934, 0.947, 1.0))  # fmt: skip
 """Length over width of a plate, and its added mass over pi / 4 times density, square of the width and length [-]."""
 _STRIP_THICKNESS = ((0, 0.1, 0.2, 0.5, 1, 2, 5, 10), (1.0, 1.14, 1.21, 1.36, 1.51, 1.70, 1.98, 2.23))
 """Thickness of a long prism over its width, and its added mass over that of the strip of the same width [-]."""
 _PRISM_THICKNESS = ((0, 0.1, 0.2, 0.5, 1, 2, 5, 10), (1.0, 1.14, 1.21, 1.36, 1.495, 1.58, 1.65, 1.76))
 """The same of a square prism: from 1 on its table over that of the square plate, below as the long prism [-]."""
-_CYLINDER_ADDED = ((0, 0.5, 1.2, 2.5, 5, 9, 1e3), (0.0, 0.31, 0.62, 0.78, 0.90, 0.96, 1.0))
+_CYLINDER_ADDED = ((0, 0.5, 1.2, 2.5, 5, 9, inf), (0.0, 0.31, 0.62, 0.78, 0.90, 0.96, 1.0))
 """Length of a round cylinder over its diameter, and its added over its displaced mass for motion across [-]; the two
 least lengths are of ellipsoids."""
-_PLATE_DRAG = ((1, 5, 10, 20, 1e3), (1.17, 1.20, 1.29, 1.40, 1.98))
+_PLATE_DRAG = ((1, 5, 10, 20, inf), (1.17, 1.20, 1.29, 1.40, 1.98))
 """Length over width of a plate, and its drag coefficient [-]."""
 _THICKNESS_DRAG = ((0, 0.5, 1, 2, 4, 8), (1.0, 1.0, 0.90, 0.74, 0.74, 0.76))
 """Thickness of a blunt body along the flow over the root of its front, and its drag over that of a plate [-]."""
-_CYLINDER_DRAG = ((1, 2, 3, 5, 10, 20, 40, 1e3), (0.63, 0.68, 0.74, 0.74, 0.82, 0.90, 0.98, 1.20))
+_CYLINDER_DRAG = ((1, 2, 3, 5, 10, 20, 40, inf), (0.63, 0.68, 0.74, 0.74, 0.82, 0.90, 0.98, 1.20))
 """Length of a round cylinder over its diameter, and its drag coefficient across [-]."""
+_CAPSULE_DRAG = ((1, 1.5, 3, 5, 10, 20, 40, inf), (0.47, 0.60, 0.74, 0.74, 0.82, 0.90, 0.98, 1.20))
+"""Length of a capsule over its diameter, and its drag coefficient across: from a sphere's to a cylinder's [-]."""
 _DISC_DRAG, _SPHERE_DRAG, _ROUND_END_DRAG = 1.17, 0.47, 0.25
 _CUBE_TURNING = 0.3
 """Least weight of the drag that turning faces of a box have [-]; a face twice as far from the axis as wide has 0.5."""
@@ -133,8 +135,8 @@ def box_added_mass(half: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
     for i in range(3):
         width, length = sorted(2.0 * np.delete(half, i))
         slenderness, thickness = length / width, 2.0 * half[i] / width
-        plate = 0.25 * pi * width**2 * length * np.interp(slenderness, *_PLATE_ADDED)
-        square, strip = np.interp(thickness, *_PRISM_THICKNESS), np.interp(thickness, *_STRIP_THICKNESS)
+        plate = 0.25 * pi * width**2 * length * _at_ratio(slenderness, _PLATE_ADDED)
+        square, strip = _at_ratio(thickness, _PRISM_THICKNESS), _at_ratio(thickness, _STRIP_THICKNESS)
         added[i] = plate * (strip + (square - strip) / slenderness)
     return added
 
@@ -163,21 +165,21 @@ def shape_coefficients(
         for i in range(3):
             width, length = sorted(np.delete(half, i))
             thickness = half[i] / sqrt(width * length)
-            drag[i] = np.interp(length / width, *_PLATE_DRAG) * np.interp(thickness, *_THICKNESS_DRAG)
+            drag[i] = _at_ratio(length / width, _PLATE_DRAG) * _at_ratio(thickness, _THICKNESS_DRAG)
     elif kind == CYLINDER:
         slenderness = c / a
-        across = volume * np.interp(slenderness, *_CYLINDER_ADDED)
-        added = np.array([across, across, 8.0 / 3.0 * a**3 * np.interp(slenderness, *_PRISM_THICKNESS)])
+        across = volume * _at_ratio(slenderness, _CYLINDER_ADDED)
+        added = np.array([across, across, 8.0 / 3.0 * a**3 * _at_ratio(slenderness, _PRISM_THICKNESS)])
         area = np.array([4.0 * a * c, 4.0 * a * c, pi * a * a])
-        across_drag = float(np.interp(slenderness, *_CYLINDER_DRAG))
+        across_drag = float(_at_ratio(slenderness, _CYLINDER_DRAG))
         thickness = 2.0 * c / (a * sqrt(pi))
-        drag = np.array([across_drag, across_drag, _DISC_DRAG * np.interp(thickness, *_THICKNESS_DRAG)])
+        drag = np.array([across_drag, across_drag, _DISC_DRAG * _at_ratio(thickness, _THICKNESS_DRAG)])
     elif kind in (CAPSULE, POLYHEDRON):
         added = added * volume / (4.0 / 3.0 * pi * a * b * c)
         if kind == CAPSULE:
             straight = max(c - a, 0.0)
             area[:2] = 4.0 * a * straight + pi * a * a
-            drag[:2] = np.interp(c / a, (1.0, 1.5, *_CYLINDER_DRAG[0][1:]), (_SPHERE_DRAG, 0.6, *_CYLINDER_DRAG[1][1:]))
+            drag[:2] = _at_ratio(c / a, _CAPSULE_DRAG)
             drag[2] = _ROUND_END_DRAG + (_SPHERE_DRAG - _ROUND_END_DRAG) * a / c
     if own_drag is not None:
         drag = np.broadcast_to(np.asarray(own_drag, float), 3)
@@ -189,6 +191,13 @@ def shape_coefficients(
         drag=drag,
         turning=_turning_drag(kind, half, drag),
     )
+
+
+def _at_ratio(ratio: float, table: tuple[tuple[float, ...], tuple[float, ...]]) -> float:
+    """Return a coefficient at a ratio from 0 to infinity, interpolated over ratio / (1 + ratio) [-]."""
+    ratios = np.array(table[0], float)
+    nodes = np.where(np.isinf(ratios), 1.0, ratios / (1.0 + np.where(np.isinf(ratios), 0.0, ratios)))
+    return float(np.interp(ratio / (1.0 + ratio), nodes, table[1]))
 
 
 def _ellipsoid_drag(half: Float[np.ndarray, "3"], axis: int) -> float:

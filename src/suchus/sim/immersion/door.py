@@ -199,8 +199,8 @@ def _check_options(spec: Any) -> None:
     if option.density > 0.0 or option.viscosity > 0.0 or any(option.wind):
         raise InvalidDesign(
             f"this model has a fluid of MuJoCo's own (option density {option.density:g}, viscosity "
-            f"{option.viscosity:g}, wind {' '.join(f'{speed:g}' for speed in option.wind)}), which would act beside the "
-            "water: set these options to 0."
+            f"{option.viscosity:g}, wind {' '.join(f'{speed:g}' for speed in option.wind)}), which would act too: "
+            "set these options to 0."
         )
     if option.solver == _PGS or option.noslip_iterations > 0:
         raise InvalidDesign(
