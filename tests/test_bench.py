@@ -16,6 +16,7 @@ RATIOS = {
     "bench_land": r"\d+ environments .* ratio \d+\.\d+",
     "bench_portable": r"of processor time: ratio \d+\.\d+",
     "bench_study": r"beside the bare physics \d+\.\d+",
+    "bench_wet": r"wading +[\d.]+ +ratio \d+\.\d+",
 }
 """How a bench prints a ratio; that of a card prints one only where there is a card."""
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from suchus import flow
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import wetting
+from suchus.sim.immersion import wetting
 from suchus.sim.model.hydrostatics import hydrostatics
 
 

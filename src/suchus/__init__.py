@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from suchus.sim.faults import Offset as Offset
     from suchus.sim.faults import Slow as Slow
     from suchus.sim.faults import Weak as Weak
+    from suchus.sim.immersion import water_loads as water_loads
+    from suchus.sim.immersion import wet as wet
     from suchus.sim.land import Ground as Ground
     from suchus.sim.land import Live as Live
     from suchus.sim.land import Push as Push
@@ -81,6 +83,7 @@ _HOMES = {
     "project": "suchus.core.sources",
     "sample": "suchus.core.samples",
     "swim": "suchus.swimming.water",
+    **dict.fromkeys(("water_loads", "wet"), "suchus.sim.immersion"),
     **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.sim.land"),
     "Fault": "suchus.sim.fault",
     **dict.fromkeys(

@@ -12,13 +12,13 @@ from suchus.apps.cli import main
 from suchus.core import large
 from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.core.progress import silent
+from suchus.core.water_table import column
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog._taken import TAKEN, TakenMidline
 from suchus.experiments.catalog.swim_3d.experiment import AS_COMMANDED, with_midlines
 from suchus.experiments.catalog.swim_3d.figure import draw_tails
 from suchus.robot.design import layout, with_values
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import column
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land.afloat import floats
 from suchus.swimming.coupling.on_joints import floating

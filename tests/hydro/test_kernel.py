@@ -8,12 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus.core.water_table import FORCE, LANES, SUBMERGED_VOLUME, pack_table, unpack_table
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.scale import physics_step
-from suchus.robot.design.water_table import FORCE, LANES, SUBMERGED_VOLUME, pack_table, unpack_table
 from suchus.robot.robots import ROBOTS
 from suchus.sim.hydro.forces import _arcsine
-from suchus.sim.land import Lake, Wave, wetting
+from suchus.sim.immersion import wetting
+from suchus.sim.land import Lake, Wave
 from suchus.sim.model.wet import wet_model
 
 ROBOT = ROBOTS["floating_caiman"]

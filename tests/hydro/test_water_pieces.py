@@ -8,11 +8,11 @@ import pytest
 from scipy.stats import qmc
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.water_table import BALL, LANES, column, pack_table, unpack_table
 from suchus.robot.design import Foam, Hull, Rod, Segment, Shell
 from suchus.robot.design.flotation import float_hull
 from suchus.robot.design.pieces import masses, pieces, swell, volumes
 from suchus.robot.design.profile import profile, stations
-from suchus.robot.design.water_table import BALL, LANES, column, pack_table, unpack_table
 from suchus.robot.robots import ROBOTS
 
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.core.water_table import column, unpack_table
 from suchus.robot.control.holding import neutral_air_fraction
 from suchus.robot.design import Chamber, Hull, layout
 from suchus.robot.design.flotation import float_hull
 from suchus.robot.design.pieces import SOLID, chambers, masses, pieces, volumes
-from suchus.robot.design.water_table import column, unpack_table
 from suchus.robot.kinematics.tree import centre_of_mass
 from suchus.robot.kinematics.trim import level_chambers, spare_volume
 from suchus.robot.motion import cycle_targets, limbs_back, straight_gait

@@ -9,10 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.experiments.catalog.floating import cases
-from suchus.robot.design.pieces import pieces
-from suchus.robot.design.scale import physics_step
-from suchus.robot.design.water_table import (
+from suchus.core.water_table import (
     ADDED_MASS_FACTOR,
     CROSS_DRAG,
     DENSITY,
@@ -23,8 +20,12 @@ from suchus.robot.design.water_table import (
     pack_table,
     unpack_table,
 )
+from suchus.experiments.catalog.floating import cases
+from suchus.robot.design.pieces import pieces
+from suchus.robot.design.scale import physics_step
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Lake, Wave, wetting
+from suchus.sim.immersion import wetting
+from suchus.sim.land import Lake, Wave
 from suchus.sim.land.float_body import FloatBody, FloatTank
 from suchus.sim.model.wet import wet_model
 

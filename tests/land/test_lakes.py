@@ -18,7 +18,8 @@ from suchus.robot.design.pieces import volumes
 from suchus.robot.design.water import Water
 from suchus.robot.motion import LIMBS_UP, straight_gait
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
+from suchus.sim.immersion import structs, wetting
+from suchus.sim.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.record import WATER
 

@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 
 from suchus import GAITS, ROBOTS
+from suchus.core import water_table as hydro
 from suchus.core.errors import IncompatibleRecord
 from suchus.robot.control import Swimming
-from suchus.robot.design import water_table as hydro
 from suchus.sim import metrics
 from suchus.sim.land import Lake, Limp, Run, simulate
 from suchus.sim.land.loop import Loop

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from tests.swims import crocodile_swim
 
+from suchus.core.water_table import column
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.water import Water
-from suchus.robot.design.water_table import column
 from suchus.robot.motion import straight_gait
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.robots import ROBOTS

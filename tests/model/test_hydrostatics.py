@@ -10,9 +10,9 @@ import pytest
 from suchus.core import rotation
 from suchus.core.errors import InvalidDesign
 from suchus.core.rotation import from_axis_angle
+from suchus.core.water_table import column, unpack_table
 from suchus.robot.design import servo_names
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import column, unpack_table
 from suchus.robot.motion import LIMBS_UP, cycle_targets, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model.build import TIMESTEP

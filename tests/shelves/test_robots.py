@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 
+from suchus.core.physics import WATER_DENSITY
 from suchus.robot.design import GRAVITY, joint_names, layout, leg_joints, servo_names, spine_joints
-from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import masses, volumes
 from suchus.robot.design.scale import gravity_time, physics_step
 from suchus.robot.gaits import default_gait, suits

@@ -7,10 +7,10 @@ from math import nan, pi
 import numpy as np
 
 from suchus.core.checks import require
+from suchus.core.physics import WATER_DENSITY
 from suchus.robot.design import Cable, Motor, Robot, Rod, Servo, layout
 from suchus.robot.design.body import servos_of
 from suchus.robot.design.measures import leg_of, spine_of, tail_of
-from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import foam_centres, volumes
 from suchus.robot.kinematics.tail import bend_limit, cable_changes, servo_angle
 from suchus.robot.kinematics.tree import body_masses, centre_of_mass, frames

@@ -31,11 +31,11 @@ from suchus.animals.forces.body import (
     widen_body,
 )
 from suchus.core.errors import UnknownName
+from suchus.core.physics import WATER_DENSITY
 from suchus.core.progress import Progress, portion, silent
 from suchus.flow.immerse import MIN_THICKNESS
 from suchus.flow.setup import MIN_LAYER_CELLS
 from suchus.robot.design import Robot, check_needs, layout
-from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait, swimming_gait

@@ -1,5 +1,6 @@
 """What a robot is: frozen values in SI units and without physics."""
 
+from suchus.core.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.robot.design.article import crocodile, tables_of
 from suchus.robot.design.body import Robot
 from suchus.robot.design.chosen import Assumption, unit_at, value_at, with_values
@@ -27,7 +28,6 @@ from suchus.robot.design.layout import (
 from suchus.robot.design.limb import Foot, Girdle, Limb, Link
 from suchus.robot.design.motor import LINE, Heat, Motor, Winding
 from suchus.robot.design.needs import MEASURED, NEEDS, STANDING, check_needs, lacking
-from suchus.robot.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.robot.design.segment import Inertia, Rod, Segment, Shell
 from suchus.robot.design.servos import (
     with_full_torque,

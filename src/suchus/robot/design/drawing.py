@@ -8,9 +8,9 @@ import numpy as np
 
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
+from suchus.core.physics import WATER_DENSITY
 from suchus.robot.design.body import Robot
 from suchus.robot.design.hinge import Hinge, Servo
-from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.scale import contact_for, swim_servo_for
 from suchus.robot.design.segment import Rod, Segment, Shell

@@ -2,9 +2,9 @@
 
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
+from suchus.core.physics import WATER_DENSITY
 from suchus.robot.design.body import Robot
 from suchus.robot.design.hull import Foam, Hull
-from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import masses, volumes
 
 MAX_VOLUME_RATIO = 9.0

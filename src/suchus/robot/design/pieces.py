@@ -10,11 +10,11 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.water_table import BALL, COLUMNS, DISC, WIDTH, column
 from suchus.robot.design.body import Robot
 from suchus.robot.design.hull import Hull
 from suchus.robot.design.layout import Layout, LimbPlace, layout
 from suchus.robot.design.profile import profile, stations
-from suchus.robot.design.water_table import BALL, COLUMNS, DISC, WIDTH, column
 
 FINENESS = 20
 """Strips of an axis at least [-]; see docs/amphibious.md for what finer ones change."""

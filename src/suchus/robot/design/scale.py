@@ -13,12 +13,12 @@ from typing import Any, TypeVar
 
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
+from suchus.core.physics import GRAVITY
 from suchus.robot.design.body import Robot
 from suchus.robot.design.ground import Contact
 from suchus.robot.design.hinge import Servo, Spring
 from suchus.robot.design.meaning import meanings, unit
 from suchus.robot.design.motor import Winding
-from suchus.robot.design.physics import GRAVITY
 
 T = TypeVar("T")
 MIN_PERIODS_PER_GRAVITY_TIME = 20.0

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from suchus.core.checks import Checks
-from suchus.robot.design.physics import WATER_DENSITY
+from suchus.core.physics import WATER_DENSITY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

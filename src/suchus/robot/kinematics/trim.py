@@ -4,9 +4,9 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.core.water_table import column
 from suchus.robot.design import WATER_DENSITY, Chamber, Robot, layout
 from suchus.robot.design.pieces import pieces, volumes
-from suchus.robot.design.water_table import column
 from suchus.robot.kinematics.tree import centre_of_mass, frames
 
 

@@ -3,8 +3,8 @@
 from itertools import pairwise
 from math import radians
 
+from suchus.core.physics import GRAVITY
 from suchus.robot.design import Robot, Spring
-from suchus.robot.design.physics import GRAVITY
 from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.design.scale import contact_for, gravity_time, servo_for
 from suchus.robot.robots._plans import BY_SIZE, Joint, girdle, limb, row

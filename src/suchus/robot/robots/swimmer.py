@@ -2,8 +2,8 @@
 
 from math import radians
 
+from suchus.core.physics import WATER_DENSITY
 from suchus.robot.design import Hinge, Robot, Rod, Segment, Servo, Shell
-from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.reasons import Reason, assumptions_of
 from suchus.robot.design.scale import contact_for, servo_for

@@ -14,7 +14,7 @@ from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
 
-from suchus.robot.design.water_table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
+from suchus.core.water_table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
 from suchus.sim.hydro import lanes
 from suchus.sim.hydro.lanes import WaterProperties
 from suchus.sim.hydro.vectors import (

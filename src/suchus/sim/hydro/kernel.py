@@ -1,30 +1,78 @@
 """The compiled kernel: reads a MuJoCo model and its data, gathers what the water does, hands it to the joints.
 
-It is given addresses and byte offsets (see ``land.structs``), so that it needs neither MuJoCo nor Python's lock while
-it runs. All spatial vectors are MuJoCo's: rotation first, about the centre of mass of the whole tree.
+It is given addresses and byte offsets (see ``immersion.structs``), so that it needs neither MuJoCo nor Python's lock
+while it runs. All spatial vectors are MuJoCo's: rotation first, about the centre of mass of the whole tree.
 """
 
 import numpy as np
 from numba import carray
 
-from suchus.robot.design.water_table import (
+from suchus.core.water_table import (
+    BODY_COUNT,
     COLUMNS,
+    CURRENT,
+    CURRENT_COUNT,
     FORCE,
     HEADER,
     LANES,
-    MAGIC,
+    LEVEL,
+    LEVEL_COUNT,
+    LOAD_WIDTH,
     NUMBERS,
     POWER,
+    SHAPE_COUNT,
+    SHAPE_HEADER,
+    SHAPE_MAGIC,
+    SHAPE_WIDTH,
+    SPLASH,
     SUBMERGED_VOLUME,
+    TRIANGLE_COUNT,
+    USERDATA_START,
     WAVE,
+    WAVE_COUNT,
+    WAVE_WIDTH,
     WIDTH,
 )
 from suchus.sim.hydro import lanes, memory
 from suchus.sim.hydro.forces import added_mass, flow, meet, place, press, rub
-from suchus.sim.hydro.lanes import COUPLING_INERTIA, LINEAR_INERTIA, ROTATIONAL_INERTIA, ROWS, SUMS, WaterProperties
-from suchus.sim.hydro.memory import Bodies, Motion, pointer, read_added_mass, read_bodies, read_motion, read_water
-from suchus.sim.hydro.vectors import Vector, compile_inline, compile_kernel, dot, plus, three, times, write, write_lane
+from suchus.sim.hydro.geoms import float_up, immerse, resist, scheduled, stir
+from suchus.sim.hydro.lanes import (
+    COUPLING_INERTIA,
+    LINEAR_INERTIA,
+    LOAD_VOLUME,
+    ROTATIONAL_INERTIA,
+    ROWS,
+    SHAPE_ROWS,
+    SUMS,
+    WaterProperties,
+)
+from suchus.sim.hydro.memory import (
+    Bodies,
+    Motion,
+    find_table,
+    pointer,
+    read_added_mass,
+    read_bodies,
+    read_implicit_step,
+    read_loads,
+    read_motion,
+    read_water,
+)
+from suchus.sim.hydro.vectors import (
+    Vector,
+    compile_inline,
+    compile_kernel,
+    cross,
+    dot,
+    plus,
+    three,
+    times,
+    write,
+    write_lane,
+)
 
+_MOMENT = 1e-4
+"""Time over which the change of a current is taken [s]."""
 _BODY, _REACH = COLUMNS["body"][0], COLUMNS["reach"][0]
 _COUPLE, _LINEAR = lanes.FORCE - 3 - lanes.FIRST_SUM, lanes.FORCE - lanes.FIRST_SUM
 _ROTATIONAL_INERTIA, _COUPLING_INERTIA, _LINEAR_INERTIA = (
@@ -43,19 +91,22 @@ def apply_water(model: int, data: int, offsets: np.ndarray) -> bool:
         data: address of its ``mjData``.
         offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
     """
-    model_words, count = carray(model, (4096,), np.int64), offsets[memory.NNUMERIC] // 8
-    if model_words[count] < HEADER:
+    magic, start, size = find_table(model, offsets)
+    if magic == 0.0:
         return False
-    numbers = carray(pointer(model_words[offsets[memory.NUMERIC] // 8]), (model_words[count],), np.float64)
-    if numbers[0] != MAGIC or model_words[offsets[memory.NUSER] // 8] < NUMBERS:
+    model_words = carray(model, (4096,), np.int64)
+    numbers = carray(pointer(model_words[offsets[memory.NUMERIC] // 8] + 8 * start), (size,), np.float64)
+    if magic == SHAPE_MAGIC:
+        return _apply_to_shapes(model, data, offsets, numbers)
+    if model_words[offsets[memory.NUSER] // 8] < NUMBERS:
         return False
     if model_words[offsets[memory.NUSER] // 8] > NUMBERS:
         _add_stored_mass(model, data, offsets)
         return True
-    motion = read_motion(model, data, offsets)
+    motion = read_motion(model, data, offsets, 0)
     user, water = motion.user, read_water(model, motion.user, offsets, numbers[2])
     blocks = (len(numbers) - HEADER) // (WIDTH * LANES)
-    table = carray(pointer(model_words[offsets[memory.NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
+    table = numbers[HEADER : HEADER + blocks * WIDTH * LANES].reshape((blocks, WIDTH, LANES))
     for i in range(4):
         user[FORCE + i] = 0.0
     user[SUBMERGED_VOLUME] = 0.0
@@ -73,9 +124,126 @@ def apply_water(model: int, data: int, offsets: np.ndarray) -> bool:
 
 
 @compile_inline
+def _apply_to_shapes(model: int, data: int, offsets: np.ndarray, numbers: np.ndarray) -> bool:
+    """Do what ``apply_water`` does, with a table of shapes; leave the load of each body in the user data.
+
+    Args:
+        model: address of a ``mjModel``.
+        data: address of its ``mjData``.
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        numbers: the table with its header and what the water is.
+    """
+    header, user_start = numbers[:SHAPE_HEADER], int(numbers[USERDATA_START])
+    motion, bodies = read_motion(model, data, offsets, user_start), read_bodies(model, offsets)
+    loads = read_loads(model, data, offsets, user_start)
+    first = SHAPE_HEADER + NUMBERS
+    levels = numbers[first : first + 2 * int(header[LEVEL_COUNT])].reshape((-1, 2))
+    first += levels.size
+    factors = numbers[first : first + 2 * int(header[CURRENT_COUNT])].reshape((-1, 2))
+    first += factors.size
+    waves = numbers[first : first + WAVE_WIDTH * int(header[WAVE_COUNT])].reshape((-1, WAVE_WIDTH))
+    first += waves.size
+    count = int(header[SHAPE_COUNT])
+    blocks = -(-count // LANES)
+    table = numbers[first : first + blocks * SHAPE_WIDTH * LANES].reshape((blocks, SHAPE_WIDTH, LANES))
+    first += table.size
+    triangles = numbers[first : first + 9 * int(header[TRIANGLE_COUNT])].reshape((-1, 9))
+    user = motion.user
+    for i in range(NUMBERS):
+        user[i] = numbers[SHAPE_HEADER + i]
+    user[LEVEL] = scheduled(levels, motion.time)
+    factor = scheduled(factors, motion.time)
+    surge = times((scheduled(factors, motion.time + _MOMENT) - factor) / _MOMENT, three(user, CURRENT))
+    write(user, CURRENT, times(factor, three(user, CURRENT)))
+    loads[:] = 0.0
+    water = read_water(model, user, offsets, 1.0)
+    height = 0.0
+    for wave in waves:
+        height += abs(wave[0])
+    if _all_dry(table, count, water, height, motion):
+        return False
+    bias = _bias_accelerations(bodies, motion)
+    rows, sums = np.zeros((SHAPE_ROWS, LANES)), np.zeros((len(bodies.parent), SUMS))
+    wet_volume, step = 0.0, read_implicit_step(model, offsets)
+    for block in range(blocks):
+        block_table, used = table[block], min(LANES, count - block * LANES)
+        _gather_motion(block_table, rows, bodies, motion, bias)
+        place(block_table, rows)
+        stir(block_table, rows, user, header, waves, motion.time, surge, water.up_axis, used)
+        immerse(block_table, rows, water, triangles, used)
+        float_up(rows, water, used)
+        added_mass(block_table, rows, water)
+        resist(block_table, rows, water, header[SPLASH], step, used)
+        for n in range(used):
+            if rows[lanes.WET_FRACTION, n] > 0.0:
+                wet_volume += rows[lanes.WET_VOLUME, n]
+                b = np.uint32(block_table[_BODY, n])
+                for k in range(SUMS):
+                    sums[b, k] += rows[lanes.FIRST_SUM + k, n]
+    user[SUBMERGED_VOLUME] = wet_volume
+    if wet_volume == 0.0:
+        return False
+    _leave_loads(sums, loads, bodies, motion)
+    _hand_over(sums, bodies, motion)
+    _burden(sums, bodies, motion)
+    return True
+
+
+@compile_inline
+def _leave_loads(sums: np.ndarray, loads: np.ndarray, bodies: Bodies, motion: Motion) -> None:
+    """Write the load of the water on each body, its added inertia at the accelerations of the last step.
+
+    Args:
+        sums: loads and inertias of the bodies, shape (body, ``SUMS``).
+        loads: force, torque about the body's origin, volume under water, shape (body, ``LOAD_WIDTH``); written.
+        bodies: the tree of bodies and joints.
+        motion: positions and accelerations of the bodies.
+    """
+    gains = np.zeros((len(bodies.parent), 6))
+    for b in range(1, len(bodies.parent)):
+        angular, linear = three(gains[bodies.parent[b]], 0), three(gains[bodies.parent[b]], 3)
+        for dof in range(bodies.first_dof[b], bodies.first_dof[b] + bodies.dof_counts[b]):
+            angular = plus(angular, times(motion.qacc[dof], three(motion.cdof[dof], 0)))
+            linear = plus(linear, times(motion.qacc[dof], three(motion.cdof[dof], 3)))
+        write(gains[b], 0, angular)
+        write(gains[b], 3, linear)
+        if sums[b, LOAD_VOLUME] > 0.0:
+            couple, force = _answer(sums[b], angular, linear)
+            force = plus(three(sums[b], _LINEAR), times(-1.0, force))
+            couple = plus(three(sums[b], _COUPLE), times(-1.0, couple))
+            arm = plus(three(motion.com[bodies.root[b]], 0), times(-1.0, three(motion.xpos[b], 0)))
+            write(loads[b], 0, force)
+            write(loads[b], 3, plus(couple, cross(arm, force)))
+            loads[b, 6] = sums[b, LOAD_VOLUME]
+
+
+@compile_inline
+def _gather_motion(table: np.ndarray, rows: np.ndarray, bodies: Bodies, motion: Motion, bias: np.ndarray) -> None:
+    """Write orientation, position and motion of the bodies that carry the pieces of a block.
+
+    Args:
+        table: table of the block, shape (column, lane).
+        rows: quantities of the pieces, see ``lanes``; written.
+        bodies: the tree of bodies and joints.
+        motion: positions and velocities of the bodies.
+        bias: accelerations of the bodies without those of the joints, shape (body, 6).
+    """
+    for n in range(LANES):
+        b = np.uint32(table[_BODY, n])
+        for k in range(0, 9, 3):
+            write_lane(rows, lanes.TURN + k, n, three(motion.xmat[b], k))
+        write_lane(rows, lanes.ORIGIN, n, three(motion.xpos[b], 0))
+        write_lane(rows, lanes.REFERENCE, n, three(motion.com[bodies.root[b]], 0))
+        write_lane(rows, lanes.MOVING, n, three(motion.cvel[b], 0))
+        write_lane(rows, lanes.MOVING + 3, n, three(motion.cvel[b], 3))
+        write_lane(rows, lanes.BIAS, n, three(bias[b], 0))
+        write_lane(rows, lanes.BIAS + 3, n, three(bias[b], 3))
+
+
+@compile_inline
 def _add_stored_mass(model: int, data: int, offsets: np.ndarray) -> None:
     """Add the stored added mass to the mass matrix; it follows the numbers of the water in the user data."""
-    bodies, motion = read_bodies(model, offsets), read_motion(model, data, offsets)
+    bodies, motion = read_bodies(model, offsets), read_motion(model, data, offsets, 0)
     stored_mass = read_added_mass(model, data, offsets)
     for n in range(len(bodies.column)):
         motion.mass[n] += stored_mass[n]
@@ -115,16 +283,7 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
     rows, sums, wet_volume = np.zeros((ROWS, LANES)), np.zeros((len(bodies.parent), SUMS)), 0.0
     for block in range(table.shape[0]):
         block_table = table[block]
-        for n in range(LANES):
-            b = np.uint32(block_table[_BODY, n])
-            for k in range(0, 9, 3):
-                write_lane(rows, lanes.TURN + k, n, three(motion.xmat[b], k))
-            write_lane(rows, lanes.ORIGIN, n, three(motion.xpos[b], 0))
-            write_lane(rows, lanes.REFERENCE, n, three(motion.com[bodies.root[b]], 0))
-            write_lane(rows, lanes.MOVING, n, three(motion.cvel[b], 0))
-            write_lane(rows, lanes.MOVING + 3, n, three(motion.cvel[b], 3))
-            write_lane(rows, lanes.BIAS, n, three(bias[b], 0))
-            write_lane(rows, lanes.BIAS + 3, n, three(bias[b], 3))
+        _gather_motion(block_table, rows, bodies, motion, bias)
         place(block_table, rows)
         if block == 0 or motion.user[WAVE] != 0.0:
             flow(rows, motion.user, motion.time, water.up_axis)
@@ -245,3 +404,21 @@ def _answer(inertia: np.ndarray, turns: Vector, moves: Vector) -> tuple[Vector, 
         dot(spun_row, turns) + dot((x[2], y[2], z[2]), moves),
     )
     return couple, force
+
+
+@compile_kernel
+def has_misfit(model: int, offsets: np.ndarray) -> bool:
+    """Return whether a table of shapes was made for another number of bodies, or has no room for what it leaves.
+
+    Args:
+        model: address of a ``mjModel``.
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+    """
+    magic, start, size = find_table(model, offsets)
+    if magic != SHAPE_MAGIC:
+        return False
+    words = carray(model, (4096,), np.int64)
+    numbers = carray(pointer(words[offsets[memory.NUMERIC] // 8] + 8 * start), (size,), np.float64)
+    bodies = words[offsets[memory.NBODY] // 8]
+    room = words[offsets[memory.NUSER] // 8] - numbers[USERDATA_START]
+    return bodies != numbers[BODY_COUNT] or room < NUMBERS + LOAD_WIDTH * bodies

@@ -6,7 +6,7 @@ first, about the point of reference, the centre of mass of the tree to which the
 
 from typing import NamedTuple
 
-from suchus.robot.design.water_table import COLUMNS
+from suchus.core.water_table import COLUMNS
 from suchus.sim.hydro.vectors import Vector
 
 (
@@ -72,6 +72,18 @@ SUMS = 28
 """Rows that are added up, one of them empty: four numbers are added at once [-]."""
 ROWS = FIRST_SUM + SUMS
 """Rows in all."""
+NORMAL = ROWS
+"""Row of the surface's normal at a shape (3) [-]."""
+OFFSET = NORMAL + 3
+"""Row of the centre of buoyancy from the centre (3) [m]."""
+CUT = OFFSET + 3
+"""Row of the area in which the surface cuts a shape, over the shape's volume [1/m]."""
+CUT_OFFSET = CUT + 1
+"""Row of the middle of that area from the centre (3) [m]."""
+SHAPE_ROWS = CUT_OFFSET + 3
+"""Rows in all for shapes."""
+LOAD_VOLUME = SUMS - 1
+"""Place, among what is added up, of the volume under water of a shape [m3]."""
 
 
 class WaterProperties(NamedTuple):

@@ -8,13 +8,17 @@ from numba import carray, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from suchus.robot.design.water_table import (
+from suchus.core.water_table import (
     ADDED_MASS_FACTOR,
     AIR_FRACTION,
     CROSS_DRAG,
     DENSITY,
+    HEADER,
     LEVEL,
+    LOAD_WIDTH,
+    MAGIC,
     NUMBERS,
+    SHAPE_MAGIC,
     SHEDDING,
     THICKENING,
     VISCOSITY,
@@ -24,7 +28,8 @@ from suchus.sim.hydro.vectors import compile_inline, dot, three, times
 
 FIELDS = (
     "nv", "nbody", "nnumericdata", "nuserdata", "opt.gravity", "numeric_data", "body_parentid", "body_rootid",
-    "body_dofadr", "body_dofnum", "dof_bodyid", "M_rownnz", "M_rowadr", "M_colind",
+    "body_dofadr", "body_dofnum", "dof_bodyid", "M_rownnz", "M_rowadr", "M_colind", "nnumeric", "numeric_adr",
+    "numeric_size", "opt.timestep", "opt.integrator",
 )  # fmt: skip
 """Fields of the model whose offsets the kernel needs, in the order of the table of offsets; then those of the data."""
 DATA_FIELDS = (
@@ -32,9 +37,14 @@ DATA_FIELDS = (
 )  # fmt: skip
 """Fields of the data."""
 (
-    _NV, _NBODY, NNUMERIC, NUSER, _GRAVITY, NUMERIC, _PARENT, _ROOT, _DOFADR, _DOFNUM, _DOFBODY, _ROWNNZ, _ROWADR,
-    _COLIND, _TIME, _QVEL, _QACC, _XPOS, _XMAT, _COM, _CVEL, _CDOF, _CDOFDOT, _PASSIVE, _MASS, _USER,
-) = range(26)  # fmt: skip
+    _NV, NBODY, NNUMERIC, NUSER, _GRAVITY, NUMERIC, _PARENT, _ROOT, _DOFADR, _DOFNUM, _DOFBODY, _ROWNNZ, _ROWADR,
+    _COLIND, _NNUMERIC, _NUMERIC_START, _NUMERIC_SIZE, _TIMESTEP, _INTEGRATOR,
+    _TIME, _QVEL, _QACC, _XPOS, _XMAT, _COM, _CVEL, _CDOF, _CDOFDOT, _PASSIVE, _MASS, _USER,
+) = range(31)  # fmt: skip
+
+
+_RUNGE_KUTTA = 1
+"""Number of MuJoCo's integrator of fourth order (``mjINT_RK4``)."""
 
 
 @intrinsic
@@ -100,10 +110,38 @@ class Motion(NamedTuple):
 
 
 @compile_inline
+def find_table(model: int, offsets: np.ndarray) -> tuple[float, int, int]:
+    """Return the first number of a model's table, and the table's start and size among the custom numbers.
+
+    The first number is 0 where the model has no table.
+
+    Args:
+        model: address of a ``mjModel``.
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+    """
+    words = carray(model, (4096,), np.int64)
+    count, numbers = words[offsets[_NNUMERIC] // 8], words[offsets[NNUMERIC] // 8]
+    starts = carray(pointer(words[offsets[_NUMERIC_START] // 8]), (count,), np.int32)
+    sizes = carray(pointer(words[offsets[_NUMERIC_SIZE] // 8]), (count,), np.int32)
+    values = carray(pointer(words[offsets[NUMERIC] // 8]), (numbers,), np.float64)
+    for i in range(count):
+        if sizes[i] >= HEADER and (values[starts[i]] == MAGIC or values[starts[i]] == SHAPE_MAGIC):
+            return values[starts[i]], starts[i], sizes[i]
+    return 0.0, 0, 0
+
+
+@compile_inline
+def read_implicit_step(model: int, offsets: np.ndarray) -> float:
+    """Return the time step if drag is taken at its end, 0 for the stages of a Runge-Kutta step [s]."""
+    step = carray(model, (4096,), np.float64)[offsets[_TIMESTEP] // 8]
+    return 0.0 if carray(model, (8192,), np.int32)[offsets[_INTEGRATOR] // 4] == _RUNGE_KUTTA else step
+
+
+@compile_inline
 def read_bodies(model: int, offsets: np.ndarray) -> Bodies:
     """Return the tree of a model."""
     model_words = carray(model, (4096,), np.int64)
-    nv, nbody = model_words[offsets[_NV] // 8], model_words[offsets[_NBODY] // 8]
+    nv, nbody = model_words[offsets[_NV] // 8], model_words[offsets[NBODY] // 8]
     rownnz = carray(pointer(model_words[offsets[_ROWNNZ] // 8]), (nv,), np.uint32)
     rowadr = carray(pointer(model_words[offsets[_ROWADR] // 8]), (nv,), np.uint32)
     return Bodies(
@@ -119,17 +157,18 @@ def read_bodies(model: int, offsets: np.ndarray) -> Bodies:
 
 
 @compile_inline
-def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
+def read_motion(model: int, data: int, offsets: np.ndarray, user_start: int) -> Motion:
     """Return where the bodies of a model are.
 
     Args:
         model: address of a ``mjModel``.
         data: address of its ``mjData``.
         offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        user_start: place of the numbers of the water in the user data [-].
     """
     model_words = carray(model, (4096,), np.int64)
     state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
-    nv, nbody = model_words[offsets[_NV] // 8], model_words[offsets[_NBODY] // 8]
+    nv, nbody = model_words[offsets[_NV] // 8], model_words[offsets[NBODY] // 8]
     return Motion(
         clock[offsets[_TIME] // 8],
         carray(pointer(state[offsets[_XPOS] // 8]), (nbody, 3), np.float64),
@@ -142,7 +181,7 @@ def read_motion(model: int, data: int, offsets: np.ndarray) -> Motion:
         carray(pointer(state[offsets[_QACC] // 8]), (nv,), np.float64),
         carray(pointer(state[offsets[_PASSIVE] // 8]), (nv,), np.float64),
         carray(pointer(state[offsets[_MASS] // 8]), (nv * nv,), np.float64),
-        carray(pointer(state[offsets[_USER] // 8]), (NUMBERS,), np.float64),
+        carray(pointer(state[offsets[_USER] // 8] + 8 * user_start), (NUMBERS,), np.float64),
     )
 
 
@@ -153,6 +192,16 @@ def read_added_mass(model: int, data: int, offsets: np.ndarray) -> np.ndarray:
     start_byte = 8 * NUMBERS
     return carray(
         pointer(state[offsets[_USER] // 8] + start_byte), (model_words[offsets[NUSER] // 8] - NUMBERS,), np.float64
+    )
+
+
+@compile_inline
+def read_loads(model: int, data: int, offsets: np.ndarray, user_start: int) -> np.ndarray:
+    """Return where the loads of the bodies are left, shape (body, ``LOAD_WIDTH``), after the numbers of the water."""
+    words, state = carray(model, (4096,), np.int64), carray(data, (65536,), np.int64)
+    start_byte = 8 * (user_start + NUMBERS)
+    return carray(
+        pointer(state[offsets[_USER] // 8] + start_byte), (words[offsets[NBODY] // 8], LOAD_WIDTH), np.float64
     )
 
 

@@ -11,12 +11,12 @@ from scipy.optimize import brentq
 
 from suchus.core.errors import Doubtful, InvalidDesign
 from suchus.core.rotation import from_axis_angle, multiply
+from suchus.core.water_table import column, unpack_table
 from suchus.robot.design import Robot
 from suchus.robot.design.hull import Hull
 from suchus.robot.design.pieces import chambers, pieces, volumes
-from suchus.robot.design.water_table import column, unpack_table
 from suchus.sim.hydro.forces import hydrostatic
-from suchus.sim.land import wetting
+from suchus.sim.immersion import wetting
 from suchus.sim.land.lake import Lake
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.sim.model.wet import wet_model

@@ -15,7 +15,7 @@ from suchus.robot.design.correction import SectionCorrection
 from suchus.robot.design.ground import Ground, Relief
 from suchus.robot.design.pieces import pieces
 from suchus.robot.motion import hip_height
-from suchus.sim.land import wetting
+from suchus.sim.immersion import wetting
 from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.clear import check_clear
 from suchus.sim.land.corrected import correct

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from suchus.core.water_table import HEADER, WIDTH, column, pack_table, unpack_table
 from suchus.robot.design.correction import SectionCorrection
-from suchus.robot.design.water_table import HEADER, WIDTH, column, pack_table, unpack_table
 
 _ADDED_MASS_COLUMNS, _DRAG_COLUMNS = ("added", "shed"), ("area", "roll", "skin", "end")
 """Columns of the table of pieces that each factor is on."""

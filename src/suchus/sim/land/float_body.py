@@ -11,13 +11,13 @@ from jaxtyping import Float
 
 from suchus.core.checks import Checks
 from suchus.core.errors import Diverged
+from suchus.core.water_table import BALL, COLUMNS, DISC, SLAB, WIDTH, column, unpack_table
 from suchus.robot.design import GRAVITY
-from suchus.robot.design.water_table import BALL, COLUMNS, DISC, SLAB, WIDTH, column, unpack_table
 from suchus.sim.hydro.forces import hydrostatic
-from suchus.sim.land import wetting
+from suchus.sim.immersion import wetting
+from suchus.sim.immersion.attachment import with_pieces
 from suchus.sim.land.lake import Lake
 from suchus.sim.land.step_division import divided_step
-from suchus.sim.model.wet import with_pieces
 
 Point = tuple[float, float, float]
 Integrator = Literal["Euler", "implicitfast", "RK4"]

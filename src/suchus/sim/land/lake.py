@@ -6,59 +6,20 @@ A ``Lake`` is the frozen value of one run; ``Waters`` are those of a batch, in t
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from math import cos, pi, sin, sqrt, tau
+from math import cos, pi, sin, tau
 from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core import water_table as hydro
 from suchus.core.checks import Checks, Schedule
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import GRAVITY, Robot, layout
-from suchus.robot.design import water_table as hydro
 from suchus.robot.design.correction import SectionCorrection
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.water import Water
-
-STEEPEST = 0.142
-"""Height over length beyond which waves on deep water break [-]. Source: Michell 1893."""
-DEEPEST = 1000.0
-"""Greatest distance of the level from the world's origin [m]."""
-FASTEST = 5.0
-"""Greatest speed of a current [m/s]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Wave:
-    """Plane waves of small height on deep water, after Airy."""
-
-    height: float
-    """Height from trough to crest [m]."""
-    length: float
-    """Length from crest to crest [m]."""
-    heading: float = 0.0
-    """Direction in which they run, forward 0, to the left positive [rad]."""
-    phase: float = 0.0
-    """Phase at the world's origin at time 0, a crest at 0 [cycle]."""
-
-    def __post_init__(self) -> None:
-        """Refuse heights, lengths and directions outside their ranges, and waves that would break."""
-        with Checks("wave", self) as check:
-            check.number("height", 0.0, 100.0, "m")
-            check.number("length", 0.01, 1000.0, "m")
-            check.number("heading", -2 * pi, 2 * pi, "rad")
-            check.number("phase", -1.0, 1.0, "cycle")
-            steepness = self.height / self.length if self.length > 0 else 0.0
-            check.that(
-                not steepness > STEEPEST,
-                f"a wave {self.height:g} m high and {self.length:g} m long is steeper than {STEEPEST:g}, where waves "
-                f"break: at this length at most {STEEPEST * self.length:.3g} m are allowed",
-            )
-
-    @property
-    def frequency(self) -> float:
-        """Frequency of the wave on deep water, sqrt(g / (2 pi length)) [Hz]."""
-        return sqrt(GRAVITY / (tau * self.length))
+from suchus.sim.immersion.sea import DEEPEST, FASTEST, Wave, level_axes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,7 +83,7 @@ class Lake:
         row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
         row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
         row[hydro.ADDED_MASS_FACTOR], row[hydro.SHEDDING] = self.added_mass, self.shedding
-        forward, leftward = _level_axes(up_axis)
+        forward, leftward = level_axes(up_axis)
         row[hydro.CURRENT : hydro.CURRENT + 3] = self.current[0] * forward + self.current[1] * leftward
         if self.wave is not None:
             number = tau / self.wave.length
@@ -160,13 +121,6 @@ def _value_at(course: Schedule, time: float) -> float:
     if isinstance(course, (int, float)):
         return float(course)
     return float(np.interp(time, [instant for instant, _ in course], [value for _, value in course]))
-
-
-def _level_axes(up_axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return forward and left along the surface."""
-    forward = np.array([1.0, 0.0, 0.0]) - up_axis[0] * up_axis
-    forward /= np.linalg.norm(forward)
-    return forward, np.cross(up_axis, forward)
 
 
 _AIR_FRACTION = slice(hydro.AIR_FRACTION, hydro.AIR_FRACTION + 2)

@@ -11,8 +11,8 @@ import mujoco
 import numpy as np
 from jaxtyping import Bool, Float
 
+from suchus.core import water_table as hydro
 from suchus.robot.design import Robot, layout
-from suchus.robot.design import water_table as hydro
 from suchus.sim.model import SUPPLY, supplies
 from suchus.sim.record import EFFORT
 

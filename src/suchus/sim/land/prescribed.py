@@ -17,13 +17,13 @@ import xarray as xr
 from jaxtyping import Float
 from scipy.integrate import solve_ivp
 
+from suchus.core import water_table as hydro
+from suchus.core.water_table import HEADER, WIDTH, column, pack_table, unpack_table
 from suchus.robot.design import Robot
-from suchus.robot.design import water_table as hydro
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import HEADER, WIDTH, column, pack_table, unpack_table
 from suchus.robot.motion import Gait, movement
 from suchus.robot.motion.axis import yaw_hinges
-from suchus.sim.land import wetting
+from suchus.sim.immersion import wetting
 from suchus.sim.land.corrected import correct
 from suchus.sim.land.lake import DEEPEST, Lake
 from suchus.sim.model.build import SNOUT

@@ -7,11 +7,11 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
+from suchus.core import water_table as hydro
+from suchus.core.water_table import column
 from suchus.robot.control import Sensed
 from suchus.robot.design import GRAVITY, Robot, layout
-from suchus.robot.design import water_table as hydro
 from suchus.robot.design.pieces import chambers, pieces
-from suchus.robot.design.water_table import column
 from suchus.sim.land.batch import SimulationBatch
 from suchus.sim.land.lake import lake_text, up_direction
 from suchus.sim.land.meter import joint_effort

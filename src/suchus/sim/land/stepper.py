@@ -22,10 +22,10 @@ import xarray as xr
 from jaxtyping import Bool, Float
 from mujoco.batch import SimulationError
 
+from suchus.core import water_table as hydro
 from suchus.core.errors import Diverged, UnreadableFile
 from suchus.robot.control import Command, Controller
 from suchus.robot.design import layout
-from suchus.robot.design import water_table as hydro
 from suchus.sim.land.batch import Beginning, SimulationBatch
 from suchus.sim.land.links import RobotLinks
 from suchus.sim.land.loop import Loop

@@ -11,9 +11,9 @@ from scipy.optimize import brentq
 
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
+from suchus.core.water_table import column, unpack_table
 from suchus.robot.design import WATER_DENSITY, Robot, layout, servo_names
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import column, unpack_table
 from suchus.sim.hydro.forces import hydrostatic
 from suchus.sim.model.build import TIMESTEP, joint_addresses
 from suchus.sim.model.wet import wet_model

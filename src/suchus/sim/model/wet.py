@@ -6,18 +6,12 @@ from typing import Any
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.water_table import column, pack_table
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.ground import Relief
 from suchus.robot.design.pieces import pieces
-from suchus.robot.design.water_table import NUMBERS, column, pack_table
+from suchus.sim.immersion.attachment import with_pieces
 from suchus.sim.model.build import build
-
-NUMERIC = "water"
-"""Name of the custom number that holds the table; see ``hydro.packed``."""
-
-
-PLUGIN = "suchus.swimming.water"
-"""Name of MuJoCo's plugin that lets the water act; ``land.wetting`` registers it."""
 
 
 @lru_cache(maxsize=32)
@@ -37,7 +31,7 @@ def wet_model(
         timestep: time step of the physics [s].
         relief: what stands up from even ground.
         max_pieces: pieces that the table has room for, alike in all models of a batch.
-        acting: whether the water acts in it; ``land.wetting.install`` goes before.
+        acting: whether the water acts in it; ``immersion.wetting.install`` goes before.
         is_solved: whether the water is solved elsewhere, so that the model has room for the added mass that it is told.
 
     Raises:
@@ -74,32 +68,3 @@ def compile_with_pieces(
     column(table, "body")[:, 0] = ids[table[:, 0].astype(int)]
     model.numeric_data[:] = pack_table(table, robot.length, max_pieces)
     return model
-
-
-def with_pieces(
-    spec: Any,
-    table: np.ndarray,
-    length: float,
-    max_pieces: int | None = None,
-    *,
-    acting: bool = False,
-    extra_numbers: int = 0,
-) -> Any:
-    """Return a compiled ``mujoco.MjSpec`` that carries a table of pieces.
-
-    Args:
-        spec: MuJoCo specification of any bodies.
-        table: table of pieces; its bodies are numbered as MuJoCo numbers them.
-        length: length for the Reynolds number of friction [m].
-        max_pieces: pieces that the table has room for; as many as there are if None.
-        acting: see ``wet_model``.
-        extra_numbers: see ``compile_with_pieces``.
-    """
-    data = pack_table(table, length, max_pieces)
-    numeric = spec.add_numeric(name=NUMERIC, size=len(data))
-    numeric.data = data
-    spec.nuserdata = NUMBERS + extra_numbers
-    if acting:
-        spec.activate_plugin(PLUGIN)
-        spec.add_plugin(name=NUMERIC, plugin_name=PLUGIN, active=True)
-    return spec.compile()

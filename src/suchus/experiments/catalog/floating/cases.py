@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 from scipy.stats import qmc
 
 from suchus.core import rotation
+from suchus.core.water_table import FORCE
 from suchus.robot.design import GRAVITY
 from suchus.robot.design.water import Water
-from suchus.robot.design.water_table import FORCE
 from suchus.sim.land.float_body import FloatBody, FloatTank, Integrator
 from suchus.sim.land.lake import Lake
 

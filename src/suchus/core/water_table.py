@@ -15,6 +15,12 @@ BALL = 1
 """Kind of piece: an ellipsoid."""
 SLAB = 2
 """Kind of piece: a column of a box."""
+CYLINDER = 3
+"""Kind of shape: a round cylinder along t."""
+CAPSULE = 4
+"""Kind of shape: a round cylinder along t with half balls at its ends; c is half its whole length."""
+POLYHEDRON = 5
+"""Kind of shape: a closed surface of triangles; a, b and c are the half axes of the ellipsoid that stands for it."""
 
 COLUMNS: Mapping[str, tuple[int, int]] = {
     name: (start, stop)
@@ -112,3 +118,75 @@ def unpack_table(numbers: Float[np.ndarray, " n"]) -> Float[np.ndarray, "piece c
     """Return the table in the row of numbers that a model carries; a copy."""
     blocks = numbers[HEADER:].reshape(-1, WIDTH, LANES)
     return np.array(blocks.swapaxes(1, 2).reshape(-1, WIDTH)[: int(numbers[1])])
+
+
+SHAPE_MAGIC = 7.3116e77
+"""First number of a table of shapes, the geoms of any model, by which it is known."""
+SHAPE_COLUMNS: Mapping[str, tuple[int, int]] = dict(COLUMNS) | {
+    name: (start, stop)
+    for name, start, stop in (
+        ("solid", 32, 33),  # volume of the shape itself [m3]; "volume" is what of it displaces water
+        ("bound", 33, 36),  # half extents along e_a, e_b, t of the box around a polyhedron's vertices [m]
+        ("added_inertia", 36, 39),  # added inertia over density for rotation about e_a, e_b, t [m5]
+        ("frontal", 39, 42),  # drag area times drag coefficient for motion along e_a, e_b, t [m2]
+        ("coupled", 42, 43),  # 1: drag goes with the whole speed; 0: with the speed across and along t apart
+        ("turning", 43, 46),  # torque of drag over half the density and the square of the rate [m5]
+        ("linear", 46, 49),  # force of linear drag over the speed along e_a, e_b, t [kg/s]
+        ("linear_turning", 49, 52),  # torque of linear drag over the rate [kg m2/s]
+        ("lift", 52, 55),  # area times slope of the lift coefficient, of faces normal to e_a, e_b, t [m2]
+        ("triangles", 55, 57),  # first triangle and number of triangles of a polyhedron
+    )
+}
+"""Columns of a table of shapes: those of a table of pieces and more."""
+SHAPE_WIDTH = 60
+"""Columns of a table of shapes [-]."""
+(
+    SHAPE_COUNT, USERDATA_START, BODY_COUNT, WAVE_COUNT, LEVEL_COUNT, CURRENT_COUNT, TRIANGLE_COUNT, SPLASH, SHEAR,
+) = range(1, 10)  # fmt: skip
+"""Indices in the header of a table of shapes: number of shapes, first number in the user data, bodies of the model,
+rows of waves, of the level over time and of the current's factor over time, triangles, fraction of the energy that a
+splash takes, and the current's change per height (3) [1/s]."""
+SHAPE_HEADER = 12
+"""Numbers ahead of the numbers of the water in a table of shapes; after those stand levels, factors, waves, shapes and
+triangles."""
+WAVE_WIDTH = 6
+"""Numbers of a wave: amplitude [m], wave vector (3) [rad/m], angular frequency [rad/s], phase [rad]."""
+LOAD_WIDTH = 7
+"""Numbers that the kernel leaves for each body, after the row of the water: force (3) [N], torque about the body's
+origin (3) [N m], volume under water [m3]."""
+
+
+def pack_shapes(
+    table: Float[np.ndarray, "shape column"],
+    triangles: Float[np.ndarray, "triangle 9"],
+    water: Float[np.ndarray, " n"],
+    schedules: tuple[Float[np.ndarray, "row 2"], Float[np.ndarray, "row 2"]],
+    waves: Float[np.ndarray, "wave 6"],
+    header: Mapping[int, float],
+) -> Float[np.ndarray, " n"]:
+    """Return a table of shapes and what the water is as the row of numbers that a model carries.
+
+    Args:
+        table: the shapes, columns as in ``SHAPE_COLUMNS``; "reach" is filled here.
+        triangles: corners of the triangles of all polyhedra [m].
+        water: numbers of the water, as in a run's row.
+        schedules: level of the surface [m], and factor on the current [-], over time [s].
+        waves: see ``WAVE_WIDTH``.
+        header: numbers of the header by index: ``USERDATA_START``, ``BODY_COUNT``, ``SPLASH``, ``SHEAR`` and after.
+    """
+    blocks = -(-len(table) // LANES)
+    rows = np.zeros((blocks * LANES, SHAPE_WIDTH))
+    rows[: len(table)] = table
+    start, stop = SHAPE_COLUMNS["bound"]
+    column(rows, "reach")[:, 0] = np.linalg.norm(column(rows, "at"), axis=1) + np.linalg.norm(
+        rows[:, start:stop], axis=1
+    )
+    head = np.zeros(SHAPE_HEADER)
+    head[0], head[SHAPE_COUNT], head[WAVE_COUNT] = SHAPE_MAGIC, len(table), len(waves)
+    head[LEVEL_COUNT], head[CURRENT_COUNT] = (len(schedule) for schedule in schedules)
+    head[TRIANGLE_COUNT] = len(triangles)
+    for index, number in header.items():
+        head[index] = number
+    lanes = rows.reshape(blocks, LANES, SHAPE_WIDTH).swapaxes(1, 2)
+    parts = (head, water, *schedules, waves, lanes, triangles)
+    return np.concatenate([np.ravel(part) for part in parts])

@@ -18,12 +18,14 @@ from llvmlite import binding
 from numba import cfunc, types
 
 from suchus.core.errors import OtherMuJoCo
-from suchus.robot.design.water_table import AIR_FRACTION, BALL, DENSITY, LEVEL, SUBMERGED_VOLUME, WIDTH, column
-from suchus.sim.hydro.kernel import apply_water
+from suchus.core.water_table import AIR_FRACTION, BALL, DENSITY, LEVEL, SUBMERGED_VOLUME, WIDTH, column
+from suchus.sim.hydro.kernel import apply_water, has_misfit
 from suchus.sim.hydro.memory import DATA_FIELDS, FIELDS
-from suchus.sim.land.structs import offset, plugin_struct, verify
-from suchus.sim.model.wet import PLUGIN, with_pieces
+from suchus.sim.immersion.attachment import PLUGIN, with_pieces
+from suchus.sim.immersion.structs import offset, plugin_struct, verify
 
+_WORDS = {"opt.integrator": 4}
+"""Size of the words as which the kernel reads fields, where it is not 8 [byte]."""
 _FACTOR, _DEFAULT, _REGISTER = "mj_factorM", "mjp_defaultPlugin", "mjp_registerPlugin"
 _plugin_objects: list[Any] = []
 _lock = Lock()
@@ -56,7 +58,8 @@ def offsets() -> np.ndarray:
     fields = [("mjModel", field) for field in FIELDS] + [("mjData", field) for field in DATA_FIELDS]
     positions = np.array([offset(struct, field) for struct, field in fields])
     for (struct, field), position in zip(fields, positions, strict=True):
-        if position % 8:
+        word = _WORDS.get(field, 8)
+        if position % word:
             raise OtherMuJoCo(
                 f"{struct}.{field}", mujoco.__version__, f"it begins at byte {position}, not at a whole word"
             )
@@ -77,8 +80,8 @@ def _register(field_offsets: np.ndarray) -> list[Any]:
     def no_state(_model: Any, _instance: int) -> int:
         return 0
 
-    def begin(_model: Any, _data: Any, _instance: int) -> int:
-        return 0
+    def begin(model: Any, _data: Any, _instance: int) -> int:
+        return -1 if has_misfit(model, field_offsets) else 0
 
     def reset(_model: Any, _state: Any, _plugin_data: Any, _instance: int) -> None:
         return None
@@ -144,6 +147,7 @@ def _library() -> ctypes.CDLL:
 
 _SAMPLE = """
 <mujoco>
+  <option timestep="0.003" integrator="implicitfast"/>
   <size nuserdata="2"/>
   <custom><numeric name="a" data="1 2 3"/></custom>
   <worldbody><body><freejoint/><geom size="0.1" pos="0.01 0.02 0"/>
