@@ -43,7 +43,7 @@ def check_chatter(record: xr.Dataset, runs: Sequence[Run]) -> None:
         f"the servos of run {sim}, {run.label or run.gait.name!r}, chatter: {fractions[sim]:.0%} of the power of their "
         f"torques is above {CHATTER_HARMONIC:g} times the gait's frequency, and {MAX_CHATTER:.0%} at most is usual"
         f"{batch_text}. Work, heat and cost of transport are those of the chatter. Less stiffness (kp) or a derivative "
-        "gain (kd) in proportion to the inertia would do, see suchus.robot.motors.servo_parameters."
+        "gain (kd) in proportion to the inertia would do, see suchus.robot.motors.servo_parameters.loop_gains."
     )
     warnings.warn(Doubtful(text, kind="kd", size=float(fractions[sim])), stacklevel=3)
 

@@ -44,3 +44,22 @@ def held_torques(
         load = inertial[dofs] - rotor_inertia * change + data.qfrc_bias[dofs]
         torques[sample, has_hinge] = load[servo_hinges[has_hinge]]
     return torques
+
+
+def held_inertias(robot: Robot) -> dict[str, float]:
+    """Return the inertia of what each servo moves while the root and all other joints are held, all joints at zero.
+
+    The rotors are left out, and so are servos that turn no hinge of their own.
+
+    Returns:
+        Inertia about the hinge of each servo, by its name [kg m2].
+    """
+    robot_layout = layout(robot)
+    count = len(robot_layout.hinges)
+    still, unit = np.zeros((count + 1, count)), np.vstack([np.zeros((1, count)), np.eye(count)])
+    torques = held_torques(robot, still, still, unit)
+    return {
+        name: float(torques[1 + hinge, servo] - torques[0, servo])
+        for servo, (name, hinge) in enumerate(zip(robot_layout.servos, robot_layout.servo_hinges, strict=True))
+        if hinge >= 0
+    }
