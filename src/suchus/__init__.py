@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from suchus.sim.faults import FAULTS as FAULTS
     from suchus.sim.faults import Backlash as Backlash
     from suchus.sim.faults import Deaf as Deaf
+    from suchus.sim.faults import Delayed as Delayed
+    from suchus.sim.faults import Frozen as Frozen
     from suchus.sim.faults import Limp as Limp
     from suchus.sim.faults import Locked as Locked
     from suchus.sim.faults import LostFoot as LostFoot
@@ -50,6 +52,7 @@ if TYPE_CHECKING:
     from suchus.sim.land import Run as Run
     from suchus.sim.land import crawl as crawl
     from suchus.sim.land import simulate as simulate
+    from suchus.sim.persistence import Persistence as Persistence
     from suchus.swimming.water import swim as swim
 
     __version__: str
@@ -86,8 +89,10 @@ _HOMES = {
     **dict.fromkeys(("water_loads", "wet"), "suchus.sim.immersion"),
     **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.sim.land"),
     "Fault": "suchus.sim.fault",
+    "Persistence": "suchus.sim.persistence",
     **dict.fromkeys(
-        ("FAULTS", "Backlash", "Deaf", "Limp", "Locked", "LostFoot", "Offset", "Slow", "Weak"), "suchus.sim.faults"
+        ("FAULTS", "Backlash", "Deaf", "Delayed", "Frozen", "Limp", "Locked", "LostFoot", "Offset", "Slow", "Weak"),
+        "suchus.sim.faults",
     ),
 }
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604 - the names are strings

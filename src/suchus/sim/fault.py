@@ -4,13 +4,15 @@ import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import MutableMapping, Sequence
+from dataclasses import fields
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
 from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.core.kinds import misfits
-from suchus.robot.design import Robot, servo_names
+from suchus.robot.design import Robot, layout, servo_names
+from suchus.sim.persistence import PERMANENT, Persistence
 
 SENSORS = (
     "servo_position",
@@ -27,11 +29,14 @@ SENSORS = (
 
 
 class Plant(Protocol):
-    """One robot of a running simulation as a fault reaches it, from when the fault begins until it is mended."""
+    """One robot of a running simulation as a fault reaches it, from when the fault begins until it is mended.
+
+    Each spell of an intermittent fault is a beginning of its own.
+    """
 
     @property
     def time(self) -> float:
-        """Since the fault began [s]."""
+        """Since the fault, or its present spell, began [s]."""
 
     @property
     def memory(self) -> dict[str, float]:
@@ -83,6 +88,14 @@ class Fault(ABC):
     """Kind of part that fails: ``servo``, ``limb`` or ``sensor``."""
     at: float
     """Time at which the fault begins [s], at least 0."""
+    persistence: Persistence = PERMANENT
+    """Whether it stays, recovers, or comes and goes; a kind without a field of this name stays."""
+
+    def __repr__(self) -> str:
+        """Return the fault as it is written in Python, without a persistence that says nothing."""
+        declared: Any = fields(self)  # type: ignore[arg-type]  # every fault is a dataclass
+        shown = [field.name for field in declared if (field.name, self.persistence) != ("persistence", PERMANENT)]
+        return f"{type(self).__qualname__}({', '.join(f'{name}={getattr(self, name)!r}' for name in shown)})"
 
     @property
     @abstractmethod
@@ -147,6 +160,51 @@ class ServoFault(Fault):
     def parts(cls, robot: Robot) -> tuple[str, ...]:
         """Return the names of the servos."""
         return servo_names(robot)
+
+
+class SensorFault(Fault):
+    """A fault of a group of sensors, or of one reading of it, named by a field ``sensor``."""
+
+    __slots__ = ()
+    acts_on = "sensor"
+    sensor: str
+    """Name of the group, as ``foot_pressure``, or of one reading, as ``servo_position.LF_yaw``."""
+
+    @property
+    def part(self) -> str:
+        """Name of the group or reading."""
+        return self.sensor
+
+    @classmethod
+    def parts(cls, robot: Robot) -> tuple[str, ...]:
+        """Return the names of the groups and of their readings."""
+        elements = sensor_elements(robot)
+        return (*SENSORS, *(f"{group}.{name}" for group, names in elements.items() for name in names))
+
+    def refuse(self, robot: Robot) -> None:
+        """Refuse a group or a reading that the robot does not have."""
+        group, dot, element = self.sensor.partition(".")
+        if group not in SENSORS:
+            raise UnknownName("sensor", self.sensor, SENSORS)
+        names = sensor_elements(robot).get(group, ())
+        if dot and element not in names:
+            raise UnknownName(f"reading of {group}", element, names)
+
+    def readings(self, plant: Plant) -> np.ndarray:
+        """Return the readings that fail, for writing."""
+        group, _, element = self.sensor.partition(".")
+        return plant.felt(group, element or None)
+
+
+def sensor_elements(robot: Robot) -> dict[str, tuple[str, ...]]:
+    """Return the names of the readings of each group of sensors that has a reading for each servo, leg or body."""
+    robot_layout = layout(robot)
+    servo_groups = ("servo_position", "servo_velocity", "servo_torque")
+    return {
+        **dict.fromkeys(servo_groups, robot_layout.servos),
+        "foot_pressure": robot_layout.limb_names,
+        "belly_pressure": robot_layout.trunk,
+    }
 
 
 def check_faults(faults: Sequence[Fault], robot: Robot, duration: float) -> None:

@@ -13,10 +13,11 @@ from rich.table import Table
 
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
-from suchus.core.files import check_replaceable, check_writable, load, write
+from suchus.core.files import check_replaceable, check_writable, load, new_folder, write
 from suchus.hardware import BusClock, Rig, WallClock, read_wiring, write_wiring
 from suchus.hardware.bus import BusPlace, Wiring, straight
-from suchus.hardware.calibrate import find_wiring, find_zeros, fit_log, fits_text
+from suchus.hardware.calibrate import FitEstimate, find_wiring, find_zeros, fit_log, fits_text
+from suchus.hardware.identification import bam_parameters, identification_table, identify_servos
 from suchus.hardware.protocols import servo_table
 from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import gait_of
@@ -47,10 +48,17 @@ class CalibrateOptions:
     """Gait in whose first posture the robot is held, for zero; all joints at zero if it is left out."""
     clock: Literal["wall", "bus"] = "wall"
     """wall: this computer's time; bus: an emulator is told the time."""
+    held: tyro.conf.FlagCreatePairsOff[bool] = False
+    """The log is of a robot whose trunk was held in the air: inertia, friction, torque constant, delay and play follow
+    from the masses of its file, for log."""
+    json: Path | None = None
+    """New folder for one JSON file a servo, as the project Better Actuator Models reads it; with --held."""
     out: Path | None = None
-    """The new file; by default hardware_wired.toml, hardware_zeroed.toml or servos_measured.csv."""
+    """The new file; by default hardware_wired.toml, hardware_zeroed.toml, servos_measured.csv, or with --held
+    servos_identified.csv."""
 
 
+_IDENTIFIED = "servos_identified.csv"
 _NEW = {"wiring": "hardware_wired.toml", "zero": "hardware_zeroed.toml", "log": "servos_measured.csv"}
 
 
@@ -65,11 +73,18 @@ def calibrate(words: Sequence[str]) -> int:
         "Find out how a robot is wired, where its zeros are and how stiff its servos are; files are never changed."
     )
     options = parse(CalibrateOptions, "suchus calibrate", words, description)
-    output = options.out or Path(_NEW[options.what])
+    if (options.held or options.json is not None) and options.what != "log":
+        raise BadCommand(f"--held and --json are for suchus calibrate log; leave them out of calibrate {options.what}.")
+    if options.json is not None and not options.held:
+        raise BadCommand("--json needs what only a robot in the air shows: say --held if its trunk was held.")
+    output = options.out or Path(_IDENTIFIED if options.held else _NEW[options.what])
     check_writable(output.parent)
     check_replaceable(output)
+    if options.json is not None:
+        check_writable(options.json.parent)
+        check_replaceable(options.json)
     if options.what == "log":
-        return _fit_log(options, output)
+        return _identify_log(options, output) if options.held else _fit_log(options, output)
     rig = Rig(options.robot, _initial_wiring(options), has_clock=options.clock == "bus")
     try:
         if options.what == "wiring":
@@ -142,3 +157,43 @@ def _fit_log(options: CalibrateOptions, output: Path) -> int:
     measured_file = write(output, fits_text(fits))
     print(f"written: {measured_file}; intervals hold 95 % of what scatters, not what the model leaves out")
     return 0
+
+
+def _identify_log(options: CalibrateOptions, output: Path) -> int:
+    """Identify the servos of a robot that was held in the air, print and write them, and return 0."""
+    if options.record is None:
+        raise BadCommand("suchus calibrate log needs the record.nc of a drive, as out/drive_belly_crawl/record.nc.")
+    record = load(options.record)
+    models = {}
+    if options.hardware.exists():
+        wiring = read_wiring(options.hardware, options.robot)
+        models = {servo.name: servo.model for servo in wiring.servo}
+    identified, refusals = identify_servos(
+        record.isel(run=0) if "run" in record.dims else record, options.robot, models or None
+    )
+    columns = (
+        ("torque_constant", "torque constant [N m/A]", 1.0), ("armature", "inertia [g m2]", 1e3),
+        ("friction", "Coulomb [mN m]", 1e3), ("damping", "viscous [mN m s/rad]", 1e3), ("delay", "delay [ms]", 1e3),
+        ("play", "play [degrees]", float(np.degrees(1.0))),
+    )  # fmt: skip
+    table = Table("servo", *(label for _, label, _ in columns), box=None)
+    for name, servo in identified.items():
+        table.add_row(name, *(_scaled(getattr(servo, field), scale) for field, _, scale in columns))
+    Console(highlight=False).print(table)
+    for name, refusal in refusals.items():
+        print(f"{name} is left out: {refusal}")
+    written = write(output, identification_table(identified))
+    if options.json is not None:
+        with new_folder(options.json) as draft:
+            for name, servo in identified.items():
+                text = bam_parameters(servo, models.get(name, options.robot.name))
+                (draft / f"{name}.json").write_text(text, encoding="utf-8")
+    print(f"written: {written}; intervals hold 95 %")
+    return 0
+
+
+def _scaled(estimate: FitEstimate, scale: float) -> str:
+    """Return an estimate in another unit; a dash for one that the log does not show."""
+    if not np.isfinite(estimate.value):
+        return "-"
+    return str(FitEstimate(value=scale * estimate.value, half=scale * estimate.half))

@@ -24,7 +24,7 @@ from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.sim.faults import FAULTS, from_table
+from suchus.sim.faults import FAULTS, from_text
 from suchus.sim.land import Ground, Lake
 
 _PLACE = Path("hardware.toml")
@@ -50,6 +50,8 @@ class EmulateOptions:
     """Gait in whose first posture the robot begins; by default its own."""
     lake: float | None = None
     """Level of the water around it [m]; dry land if it is left out."""
+    held: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Hold its trunk in the air, level, as a builder does who identifies the servos by suchus calibrate log --held."""
     slope: float = 0.0
     """Slope of the ground, uphill positive [degrees]."""
     socket: tyro.conf.FlagCreatePairsOff[bool] = False
@@ -57,7 +59,8 @@ class EmulateOptions:
     trouble: Annotated[Trouble, tyro.conf.arg(name="")] = field(default_factory=Trouble)
     """What goes wrong on the wire and in servos."""
     fault: tuple[str, ...] = ()
-    """What breaks in the servos, as limp:LF_yaw or weak:RH_pitch: a fault that suchus list shows, and its part."""
+    """What breaks in the servos, as limp:LF_yaw or weak:RH_pitch,fraction=0.3,rate=1,length=0.2: a fault that suchus
+    list shows, its part, and fields."""
     seconds: float | None = None
     """How long to serve [s]; until Ctrl-C if it is left out."""
     view: tyro.conf.FlagCreatePairsOff[bool] = False
@@ -92,6 +95,7 @@ def emulate(words: Sequence[str]) -> int:
         lake=None if options.lake is None else Lake(level=options.lake),
         faults=[_fault(text, trouble.at) for text in options.fault],
         latency=trouble.latency if is_clocked else 0.0,
+        held=options.held,
     )
     wiring, links = _wiring_and_links(options)
     emulator = Emulator(wiring, body, trouble, has_clock=is_clocked, say=_say)
@@ -188,10 +192,10 @@ def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:
 
 
 def _fault(text: str, onset: float) -> Any:
-    kind, colon, joint = text.partition(":")
+    _, colon, joint = text.partition(":")
     if not colon or not joint:
         raise BadCommand(f"--fault {text} names no part; say as limp:LF_yaw. The kinds are {', '.join(FAULTS)}.")
-    return from_table({"kind": kind, "joint": joint, "at": onset})
+    return from_text(text, at=onset)
 
 
 def _watching_page(options: EmulateOptions, server: Server, body: EmulatedBody) -> Any:

@@ -22,7 +22,7 @@ from suchus.robot.design import Motor, Robot
 from suchus.robot.gaits import default_gait, gait_of
 from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault
-from suchus.sim.faults import FAULTS, from_table
+from suchus.sim.faults import FAULTS, from_text
 
 MARK = "suchus_size.json"
 
@@ -42,7 +42,7 @@ class SizeOptions:
     slope: tuple[float, ...] = ()
     """Slopes up which it shall walk too [degrees]."""
     fault: tuple[str, ...] = ()
-    """Faults with which it shall walk too, as limp:LF_pitch."""
+    """Faults with which it shall walk too, as limp:LF_pitch or weak:LF_pitch,fraction=0.3."""
     standing: tyro.conf.FlagCreatePairsOff[bool] = False
     """Let it stand up, too."""
     water: tyro.conf.FlagCreatePairsOff[bool] = False
@@ -116,9 +116,9 @@ def _fault(word: str, robot: Robot) -> Fault:
         BadCommand: it is not of the form KIND:PART.
         UnknownName: there is no such kind, or the robot has no such part.
     """
-    kind, colon, joint = word.partition(":")
+    _, colon, joint = word.partition(":")
     if not colon or not joint:
         raise BadCommand(f"--fault {word} is no fault; say KIND:PART, as limp:LF_pitch, with {', '.join(FAULTS)}.")
-    fault = from_table({"kind": kind, "joint": joint})
+    fault = from_text(word)
     fault.refuse(robot)
     return fault

@@ -238,6 +238,9 @@ class Controls:
         kind = gui.add_dropdown("fault", kinds, initial_value=kinds[0])
         joint = gui.add_dropdown("part", FAULTS[kinds[0]].parts(session.robot))
         magnitude = gui.add_number("how much", 0.0, step=0.01, hint="In SI units; faults without a number ignore it.")
+        duration = gui.add_number("recovers after [s]", 0.0, min=0.0, step=0.1, hint="0: it stays.")
+        rate = gui.add_number("spells in a second [1/s]", 0.0, min=0.0, step=0.1, hint="0: it is there all the time.")
+        length = gui.add_number("mean length of a spell [s]", 0.2, min=0.001, step=0.05)
 
         def choose(name: object) -> None:
             joint.options = FAULTS[str(name)].parts(session.robot)
@@ -245,7 +248,12 @@ class Controls:
 
         def happen(_: object) -> str:
             fields = list(numbers(FAULTS[kind.value]))[:1]
-            return session.break_part(joint.value, kind.value, **dict.fromkeys(fields, float(magnitude.value)))
+            parameters = dict.fromkeys(fields, float(magnitude.value))
+            if duration.value > 0.0:
+                parameters["duration"] = float(duration.value)
+            if rate.value > 0.0:
+                parameters |= {"rate": float(rate.value), "length": float(length.value)}
+            return session.break_part(joint.value, kind.value, **parameters)
 
         choose(kinds[0])
         self._connect(kind, choose)
@@ -328,7 +336,7 @@ class LivePage(BrowserPage):
         settings = self._session.settings
         self._stage.visible_overlays = {name: bool(box.value) for name, box in self._switches.items()}
         with self._client.atomic():
-            self._stage.mark(settings.broken)
+            self._stage.mark(self._session.present_faults)
             if not instant.trouble:
                 self._stage.set_pose(
                     instant.state, (settings.uphill, settings.sideways), follow=bool(self._follow.value)

@@ -252,6 +252,12 @@ class Session:
             other_faults = () if part_name is None else self._faults_except(part_name)
             self.settings = replace(self.settings, broken=other_faults)
 
+    @property
+    def present_faults(self) -> tuple[Fault, ...]:
+        """The faults that are present now; an intermittent one comes and goes."""
+        with self._lock:
+            return self._live.broken
+
     def _faults_except(self, part_name: str) -> tuple[Fault, ...]:
         return tuple(fault for fault in self.settings.broken if fault.part != part_name)
 

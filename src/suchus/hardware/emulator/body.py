@@ -1,7 +1,7 @@
 """The robot behind an emulated bus: the simulation of ``suchus.sim.land``, commanded servo by servo."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -17,11 +17,14 @@ from suchus.sim.faults import Limp, Weak
 from suchus.sim.land import Lake, Run
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.loop import Loop
+from suchus.sim.land.meter import MEAN_TORQUE
 from suchus.sim.land.readings import Recorder
 from suchus.sim.land.step_division import divided_step
 
 _BLOCK_SAMPLES = 1000  # samples of a block of the record
 _MAX_DURATION = 86400.0  # [s]
+_ROOT_DOFS = 6  # of the free joint of the root [-]
+_HELD_INERTIA = 1e7  # of a root that is held [kg, kg m2]: it falls by 3 mm in a minute
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +73,7 @@ class EmulatedBody:
         faults: faults of its servos, each at its time.
         latency: how long a goal is on its way before it acts [s]; it is rounded to physics steps.
         timestep: time step of the physics [s]; that of the robot's size if None.
+        held: whether its root is held in the air, level, so that all limbs move freely.
 
     Raises:
         InvalidDesign: a time step, a lake or a fault that cannot be.
@@ -86,6 +90,7 @@ class EmulatedBody:
         faults: Sequence[Fault] = (),
         latency: float = 0.0,
         timestep: float | None = None,
+        held: bool = False,
     ) -> None:
         """Set up the simulation of the robot at rest in the first posture of its gait."""
         timestep = divided_step(physics_step(robot) if timestep is None else timestep)
@@ -100,6 +105,8 @@ class EmulatedBody:
         )  # fmt: skip
         self.robot, self.period, self.servos = robot, control_period(robot), layout(robot).servos
         self._loop = Loop([run], timestep, ticks=1)
+        if held:
+            self._hold_root()
         self._latency_steps = round(latency / timestep)
         self.latency = self._latency_steps * timestep
         """Latency of goals in the end [s]."""
@@ -110,7 +117,6 @@ class EmulatedBody:
         self._goals = controller.rest()[0]
         self.powered = np.ones(len(self.servos))
         """Share of its torque that each servo may use, 0 to 1 [-]."""
-        self._faults = {fault.part: fault for fault in faults}
         self._blocks: list[Recorder] = []  # full ones; a record is made of them when one is asked for
         self._recorder, self._stored_samples = self._loop.recorder(_BLOCK_SAMPLES), 0
         self._probe = self._loop.recorder(1)
@@ -127,8 +133,24 @@ class EmulatedBody:
         return self._loop.time
 
     def sensed(self) -> Sensed:
-        """Return the readings of the robot's sensors, which may have faults."""
-        return self._loop.sensed()
+        """Return the readings of the robot's sensors, which may have faults.
+
+        The torque of a servo is its mean over the control period, as the current sensor of a servo filters it.
+        """
+        batch = self._loop.batch
+        sensed = self._loop.sensors.sensed(self.time)
+        if self.tick > 0:
+            sensed = replace(sensed, servo_torque=batch.effort[..., MEAN_TORQUE].copy())
+        return self._loop.disturbances.injector.sense(sensed)
+
+    def _hold_root(self) -> None:
+        """Lift the robot by its length, and give its root so much inertia that nothing moves it."""
+        batch = self._loop.batch
+        batch.field("dof_armature", 0)[:_ROOT_DOFS] = _HELD_INERTIA
+        batch.commit()
+        batch.qpos[0, 2] += self._loop.runs[0].robot.length
+        batch.physics.forward()
+        batch.read_sensors(slice(None))
 
     @property
     def now(self) -> Mapping[str, np.ndarray]:
@@ -156,15 +178,10 @@ class EmulatedBody:
         if share == self.powered[place]:
             return
         self.powered[place] = share
-        name, injector = self.servos[place], self._loop.disturbances.injector
-        if share <= 0.0:
-            injector.begin(0, Limp(name))
-        elif name in self._faults and self._faults[name].at <= self.time:
-            injector.begin(0, self._faults[name])
-        elif share < 1.0:
-            injector.begin(0, Weak(name, share))
-        else:
-            injector.mend(0, name)
+        name = self.servos[place]
+        self._loop.disturbances.override(
+            0, name, Limp(name) if share <= 0.0 else None, default=Weak(name, share) if share < 1.0 else None
+        )
 
     def step(self) -> None:
         """Let one control period pass.

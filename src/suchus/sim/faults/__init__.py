@@ -10,17 +10,22 @@ from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.sim.fault import Fault
 from suchus.sim.faults.backlash import Backlash
 from suchus.sim.faults.deaf import Deaf
+from suchus.sim.faults.delayed import Delayed
+from suchus.sim.faults.frozen import Frozen
 from suchus.sim.faults.limp import Limp
 from suchus.sim.faults.locked import Locked
 from suchus.sim.faults.lost_foot import LostFoot
 from suchus.sim.faults.offset import Offset
 from suchus.sim.faults.slow import Slow
 from suchus.sim.faults.weak import Weak
+from suchus.sim.persistence import Persistence
 
 __all__ = [
     "FAULTS",
     "Backlash",
     "Deaf",
+    "Delayed",
+    "Frozen",
     "Limp",
     "Locked",
     "LostFoot",
@@ -28,6 +33,7 @@ __all__ = [
     "Slow",
     "Weak",
     "from_table",
+    "from_text",
     "numbers",
 ]
 
@@ -40,7 +46,8 @@ FAULTS: Catalog[type[Fault]] = Catalog(
 def from_table(table: Mapping[str, Any]) -> Fault:
     """Return the fault that a table describes, as ``{kind = "weak", joint = "LF_yaw", fraction = 0.2, at = 4.0}``.
 
-    The part that breaks stands under the name of the fault's first field, or under ``joint`` for all kinds.
+    The part that breaks stands under the name of the fault's first field, or under ``joint`` for all kinds. The fields
+    of its ``Persistence`` stand beside the others, as ``duration = 0.5``.
 
     Raises:
         UnknownName: no such kind, or no such field of this kind.
@@ -55,13 +62,52 @@ def from_table(table: Mapping[str, Any]) -> Fault:
     if part_field not in values:
         raise InvalidDesign(f"the fault {make.kind()} needs a {part_field}; {_show(table)} has none.")
     types = get_type_hints(make)
+    persistence = {}
+    if "persistence" in fields_by_name:
+        persistence = {key: values.pop(key) for key in _PERSISTENCE if key in values and key not in fields_by_name}
     for key, value in values.items():
         if key not in fields_by_name:
             raise UnknownName(f"field of the fault {make.kind()}", key[:60], fields_by_name)
         _check(make.kind(), key, value, types[key])
         if isinstance(value, int):  # a whole number in a file is a number like any other
             values[key] = float(value)
+    if persistence:
+        for key, value in persistence.items():
+            _check(make.kind(), key, value, float)
+        seed = persistence.pop("seed", 0)
+        if seed != int(seed):
+            raise InvalidDesign(f"seed of the fault {make.kind()} is {_show(seed)}; a whole number is needed.")
+        values["persistence"] = Persistence(seed=int(seed), **{key: float(value) for key, value in persistence.items()})
     return make(**values)
+
+
+def from_text(text: str, **defaults: float) -> Fault:
+    """Return the fault that a text of a command line names, as ``limp:LF_yaw`` or ``weak:LF_yaw,fraction=0.2,at=4``.
+
+    Args:
+        text: kind, colon, part, and fields with their numbers after commas.
+        **defaults: fields that the text may leave out, as ``at``.
+
+    Raises:
+        UnknownName: no such kind, or no such field of this kind.
+        InvalidDesign: the part is missing, a field has no number, or a number is outside its range.
+    """
+    kind, _, words = text.partition(":")
+    part, *settings = (word.strip() for word in words.split(","))
+    if not part:
+        raise InvalidDesign(
+            f"the fault {_show(text)} names no part; say KIND:PART, as limp:LF_yaw, with {', '.join(FAULTS)}."
+        )
+    table: dict[str, Any] = {**defaults, "kind": kind.strip(), "joint": part}
+    for setting in settings:
+        name, _, number = (word.strip() for word in setting.partition("="))
+        try:
+            table[name] = float(number)
+        except ValueError:
+            raise InvalidDesign(
+                f"the fault {_show(text)} has {_show(setting)}; a field and its number are needed, as at=4.0."
+            ) from None
+    return from_table(table)
 
 
 def numbers(kind: type[Fault]) -> dict[str, float]:
@@ -71,6 +117,9 @@ def numbers(kind: type[Fault]) -> dict[str, float]:
         if field.name != "at" and isinstance(_default(field), float):
             spare[field.name] = float(_default(field))
     return spare
+
+
+_PERSISTENCE = tuple(field.name for field in fields(Persistence))
 
 
 def _default(field: "Field[Any]") -> Any:

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 from suchus.robot.design import Robot
 from suchus.sim.fault import Plant, ServoFault, refuse_number
+from suchus.sim.persistence import PERMANENT, Persistence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Backlash(ServoFault):
     """A gear with play: the joint is free while it is within half of the gap from the commanded angle.
 
@@ -21,6 +22,8 @@ class Backlash(ServoFault):
     """Play from one end to the other [rad]; 0 to 1."""
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
+    persistence: Persistence = PERMANENT
+    """Whether it stays, recovers, or comes and goes."""
 
     def refuse(self, robot: Robot) -> None:
         """Refuse a gap that no gear has, too."""

@@ -1,38 +1,28 @@
-"""A group of sensors that reads zero."""
+"""A group of sensors, or one of them, that reads zero."""
 
 from dataclasses import dataclass
 
-from suchus.robot.design import Robot
-from suchus.sim.fault import SENSORS, Fault, Plant
+from suchus.sim.fault import Plant, SensorFault
+from suchus.sim.persistence import PERMANENT, Persistence
 
 
-@dataclass(frozen=True, slots=True)
-class Deaf(Fault):
-    """A group of sensors that reads zero from now on; a robot that does not listen to them walks on as before.
+@dataclass(frozen=True, slots=True, repr=False)
+class Deaf(SensorFault):
+    """A group of sensors, or one, that reads zero; a robot that does not listen to it walks on as before.
 
     An orientation of zero is that of a robot that stands level and faces forward.
     """
 
     sensor: str
-    """Name of the group, as ``foot_pressure``."""
+    """Name of the group, as ``foot_pressure``, or of one reading, as ``servo_position.LF_yaw``."""
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
-    acts_on = "sensor"
-
-    @property
-    def part(self) -> str:
-        """Name of the group."""
-        return self.sensor
-
-    @classmethod
-    def parts(cls, robot: Robot) -> tuple[str, ...]:
-        """Return the names of the groups."""
-        del robot
-        return SENSORS
+    persistence: Persistence = PERMANENT
+    """Whether it stays, recovers, or comes and goes."""
 
     def sense(self, plant: Plant) -> None:
         """Read zero."""
-        plant.felt(self.sensor)[...] = (1.0, 0.0, 0.0, 0.0) if self.sensor == "orientation" else 0.0
+        self.readings(plant)[...] = (1.0, 0.0, 0.0, 0.0) if self.sensor == "orientation" else 0.0
 
 
 fault = Deaf

@@ -6,9 +6,10 @@ from suchus.core.errors import OutsideLimits
 from suchus.robot.design import Robot
 from suchus.robot.motion import servo_range
 from suchus.sim.fault import Plant, ServoFault
+from suchus.sim.persistence import PERMANENT, Persistence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Locked(ServoFault):
     """A servo that holds one angle, within its torque, whatever it is commanded."""
 
@@ -18,6 +19,8 @@ class Locked(ServoFault):
     """Time at which the fault begins [s], at least 0."""
     angle: float | None = None
     """The angle it holds [rad]; None: the one it has at that time."""
+    persistence: Persistence = PERMANENT
+    """Whether it stays, recovers, or comes and goes."""
 
     def refuse(self, robot: Robot) -> None:
         """Refuse an angle that the joint cannot reach, too."""

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 from suchus.robot.design import Robot, layout
 from suchus.sim.fault import Fault, Plant
+from suchus.sim.persistence import PERMANENT, Persistence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class LostFoot(Fault):
     """A leg without its foot: the sole no longer meets the ground, the end of the shank does.
 
@@ -19,6 +20,8 @@ class LostFoot(Fault):
     """Name of the leg, as ``LF``."""
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
+    persistence: Persistence = PERMANENT
+    """Whether it stays, recovers, or comes and goes."""
     acts_on = "limb"
 
     @property

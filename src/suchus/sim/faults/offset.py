@@ -5,12 +5,13 @@ from math import pi
 
 from suchus.robot.design import Robot
 from suchus.sim.fault import Plant, ServoFault, refuse_number
+from suchus.sim.persistence import PERMANENT, Persistence
 
 TOOTH = 2 * pi / 25
 """One tooth of a horn with 25 teeth, the commonest spline of hobby servos [rad]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Offset(ServoFault):
     """A horn on the wrong tooth: the joint is off the servo's angle by a constant.
 
@@ -24,6 +25,8 @@ class Offset(ServoFault):
     """Angle of the joint beyond the servo [rad]; -pi to pi."""
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
+    persistence: Persistence = PERMANENT
+    """Whether it stays, recovers, or comes and goes."""
 
     def refuse(self, robot: Robot) -> None:
         """Refuse an angle beyond half a turn, too."""

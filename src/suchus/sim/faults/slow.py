@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 from suchus.robot.design import Robot
 from suchus.sim.fault import Plant, ServoFault, refuse_number
+from suchus.sim.persistence import PERMANENT, Persistence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Slow(ServoFault):
     """A servo whose angle follows the commanded one at a limited speed, as with a sagging supply.
 
@@ -20,6 +21,8 @@ class Slow(ServoFault):
     """The new speed limit [rad/s]; more than 0, at most the limit of the intact servo."""
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
+    persistence: Persistence = PERMANENT
+    """Whether it stays, recovers, or comes and goes."""
 
     def refuse(self, robot: Robot) -> None:
         """Refuse a speed that is not a limit of this servo, too."""

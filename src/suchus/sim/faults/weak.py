@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Robot
 from suchus.sim.fault import Plant, ServoFault
+from suchus.sim.persistence import PERMANENT, Persistence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Weak(ServoFault):
     """A servo with a part of its torque."""
 
@@ -17,6 +18,8 @@ class Weak(ServoFault):
     """Fraction of the torque limit that is left [-], 0 to 1."""
     at: float = 0.0
     """Time at which the fault begins [s], at least 0."""
+    persistence: Persistence = PERMANENT
+    """Whether it stays, recovers, or comes and goes."""
 
     def refuse(self, robot: Robot) -> None:
         """Refuse a fraction outside 0 to 1, too."""

@@ -2,7 +2,7 @@
 
 from suchus.robot.design.ground import ARENAS, Ground
 from suchus.sim.fault import Fault
-from suchus.sim.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
+from suchus.sim.faults import Backlash, Deaf, Delayed, Frozen, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.sim.land.failed import FAILED_JOINTS, KINDS, LEGS_FAILED, angle_at, failing_joints, joint_failure
 from suchus.sim.land.lake import Lake, Wave
 from suchus.sim.land.live import Live
@@ -13,6 +13,7 @@ from suchus.sim.land.simulation import crawl, simulate
 from suchus.sim.land.step_division import divide_steps
 from suchus.sim.land.tolerances import Tolerances
 from suchus.sim.land.trunk_steering import measure_trunk_steering
+from suchus.sim.persistence import Persistence
 
 __all__ = [
     "ARENAS",
@@ -25,7 +26,9 @@ __all__ = [
     "Afloat",
     "Backlash",
     "Deaf",
+    "Delayed",
     "Fault",
+    "Frozen",
     "Ground",
     "Lake",
     "Limp",
@@ -33,6 +36,7 @@ __all__ = [
     "Locked",
     "LostFoot",
     "Offset",
+    "Persistence",
     "Push",
     "Run",
     "Slow",

@@ -1,6 +1,7 @@
 """What goes wrong in the runs of a batch: faults, which the injector begins and mends, pushes, errors of servos."""
 
 from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from dataclasses import dataclass
 from math import floor
 
 import numpy as np
@@ -173,6 +174,20 @@ _TICK_TOLERANCE = 1e-6
 """Rounding tolerance of the time of a push; it is expected rather too early than too late [control period]."""
 
 
+@dataclass(slots=True)
+class _Spells:
+    """A fault with the spells in which it is present."""
+
+    fault: Fault
+    """The fault."""
+    coming: Iterator[tuple[int, int | None]]
+    """First control period of each spell to come, and the first one after it."""
+    end: int | None = None
+    """First control period after the present spell; None where it does not end."""
+    is_present: bool = False
+    """Whether it is in a spell."""
+
+
 class Disturbances:
     """The faults, the pushes and the servos' errors of all runs of a batch, each run by a clock of its own.
 
@@ -187,7 +202,10 @@ class Disturbances:
         """Draw the servo noise of each run, and schedule its faults and pushes."""
         self._batch, self._period = batch, period
         self.injector = Injector(batch, period, runs[0].robot)
-        self._faults: list[dict[int, list[Fault]]] = [{} for _ in runs]
+        self._changes: list[dict[int, list[_Spells]]] = [{} for _ in runs]
+        self._present: list[dict[str, Fault]] = [{} for _ in runs]
+        self._overriding: list[dict[str, Fault]] = [{} for _ in runs]
+        self._default: list[dict[str, Fault]] = [{} for _ in runs]
         self._pushes: list[list[Push]] = [[] for _ in runs]
         self._next_ticks, self._has_pending = np.full(len(runs), _NO_TICK), False
         servos = len(layout(runs[0].robot).servos)
@@ -216,10 +234,46 @@ class Disturbances:
         """
         self.injector.mend(sim)
         self._reached_angles[sim] = np.nan
-        self._faults[sim], self._pushes[sim] = {}, list(pushes)
+        self._changes[sim], self._pushes[sim] = {}, list(pushes)
+        self._present[sim], self._overriding[sim], self._default[sim] = {}, {}, {}
         for fault in faults:
-            self._faults[sim].setdefault(int(np.ceil(fault.at / self._period - 1e-9)), []).append(fault)
+            self._plan(sim, _Spells(fault, fault.persistence.spell_ticks(fault.part, fault.at, self._period)))
         self._update_next_tick(sim, -1)
+
+    def begin(self, sim: int, fault: Fault, clock: int) -> None:
+        """Begin a fault of a run now, with its recovery or its spells to come; another fault of the same part ends.
+
+        Args:
+            sim: the run.
+            fault: the fault; its ``at`` does nothing.
+            clock: number of the control period of the run since it began.
+        """
+        self._forget(sim, fault.part)
+        onset = clock * self._period
+        self._plan(sim, _Spells(fault, fault.persistence.spell_ticks(fault.part, onset, self._period)))
+        self._change(sim, clock)
+        self._update_next_tick(sim, clock)
+
+    def mend(self, sim: int, part_name: str) -> None:
+        """End the fault of a part for good, its spells to come included."""
+        self._forget(sim, part_name)
+        self._present[sim].pop(part_name, None)
+        self._settle(sim, part_name)
+
+    def override(self, sim: int, part_name: str, fault: Fault | None, *, default: Fault | None = None) -> None:
+        """Break a part from outside, whatever is scheduled, or leave it to its schedule.
+
+        Args:
+            sim: the run.
+            part_name: the part.
+            fault: fault that it has while any scheduled one waits; None: the scheduled one counts.
+            default: fault that it has where neither counts; None: it is intact.
+        """
+        for faults, value in ((self._overriding[sim], fault), (self._default[sim], default)):
+            faults.pop(part_name, None)
+            if value is not None:
+                faults[part_name] = value
+        self._settle(sim, part_name)
 
     def push(self, sim: int, push: Push) -> None:
         """Add a push to the future ones of a run."""
@@ -270,12 +324,49 @@ class Disturbances:
         for body, force in forces.items():
             self._batch.push(sim, body, force)
         self._pushes[sim] = [push for push in self._pushes[sim] if push.at + push.duration > start]
-        for fault in self._faults[sim].pop(tick, ()):
-            self.injector.begin(sim, fault)
+        self._change(sim, tick)
         self._update_next_tick(sim, tick)
+
+    def _plan(self, sim: int, spells: _Spells) -> None:
+        """Note when the next spell of a fault begins, if there is one."""
+        begin, spells.end = next(spells.coming, (None, None))
+        if begin is not None:
+            self._changes[sim].setdefault(begin, []).append(spells)
+
+    def _change(self, sim: int, tick: int) -> None:
+        """Begin and end the spells of a run that begin or end with a control period."""
+        for spells in self._changes[sim].pop(tick, ()):
+            fault, spells.is_present = spells.fault, not spells.is_present
+            if spells.is_present:
+                self._present[sim][fault.part] = fault
+                if spells.end is not None:
+                    self._changes[sim].setdefault(spells.end, []).append(spells)
+            else:
+                del self._present[sim][fault.part]
+                self._plan(sim, spells)
+            self._settle(sim, fault.part)
+
+    def _forget(self, sim: int, part_name: str) -> None:
+        """Remove what will happen to a part of a run."""
+        for tick, changes in list(self._changes[sim].items()):
+            remaining = [spells for spells in changes if spells.fault.part != part_name]
+            if remaining:
+                self._changes[sim][tick] = remaining
+            else:
+                del self._changes[sim][tick]
+
+    def _settle(self, sim: int, part_name: str) -> None:
+        """Break a part of a run anew as it is broken now, or mend it."""
+        for faults in (self._overriding[sim], self._present[sim], self._default[sim]):
+            if part_name in faults:
+                fault = faults[part_name]
+                if not any(fault is broken for broken in self.injector.broken(sim)):
+                    self.injector.begin(sim, fault)
+                return
+        self.injector.mend(sim, part_name)
 
     def _update_next_tick(self, sim: int, tick: int) -> None:
         """Store the next control period after ``tick`` in which a fault or a push of a run may begin."""
         begins = [floor(push.at / self._period - _TICK_TOLERANCE) for push in self._pushes[sim]]
-        self._next_ticks[sim] = max(min([*self._faults[sim], *begins], default=_NO_TICK), tick + 1)
+        self._next_ticks[sim] = max(min([*self._changes[sim], *begins], default=_NO_TICK), tick + 1)
         self._has_pending = bool((self._next_ticks < _NO_TICK).any())

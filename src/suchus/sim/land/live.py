@@ -108,7 +108,7 @@ class Live:
             self._beat = self._start + round(cycle_fraction * self._cycle(run)) % self._cycle(run)
 
     def begin(self, fault: Fault) -> None:
-        """Begin a fault now; an earlier fault of the same part ends.
+        """Begin a fault now, with its recovery or its spells to come; an earlier fault of the same part ends.
 
         The robot moves as in a run whose fault begins at this time, except that the controller senses the fault one
         control period later.
@@ -119,15 +119,20 @@ class Live:
             OutsideLimits: a joint held at an angle that it cannot reach.
         """
         check_faults([replace(fault, at=0.0)], self.run.robot, inf)  # type: ignore[type-var]  # all are dataclasses
-        self._loop.disturbances.injector.begin(0, fault)
+        self._loop.disturbances.begin(0, fault, int(self._loop.clocks[0]))
         self._loop.disturb()
         self._read_sample()
 
     def mend(self, part_name: str) -> None:
         """End the fault of a part."""
-        self._loop.disturbances.injector.mend(0, part_name)
+        self._loop.disturbances.mend(0, part_name)
         self._loop.disturb()
         self._read_sample()
+
+    @property
+    def broken(self) -> tuple[Fault, ...]:
+        """The faults that are present now, in the order in which they began."""
+        return self._loop.disturbances.injector.broken(0)
 
     def push(self, push: Push) -> None:
         """Add a push, which may begin now.

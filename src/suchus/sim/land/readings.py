@@ -17,7 +17,7 @@ from suchus.sim.land.lake import lake_text, up_direction
 from suchus.sim.land.meter import joint_effort
 from suchus.sim.land.run import Run
 from suchus.sim.model import ambient, joint_addresses, sensor_names, warming
-from suchus.sim.record import EFFORT, WATER, dataset, ground_text
+from suchus.sim.record import EFFORT, ELECTRICAL, WATER, dataset, ground_text
 
 
 class Sensors:
@@ -218,7 +218,10 @@ class Recorder:
         """Return the samples of what servos do by the names of ``record.EFFORT``."""
         if not self._has_effort:
             return {}
-        return {name: np.ascontiguousarray(self._effort[..., k]) for k, name in enumerate(EFFORT)}
+        efforts = {name: np.ascontiguousarray(self._effort[..., k]) for k, name in enumerate(EFFORT)}
+        return efforts | electrical_power(
+            efforts, [run.robot for run in self._runs], [run.supply for run in self._runs]
+        )
 
     def _warmed(self) -> dict[str, np.ndarray]:
         """Return how warm the servos are, by the name of ``record.HEAT``; nothing where none warms up."""
@@ -281,6 +284,35 @@ class Recorder:
         }
 
 
+def electrical_power(
+    efforts: Mapping[str, np.ndarray], robots: Sequence[Robot], supply_ratios: Sequence[float]
+) -> dict[str, np.ndarray]:
+    """Return the power that servos draw, by the name of ``record.ELECTRICAL``; nothing where no servo has a winding.
+
+    The current of a motor is in proportion to its torque, ``I = torque stall_current / stall_torque``. Its winding
+    loses ``R I^2``, cold, and its electronics take the idle current. Driving work comes on top; what a servo takes up
+    while it brakes is not returned to the supply.
+
+    Args:
+        efforts: arrays of ``record.EFFORT``, each of shape (run, time, servo).
+        robots: robot of each run.
+        supply_ratios: share of their supply that the servos of each run get [-].
+    """
+    servos = [[robot.servo(name) for name in layout(robot).servos] for robot in robots]
+    if not any(servo.winding is not None for row in servos for servo in row):
+        return {}
+    copper, idle = np.full((2, len(robots), len(servos[0])), np.nan)
+    for run, row in enumerate(servos):
+        for place, servo in enumerate(row):
+            if servo.winding is not None:
+                loss = servo.winding.volts * servo.winding.stall_current
+                copper[run, place] = loss / servo.torque**2
+                idle[run, place] = supply_ratios[run] * servo.winding.volts * servo.winding.idle_current
+    driving = 0.5 * (efforts["servo_power"] + efforts["servo_absolute_power"])
+    losses = copper[:, None] * efforts["servo_mean_square_torque"] + idle[:, None]
+    return {"servo_electrical_power": losses + driving}
+
+
 def rolling_displacement(
     orientation: Float[np.ndarray, "run time limb 4"], radius: Float[np.ndarray, "run limb"]
 ) -> Float[np.ndarray, "run time limb 3"]:
@@ -317,10 +349,15 @@ def thin(record: xr.Dataset, stride: int) -> xr.Dataset:
     intervals = [efforts[end - stride + 1 : end + 1] for end in range(stride, record.sizes["time"], stride)]
     means = np.stack([efforts[0], *(joint_effort(list(rows), [1.0 / stride] * stride) for rows in intervals)])
     dims = ("time", *(dim for dim in record["servo_power"].dims if dim != "time"))
+    series = {name: means[..., k] for k, name in enumerate(EFFORT)}
+    for name in set(ELECTRICAL) & set(record.data_vars):
+        values = record[name].transpose("time", ...).values
+        parts = [values[end - stride + 1 : end + 1].mean(axis=0) for end in range(stride, record.sizes["time"], stride)]
+        series[str(name)] = np.stack([values[0], *parts])
     return thinned.assign(
         {
-            name: xr.DataArray(means[..., k], dims=dims, attrs=record[name].attrs).transpose(*record[name].dims)
-            for k, name in enumerate(EFFORT)
+            name: xr.DataArray(values, dims=dims, attrs=record[name].attrs).transpose(*record[name].dims)
+            for name, values in series.items()
         }
     )
 

@@ -17,6 +17,7 @@ from suchus.robot.gaits import gait_of
 from suchus.robot.motion import START, Gait, check_limits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault, check_faults
+from suchus.sim.land.chatter_check import check_chatter
 from suchus.sim.land.command_speed import CommandSpeeds
 from suchus.sim.land.extent import check_extent
 from suchus.sim.land.lake import Lake, check_lake
@@ -69,7 +70,8 @@ def simulate(
 
     Warns:
         Doubtful: a controller commands a servo to turn faster than its speed, before noise and faults; or the recorded
-            contacts of a run do not carry its weight, see ``check_loads``.
+            contacts of a run do not carry its weight, see ``check_loads``; or the servos of a run chatter, see
+            ``check_chatter``.
     """
     runs = tuple(runs)
     if not runs:
@@ -97,6 +99,7 @@ def simulate(
     record = record.assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=timestep, control_period=period)
     check_loads(record, runs)
+    check_chatter(record, runs)
     return record
 
 

@@ -14,6 +14,7 @@ of ``LOCKED`` times the robot's. In space the water acts on all coordinates of t
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import takewhile
 from typing import Any, NamedTuple
 
 import mujoco
@@ -26,6 +27,7 @@ from suchus.core import water_table as hydro
 from suchus.core.errors import Diverged, UnreadableFile
 from suchus.robot.control import Command, Controller
 from suchus.robot.design import layout
+from suchus.sim.fault import Fault
 from suchus.sim.land.batch import Beginning, SimulationBatch
 from suchus.sim.land.links import RobotLinks
 from suchus.sim.land.loop import Loop
@@ -190,7 +192,7 @@ class Stepper:
         self._servo_steps: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         self._is_read = False
         ends = [time / loop.period for push in run.pushes for time in (push.at, push.at + push.duration)]
-        ticks_of = [np.ceil(fault.at / loop.period - 1e-9) for fault in run.faults]
+        ticks_of = [float(tick) for fault in run.faults for tick in _change_ticks(fault, loop.period, ticks)]
         ticks_of += [round_(end) for end in ends for round_ in (np.floor, np.ceil)]
         self._troubles = np.unique(np.array(ticks_of, int)) * self._per_tick
         self.set_added_mass(np.zeros((len(self.dofs), len(self.dofs))))
@@ -506,6 +508,18 @@ class Stepper:
     def record(self) -> xr.Dataset:
         """Return what was read, in the schema of a run; NaN where nothing has been yet."""
         return self._recorder.record(np.arange(self._ticks + 1) * self.period)
+
+
+def _change_ticks(fault: Fault, period: float, ticks: int) -> list[int]:
+    """Return the control periods in which a fault begins or ends, from those of a run.
+
+    Args:
+        fault: the fault.
+        period: control period [s].
+        ticks: control periods of the run [-].
+    """
+    spells = takewhile(lambda spell: spell[0] <= ticks, fault.persistence.spell_ticks(fault.part, fault.at, period))
+    return [tick for spell in spells for tick in spell if tick is not None and tick <= ticks]
 
 
 def _with_prefix(state: Mapping[str, np.ndarray], start: str) -> dict[str, np.ndarray]:

@@ -16,10 +16,13 @@ from suchus.sim.metrics.bends import (
     tail_swing_least,
     tail_swings,
 )
+from suchus.sim.metrics.chatter import CHATTER_HARMONIC, chatter, speed_chatter
 from suchus.sim.metrics.contact import ground_force, limb_load
 from suchus.sim.metrics.energy import (
     cost_of_transport,
     effort,
+    electrical_cost_of_transport,
+    electrical_work,
     mean_effort,
     net_cost_of_transport,
     net_work,
@@ -74,6 +77,7 @@ from suchus.sim.metrics.stability import (
 from suchus.sim.metrics.window import each_cycle, first_harmonic, mean_cycle, require_complete, time_window
 
 __all__ = [
+    "CHATTER_HARMONIC",
     "MIN_SETTLED_CYCLES",
     "SETTLED_TOLERANCE",
     "SIMILARITY",
@@ -81,6 +85,7 @@ __all__ = [
     "SettledMean",
     "SwimNumbers",
     "bend_swings",
+    "chatter",
     "cost_of_transport",
     "cycle_speeds",
     "diagonal_phase_error",
@@ -88,6 +93,8 @@ __all__ = [
     "duty_factor",
     "each_cycle",
     "effort",
+    "electrical_cost_of_transport",
+    "electrical_work",
     "first_harmonic",
     "flight_share",
     "foot_clearance",
@@ -122,6 +129,7 @@ __all__ = [
     "slip",
     "smaller_swing",
     "speed",
+    "speed_chatter",
     "spine_amplitude",
     "spine_sine_share",
     "spine_swings",

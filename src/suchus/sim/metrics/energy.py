@@ -71,6 +71,22 @@ def net_cost_of_transport(record: xr.Dataset, start: float = START, end: float |
     return net_work(record, start, end) / _transport(record, start, end)
 
 
+def electrical_work(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the energy that all servos draw from their supply: copper and idle losses, and driving work [J].
+
+    Nothing is returned while a servo brakes. It is not a number where a servo has no winding: its losses are not known.
+    """
+    if "servo_electrical_power" not in record:
+        return work(record, start, end) * float("nan")
+    window = time_window(record, start, end).servo_electrical_power.isel(time=slice(1, None))
+    return _duration(record, start, end) * window.mean("time", skipna=False).sum("servo", skipna=False)
+
+
+def electrical_cost_of_transport(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the energy from the supply per weight and displacement along the ground [-]; see ``electrical_work``."""
+    return electrical_work(record, start, end) / _transport(record, start, end)
+
+
 def peak_torque(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return the greatest torque of each servo in any physics step [N m]."""
     return effort(record, "servo_peak_torque", start, end).max("time", skipna=False)
@@ -93,4 +109,13 @@ def _transport(record: xr.Dataset, start: float, end: float | None) -> xr.DataAr
     return record.mass * GRAVITY * (horizontal**2).sum("xyz") ** 0.5
 
 
-measures = (cost_of_transport, net_cost_of_transport, net_work, peak_torque, rms_torque, work)
+measures = (
+    cost_of_transport,
+    electrical_cost_of_transport,
+    electrical_work,
+    net_cost_of_transport,
+    net_work,
+    peak_torque,
+    rms_torque,
+    work,
+)

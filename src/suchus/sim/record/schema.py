@@ -78,6 +78,15 @@ HEAT: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 }
 """Further variables of runs whose robots have servos that warm up, as in ``VARIABLES``."""
 
+ELECTRICAL: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "servo_electrical_power": (
+        ("time", "servo"),
+        "W",
+        "mean power that the servo draws from its supply: copper and idle losses, and driving; NaN without a winding",
+    ),
+}
+"""Further variables of runs whose robots have servos with windings, as in ``EFFORT``."""
+
 COUPLED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "link_force": (
         ("time", "link", "xyz"),
@@ -161,7 +170,7 @@ def dataset(
     data.coords["time"].attrs["units"] = "s"
     sampled = {
         name: (("run", *dims), arrays[name], {"units": unit, "long_name": long_name})
-        for name, (dims, unit, long_name) in {**VARIABLES, **EFFORT, **HEAT}.items()
+        for name, (dims, unit, long_name) in {**VARIABLES, **EFFORT, **HEAT, **ELECTRICAL}.items()
         if name in arrays
     }
     of_runs = {

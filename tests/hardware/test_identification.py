@@ -1,0 +1,183 @@
+"""Hidden numbers of servos are found again in the log of an emulated robot whose trunk is held in the air."""
+
+import json
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.apps.cli.calibrate import calibrate
+from suchus.core.errors import IncompatibleRecord
+from suchus.core.files import save
+from suchus.hardware.emulator import EmulatedBody
+from suchus.hardware.identification import QUANTITIES, bam_parameters, identification_table, identify_servos
+from suchus.hardware.protocols import servo_table
+from suchus.robot.design import layout, servo_ranges, with_named_servos
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.faults import Backlash
+from suchus.sim.model.inverse import held_torques
+
+ROBOT = ROBOTS["caiman"]
+NAMES = layout(ROBOT).servos
+TABLE = servo_table("XM430-W350")
+PLAYS = {"LF_pitch": 0.02, "RF_pitch": 0.04, "LH_pitch": 0.06, "LF_yaw": 0.03}
+DELAY = 0.02
+
+
+def hidden(seed):
+    """Return the robot with inertia, friction and damping of each servo drawn anew."""
+    random = np.random.default_rng(seed)
+    servos = {}
+    for name in NAMES:
+        servo = ROBOT.servo(name)
+        servos[name] = replace(
+            servo, armature=servo.armature * random.uniform(0.6, 5.0),
+            friction=servo.friction * random.uniform(0.5, 3.0), damping=servo.damping * random.uniform(0.5, 2.0),
+            kd=2.0 * servo.kd,
+        )  # fmt: skip
+    return with_named_servos(ROBOT, servos)
+
+
+def step(values, unit):
+    """Return values in whole steps of a register."""
+    return np.round(values / unit) * unit
+
+
+@lru_cache
+def waving_log(seed, *, seconds=20.0, amplitude=1.0, plays=(), held=True):
+    """Return the log of servos that wave with two frequencies each, in the steps of their registers, and the robot."""
+    robot = hidden(seed)
+    faults = [Backlash(name, gap=gap) for name, gap in plays]
+    body = EmulatedBody(
+        robot, GAITS["belly_crawl"], held=held, latency=DELAY if held else 0.0, faults=faults, timestep=0.0025
+    )
+    random, (low, high) = np.random.default_rng(seed + 100), servo_ranges(robot).T
+    rest = body.now["servo_target"].copy()
+    middle = np.clip(rest, low + 0.3, high - 0.3)
+    frequency, phase = random.uniform(0.5, 0.9, (2, len(NAMES))), random.uniform(0, 6.28, (2, len(NAMES)))
+    frequency[1] *= 2.3
+    rows = {name: [] for name in ("servo_target", "servo_angle", "servo_velocity", "servo_current")}
+    count = round(seconds / body.period)
+    for tick in range(count):
+        time = tick * body.period
+        swing = 0.25 * np.sin(2 * np.pi * frequency[0] * time + phase[0])
+        swing += 0.08 * np.sin(2 * np.pi * frequency[1] * time + phase[1])
+        goal = step(np.clip(rest + min(time, 1.0) * (middle - rest + amplitude * swing), low, high), TABLE.step)
+        sensed = body.sensed()
+        rows["servo_target"].append(goal)
+        rows["servo_angle"].append(step(sensed.servo_position[0], TABLE.step))
+        rows["servo_velocity"].append(step(sensed.servo_velocity[0], TABLE["present_velocity"].unit))
+        current = sensed.servo_torque[0] / TABLE.torque_per_ampere
+        rows["servo_current"].append(step(current, TABLE["present_current"].unit))
+        body.aim(dict(enumerate(goal.tolist())))
+        body.step()
+    variables = {name: (("time", "servo"), np.array(values)) for name, values in rows.items()}
+    return xr.Dataset(variables, coords={"time": body.period * np.arange(count), "servo": list(NAMES)}), robot
+
+
+def truths(robot, name, plays):
+    servo = robot.servo(name)
+    return {
+        "torque_constant": TABLE.torque_per_ampere, "armature": servo.armature, "friction": servo.friction,
+        "damping": servo.damping, "delay": DELAY, "play": dict(plays).get(name, 0.0),
+    }  # fmt: skip
+
+
+def compared(seed, plays=()):
+    """Return of each number that is found: servo, quantity, error over the truth, and whether the interval holds it."""
+    log, robot = waving_log(seed, plays=plays)
+    identified, _ = identify_servos(log, ROBOT)
+    rows = []
+    for name, servo in identified.items():
+        for quantity, truth in truths(robot, name, plays).items():
+            estimate = getattr(servo, quantity)
+            if np.isfinite(estimate.value):
+                error = estimate.value - truth
+                rows.append((name, quantity, error / truth if truth else np.nan, abs(error) <= estimate.half))
+    return rows
+
+
+def test_intervals_hold_the_hidden_numbers_and_are_narrow():
+    rows = [row for seed in (0, 1, 2) for row in compared(seed)] + compared(0, tuple(PLAYS.items()))
+    assert len(rows) > 300
+    assert np.mean([is_inside for *_, is_inside in rows]) >= 0.95
+    errors = {quantity: np.array([abs(e) for _, q, e, _ in rows if q == quantity]) for quantity in QUANTITIES}
+    for quantity in ("torque_constant", "armature", "friction", "damping"):
+        assert np.mean(errors[quantity] < 0.1) >= 0.95, quantity
+        assert np.median(errors[quantity]) < 0.05, quantity
+    assert np.median(errors["delay"]) < 0.1
+    plays = errors["play"][np.isfinite(errors["play"])]
+    assert len(plays) == len(PLAYS)
+    assert np.all(plays < 0.1)
+
+
+def test_most_servos_that_wave_are_identified_and_the_others_are_said():
+    log, _ = waving_log(0)
+    identified, refusals = identify_servos(log, ROBOT)
+    assert len(identified) >= 13
+    assert set(identified) | set(refusals) == set(NAMES)
+    assert "no hinge of its own" in refusals["tail_cable"]
+    assert all("the motion is too calm" in text for name, text in refusals.items() if name != "tail_cable")
+
+
+def test_a_current_that_is_told_too_great_gives_a_torque_constant_too_small():
+    log, _ = waving_log(0)
+    found, _ = identify_servos(log.assign(servo_current=1.25 * log.servo_current), ROBOT)
+    for servo in found.values():
+        assert servo.torque_constant.value == pytest.approx(TABLE.torque_per_ampere / 1.25, rel=0.02)
+
+
+def test_a_log_that_shows_nothing_is_refused_with_the_motion_that_would():
+    log, _ = waving_log(0)
+    with pytest.raises(IncompatibleRecord, match=r"lasts 3.99 s; 8 s .* Hold caiman by its trunk in the air"):
+        identify_servos(log.isel(time=slice(400)), ROBOT)
+    with pytest.raises(IncompatibleRecord, match="holds no servo_current"):
+        identify_servos(log.drop_vars("servo_current"), ROBOT)
+    with pytest.raises(IncompatibleRecord, match="other servos"):
+        identify_servos(log, ROBOTS["salamandra"])
+    calm, _ = waving_log(0, amplitude=0.02)
+    with pytest.raises(IncompatibleRecord, match=r"identifies no servo.* swing by 0.3 rad"):
+        identify_servos(calm, ROBOT)
+
+
+def test_a_robot_on_the_ground_is_not_taken_for_one_in_the_air():
+    log, _ = waving_log(0, held=False)
+    with pytest.raises(IncompatibleRecord, match="Hold caiman by its trunk in the air"):
+        identify_servos(log, ROBOT)
+
+
+def test_the_load_of_a_held_limb_is_its_weight_over_its_lever():
+    """A tail that sticks out level: torque of its pitch hinge is weight times the distance of its centre of mass."""
+    robot_layout = layout(ROBOT)
+    level = np.zeros((1, len(robot_layout.hinges)))
+    torque = held_torques(ROBOT, level, level, level)[0, NAMES.index("tail_pitch")]
+    still = EmulatedBody(ROBOT, GAITS["belly_crawl"], held=True, timestep=0.0025)
+    still.aim(dict.fromkeys(range(len(NAMES)), 0.0))
+    for _ in range(150):
+        still.step()
+    friction = ROBOT.servo("tail_pitch").friction
+    held = still.now["servo_torque"][NAMES.index("tail_pitch")]
+    assert abs(held - torque) < 1.5 * friction + 0.02 * abs(torque)
+    assert abs(torque) > 5 * friction
+
+
+def test_tables_and_json_hold_what_was_found(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    log, _ = waving_log(0)
+    save(log, "record.nc")
+    assert calibrate(["log", "record.nc", "--held", "--json", "bam"]) == 0
+    identified, _ = identify_servos(log, ROBOT)
+    assert (tmp_path / "servos_identified.csv").read_text() == identification_table(identified)
+    files = {path.stem: json.loads(path.read_text()) for path in (tmp_path / "bam").glob("*.json")}
+    assert set(files) == set(identified)
+    for name, values in files.items():
+        assert values["armature"] == pytest.approx(identified[name].armature.value)
+        assert values["kt"] == pytest.approx(identified[name].torque_constant.value)
+        assert values["model"] == "m1"
+    assert "tail_cable is left out" in capsys.readouterr().out
+    known = json.loads(bam_parameters(identified["LF_yaw"], "XM430-W350"))
+    assert known["R"] == pytest.approx(12.0 / 2.3, rel=0.1)
+    assert known["actuator"] == "xm430-w350"
