@@ -1,7 +1,7 @@
 """Fetch the engine of `suchus page`, MuJoCo in WebAssembly, with npm. ``make page`` calls it.
 
-Usage: python tools/fetch_engine.py [--wheel]. The pinned package is packed by npm from the registry that npm is set to,
-checked by its digest, and unpacked into the user's cache; with ``--wheel`` into the package, from where a wheel takes it.
+Usage: python tools/fetch_engine.py [--wheel]. npm packs the pinned package from the registry that it is set to. It is
+checked by its digest and unpacked into the user's cache; with ``--wheel`` into the folder that a wheel takes.
 """
 
 import shutil

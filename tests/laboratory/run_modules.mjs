@@ -58,7 +58,7 @@ const tasks = {
       walk.begin(facts.gait, { friction: 1, uphill: 0, level: null, control: facts.physics.control, ...settings });
       const first = Array.from(walk.d.qpos), started = performance.now();
       for (let tick = 0; tick < ticks; tick++) {
-        for (const { at, servo, kind } of faults) if (at === tick) walk.break(servo, kind);
+        for (const { at, servo, kind, fraction } of faults) if (at === tick) walk.break(servo, kind, fraction);
         if (push && push.at === tick) walk.pushBody(push.body, push.force, push.duration);
         walk.advance();
       }

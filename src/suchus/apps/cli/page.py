@@ -10,7 +10,7 @@ import tyro
 
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.word_checks import check_page
-from suchus.apps.laboratory import laboratory_page
+from suchus.apps.laboratory.page import laboratory_page
 from suchus.core.files import check_name, check_replaceable
 from suchus.robot.design import Robot
 from suchus.robot.gaits import default_gait
@@ -28,7 +28,7 @@ class PageOptions:
     gait: Gait | None = None
     """Its gait at the beginning; the second word. By default the robot's own."""
     water: Annotated[float | None, tyro.conf.arg(metavar="METRES")] = None
-    """Level of the water above the ground where it begins [m]; by default only what swims by its own gait is in water."""
+    """Level of the water above the ground where it begins [m]; by default water for what swims alone."""
     out: Path | None = None
     """The page; by default ROBOT.html."""
 

@@ -4,7 +4,3 @@ Start reading with ``page``: it puts the facts of a robot (``description``), the
 JavaScript into one HTML file. The modules repeat what ``robot.motion``, ``sim.land``, ``sim.metrics`` and ``sim.hydro``
 compute; tests compare them on the same inputs.
 """
-
-from suchus.apps.laboratory.page import laboratory_page
-
-__all__ = ["laboratory_page"]
