@@ -7,7 +7,7 @@ EDITABLE := $(PIP) --no-deps --build-constraint pins.txt --editable . # a folder
 export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
 
-.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas league evidence converge stale renew bench docs
+.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas league evidence converge stale renew bench docs page
 .PHONY: release reliability version tag pins licences matrix sizes clean
 
 reproduce: .venv/.runtime
@@ -37,7 +37,11 @@ contract: .venv/.dev
 single double space: .venv/.dev # the flow's kernels, compiled once; else every test worker would: double for test-all
 	SUCHUS_THREADS=1 $(PY) tools/compile_flow.py $@
 
-tests: .venv/.dev # asserts are plain, which is quicker; what fails runs again with the values in its message
+page: .venv/.runtime # the engine of `suchus page`, which npm fetches into the user's cache
+	$(PY) tools/fetch_engine.py
+
+tests: .venv/.dev # without npm the engine of the page is not tried; what fails runs again with the values in its message
+	@$(PY) tools/fetch_engine.py || true
 	$(PY) -m pytest -n auto --dist worksteal --assert=plain -m "not validate and not slow" || \
 	{ $(PY) -m pytest -n0 --last-failed --last-failed-no-failures none -m "not validate and not slow"; exit 1; }
 

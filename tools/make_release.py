@@ -14,6 +14,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+import fetch_engine
 from release import distributions, dockerfile
 from release.environment import ROOT, Environment, Failed, run
 
@@ -62,6 +63,8 @@ def main(words: Sequence[str] = ()) -> int:
 
 
 def _built(place: Path) -> tuple[Path, Path | None]:
+    if fetch_engine.main(["--wheel"]):
+        raise Failed("the wheel would lack the engine of suchus page.")
     tools = Environment(place / "tools").make()
     again = distributions.digests(*distributions.build(tools, place / "again"))
     wheel, sdist = distributions.build(tools, ROOT / "dist")

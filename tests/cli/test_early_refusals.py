@@ -32,6 +32,7 @@ REFUSED = {
     "compare a b --out page.txt": "the page would be page.txt",
     "replay record.nc": "there is no file record.nc",
     "replay tracks.csv --out page.txt": "the page would be page.txt",
+    "page strider --out page.txt": "the page would be page.txt",
     "study clams": "there is no file clams",
     "view caimann": "there is no robot named 'caimann'",
     "size caimann": "there is no robot named 'caimann'",

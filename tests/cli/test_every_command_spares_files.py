@@ -26,6 +26,8 @@ from tests.wires import Obedient, wiring
 
 from suchus.apps.cli import calibrate, demo, drive, main, size, view
 from suchus.apps.cli.entry import COMMANDS
+from suchus.apps.laboratory import page
+from suchus.apps.laboratory.engine import Engine
 from suchus.core.files import load, save
 from suchus.core.writing import MANIFEST
 from suchus.hardware import Rig, straight, write_map, write_wiring
@@ -98,6 +100,11 @@ def emulated(patch):
     patch.setattr(calibrate, "find_wiring", lambda rig, clock, ask: wiring())
 
 
+def no_engine(patch):
+    """The page carries no engine: what counts is where it is written."""
+    patch.setattr(page, "read_engine", lambda: Engine("", b""))
+
+
 CASES = {
     "demo": [Case(words=("demo", "--no-browser", "--out", "made/page.html"), doubles=short_walks)],
     "reproduce": [Case(words=("reproduce", "--anew", "--jobs", "1", "--out", "made"))],
@@ -108,6 +115,7 @@ CASES = {
         Case(words=("capture", "walk.csv", "--forces", "made/forces"), needs=("walk.csv",), long=True),
     ],
     "view": [],
+    "page": [Case(words=("page", "strider", "--out", "made/it.html"), doubles=no_engine)],
     "replay": [Case(words=("replay", "walk.nc", "--out", "made/it.html"), needs=("walk.nc",))],
     "lessons": [Case(words=("lessons", "--out", "made"), long=True)],
     "study": [

@@ -12,6 +12,8 @@ from typing import Any
 from release.environment import PINNED, ROOT, Environment, Failed, clean, run
 
 PACKAGE = "src/suchus"
+ENGINE = f"{PACKAGE}/apps/laboratory/engine"
+"""Folder of the engine of ``suchus page``, which is fetched by its digest and not committed."""
 _SAID = {
     "pyproject.toml": r'^version = "([^"]+)"',
     "CHANGELOG.md": r"^## (\d\S*) \(\d{4}-\d\d-\d\d\)$",  # the latest stands first
@@ -127,8 +129,9 @@ def unlike(first: Mapping[str, str], second: Mapping[str, str]) -> str:
 
 
 def tracked() -> set[str]:
-    """Return the files of the package that git knows, with paths from the checkout."""
-    return set(run(["git", "ls-files", PACKAGE], cwd=ROOT).splitlines())
+    """Return the files of the package that git knows, and the engine of the page, with paths from the checkout."""
+    engine = {f"{ENGINE}/{file.name}" for file in (ROOT / ENGINE).glob("mujoco.*")}
+    return set(run(["git", "ls-files", PACKAGE], cwd=ROOT).splitlines()) | engine
 
 
 def differences(wheel: Path, sdist: Path | None, sources: set[str]) -> list[str]:

@@ -118,6 +118,15 @@ COMMANDS = (
         shelf_options=("robot", "gait"),
     ),
     Subcommand(
+        "page",
+        "[ROBOT] [GAIT] [--out FILE.html]",
+        "make a page in which it walks in a browser, offline, to try and to break",
+        "suchus.apps.cli.page:make_page",
+        first_word="robot",
+        shelf_options=("robot", "gait"),
+        output="page",
+    ),
+    Subcommand(
         "replay",
         "RECORD.nc [--out FILE.html]",
         "make a page of a stored run that plays offline",

@@ -114,7 +114,7 @@ def render_template(
         keys=KEYS | {"legs": limb_colours(robot)},
         arrow=f"{100 * ARROW * robot.length:.0f} cm",
         version=versions()["suchus"],
-        meta=_script(meta | {"chosen": bool(choice)}),
+        meta=embed_json(meta | {"chosen": bool(choice)}),
         data=data,
         **template_values,
     )  # fmt: skip
@@ -146,7 +146,7 @@ def environment() -> Environment:
     return templates
 
 
-def _script(meta: Mapping[str, Any]) -> Markup:
+def embed_json(meta: Mapping[str, Any]) -> Markup:
     """Return values as JSON that is safe inside a page's script."""
     return Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c"))
 
@@ -226,7 +226,7 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
         limit=f"{meta['limit']:.3g}",
         keys={"left": vortices.hex_colour(1.0), "right": vortices.hex_colour(-1.0)},
         version=versions()["suchus"],
-        meta=_script(meta),
+        meta=embed_json(meta),
         data=data,
     )  # fmt: skip
 

@@ -2,6 +2,7 @@
 (() => {
   if (!shared) return;
   const { $, meta, canvas, gl, take, add, cross, dot, unit, program, asked, framed, state, redraw } = shared;
+  const live = "live" in document.body.dataset; // frames arrive while it plays: no record yet
 
   // ---- vectors and quaternions (wxyz) --------------------------------------------------------------------------
   const sub = (a, b) => add(a, b, -1);
@@ -142,8 +143,28 @@
 
   const actors = meta.actors.map((actor) => {
     const read = Object.fromEntries(Object.entries(actor.arrays).map(([name, ref]) => [name, take(ref)]));
+    if (live) for (const name in read) read[name] = Float32Array.from(read[name]);
     return { ...actor, ...read, side: 0 };
   });
+  const lastTime = () => meta.start + (Math.max(...actors.map((actor) => actor.frames)) - 1) / meta.rate;
+
+  // ---- frames of a live run --------------------------------------------------------------------------------------
+  const FULL = 32767; // places and turns are fractions of it
+  const LIVE_TRACK = 10; // [s]; tracks of a live run are drawn for so long
+  function append(actor, frame) { // numbers in metres, newtons and unit quaternions
+    const packed = { ...frame, turns: frame.turns.map((value) => FULL * value),
+      places: frame.places.map((value, k) => FULL * (value - actor.origin[k % 3]) / actor.reach) };
+    for (const [name, values] of Object.entries(packed)) {
+      if (actor[name].length < (actor.frames + 1) * values.length) {
+        const longer = new Float32Array(2 * (actor.frames + 1) * values.length);
+        longer.set(actor[name]);
+        actor[name] = longer;
+      }
+      actor[name].set(values, actor.frames * values.length);
+    }
+    actor.frames += 1;
+  }
+  const restart = () => { for (const actor of actors) actor.frames = 0; state.time = meta.start; };
 
   const limbs = 3 * meta.radii.length; // numbers for each frame
 
@@ -222,11 +243,12 @@
 
   function tracks(to, actor, faint) {
     const until = Math.min(Math.floor((state.time - meta.start) * meta.rate), actor.frames - 1), step = 2;
+    const from = live ? Math.max(0, until - until % step - step * Math.round(LIVE_TRACK * meta.rate / step)) : 0;
     for (let leg = 0; leg < meta.radii.length; leg++) {
       const colour = [...meta.colours.legs[leg], faint ? 0.35 : 0.85];
       const at = (i) => { const k = limbs * i + 3 * leg;
         return under([actor.feet[k], actor.feet[k + 1] + actor.side, actor.feet[k + 2]], meta.radii[leg], 0.0011 * bodyLength); };
-      for (let i = 0; i + step <= until; i += step) {
+      for (let i = from; i + step <= until; i += step) {
         const stands = actor.forces[limbs * i + 3 * leg + 2] > meta.loaded;
         const a = at(i), b = at(i + step);
         if (!stands && rough) continue; // where the ground lies under a swinging foot is not recorded
@@ -235,7 +257,7 @@
       }
     }
     const mass = (i) => [actor.mass[3 * i], actor.mass[3 * i + 1] + actor.side, 0.0012 * bodyLength];
-    for (let i = 0; i + step <= until; i += step) ribbon(to, mass(i), mass(i + step), 0.003 * bodyLength, [...meta.colours.mass, faint ? 0.3 : 0.8]);
+    for (let i = from; i + step <= until; i += step) ribbon(to, mass(i), mass(i + step), 0.003 * bodyLength, [...meta.colours.mass, faint ? 0.3 : 0.8]);
   }
   function support(to, actor, now) {
     const standing = now.feet.map((foot, leg) => [under(foot, meta.radii[leg], 0.0014 * bodyLength), now.forces[leg][2] > meta.loaded])
@@ -269,7 +291,7 @@
     gl.uniform3fv(plain.uniforms.uEye, seen.eye);
     gl.uniform1f(plain.uniforms.uNight, +state.dark);
   }
-  const levels = meta.water ? take(meta.water.levels) : null;
+  let levels = meta.water ? take(meta.water.levels) : null;
   function levelNow() { // of the water above the origin, against gravity
     const f = Math.min(Math.max((state.time - meta.start) * meta.rate, 0), levels.length - 1), i = Math.floor(f);
     return levels[i] + (f - i) * (levels[Math.min(i + 1, levels.length - 1)] - levels[i]);
@@ -409,6 +431,7 @@
   const metres = (v) => `${v.toFixed(places).replace("-", "−")} m`;
   function readout(now, seenActors) {
     $("clock").textContent = `${state.time.toFixed(2)} s`;
+    if (live) $("time").max = lastTime();
     $("time").value = state.time;
     $("time").setAttribute("aria-valuetext", `${state.time.toFixed(1)} seconds`);
     const way = (i) => now[i].mass[0] - seenActors[i].mass[0];
@@ -419,9 +442,9 @@
   }
 
   // ---- controls ------------------------------------------------------------------------------------------------
-  const end = meta.start + (Math.max(...actors.map((actor) => actor.frames)) - 1) / meta.rate;
-  const seek = (time) => { state.time = Math.min(Math.max(time, meta.start), end); redraw(); };
-  const play = (on) => { if (on && state.time >= end - 1e-6) state.time = meta.start; shared.play(on); };
+  let advance = null; // of a live run: simulates until a time and returns the time that it reached
+  const seek = (time) => { state.time = Math.min(Math.max(time, meta.start), lastTime()); redraw(); };
+  const play = (on) => { if (on && !live && state.time >= lastTime() - 1e-6) state.time = meta.start; shared.play(on); };
   const step = (by) => seek(state.time + by / meta.rate);
   const views = { corner: [-0.95, 0.36], left: [Math.PI / 2, 0.06], right: [-Math.PI / 2, 0.06], front: [0, 0.12], above: [-Math.PI / 2, 1.55] };
   const look = (name) => { [camera.azimuth, camera.elevation] = views[name]; camera.moved = [0, 0, 0]; camera.distance = fitted(); redraw(); };
@@ -430,15 +453,27 @@
     const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
     return meta.size * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), (state.compare === "beside" ? 1.35 : 1.15) / aspect);
   };
-  $("time").min = meta.start; $("time").max = end; $("time").step = 1 / meta.rate;
+  $("time").min = meta.start; $("time").max = lastTime(); $("time").step = 1 / meta.rate;
   const choose = (run) => { state.run = run; $("choice").textContent = actors[run].label; $("chosen").setAttribute("aria-valuetext", actors[run].label); redraw(); };
   if ($("chosen")) { choose(0); $("chosen").addEventListener("input", (e) => choose(+e.target.value)); }
   if ($("compare")) $("compare").addEventListener("change", (e) => { state.compare = e.target.value; camera.distance = fitted(); redraw(); });
-  shared.hold({ camera, lowest: -0.12, move, seen: view, look, seek, step, start: meta.start, end, boxes: ["forces", "support", "tracks", "follow"], play });
-  shared.begin(draw, (time) => { state.time = state.time + time > end ? meta.start : state.time + time; });
+  shared.hold({ camera, lowest: -0.12, move, seen: view, look, seek, step, start: meta.start, end: lastTime, boxes: ["forces", "support", "tracks", "follow"], play });
+  shared.begin(draw, (time) => {
+    const next = state.time + time;
+    if (live) state.time = advance ? advance(next) : state.time;
+    else state.time = next > lastTime() ? meta.start : next;
+  });
   if (asked.has("view") && views[asked.get("view")]) { $("view").value = asked.get("view"); look(asked.get("view")); }
   camera.distance = fitted();
   if (asked.has("t")) seek(+asked.get("t"));
-  else if (framed) seek(meta.start + 0.4 * (end - meta.start));
+  else if (framed) seek(meta.start + 0.4 * (lastTime() - meta.start));
+  function project(at, side = 0) { // where a point of the world is on the canvas [CSS pixel]; null behind the camera
+    const m = view().matrix, p = [at[0], at[1] + side, at[2]];
+    const [x, y, , w] = [0, 1, 2, 3].map((row) => m[row] * p[0] + m[row + 4] * p[1] + m[row + 8] * p[2] + m[row + 12]);
+    return w > 0 ? [(x / w + 1) / 2 * canvas.clientWidth, (1 - y / w) / 2 * canvas.clientHeight] : null;
+  }
+  const flood = (level, up) => { meta.water = level === null ? null : { up }; levels = level === null ? null : new Float32Array([level]); };
+  if (live) window.laboratory = { meta, actors, state, append, restart, flood, project, redraw, seek, play,
+    attach: (simulate) => { advance = simulate; } };
   window.suchus = { state, camera, seek, play, up: () => view().up, mass: () => shown && shown.map((one) => one.mass) };
 })();

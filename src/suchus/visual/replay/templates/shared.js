@@ -113,7 +113,7 @@ const shared = (() => {
     canvas.addEventListener("keydown", (e) => {
       const acts = { ArrowLeft: () => orbit(18, 0), ArrowRight: () => orbit(-18, 0), ArrowUp: () => orbit(0, 18), ArrowDown: () => orbit(0, -18),
         "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1.14), ",": () => step(-1), ".": () => step(1),
-        " ": () => play(!state.playing), Home: () => seek(start), End: () => seek(end) };
+        " ": () => play(!state.playing), Home: () => seek(start), End: () => seek(end()) };
       const act = acts[e.key];
       if (act && !e.ctrlKey && !e.metaKey && !e.altKey) { e.preventDefault(); act(); }
     });

@@ -125,7 +125,7 @@
   const look = (name) => { [camera.azimuth, camera.elevation] = views[name]; camera.target = [...home]; camera.distance = fitted(); redraw(); };
   const move = (by) => { camera.target = add(camera.target, by); };
   $("time").max = count - 1;
-  shared.hold({ camera, lowest: -1.56, move, seen: view, look, seek, step, start: 0, end: count - 1, boxes: ["vortices"], play });
+  shared.hold({ camera, lowest: -1.56, move, seen: view, look, seek, step, start: 0, end: () => count - 1, boxes: ["vortices"], play });
   shared.begin(draw, (time) => { state.place = (state.place + time * count / 4) % count; });
   look(views[asked.get("view")] ? asked.get("view") : "corner");
   if (views[asked.get("view")]) $("view").value = asked.get("view");
