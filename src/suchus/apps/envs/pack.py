@@ -15,7 +15,7 @@ import xarray as xr
 from jaxtyping import Bool, Float
 
 from suchus.apps.envs.actor import Actor
-from suchus.apps.envs.senses import Observer, is_crank
+from suchus.apps.envs.senses import BASIC_READINGS, GOAL_READINGS, Observer, is_crank
 from suchus.apps.envs.tanks import Tanks
 from suchus.apps.envs.task import AnyGoal, Task, Terms, remaining
 from suchus.core import rotation
@@ -237,7 +237,8 @@ class Pack:
             run = Run(robot=task.body, gait=task.swimming_gait, water=task.flow)
         self.loop = loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor)
         self._tanks = None if task.flow is None else Tanks(run, loop.batch, periods, loop.period)
-        self._observer = Observer(task.robot, count, goal=task.goal is not None)
+        readings = (*BASIC_READINGS, *(GOAL_READINGS if task.goal is not None else ()))
+        self._observer = Observer(task.robot, count, readings)
         self._goals = np.zeros((count, 2))
         self._commanded = self._actor.target  # a view; the actor writes it
         self._command_change = np.zeros_like(self._commanded)
