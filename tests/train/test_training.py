@@ -148,7 +148,7 @@ def test_motion_is_that_of_the_record():
 
 def test_a_loss_of_nothing_and_of_a_fall():
     moved = training_module.Motion(np.array([0.1, 0.0]), np.array([0.2, 0.0]), np.array([False, True]))
-    assert tracking_loss(moved, 0.1, 0.2, 0.1, 0.2).tolist() == [0.0, 4.0]
+    assert tracking_loss(moved, 0.1, 0.2, 0.1, 0.2).tolist() == [0.0, 3.0]
     assert tracking_loss(moved, 0.0, 0.0, 0.1, 0.2)[0] == pytest.approx(2.0)
 
 

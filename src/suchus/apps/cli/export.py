@@ -20,7 +20,6 @@ from suchus.robot.policies import policy_of
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model.export import Format, export
 
-
 ONNX: Literal["onnx"] = "onnx"
 FORMATS = (*get_args(Format), ONNX)
 """Formats of a robot, and that of a policy."""

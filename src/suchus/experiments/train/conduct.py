@@ -116,7 +116,7 @@ def train(
             table, table_count = search.policy(), search.generation
             say(
                 f"table of {table_count} generations: up to {search.max_speed:.3g} m/s and {search.max_turn:.3g} "
-                f"rad/s, mean squared error {search.table_loss():.3g}"
+                f"rad/s, mean loss {search.table_loss():.3g}"
             )
         best, generations = _train_network(training, store, table, network_generations, deadline, curve, move, path)
     record = {

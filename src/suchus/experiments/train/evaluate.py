@@ -115,7 +115,7 @@ def draw_episodes(training: Training, policy: Policy, count: int, seed: int) -> 
         latest = _SEGMENT_PERIODS * training.base_gait.period
         onset = round(float(np.ceil((START + random.uniform(0.0, latest)) / period)) * period, 12)
         faults = (FAULTS[FAULT_KINDS[kind]](servo, at=onset),) if training.kind.has_faults else ()  # type: ignore[call-arg]
-        body_seed = int(random.integers(2**31))
+        body_seed = int(random.integers(1_000_000))
         episodes.append(Episode(tuple(forward.tolist()), tuple(turn.tolist()), faults, body_seed))
     return tuple(episodes)
 

@@ -16,11 +16,12 @@ from suchus.robot.control.policy import Policy
 from suchus.robot.design import Robot
 from suchus.robot.design.scale import control_period, physics_step
 from suchus.robot.motion import START
-from suchus.sim.land import Ground, Lake, Run, simulate
+from suchus.sim.land import Ground, Lake, Run, Tolerances, simulate
 
 COMMANDS = ((1 / 3, 2 / 3, 1.0), (-1.0, 0.0, 1.0))
 """Fractions of the greatest speed and of the greatest turning rate that are commanded [-]."""
 _SETTLING_PERIODS, _WINDOW_PERIODS = 2.0, 4.0
+_FIRST_SEED = 7_000_000  # of robots as built, none of which is trained on
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,9 +72,12 @@ def judge(
     lake: Lake | None = None,
     ground: Ground | None = None,
     timestep: float | None = None,
+    seed: int | None = 0,
     progress: Progress = silent,
 ) -> Judgement:
     """Return what a policy reaches on level ground, or in water, under each command of a grid.
+
+    Each command gets a robot of its own, built with the errors of ``suchus.sim.land.Tolerances``.
 
     Args:
         robot: the robot.
@@ -81,11 +85,14 @@ def judge(
         lake: the water; None on dry land.
         ground: the ground; level if None.
         timestep: time step of the physics [s]; the robot's own if None.
+        seed: seed of the errors of the robots as built; None for the design itself.
         progress: told the share that is done.
     """
     commands = grid(policy)
     controls: list[Control] = [Learned(policy=policy, forward=speed, turn=turn) for speed, turn in commands]
     runs = [Run(robot=robot, gait=policy.gait, control=c, lake=lake, ground=ground or Ground()) for c in controls]
+    if seed is not None:
+        runs = [Tolerances().draw_run(run, _FIRST_SEED + 1000 * seed + i) for i, run in enumerate(runs)]
     step = control_period(robot)
     start = round(round((START + _SETTLING_PERIODS * policy.gait.period) / step) * step, 12)
     end = round(start + round(_WINDOW_PERIODS * policy.gait.period / step) * step, 12)

@@ -1,8 +1,9 @@
 """The baseline: a table of gait parameters over commands, found by CMA-ES.
 
 All candidates of all searches are kept with the speed and the turning rate that they reach. Each command of the table
-takes the best of them. A first search looks for the greatest speed, a second one for the greatest turning rate; then
-each command has a search of its own, which begins at the best candidate so far.
+takes the best of them; straight ahead the odd parameters, which steer, are zero. A first search looks for the greatest
+speed, a second one for the greatest turning rate. Then each command has a search of its own, which begins at the best
+candidate so far.
 """
 
 from collections.abc import Iterator
@@ -49,6 +50,8 @@ class TableSearch:
         self._lower_bounds, self._upper_bounds = np.array(list(training.bounds.values())).T
         neutral = np.array([ACTIONS[name].neutral for name in self.names])
         width = self._upper_bounds - self._lower_bounds
+        self._is_odd = np.array([ACTIONS[name].is_odd for name in self.names])
+        self._straight = np.where(self._is_odd, (0.0 - self._lower_bounds) / width, 0.0)
         self._neutral = np.clip((neutral - self._lower_bounds) / width, 0.02, 0.98)
         self._archive_points = np.zeros((0, len(self.names)))
         self._archive_speed, self._archive_turn = np.zeros(0), np.zeros(0)
@@ -79,6 +82,12 @@ class TableSearch:
     def complete_generations(self) -> int:
         """Generations after which each command had a search of two generations."""
         return 2 * EXPLORATION + 2 * len(self._nodes)
+
+    @property
+    def _is_straight(self) -> bool:
+        """Whether the candidates of this generation walk straight ahead."""
+        searches_speed = self.generation < EXPLORATION
+        return searches_speed or (self.generation >= 2 * EXPLORATION and self._node[1] == 0)
 
     @property
     def _node(self) -> tuple[int, int]:
@@ -113,6 +122,8 @@ class TableSearch:
             self._strategy = self._strategies[number]
         self._candidates = self._strategy.ask()
         self._points = np.clip(np.array(self._candidates), 0.0, 1.0)
+        if self._is_straight:
+            self._points[:, self._is_odd] = self._straight[self._is_odd]
         return self._lower_bounds + self._points * (self._upper_bounds - self._lower_bounds)
 
     def _turning_start(self) -> np.ndarray:
@@ -148,8 +159,7 @@ class TableSearch:
     def _losses(self, points: np.ndarray, speed: np.ndarray, turn: np.ndarray) -> np.ndarray:
         """Return the losses of candidates in the present search."""
         if self.generation < EXPLORATION:
-            scale = self._training.robot.length
-            losses = (0.3 * np.abs(turn) - speed / scale) + self._distance(points)
+            losses = self._distance(points) - speed / self._training.robot.length
         elif self.generation < 2 * EXPLORATION:
             losses = -turn + self._distance(points)
             losses = losses + np.maximum(_MIN_SPEED_FRACTION - speed / max(self.max_speed, 1e-9), 0.0)
@@ -186,8 +196,13 @@ class TableSearch:
 
     def _best(self, node: tuple[int, int]) -> int:
         """Return the candidate of all searches that is nearest to a command of the table."""
+        return int(np.nanargmin(self._archive_losses(node)))
+
+    def _archive_losses(self, node: tuple[int, int]) -> np.ndarray:
+        """Return how far all candidates are from a command; those that steer do not count straight ahead."""
         losses = self._node_losses(node, self._archive_points, self._archive_speed, self._archive_turn)
-        return int(np.nanargmin(losses))
+        steers = (self._archive_points != self._straight)[:, self._is_odd].any(axis=1)
+        return np.where(steers, np.nan, losses) if node[1] == 0 else losses
 
     def _rows(self) -> Iterator[tuple[tuple[float, ...], ...]]:
         """Yield the parameters of each speed, in them those of each turning rate."""
@@ -210,11 +225,7 @@ class TableSearch:
 
     def table_loss(self) -> float:
         """Return the mean loss of the commands of the table in the search [-]."""
-        losses = [
-            self._node_losses(node, self._archive_points, self._archive_speed, self._archive_turn)
-            for node in self._nodes
-        ]
-        return float(np.mean([np.nanmin(loss) for loss in losses]))
+        return float(np.mean([np.nanmin(self._archive_losses(node)) for node in self._nodes]))
 
 
 def _rounded(value: float) -> float:

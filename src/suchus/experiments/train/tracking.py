@@ -9,7 +9,7 @@ from jaxtyping import Float
 from suchus.core import rotation
 from suchus.sim.metrics import heading, time_window
 
-FALL_LOSS = 4.0
+FALL_LOSS = 3.0
 """Loss of a run that fell over or diverged [-]: that of a robot that goes as fast as it can the wrong way."""
 MIN_UPRIGHT = 0.3
 """Vertical component of the root's upward axis below which a robot has fallen [-]."""
@@ -57,7 +57,7 @@ def motion(record: xr.Dataset, start: float, end: float) -> Motion:
 def tracking_loss(
     moved: Motion, speed: np.ndarray | float, turn: np.ndarray | float, max_speed: float, max_turn: float
 ) -> Float[np.ndarray, " run"]:
-    """Return the squared errors of speed and turning rate over their greatest commands, summed [-].
+    """Return the sizes of the errors of speed and turning rate over their greatest commands, summed [-].
 
     Args:
         moved: motion of the runs.
@@ -66,5 +66,5 @@ def tracking_loss(
         max_speed: greatest commanded speed [m/s].
         max_turn: greatest commanded turning rate [rad/s].
     """
-    loss = ((moved.speed - speed) / max_speed) ** 2 + ((moved.turn - turn) / max_turn) ** 2
+    loss = np.abs(moved.speed - speed) / max_speed + np.abs(moved.turn - turn) / max_turn
     return np.where(moved.has_fallen, FALL_LOSS, np.minimum(loss, FALL_LOSS))

@@ -160,7 +160,10 @@ SENSES = senses(_CAIMAN)
 
 
 def reading_columns(
-    observations: Float[np.ndarray, "*b n"], name: str, robot: Robot | str = _CAIMAN
+    observations: Float[np.ndarray, "*b n"],
+    name: str,
+    robot: Robot | str = _CAIMAN,
+    readings: tuple[str, ...] | None = None,
 ) -> Float[np.ndarray, "*b m"]:
     """Return the columns of one reading of ``senses``.
 
@@ -168,14 +171,16 @@ def reading_columns(
         observations: observations as an environment returns them.
         name: name of the reading, as ``clock``.
         robot: the robot that they belong to, or its name in the catalog.
+        readings: readings of the observations, as ``Task.observed``; None for those of a task with or without a goal.
 
     Raises:
         UnknownName: there is no such reading.
     """
-    readings = senses(ROBOTS.resolve(robot))
-    if observations.shape[-1] > readings[-1].columns.stop:
-        readings = senses(ROBOTS.resolve(robot), goal=True)
-    columns = {sense.name: sense.columns for sense in readings}
+    resolved = ROBOTS.resolve(robot)
+    rows = senses(resolved) if readings is None else observation_layout(resolved, readings)
+    if readings is None and observations.shape[-1] > rows[-1].columns.stop:
+        rows = senses(resolved, goal=True)
+    columns = {sense.name: sense.columns for sense in rows}
     if name not in columns:
         raise UnknownName("reading", name, columns)
     return observations[..., columns[name]]
